@@ -3,6 +3,7 @@
 import os
 import re
 import signal
+import time
 
 import pytest
 
@@ -132,6 +133,24 @@ def test_while_the_host_is_gone_pages_are_told_what_is_said(scene):
         terminal.type(" ")
         page.until(lambda _, state: state["device"] == "feeling")
         page.hold(40.0)
+        terminal.type("q")
+        assert terminal.end() == 0
+
+
+@heavy  # a host is started twice
+def test_a_hand_that_goes_its_way_sets_out_again_with_a_host_begun_again(scene):
+    with program.Terminal("feel", scene, "--cues", "none", "--hand", "wide:20") as terminal:
+        terminal.until("h says the keys")
+        os.kill(host_of(terminal), signal.SIGKILL)
+        terminal.until("fault: .*space begins again")
+        terminal.type(" ")
+        terminal.until("feeling")
+        right_mm, end_s = 0, time.monotonic() + program.PATIENCE_S
+        while right_mm < 20:
+            assert time.monotonic() < end_s, "the hand stands still"
+            terminal.type("i")
+            said = terminal.until("place: .*\n")
+            right_mm = int("".join(re.findall("place: ([0-9]+) mm", said)) or 0)
         terminal.type("q")
         assert terminal.end() == 0
 

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from vbraille.cli.live import FeltLiveView
     from vbraille.devices.events import Event
     from vbraille.display import Display
+    from vbraille.engine.host import HostDiedError
     from vbraille.feeling.loading import LoadedScene
 
 _MODEL = "stress2-8x8"
@@ -124,15 +125,7 @@ def run(arguments: argparse.Namespace) -> int:
                 say_line(f"note: {warning}", aside=True)
             if live is not None:
                 live.feel(device, feeler, hand)
-            # A hand that moves by itself sets out, and without anybody at keys ends the feeling.
-            ends = not still and device.steering is not None
-            if ends and device.steering is not None:
-                canvas = loaded.scene.canvas
-                lines = max(1, round(canvas.height_mm / _LINE_MM))
-                pitch_mm = canvas.height_mm / lines
-                device.steering.give(ReadPage(lines, pitch_mm, canvas.width_mm))
-            alone = ends and not keyboard.attached
-            _Feeling(device, feeler, keys, live, alone=alone).run()
+            _Feeling(device, feeler, keys, live, goes=not still).run()
         finally:
             EAR.close()  # so that the array goes to rest
             device.close()
@@ -166,7 +159,10 @@ def _live(arguments: argparse.Namespace) -> FeltLiveView | None:
 
 
 class _Feeling(AtDevice):
-    """A picture that is felt until somebody has enough."""
+    """A picture that is felt until somebody has enough.
+
+    A simulated hand that goes by itself sets out, and without anybody at keys ends the feeling.
+    """
 
     does, doing = "feel", "feeling"
 
@@ -177,12 +173,29 @@ class _Feeling(AtDevice):
         keys: StoppableKeyboard,
         live: FeltLiveView | None,
         *,
-        alone: bool,
+        goes: bool,
     ) -> None:
         super().__init__(device, feeler, keys, live)
         self._feeler = feeler
-        self._alone = alone
+        self._goes = goes and device.steering is not None
         self._watch = FileWatch(Path(feeler.loaded.opened.path))
+
+    def run(self) -> None:
+        """Feel until somebody has enough; see `AtDevice.run`."""
+        self._set_out()
+        super().run()
+
+    def _start_again(self, fault: HostDiedError) -> None:
+        super()._start_again(fault)
+        self._set_out()
+
+    def _set_out(self) -> None:
+        """Have a hand that goes by itself go over the whole picture."""
+        steering = self._device.steering
+        if self._goes and steering is not None:
+            canvas = self._feeler.loaded.scene.canvas
+            lines = max(1, round(canvas.height_mm / _LINE_MM))
+            steering.give(ReadPage(lines, canvas.height_mm / lines, canvas.width_mm))
 
     def _see(self, events: Iterable[Event]) -> None:
         device, feeler = self._device, self._feeler
@@ -194,7 +207,7 @@ class _Feeling(AtDevice):
         feeler.attend(time.monotonic())
         if self._watch.changed():
             feeler.reload()
-        if self._alone and self._is_done():
+        if self._goes and not self._keys.attached and self._is_done():
             feeler.quit()
 
     def _is_done(self) -> bool:
