@@ -8,6 +8,7 @@ import pytest
 
 from tests.engine.planar import Bench
 from tests.render.scene.decoding import Spacing, decode, felt
+from tests.render.scenes import JIT
 from tests.tiers import by_tier
 from vbraille.engine.record import Flag
 from vbraille.labelling import write_labels
@@ -146,7 +147,7 @@ def apart_deg(one, other, turn):
 
 
 @pytest.mark.no_cover
-@pytest.mark.parametrize("seed", range(by_tier(1, 8, 40)))
+@pytest.mark.parametrize("seed", range(by_tier(1, 8, 40) if JIT else 1))
 def test_a_picture_is_told_from_frames_and_poses_alone(seed):
     rng = np.random.default_rng(seed)
     model = (STRESS2_8X8, LATERO)[seed % 2]
