@@ -11,6 +11,7 @@ from hypothesis import given
 from tests.benchmarks.scenes import DISPLAY, toothed
 from tests.render.scene.scenes import examples, scenes, seeds
 from tests.render.scene.showing import assets_of
+from tests.render.scenes import JIT
 from vbraille.render import STRESS2_8X8
 from vbraille.render.machine import words
 from vbraille.render.scene.assets import Assets, Written
@@ -26,6 +27,7 @@ from vbraille.scene.textures import LinearGrating, Uniform
 
 _GRATING = LinearGrating(ridge_mm=3.0)
 _MANY = 10_000
+_COMPILED = pytest.mark.skipif(not JIT, reason="many segments take minutes unless compiled")
 _WIDE = Canvas(width_mm=1000.0, height_mm=1000.0)
 _SMALL = Canvas(width_mm=120.0, height_mm=90.0)
 
@@ -38,7 +40,7 @@ def _around(count, radius_mm=450.0):
     return tuple(map(tuple, places.tolist()))
 
 
-def _same_frames(scene, assets=None, seed=3, count=300, display=DISPLAY):
+def _same_frames(scene, assets=None, seed=3, count=300 if JIT else 10, display=DISPLAY):
     """Frames of a scene, which are the same bit for bit without pruning."""
     ours, whole = (compile_scene(scene, display, assets, pruned=is_so) for is_so in (True, False))
     random = np.random.default_rng(seed)
@@ -65,6 +67,7 @@ def _filled_path(**more):
     return PathShape(contours_mm=(_around(_MANY),), closed=True, fill=fill, **more)
 
 
+@_COMPILED
 @pytest.mark.parametrize(
     ("shape", "most"),
     [
@@ -142,6 +145,7 @@ def test_few_segments_are_as_good_as_all(look, blended, fade_mm):
         assert frames.std() > 0.1
 
 
+@_COMPILED
 @pytest.mark.parametrize("span", ["angle", "square", "edges", "arc"])
 def test_markers_of_few_corners_are_as_good_as_those_of_all(span):
     turns = np.sort(np.random.default_rng(6).uniform(0, math.tau, 60))
