@@ -43,7 +43,7 @@ class SsipServer:
 
     def hang_up(self):
         """Leave everybody who is connected."""
-        for connection in self._open:
+        for connection in list(self._open):  # not whoever comes back meanwhile
             with suppress(OSError):
                 connection.shutdown(socket.SHUT_RDWR)
 
