@@ -172,14 +172,18 @@ def follow(program: Program, within: np.ndarray, corners: np.ndarray) -> Callabl
     return frames
 
 
+def compiling_s(scene: Scene) -> float:
+    return statistics.median(seconds(lambda: compile_scene(scene, DISPLAY)) for _ in range(5))
+
+
 def compiling() -> Iterator[Result]:
     scene = shapes(MANY)
     compile_scene(shapes(10), DISPLAY)
-    taken = statistics.median(seconds(lambda: compile_scene(scene, DISPLAY)) for _ in range(5))
+    taken = compiling_s(scene)
     yield Result(f"compiling a picture of {MANY:,} shapes", "≤ 1 s", f"{taken:.2f} s", taken <= 1)
     for size in (TEETH, (2 * TEETH[0], 5 * TEETH[1])):
         comb = toothed(*size)
-        taken = statistics.median(seconds(lambda: compile_scene(comb, DISPLAY)) for _ in range(5))  # noqa: B023
+        taken = compiling_s(comb)
         yield Result(
             f"compiling one filled path of {segments_of(comb):,} segments",
             "≤ 1 s" if size == TEETH else "no bar",

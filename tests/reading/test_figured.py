@@ -1,15 +1,13 @@
 """Figures of a text: on the page below their line, under a hand that a test holds, or alone."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from tests.reading.test_page import Plane
+from tests.reading.held import Held
 from tests.render.scene.lanes import lane_places
 from tests.tiers import heavy
-from vbraille.engine.clock import ManualClock
 from vbraille.feeling.bookfigures import BookFigures
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import choose_table
@@ -23,7 +21,6 @@ from vbraille.scene.reading import open_scene
 from vbraille.translate import Book
 from vbraille.translate.opening import open_source
 
-RATE_HZ = 100.0
 PITCH_MM = STRESS2_8X8.style.geometry.line_pitch_mm
 SCENE = """
 title = "Water cycle"
@@ -54,21 +51,17 @@ ON_A_MM = 2 * STRESS2_8X8.style.geometry.cell_pitch_mm + 2.0  # after the indent
 ROWS = 6  # of a page: two lines, the figure of three rows, and a line
 
 
-class Bench:
+class Bench(Held):
     """A text with figures on a page, under a hand that is held."""
 
     def __init__(self, folder, text=TEXT, model=STRESS2_8X8, rows=ROWS, scene=SCENE, **style):
         (folder / "water.scene").write_text(scene)
         (folder / "text.md").write_text(text)
-        self.x_mm, self.y_mm = 0.0, PITCH_MM / 2
         self.said, self.notes = [], []
-        clock = ManualClock()
-        height_mm = (rows + 0.5) * PITCH_MM if rows else 0.0
-        display = replace(model.display, height_mm=height_mm, rate_hz=RATE_HZ)
-        device = Plane(clock, lambda _: (self.x_mm, self.y_mm, 0.0), display)
-        self.opened = OpenDevice(device, display, clock=clock, say=self.said.append, attended=True)
-        own = model_of(display)
-        self.opened.start(replace(own, style=own.style.replace(**style)))
+        super().__init__(model, rows, self.said.append)
+        self.y_mm = PITCH_MM / 2
+        own = self.own.style.replace(**style)
+        self.opened.start(replace(self.own, style=own))
         source = open_source(folder / "text.md")
         self.figures = BookFigures(
             source, folder, self.opened, self.notes.append, rate_hz=1000.0, room=1 << 21
@@ -79,26 +72,14 @@ class Bench:
             self.run(0.02)  # until the compiler is loaded, which real time does meanwhile
 
     @property
-    def reader(self):
-        return self.opened.reader
-
-    @property
     def under(self):
         return self.reader.under
-
-    @property
-    def surface(self):
-        return self.under.surface
 
     @property
     def texts(self):
         """Text in each row of the page; None where no line is."""
         windows = self.surface.windows
         return [None if part is None else part.line.text.strip() for part in windows]
-
-    def run(self, seconds):
-        for _ in range(max(1, math.ceil(seconds * RATE_HZ / 2))):
-            self.opened.poll()
 
     def to(self, x_mm, y_mm, seconds=0.4):
         """Put the finger somewhere and stay until all has faded in; the frame there."""

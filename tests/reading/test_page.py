@@ -7,9 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.engine.planar import Planar
+from tests.reading.held import Held
 from vbraille.devices.events import Button
-from vbraille.engine.clock import ManualClock
 from vbraille.engine.constants import IDLE_S
 from vbraille.engine.record import Flag
 from vbraille.layout.pages import Layout
@@ -19,45 +18,25 @@ from vbraille.reading.commands.table import bound_by, press
 from vbraille.reading.cues import Cue
 from vbraille.reading.echo import Echo
 from vbraille.reading.foot import STAY_S
-from vbraille.reading.opened import OpenDevice
 from vbraille.reading.viewed import Said, Viewed
-from vbraille.render import LATERO, STRESS2_8X8, model_of
+from vbraille.render import LATERO, STRESS2_8X8
 from vbraille.render.braille.straying import MOST_TILT_RAD
 from vbraille.translate import Book
 from vbraille.translate.braillefiles.lines import open_brf
 
-RATE_HZ = 100.0
 ROWS, LINES = 4, 10
 PITCH_MM = STRESS2_8X8.style.geometry.line_pitch_mm
 LETTERS = "abcdefghij"
 
 
-class Plane(Planar):
-    """A carriage of two axes whose place a test says, with buttons."""
-
-    pressed = ()
-
-    def take_events(self):
-        events, self.pressed = self.pressed, ()
-        return events
-
-
-class Bench:
+class Bench(Held):
     """A reading of ten lines of so many cells, four on a page, under a hand that is held."""
 
     def __init__(self, model=STRESS2_8X8, rows=ROWS, lines=LINES, width=10, letters=3, **how):
-        self.x_mm, self.y_mm, self.theta = 10.0, 0.0, 0.0
         self.said, self.cues = Said(), []
-        clock = ManualClock()
-        pitch_mm = model.style.geometry.line_pitch_mm
-        height_mm = (rows + 0.5) * pitch_mm
-        display = replace(model.display, height_mm=height_mm, rate_hz=RATE_HZ)
-        self.device = Plane(clock, lambda _: (self.x_mm, self.y_mm, self.theta), display)
-        attended = how.pop("attended", True)
-        self.opened = OpenDevice(
-            self.device, display, clock=clock, say=self.said.add, attended=attended
-        )
-        self.opened.start(replace(model_of(display), style=model.style))
+        super().__init__(model, rows, self.said.add, attended=how.pop("attended", True))
+        self.x_mm = 10.0
+        self.opened.start(replace(self.own, style=model.style))
         text = "".join(f"{letter * letters}\n" for letter in LETTERS[:lines])
         bound = bound_by(Bindings(buttons={"button 3": "WINDN"}))
         beside = Beside(cue=self.cues.append, bound=bound)
@@ -65,21 +44,12 @@ class Bench:
         self.opened.show(layout, beside=beside, **how)
 
     @property
-    def reader(self):
-        return self.opened.reader
-
-    @property
     def line(self):
         return self.reader.line_number
 
     @property
     def page(self):
-        surface = self.reader.under.surface
-        return [None if part is None else part.line.number for part in surface.windows]
-
-    def run(self, seconds):
-        for _ in range(math.ceil(seconds * RATE_HZ / 2)):
-            self.opened.poll()
+        return [None if part is None else part.line.number for part in self.surface.windows]
 
     def to_row(self, row, seconds=0.3):
         """Put the finger into the middle of a row."""
