@@ -2,6 +2,8 @@
 
 import re
 import signal
+import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -45,6 +47,34 @@ def test_without_a_terminal_it_runs_through_and_says_each_line(text):
     assert 300 < speed <= 910
     assert 1 < seconds < 60
     assert seconds == pytest.approx((ticks + late) / 1000, abs=0.051)
+
+
+def with_closed(streams, *arguments):
+    """Command for the program with some of its standard streams closed, as the shell spells it."""
+    return ["sh", "-c", f'exec "$@" {streams}', "sh", *program.PROGRAM, *map(str, arguments)]
+
+
+@pytest.mark.parametrize("closed", ["<&-", "<&- 2>&-"])
+def test_closed_streams_are_like_those_that_lead_nowhere(text, closed):
+    command = with_closed(closed, "read", text, "--hand", "sweep:900", "--lines", "2-3")
+    with subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8") as process:
+        first = process.stdout.readline()
+        if "2>" in closed:  # nor do those that it starts write into what they open
+            children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+            messages = [Path(f"/proc/{child}/fd/2").readlink() for child in children]
+            assert {str(path) for path in messages} == {"/dev/null"}
+        *lines, summary = of_lines(first + process.stdout.read())
+        assert process.wait(program.PATIENCE_S) == 0
+    assert lines == spoken(text, 2, 3)
+    assert re.fullmatch(SUMMARY, summary)
+
+
+def test_a_closed_output_is_said_instead_of_read(text):
+    done = subprocess.run(
+        with_closed(">&-", "read", text), check=False, stderr=subprocess.PIPE, encoding="utf-8"
+    )
+    assert done.returncode == 1
+    assert "output is closed" in done.stderr.splitlines()[-1]
 
 
 @heavy  # the other tests here have all four on their way

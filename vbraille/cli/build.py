@@ -255,8 +255,6 @@ def _open(arguments: argparse.Namespace) -> Source:
     }
     if arguments.file != "-":
         return open_source(arguments.file, **how)
-    if sys.stdin is None:
-        raise InputError("standard input is closed; give a text there, or the name of a file")
     if sys.stdin.isatty():
         say_line("type the text; Ctrl-D on an empty line ends it", aside=True)
     return open_stream(sys.stdin.buffer, "standard input", **how)

@@ -51,6 +51,7 @@ def _listen(argv: Sequence[str] | None) -> tuple[str, int]:
     """Run a command until it ends or a signal stops it."""
     try:
         EAR.listen()
+        _hold_descriptors()
         _set_streams()
         sentence, code = _run(argv)
     finally:
@@ -58,10 +59,25 @@ def _listen(argv: Sequence[str] | None) -> tuple[str, int]:
     return (SAID, EXIT_CODE) if EAR.heard and code else (sentence, code)
 
 
+def _hold_descriptors() -> None:
+    """Open what is nothing on the standard descriptors that are closed, for child processes too.
+
+    Whatever opens next would stand there otherwise: memory that is passed on to a child, which has
+    its pipes in that place, or a book that messages are written into.
+    """
+    for descriptor in range(3):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)  # the lowest that is free
+
+
 def _set_streams() -> None:
-    """Have both streams, and have them take any text, lone surrogates and all."""
+    """Have all three streams; those of output take any text, lone surrogates and all."""
     # None stands for a stream that was closed by whoever started us. There is nobody to be told
     # of what goes to stderr, but whoever closed the output has lost what was asked for.
+    if sys.stdin is None:
+        sys.stdin = os.fdopen(0)
     if sys.stdout is None:
         sys.stdout = TextIOWrapper(BufferedWriter(_Closed()))
     if sys.stderr is None:
