@@ -1,10 +1,12 @@
 """``vbraille books``: one line each, and forgetting."""
 
 import json
+import subprocess
 from datetime import UTC, datetime, timedelta
 
 import pytest
 
+from tests.cli import program
 from vbraille.cli.commands.books import describe
 from vbraille.reading.places import KeptPlace, KeptPlaces, ListedBook
 from vbraille.reading.places.database import ENVIRONMENT
@@ -65,6 +67,18 @@ def test_no_database_is_one_sentence(call, tmp_path, monkeypatch):
     assert (said.code, said.out) == (0, "books: none\n")
     assert said.err.startswith(f"places cannot be kept in {tmp_path}: ")
     assert said.err.count("\n") == 1
+
+
+@pytest.mark.usefixtures("kept")
+def test_what_cannot_be_written_is_not_said_to_be_forgotten():
+    before = program.run("books").stdout
+    limited = ["sh", "-c", 'ulimit -f 0; exec "$@"', "sh", *program.PROGRAM]
+    done = subprocess.run(
+        [*limited, "books", "--forget", "1"], check=False, capture_output=True, encoding="utf-8"
+    )
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "could not be forgotten" in done.stderr
+    assert program.run("books").stdout == before
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import re
 import signal
 import subprocess
+import time
 from pathlib import Path
 
 import pytest
@@ -191,6 +192,31 @@ CHAPTER = "\n\n".join(
     f"Paragraph {n} tells of long and winding things that are {'café' if n == 7 else 'here'}."
     for n in range(1, 61)
 )
+
+
+def test_a_bookmark_that_cannot_be_kept_says_so_and_is_kept_once_it_can_be(text, tmp_path):
+    in_the_way = tmp_path / "kept"
+    in_the_way.write_text("a file where a folder is to be")
+    places = in_the_way / "places.sqlite"
+    arguments = ("read", text, "--advance", "key")
+    with program.Terminal(*arguments, VBRAILLE_PLACES=str(places)) as terminal:
+        assert "Not a directory" in terminal.until("h says the keys\r\n")
+        terminal.type("M")
+        assert "Not a directory" in terminal.until(r"bookmark 1: set, but not kept: [^\n]*\n")
+        in_the_way.unlink()
+        until = time.monotonic() + program.PATIENCE_S
+        while not places.exists():  # reading goes on meanwhile, and no key is typed
+            assert time.monotonic() < until
+            terminal.silent(0.1)
+        terminal.type("q")
+        assert terminal.end() == 0
+    with program.Terminal(*arguments, VBRAILLE_PLACES=str(places)) as terminal:
+        terminal.until("h says the keys\r\n")
+        terminal.type("B")
+        terminal.until("bookmark 1: ")
+        terminal.type("Mq")
+        terminal.until(r"bookmark 2: set\r\n")
+        assert terminal.end() == 0
 
 
 def test_a_book_is_found_one_s_way_in_by_keys_at_a_terminal(text):

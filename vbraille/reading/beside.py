@@ -64,6 +64,11 @@ class BookmarkLike(Protocol):
 class KeptLike(Protocol):
     """What is kept of a book between two readings."""
 
+    @property
+    def fault(self) -> str | None:
+        """Why something could not be written yet; None if all was."""
+        ...
+
     def bookmarks(self) -> Sequence[BookmarkLike]:
         """Give all bookmarks, by their place."""
         ...
@@ -74,6 +79,10 @@ class KeptLike(Protocol):
 
     def delete_bookmark(self, name: str) -> None:
         """Delete a bookmark."""
+        ...
+
+    def tend(self) -> None:
+        """Write what could not be written before, if it is time for that."""
         ...
 
     def keep_at(

@@ -17,6 +17,8 @@ _EVERY_S = 1.0
 class Unkept:
     """What is kept of a book no longer than a reading lasts."""
 
+    fault: str | None = None
+
     def __init__(self) -> None:
         self._marks: dict[str, Any] = {}
 
@@ -31,6 +33,9 @@ class Unkept:
     def delete_bookmark(self, name: str) -> None:
         """Delete a bookmark."""
         self._marks.pop(name, None)
+
+    def tend(self) -> None:
+        """Write nothing: all is only remembered."""
 
     def keep_at(self, source: Source, character: int, **place: Any) -> None:
         """Keep no place: there is no other time."""
@@ -55,11 +60,10 @@ class Keeping:
         self._place = layout, line
 
     def step(self, now_s: float) -> None:
-        """Keep the place if it is time; called again and again."""
-        if self._place is None:
-            return
+        """Keep the place, and what could not be kept before, if it is time; called all the time."""
         if self._last_s is None or now_s - self._last_s >= _EVERY_S:
             self._last_s = now_s
+            self.kept.tend()
             self.leave()
 
     def start_over(self, layout: Layout) -> None:

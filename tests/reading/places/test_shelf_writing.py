@@ -189,6 +189,52 @@ def test_a_full_disk_is_one_sentence_and_the_file_stays_good(folder, room):
         assert len(kept.bookmarks()) == len(room)
 
 
+_FULL_AT_OPENING = """
+import resource, sqlite3, sys
+from itertools import count
+from vbraille.reading.places import Bookmark, KeptPlace, KeptPlaces
+clock = count()
+unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
+resource.setrlimit(resource.RLIMIT_FSIZE, (100, resource.RLIM_INFINITY))
+places = KeptPlaces.open(sys.argv[1], now=lambda: float(next(clock)))
+kept = places.book(sys.argv[2])
+print(places.note())
+kept.keep(KeptPlace(2))
+kept.set_bookmark(Bookmark("a", 2))
+print(kept.fault)
+resource.setrlimit(resource.RLIMIT_FSIZE, unlimited)
+while kept.fault is not None and next(clock) < 100:
+    kept.keep(KeptPlace(2))
+assert kept.bookmarks() == [Bookmark("a", 2)]
+assert places.note() is None
+print(*sqlite3.connect(sys.argv[1]).execute("SELECT name FROM bookmarks").fetchall())
+"""
+
+
+@pytest.mark.parametrize("known", [False, True])
+def test_a_disk_that_is_full_at_opening_keeps_all_once_there_is_room(folder, known):
+    path = folder / "kept" / "places.sqlite"
+    if known:
+        keep(folder)
+    else:
+        path.parent.mkdir()
+    said = subprocess.run(
+        [sys.executable, "-c", _FULL_AT_OPENING, path, folder / "book.txt"],
+        capture_output=True, check=True, text=True,
+    )  # fmt: skip
+    assert said.stderr == ""
+    note, fault, written = said.stdout.splitlines()
+    assert str(path) in note
+    assert fault != "None"
+    assert fault in note
+    assert written == "('a',)"
+    with opened(folder) as places:
+        assert len(places.listed()) == 1
+        kept = places.book(folder / "book.txt")
+        assert kept.place == KeptPlace(2)
+        assert [mark.name for mark in kept.bookmarks()] == ["a"]
+
+
 class TestNoFile:
     """Where the file is no use, reading goes on, one sentence says so, and nothing is deleted."""
 
@@ -208,8 +254,8 @@ class TestNoFile:
         path = folder / "book.txt" / "places.sqlite"
         note = self.reads(path, folder)
         assert note == (
-            f"places cannot be kept in {path}: Not a directory; reading goes on, and this reading "
-            "is not kept"
+            f"places cannot be kept in {path}: Not a directory; reading goes on, and it is tried "
+            "again"
         )
 
     def test_the_path_is_a_folder(self, folder):

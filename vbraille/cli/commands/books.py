@@ -82,5 +82,6 @@ def _forget(places: KeptPlaces, books: list[ListedBook], number: int) -> None:
         raise InputError(f"there is no book {number}; {there}, and vbraille books lists them")
     book = books[number - 1]
     if not places.forget(book.number):
-        raise VbrailleError(places.note() or f"{book.title} is kept by another program; try again")
+        why = places.fault or "another program is writing"
+        raise VbrailleError(f"{book.title} could not be forgotten: {why}; try again")
     say_line(f"forgotten: {book.title}")

@@ -59,7 +59,7 @@ def _set(reader: Reader, name: str) -> None:
     # What the reader is told of it are some words; to find it again in a changed book takes more.
     kept = place_in(reader.layout.book.source, place)
     reader.kept.set_bookmark(Bookmark(name, place, words, kept.share, kept.after))
-    reader.say(f"bookmark {name}: set")
+    _say_kept(reader, f"bookmark {name}: set")
 
 
 def _go(reader: Reader, name: str) -> None:
@@ -75,7 +75,14 @@ def _delete(reader: Reader, name: str) -> None:
     mark = _named(reader, name)
     if mark is not None:
         reader.kept.delete_bookmark(mark.name)
-        reader.say(f"bookmark {mark.name}: deleted")
+        _say_kept(reader, f"bookmark {mark.name}: deleted")
+
+
+def _say_kept(reader: Reader, done: str) -> None:
+    """Say that something was done, and what is in the way of its being kept."""
+    fault = reader.kept.fault
+    later = "it is tried again as long as you read"
+    reader.say(done if fault is None else f"{done}, but not kept: {fault}; {later}")
 
 
 def _named(reader: Reader, name: str) -> BookmarkLike | None:

@@ -72,6 +72,11 @@ class KeptBook:
         self._tuning = decoded(tuning, dict)
 
     @property
+    def fault(self) -> str | None:
+        """Why something is not on the disk yet, and is tried again; None if all is."""
+        return self._store.fault if self._unwritten else None
+
+    @property
     def changed(self) -> bool:
         """Whether the file is another than its places are for: `settle` mends that."""
         return not self._settled
@@ -99,7 +104,7 @@ class KeptBook:
 
     def keep(self, place: KeptPlace) -> None:
         """Keep the place at which reading goes on; call it at each step of the reading loop."""
-        self._tend()
+        self.tend()
         if place == self._place and "place" not in self._unwritten:
             return
         self._place = place
@@ -246,7 +251,7 @@ class KeptBook:
         if self._digesting is not None:
             self._digesting.wait(1.0)
         with self._store.patient():
-            self._tend(last=True)
+            self.tend(last=True)
 
     def _due(self) -> bool:
         passed = None if self._written_s is None else self._store.now() - self._written_s
@@ -262,7 +267,7 @@ class KeptBook:
         if not wait:
             self._write()
 
-    def _tend(self, *, last: bool = False) -> None:
+    def tend(self, *, last: bool = False) -> None:
         """Write what could not be written before, if it is time for that."""
         if self._digesting is not None and self._digesting.digest is not None:
             self.digest, self._digesting = self._digesting.digest, None

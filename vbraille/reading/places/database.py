@@ -13,7 +13,7 @@ from urllib.parse import quote
 VERSION = 1
 ENVIRONMENT = "VBRAILLE_PLACES"
 # A reader's hand must not be held up by another process that writes; opening may wait.
-_OPENING_MS, _READING_MS = 3_000, 10
+_OPENING_MS, READING_MS = 3_000, 10
 _TRIES = 20
 _DAMAGED = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 _LOCKED = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
@@ -47,13 +47,13 @@ class Opened:
         Connection to it; each statement is a transaction unless one is begun.
     note
         Sentence on why it is not the file that was asked for; None if it is.
-    on_disk
-        Whether what is written is kept.
+    fault
+        Why nothing that is written is kept; None if it is kept.
     """
 
     connection: sqlite3.Connection
     note: str | None
-    on_disk: bool
+    fault: str | None = None
 
 
 def usual_path() -> Path:
@@ -69,7 +69,7 @@ def open_database(path: Path, *, damaged: bool = False) -> Opened:
     """Open the file with places, or what stands in for it: this never fails.
 
     A damaged file is set aside, and another is begun. Where no file can be written, places are
-    kept as long as the program runs.
+    kept in memory until `connect` succeeds.
 
     Parameters
     ----------
@@ -81,17 +81,17 @@ def open_database(path: Path, *, damaged: bool = False) -> Opened:
     if damaged:
         return _begin_anew(path)
     try:
-        return Opened(_connect(path), None, on_disk=True)
+        return Opened(connect(path), None)
     except NewerPlacesError:
         why = "a newer vbraille has written it"
     except sqlite3.Error as error:
         if is_damage(error):
             return _begin_anew(path)
-        why = _reason(error)
+        why = reason(error)
     except OSError as error:
         why = error.strerror or str(error)
-    note = f"places cannot be kept in {path}: {why}; reading goes on, and this reading is not kept"
-    return Opened(_in_memory(path), note, on_disk=False)
+    note = f"places cannot be kept in {path}: {why}; reading goes on, and it is tried again"
+    return Opened(_in_memory(path), note, why)
 
 
 def is_damage(error: sqlite3.Error) -> bool:
@@ -106,7 +106,8 @@ def is_lock(error: sqlite3.Error) -> bool:
 
 def failed_note(path: Path, error: sqlite3.Error) -> str:
     """Sentence on an error in writing."""
-    return f"places cannot be kept in {path} now: {_reason(error)}; reading goes on"
+    why = reason(error)
+    return f"places cannot be kept in {path} now: {why}; reading goes on, and it is tried again"
 
 
 def set_aside(path: Path) -> Path:
@@ -130,26 +131,41 @@ def _begin_anew(path: Path) -> Opened:
         note = (
             f"the places in {path} are damaged; the file is now {aside.name}, and a new one begins"
         )
-        return Opened(_connect(path), note, on_disk=True)
+        return Opened(connect(path), note)
     except (OSError, sqlite3.Error):
+        why = "the file is damaged"
         note = f"the places in {path} are damaged; reading goes on, and this reading is not kept"
-        return Opened(_in_memory(None), note, on_disk=False)
+        return Opened(_in_memory(None), note, why)
 
 
-def _connect(path: Path) -> sqlite3.Connection:
+def connect(path: Path, wait_ms: int = _OPENING_MS) -> sqlite3.Connection:
+    """Open the file with places, which is made if it is not there.
+
+    Parameters
+    ----------
+    path
+        Path of the file.
+    wait_ms
+        How long to wait for another process that is writing.
+
+    Raises
+    ------
+    OSError, sqlite3.Error, NewerPlacesError
+        If the file cannot be opened and written.
+    """
     if not path.parent.exists():
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     # It has text of somebody's books in it: nobody else is to read it.
     os.close(os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600))
     connection = sqlite3.connect(path, isolation_level=None)
     try:
-        connection.execute(f"PRAGMA busy_timeout = {_OPENING_MS}")
+        connection.execute(f"PRAGMA busy_timeout = {wait_ms}")
         _check_version(connection)
         _again(lambda: _choose_journal(connection))
         connection.execute("PRAGMA synchronous = NORMAL")
         connection.execute("PRAGMA secure_delete = ON")
         _again(lambda: _make_tables(connection))
-        connection.execute(f"PRAGMA busy_timeout = {_READING_MS}")
+        connection.execute(f"PRAGMA busy_timeout = {READING_MS}")
     except BaseException:
         connection.close()
         raise
@@ -204,7 +220,17 @@ def _again(step) -> None:
 
 
 def _in_memory(path: Path | None) -> sqlite3.Connection:
-    """Database that ends with the process, with what can be read of a file that is no use."""
+    """Database in memory, with what can be read of a file that is no use.
+
+    Books that are new in it have numbers that no book of the file gets meanwhile.
+    """
+    connection = _copy(path)
+    connection.execute("DELETE FROM sqlite_sequence")
+    connection.execute("INSERT INTO sqlite_sequence VALUES ('books', ?)", (time.time_ns(),))
+    return connection
+
+
+def _copy(path: Path | None) -> sqlite3.Connection:
     connection = sqlite3.connect(":memory:", isolation_level=None)
     if path is not None:
         with suppress(sqlite3.Error, NewerPlacesError):
@@ -224,7 +250,8 @@ def _code(error: sqlite3.Error) -> int:
     return getattr(error, "sqlite_errorcode", 0) & 0xFF
 
 
-def _reason(error: sqlite3.Error) -> str:
+def reason(error: sqlite3.Error) -> str:
+    """Why the file could not be written, in a few words."""
     match _code(error):
         case sqlite3.SQLITE_FULL:
             return "the disk is full"

@@ -26,7 +26,7 @@ class KeptPlaces:
     """The database of places; it is a context manager.
 
     Opening and using it never fails: `note` says what is the matter, and what cannot be written is
-    known as long as the program runs.
+    known as long as the program runs, and tried again.
 
     Parameters
     ----------
@@ -55,6 +55,11 @@ class KeptPlaces:
     def path(self) -> Path:
         """Path of the database's file."""
         return self._store.path
+
+    @property
+    def fault(self) -> str | None:
+        """Why what was written last is not on the disk; None if it is, or will be in a moment."""
+        return self._store.fault
 
     def note(self) -> str | None:
         """Sentence on why places are not kept, given once; None if they are."""

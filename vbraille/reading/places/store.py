@@ -8,17 +8,22 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from vbraille.reading.places.database import (
+    READING_MS,
+    NewerPlacesError,
+    connect,
     failed_note,
     is_damage,
     is_lock,
     open_database,
+    reason,
 )
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-_PATIENT_MS, _READING_MS = 3_000, 10
+_PATIENT_MS = 3_000
+_AGAIN_S = 2.0  # between two tries to open a file that could not be written
 _Statement = tuple[str, tuple[Any, ...]]
 
 
@@ -34,8 +39,8 @@ class Store:
 
     Attributes
     ----------
-    on_disk : bool
-        Whether what is written is kept when the program ends.
+    fault : str or None
+        Why what was written last is not on the disk; None if it is, or will be in a moment.
     """
 
     def __init__(self, path: Path, now: Callable[[], float] = time.time) -> None:
@@ -44,7 +49,9 @@ class Store:
         opened = open_database(path)
         self._connection = opened.connection
         self._note = opened.note
-        self.on_disk = opened.on_disk
+        self.fault = opened.fault
+        self._on_disk = opened.fault is None
+        self._tried_s = now()
         self._noted = opened.note is not None  # one is enough, whatever comes after it
 
     def note(self) -> str | None:
@@ -66,7 +73,9 @@ class Store:
             return []
 
     def write(self, statements: Sequence[_Statement], row: _Statement | None = None) -> bool:
-        """Write by statements, all or none; whether they were written.
+        """Write by statements, all or none; whether they are on the disk.
+
+        A file that could not be opened is tried again, but not all the time.
 
         Parameters
         ----------
@@ -75,6 +84,8 @@ class Store:
         row
             Statement that is done before them.
         """
+        if not self._on_disk:
+            self._open_again()
         try:
             with self.transaction() as connection:
                 if row is not None:
@@ -84,7 +95,19 @@ class Store:
         except sqlite3.Error as error:
             self.take(error)
             return False
-        return True
+        if self._on_disk:
+            self.fault = None
+        return self._on_disk
+
+    def _open_again(self) -> None:
+        """Open the file in place of what stands in for it, if it can be opened by now."""
+        if self._tried_s is not None and 0 <= self.now() - self._tried_s < _AGAIN_S:
+            return
+        self._tried_s = self.now()
+        with suppress(OSError, sqlite3.Error, NewerPlacesError):
+            opened = connect(self.path, READING_MS)
+            self._connection.close()
+            self._connection, self._on_disk = opened, True
 
     @contextmanager
     def transaction(self) -> Iterator[sqlite3.Connection]:
@@ -102,12 +125,13 @@ class Store:
     @contextmanager
     def patient(self) -> Iterator[None]:
         """Wait for other processes in a block, as nobody's hand is held up by it."""
+        self._tried_s = None
         self._connection.execute(f"PRAGMA busy_timeout = {_PATIENT_MS}")
         try:
             yield
         finally:
             with suppress(sqlite3.Error):
-                self._connection.execute(f"PRAGMA busy_timeout = {_READING_MS}")
+                self._connection.execute(f"PRAGMA busy_timeout = {READING_MS}")
 
     def shrink(self) -> bool:
         """Have nothing of what was deleted left in the file or in its log."""
@@ -126,15 +150,15 @@ class Store:
         """Make a note of an error; a damaged file is set aside, and another is begun."""
         if is_lock(error):
             return  # another process is writing; it is tried again
-        if is_damage(error) and self.on_disk:
+        if is_damage(error) and self._on_disk:
             self.close()
             opened = open_database(self.path, damaged=True)
-            self._connection, self._note, self.on_disk = (
-                opened.connection,
-                opened.note,
-                opened.on_disk,
-            )
+            self._connection, self._note, self.fault = opened.connection, opened.note, opened.fault
+            self._on_disk = opened.fault is None
             self._noted = True
-        elif not self._noted:
+            return
+        if self._on_disk:
+            self.fault = reason(error)
+        if not self._noted:
             self._noted = True
             self._note = failed_note(self.path, error)
