@@ -201,7 +201,7 @@ REFUSED = {
     ),
     "tables that nest too deep": (
         element("tile", "width_mm = 5", "height_mm = 5") + f"[elements{'.part' * 3000}]\nx = 1\n",
-        "[[elements]] number 1",
+        "line 8: a key has more than 100 parts",
     ),
     "a blend of one": (
         element(

@@ -1,5 +1,7 @@
 """A text becomes the value that a type says, or a sentence says in which line it cannot."""
 
+import subprocess
+import sys
 from typing import Literal
 
 import pytest
@@ -114,8 +116,42 @@ def test_keys_that_look_like_something_else(key):
         TomlFile(f"{key} = 1\n[door]\nspeed = 1", "room.toml").read(Room)
 
 
-def test_tables_without_end():
-    says(
-        f"\ndoor{'.speed' * 3000} = 1",
-        "room.toml line 2: [door.speed] is too large a table; it must be a number",
+_MANY = 20_000
+_DEEP = {
+    "a key": "a" + ".a" * _MANY + " = 1",
+    "a key with blanks": "a" + " . 'a'" * _MANY + " = 1",
+    "the name of a table": "ok = 1\n[a" + ".a" * _MANY + "]",
+    "a key in braces": "x = {ok = 1, a" + '."a"' * _MANY + " = 1}",
+    "tables in tables": "\n".join(f"[{'a.' * n}a]" for n in range(99)) + "\n" + "b." * 99 + "b = 1",
+    "lists in lists": "a = " + "[" * _MANY + "]" * _MANY,
+    "few lists of many items": "a = " + "[" * 200 + "1," * 400_000 + "]" * 200,
+    "tables in braces": "a = " + "{a = " * _MANY + "1" + "}" * _MANY,
+    "brackets without an end": "a = " + "[" * 900_000,
+    "braces without an end": "a = " + "{a=" * 300_000,
+    "strings without an end": 'a = "' + ',"a.' * 200_000,
+}
+
+
+@pytest.mark.parametrize("text", _DEEP.values(), ids=_DEEP)
+def test_what_nests_deep_is_refused_in_little_memory(text):
+    script = (
+        "import resource, sys\n"
+        "from vbraille.errors import InputError\n"
+        "from vbraille.toml.tomlfile import TomlFile\n"
+        "resource.setrlimit(resource.RLIMIT_AS, (500 << 20,) * 2)\n"
+        "resource.setrlimit(resource.RLIMIT_CPU, (20,) * 2)\n"
+        "try:\n    TomlFile(sys.stdin.read(), 'room.toml').lines()\n"
+        "except InputError as error:\n    print(error)\n"
     )
+    done = subprocess.run(
+        [sys.executable, "-c", script], check=False, input=text, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("room.toml ")
+    assert done.stdout.count("\n") == 1
+
+
+def test_dots_in_a_string_and_in_a_comment_are_no_parts_of_a_key():
+    text = f'{"a." * 99}a = 1\ntext = "{"a." * 500}" # {"a." * 500}'
+    assert TomlFile(text, "room.toml").names() == ("a", "text")
+    TomlFile(f"list = [{'1.5, ' * 500}]", "room.toml")

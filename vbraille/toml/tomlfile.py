@@ -23,6 +23,15 @@ _Value = TypeVar("_Value")
 
 # TOML readers differ on larger numbers, and no number of a protocol is so large.
 _MOST_WHOLE = 2**63 - 1
+# Levels of tables and lists, and parts of a key. Each costs `tomllib` time and memory by those
+# before it, so that a small file could take all there is.
+_MOST_LEVELS = 100
+_DEEP_KEY = re.compile(
+    r"""(?:^|[\[{,])[ \t]*+
+    (?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){%d}"""
+    % _MOST_LEVELS,
+    re.VERBOSE | re.MULTILINE,
+)
 _LONGEST_QUOTE = 60
 _MOST_STEPS = 8  # of the way to a place that a sentence says whole
 # Spaces without a break, which French has before its marks and Python does not call printable.
@@ -65,18 +74,24 @@ class TomlFile:
     Raises
     ------
     InputError
-        If the text is not TOML, or has a string with control characters or a number that is far
-        too large.
+        If the text is not TOML, nests too deep, or has a string with control characters or a
+        number that is far too large.
     """
 
     def __init__(self, text: str, where: str, *, several_lines: bool = False) -> None:
         self._text, self._where = text, where
+        if deep := _DEEP_KEY.search(text):
+            line = text.count("\n", 0, deep.end()) + 1
+            parts = f"a key has more than {_MOST_LEVELS} parts"
+            raise InputError(f"{where} line {line}: {parts}; make it shorter")
         try:
             self._tree = tomllib.loads(text)
         except RecursionError:
             raise InputError(f"{where} is not TOML: its brackets nest too deep; mend it") from None
         except ValueError as error:
             raise InputError(f"{where} is not TOML: {error}; mend it there") from None
+        if _levels(self._tree) > _MOST_LEVELS:
+            raise InputError(f"{where} nests its tables too deep; make it flatter")
         spaces = {**_SPACES, 0x0A: " "} if several_lines else _SPACES
         if all(_is_good(value, spaces) for value in _values(self._tree)):
             return
@@ -110,8 +125,6 @@ class TomlFile:
         """
         try:
             return msgspec.convert(self._at(under), kind, dec_hook=dec_hook)
-        except RecursionError:
-            raise InputError(f"{self._where} nests its tables too deep; make it flatter") from None
         except msgspec.ValidationError as error:
             message, _, steps = str(error).rpartition(" - at `$")
             if not message:  # msgspec names no place if it is the value as a whole
@@ -288,9 +301,8 @@ def quote(value: object) -> str:
     """Text for a value of a file, short enough to stand in a sentence."""
     try:
         said = repr(value)
-    # Python refuses to write numbers of thousands of digits, and tables that nest very deep.
-    except (ValueError, RecursionError):
-        return "too large a number" if isinstance(value, int) else "too large a table"
+    except ValueError:  # Python refuses to write numbers of thousands of digits
+        return "too large a number"
     return said if len(said) <= _LONGEST_QUOTE else f"{said[:_LONGEST_QUOTE]}…"
 
 
@@ -304,6 +316,16 @@ def _is_good(value: object, spaces: dict[int, str]) -> bool:
     if isinstance(value, str):
         return value.isprintable() or value.translate(spaces).isprintable()
     return not isinstance(value, int) or abs(value) <= _MOST_WHOLE
+
+
+def _levels(tree: object) -> int:
+    """Levels of tables and lists in a file, counted no further than is of use."""
+    level, number = [tree], 0
+    while level and number <= _MOST_LEVELS:
+        inner = [v.values() if isinstance(v, dict) else v for v in level]
+        level = [v for values in inner for v in values if isinstance(v, dict | list)]
+        number += 1
+    return number
 
 
 def _values(tree: object) -> Iterator[object]:
