@@ -51,27 +51,35 @@ def spelled(message: str) -> str:
     )
 
 
-def nearest(name: str, names: Iterable[str], most: int = 1) -> str:
-    """Sentence part that names what comes nearest to an unknown name, the nearest first.
+def nearest(name: str, names: Iterable[str], most: int = 1, lead: str = "; ") -> str:
+    """Sentence part that names what comes near to an unknown name, the nearest first.
+
+    It is empty if nothing comes near enough to be what was meant.
 
     Parameters
     ----------
     name
         Name that somebody wrote.
     names
-        All names that there are, at least one.
+        All names that there are.
     most
         Largest number of names that are said.
+    lead
+        What joins the part to the sentence.
 
     >>> nearest("lenght", ["length", "repeats"])
-    'the nearest is length'
+    '; the nearest is length'
     >>> nearest("lenght", ["length", "repeats", "strength"], 2)
-    'the nearest are length, strength'
+    '; the nearest are length, strength'
+    >>> nearest("model", ["grade", "table"])
+    ''
     """
     import difflib  # takes long to load, like re
 
-    close = difflib.get_close_matches(name, names, most, cutoff=0.0)
-    return f"the nearest {'is' if len(close) == 1 else 'are'} {', '.join(close)}"
+    close = difflib.get_close_matches(name, list(names), most, cutoff=0.5)
+    if not close:
+        return ""
+    return f"{lead}the nearest {'is' if len(close) == 1 else 'are'} {', '.join(close)}"
 
 
 def count(number: int, noun: str) -> str:

@@ -114,7 +114,7 @@ def test_numbers_out_of_range_name_the_range(call, text, option):
         ("--table en-ueb-g3.ctb", r"nearest are en-ueb-g[12].ctb, en-ueb-g[12].ctb"),
         ("--table=", r"there is no braille table ''"),
         ("--table /etc/passwd", r"liblouis cannot use /etc/passwd as a braille table"),
-        ("--language xx", r"there is no table for language 'xx'; the nearest are "),
+        ("--language xx", r"there is no table for language 'xx'; the nearest is xh "),
         ("--grade 7", r"there is no grade 7 for language 'en'; there is .*1, 2"),
         ("--language fr --grade 9", r"no grade 9 for language 'fr'; there is 1, 2"),
         ("--grade 1.5", r"argument --grade: '1.5' is not a whole number"),

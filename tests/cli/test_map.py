@@ -236,7 +236,7 @@ def test_a_pdf_has_the_size_of_the_paper(scene, call, tmp_path):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (("--out", "a.bmp"), "--out a.bmp ends in .bmp, the nearest is"),
+        (("--out", "a.bmp"), "--out a.bmp ends in .bmp; end its name in "),
         (("--out", "a"), "--out a has no suffix; end its name in one of .png, .svg"),
         (("--out", "a.png", "--resolution", "0"), "--resolution is 0 pixels a mm; it must be"),
         (("--out", "a.png", "--resolution", "nan"), "--resolution is nan pixels a mm"),

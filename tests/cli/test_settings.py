@@ -47,9 +47,7 @@ def test_each_setting_is_said_with_where_it_comes_from(call, settings):
     ):
         assert line in lines
     said = call("settings", "--profile", "noon", "--settings", settings)
-    assert (
-        said.err == "profile: noon is new, and is made when it is saved; the nearest is evening\n"
-    )
+    assert said.err == "profile: noon is new, and is made when it is saved\n"
     assert "profile: noon (option)\n" in said.out
     assert "contrast: 1 (default)\n" in said.out
 
@@ -93,6 +91,46 @@ def test_a_page_takes_language_grade_and_table_and_braille_stays_braille(call, t
     assert (said.code, said.out.strip()) == (0, "ABC")
     said = call("page", braille, "--grade", "1")
     assert said.code == 2
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ('[keys]\nLNDN = ["crtl-n"]', "line 2: there is no key 'crtl-n'; the nearest is ctrl-n"),
+        ('[keys]\nLNDN = ["xyzzy"]', "line 2: there is no key 'xyzzy'; write a character"),
+        ('[buttons]\n1 = "LNDNN"', "line 2: there is no command 'LNDNN'; the nearest is LNDN"),
+        ('[read]\nmodel = "vbd"', "line 2: [read] has no key 'model'; there is advance, "),
+    ],
+)
+def test_what_reading_refuses_is_refused_where_settings_are_listed(
+    call, text, settings, table, said
+):
+    settings.write_text(table)
+    listed, read = (call(*c, "--settings", settings) for c in (("settings",), ("read", text)))
+    assert (listed.code, listed.out) == (read.code, read.out) == (2, "")
+    assert listed.err == read.err
+    assert said in listed.err
+
+
+def test_a_setting_is_a_wish_and_an_option_is_not(tmp_path, text, settings):
+    settings.write_text('[read]\nkeep_lines = true\nencoding = "latin-1"\n')
+    book = tmp_path / "book.html"
+    book.write_text("<p>one two three", "utf-8")
+    braille = text.with_suffix(".brf")
+    braille.write_text("ABC\n")
+    for file in (book, braille):
+        with program.Terminal("read", file, "--settings", settings, "--advance=key") as terminal:
+            terminal.until("h says the keys\r\n")
+            terminal.type("/c\n")  # another process opens the book, too
+            terminal.until("text: c\r\n(line|not found)")
+            terminal.type("q")
+            assert terminal.end() == 0
+    text.write_bytes("caf\xe9\n".encode("latin-1"))
+    said = program.run("read", text, *FAST, "--settings", settings)
+    assert (said.returncode, "text: café" in said.stdout) == (0, True)
+    said = program.run("read", book, *FAST, "--settings", settings, "--keep-lines")
+    assert (said.returncode, said.stdout) == (2, "")
+    assert "--keep-lines" in said.stderr
 
 
 def test_a_turn_at_a_terminal_is_saved_and_undone(tmp_path, text, settings):

@@ -122,7 +122,7 @@ def test_work_that_was_ended_goes_on(tmp_path):
         ({"protocol": load_protocol("tuning-width")}, "compares two stimuli; give"),
         (
             {"protocol": load_protocol("tuning-width"), "effect": {"1.7": "0.5"}},
-            "the value 1.7, which tuning-width does not have; the nearest is",
+            "the value 1.7, which tuning-width does not have; give ",
         ),
         ({"protocol": load_protocol("tuning-width"), "test": "paired"}, "has one test; leave"),
     ],

@@ -73,10 +73,10 @@ def test_what_a_text_has():
         ('3, "\\u0007"', "1", " line 9: [[hands]] number 2 stops, number 2, number 2, is"),
         ("3, 4", "1\nsped = 2", " line 12: [[hands]] number 2 has no key 'sped'; the nearest is "
          "speed, and there is side, speed, stops"),
-        ("3, 4", "1\ndoor.side = 2", " line 12: [[hands]] number 2 has no key 'door'; the nearest "
-         "is side, and there is side, speed, stops"),
-        ("3, 4", "1\n[door]\nside = 'up'\nspeed = 1", " line 13: [door] side is 'up'; the nearest "
-         "is right, and there is left, right"),
+        ("3, 4", "1\ndoor.side = 2", " line 12: [[hands]] number 2 has no key 'door'; there "
+         "is side, speed, stops"),
+        ("3, 4", "1\n[door]\nside = 'up'\nspeed = 1", " line 13: [door] side is 'up'; there "
+         "is left, right"),
     ],
 )  # fmt: skip
 def test_items_of_tables_that_come_again(stop, speed, sentence):

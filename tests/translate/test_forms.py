@@ -98,6 +98,18 @@ def test_content_goes_before_the_name(content, name, form):
     assert find_form(io.BytesIO(content), name) is form
 
 
+@pytest.mark.parametrize("name", ["a.scene", "a.SVG", "a.svgz", "a.gen", "a.tx"])
+def test_a_picture_is_known_by_its_name(name):
+    with pytest.raises(InputError, match=f"^{name} is a picture, not a text; vbraille feel"):
+        find_form(io.BytesIO(b"not finished yet"), name)
+
+
+def test_a_text_about_pictures_is_a_text():
+    text = b"# How to draw\n\nBegin with\n\n[canvas]\nwidth_mm = 9\n"
+    assert find_form(io.BytesIO(text), "drawing.txt") is Form.TEXT
+    assert find_form(io.BytesIO(b"[canvas]\nwidth_mm = 9\n"), "a.md") is Form.MARKDOWN
+
+
 @pytest.mark.parametrize(
     ("content", "said"),
     [
@@ -111,6 +123,10 @@ def test_content_goes_before_the_name(content, name, form):
         (b"CONT\2\0", "a Kindle book (KFX)"),
         (b"<?xml version='1.0'?><FictionBook xmlns='x'>", "a FictionBook (FB2); save it as EPUB"),
         (b"<fulfillmentToken/>", "a ticket for a book that Adobe locks"),
+        (b'<?xml version="1.0"?>\n<svg xmlns="http://www.w3.org/2000/svg"/>', "a picture, not a"),
+        (b'<laterographics_xml type="Generator">', "a picture, not a text; vbraille feel"),
+        (b'# lines\ntitle = "A"\n\n[canvas]\nwidth_mm = 9\n', "a picture, not a text"),
+        (b"canvas = {width_mm = 9, height_mm = 9}", "a picture, not a text"),
         (zip_of("xl/workbook.xml", "[Content_Types].xml"), "an Excel workbook"),
         (zip_of("ppt/presentation.xml", "[Content_Types].xml"), "a PowerPoint presentation"),
         (zip_of(mimetype="application/vnd.oasis.opendocument.spreadsheet"), "an OpenDocument file"),

@@ -252,6 +252,7 @@ def _open(arguments: argparse.Namespace) -> Source:
         "keep_lines": arguments.keep_lines,
         "brf_table": arguments.brf_table,
         "form": arguments.form,
+        "wishes": arguments.settled,
     }
     if arguments.file != "-":
         return open_source(arguments.file, **how)

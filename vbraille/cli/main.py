@@ -77,7 +77,7 @@ def _set_streams() -> None:
     # None stands for a stream that was closed by whoever started us. There is nobody to be told
     # of what goes to stderr, but whoever closed the output has lost what was asked for.
     if sys.stdin is None:
-        sys.stdin = os.fdopen(0)
+        sys.stdin = os.fdopen(0, closefd=False)
     if sys.stdout is None:
         sys.stdout = TextIOWrapper(BufferedWriter(_Closed()))
     if sys.stderr is None:

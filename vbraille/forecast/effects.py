@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.design import Choice
-from vbraille.wording import nearest, setting
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -76,10 +76,10 @@ def _preference(name: str, design: Choice, effect: Mapping[str, str]) -> dict[st
             f"such as {design.values[0]:g}=0.7"
         )
     ((value, share),) = effect.items()
-    values = {f"{of:g}" for of in design.values}
+    values = [f"{of:g}" for of in design.values]
     if value not in values:
-        close = nearest(value, values)
-        raise InputError(f"{_EFFECT} has the value {value}, which {name} does not have; {close}")
+        there = f"give {' or '.join(values)}"
+        raise InputError(f"{_EFFECT} has the value {value}, which {name} does not have; {there}")
     return {value: _share(value, share)}
 
 

@@ -240,15 +240,15 @@ def _sent(name: str, where: str) -> str:
     character = _TYPED.get(key.lower(), key)
     if held == "alt-" and len(character) == 1:
         return f"{held}{character}"
-    names = (*sorted(NAMED), *(word for word in _TYPED if "-" not in word))
-    raise InputError(f"{where}: there is no key {name!r}; {nearest(key.lower(), names)}")
+    near = nearest(key.lower(), (*sorted(NAMED), *_TYPED))
+    near = near or '; write a character, or a name such as "down" or "ctrl-n"'
+    raise InputError(f"{where}: there is no key {name!r}{near}")
 
 
 def _check_name(name: str, names: Mapping[str, Command] | tuple[str, ...], where: str) -> None:
     if name not in names:
         kind = "value of the tuning" if isinstance(names, tuple) else "command"
-        hint = f"; {nearest(name.upper(), names)}" if names else ""
-        raise InputError(f"{where}: there is no {kind} {name!r}{hint}")
+        raise InputError(f"{where}: there is no {kind} {name!r}{nearest(name.upper(), names)}")
 
 
 def spoken(key: str) -> str:

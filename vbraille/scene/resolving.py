@@ -201,7 +201,7 @@ class _Resolving:
         self._origins.fail(steps, problem)
 
     def _fail_unknown(self, name: str, steps: Steps, names: Iterable[str]) -> NoReturn:
-        self._fail(steps, f"name is {name!r}, which nothing here is called; {nearest(name, names)}")
+        self._fail(steps, f"name is {name!r}, which nothing here is called{nearest(name, names)}")
 
 
 def points_of(pattern: AnyPattern) -> int:

@@ -50,5 +50,5 @@ def missing_profile(settings: Settings, profile: str) -> str:
     """Sentence on a profile that somebody names and is not there; empty if it is."""
     if profile in settings.profiles:
         return ""
-    near = f"; {nearest(profile, settings.profiles)}" if settings.profiles else ""
+    near = nearest(profile, settings.profiles)
     return f"profile: {profile} is new, and is made when it is saved{near}"

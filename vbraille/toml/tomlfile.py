@@ -27,10 +27,9 @@ _MOST_WHOLE = 2**63 - 1
 # before it, so that a small file could take all there is.
 _MOST_LEVELS = 100
 _DEEP_KEY = re.compile(
-    r"""(?:^|[\[{,])[ \t]*+
-    (?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){%d}"""
-    % _MOST_LEVELS,
-    re.VERBOSE | re.MULTILINE,
+    r"""(?:^|[\[{,])[ \t]*+(?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
+    rf"{{{_MOST_LEVELS}}}",
+    re.MULTILINE,
 )
 _LONGEST_QUOTE = 60
 _MOST_STEPS = 8  # of the way to a place that a sentence says whole
@@ -307,8 +306,9 @@ def quote(value: object) -> str:
 
 
 def which(name: str, names: Collection[str]) -> str:
-    """End of a sentence about an unknown name: the nearest known name, and all known names."""
-    return f"; {nearest(name, names)}, and there is {', '.join(sorted(names))}"
+    """End of a sentence about an unknown name: the nearest known name, if any, and all known."""
+    near = nearest(name, names)
+    return f"{near}{', and' if near else ';'} there is {', '.join(sorted(names))}"
 
 
 def _is_good(value: object, spaces: dict[int, str]) -> bool:
@@ -320,7 +320,8 @@ def _is_good(value: object, spaces: dict[int, str]) -> bool:
 
 def _levels(tree: object) -> int:
     """Levels of tables and lists in a file, counted no further than is of use."""
-    level, number = [tree], 0
+    level: list[Any] = [tree]
+    number = 0
     while level and number <= _MOST_LEVELS:
         inner = [v.values() if isinstance(v, dict) else v for v in level]
         level = [v for values in inner for v in values if isinstance(v, dict | list)]

@@ -56,6 +56,15 @@ _OTHER_ZIPS = (
     ("Index/Document.iwa", "a document of Apple's Pages; save it as DOCX or EPUB"),
     ("ncc.html", "a zip archive of a DAISY book; unpack it and give the HTML file with the text"),
 )
+_PICTURE = "a picture, not a text; vbraille feel shows it to the finger"
+# Roots of drawings, and of OpenLatero's files.
+_PICTURE_ROOTS = ("svg", "laterographics_xml")
+_PICTURE_SUFFIXES = (".scene", ".svg", ".svgz", ".gen", ".tx")
+# A scene is TOML from its first statement on, and says how large it is.
+_SCENE = re.compile(
+    r"\A(?:[ \t\r]*(?:\#[^\n]*)?\n)*(?=[ \t]*(?:\w+[ \t]*=|\[)).*?^(?:\[canvas\]|canvas[ \t]*=)",
+    re.MULTILINE | re.DOTALL,
+)
 # Beginnings of books that cannot be read here, and what to do.
 _OTHER_BEGINS = (
     (
@@ -118,7 +127,10 @@ def find_form(stream: BinaryIO, name: str) -> Form:
         return form
     if _mostly_braille(text):
         return Form.UNICODE_BRAILLE
-    return _BY_SUFFIX.get(PurePath(name).suffix.lower(), Form.TEXT)
+    suffix = PurePath(name).suffix.lower()
+    if suffix in _PICTURE_SUFFIXES or (suffix not in _BY_SUFFIX and _SCENE.match(text)):
+        raise InputError(f"{name} is {_PICTURE}")
+    return _BY_SUFFIX.get(suffix, Form.TEXT)
 
 
 def _refused(stream: BinaryIO, sample: bytes) -> str | None:
@@ -223,6 +235,8 @@ def _marked_up(text: str, name: str) -> Form | None:
     if root is None:
         return None
     found = root[1]
+    if found.lower() in _PICTURE_ROOTS:
+        raise InputError(f"{name} is {_PICTURE}")
     if found in _OTHER_ROOTS:
         raise InputError(f"{name} is {_OTHER_ROOTS[found]}")
     if found.lower() in _HTML_BEGINS:

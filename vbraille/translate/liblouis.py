@@ -162,8 +162,7 @@ def display_dots(table: str, characters: str) -> list[int]:
     except RuntimeError:
         folders = {path.parent for path in _table_paths()}
         names = sorted(path.name for folder in folders for path in folder.glob("*.dis"))
-        near = f"; {nearest(table, names, 3)}" if names else ""
-        raise InputError(f"there is no display table {table!r}{near}") from None
+        raise InputError(f"there is no display table {table!r}{nearest(table, names, 3)}") from None
     return [ord(dots) & 0xFF for dots in found]
 
 
@@ -202,7 +201,7 @@ class BrailleTable:
                 if name in names or _is_file(name):
                     raise InputError(f"liblouis cannot use {name} as a braille table")
                 raise InputError(
-                    f"there is no braille table {name!r}; {nearest(name, names, 3)} "
+                    f"there is no braille table {name!r}{nearest(name, names, 3)} "
                     f"(vbraille tables lists all)"
                 )
         self._substitutes = Substitutes(self._writes, undefined)

@@ -13,6 +13,8 @@ from vbraille.translate.forms import Form, find_form
 from vbraille.wording import nearest, setting
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from vbraille.translate.source import Source
 
 _HAVE_LINES = (Form.TEXT, Form.BRF, Form.UNICODE_BRAILLE, Form.PEF)
@@ -27,6 +29,7 @@ def open_source(
     keep_lines: bool = False,
     brf_table: str | None = None,
     form: str | None = None,
+    wishes: Collection[str] = (),
 ) -> Source:
     """Open a book of any form that can be read here.
 
@@ -44,6 +47,9 @@ def open_source(
         Display table of liblouis that says which character of a BRF file is which cell.
     form
         Name of the form that the book is in; None to find it out.
+    wishes
+        Options, of ``encoding`` and ``keep_lines``, that are passed over in a form that has no use
+        for them.
 
     Raises
     ------
@@ -51,7 +57,7 @@ def open_source(
         If there is no such file or form, the book cannot be read, or an option is not for it.
     """
     return _open(
-        open_file(file), name or str(file), encoding, brf_table, form, keep_lines=keep_lines
+        open_file(file), name or str(file), encoding, brf_table, form, wishes, keep_lines=keep_lines
     )
 
 
@@ -63,6 +69,7 @@ def open_stream(
     keep_lines: bool = False,
     brf_table: str | None = None,
     form: str | None = None,
+    wishes: Collection[str] = (),
 ) -> Source:
     """Open a book that a stream gives, such as standard input; it is read to its end first.
 
@@ -72,7 +79,7 @@ def open_stream(
         Bytes of the book. It must have a file number.
     name
         Name of the book in messages.
-    encoding, keep_lines, brf_table, form
+    encoding, keep_lines, brf_table, form, wishes
         As in `open_source`.
 
     Raises
@@ -81,7 +88,7 @@ def open_stream(
         If the stream or the book cannot be read, there is no such form, or an option is not for it.
     """
     kept = keep_stream(stream, name)
-    return _open(kept, name, encoding, brf_table, form, keep_lines=keep_lines)
+    return _open(kept, name, encoding, brf_table, form, wishes, keep_lines=keep_lines)
 
 
 def named_form(name: str) -> Form:
@@ -90,7 +97,7 @@ def named_form(name: str) -> Form:
         return Form(name.lower())
     except ValueError:
         known = nearest(name, [form.value for form in Form])
-        raise InputError(f"there is no form of books {name!r}; {known}") from None
+        raise InputError(f"there is no form of books {name!r}{known}") from None
 
 
 def _open(
@@ -99,6 +106,7 @@ def _open(
     encoding: str | None,
     brf_table: str | None,
     form: str | None,
+    wishes: Collection[str],
     *,
     keep_lines: bool,
 ) -> Source:
@@ -109,6 +117,9 @@ def _open(
             found = Form.TEXT
         elif found in (Form.BRF, Form.UNICODE_BRAILLE) and _is_blank(stream):
             raise InputError(f"{name} has no braille in it; give a file of braille")
+        if "encoding" in wishes and (found not in _HAVE_ENCODINGS or found is Form.BRF):
+            encoding = None
+        keep_lines = keep_lines and (found in _HAVE_LINES or "keep_lines" not in wishes)
         for given, fits, option in (
             (encoding is not None, found in _HAVE_ENCODINGS, "encoding"),
             (brf_table is not None, found is Form.BRF and encoding is None, "brf-table"),

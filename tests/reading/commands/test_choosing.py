@@ -63,7 +63,7 @@ def test_a_language_that_there_is_not_changes_nothing():
     bench = Bench(TEXT)
     said = bench.press("yxx\n")
     assert said[:2] == ["language: type its tag such as fr, Enter", "language: xx"]
-    assert said[2].startswith("table: there is no table for language 'xx'; the nearest are")
+    assert said[2].startswith("table: there is no table for language 'xx'; the nearest is xh")
     assert bench.reader.layout.book.table.name == "en-ueb-g2.ctb"
     assert bench.press("yen\n")[2] == "table: en-ueb-g2.ctb, as before"
 

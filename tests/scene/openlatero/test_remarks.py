@@ -157,7 +157,7 @@ DIFFERENT = {
     ),
     "an unknown word": (
         polygon('<corner><enable>yes</enable><type>texture</type></corner>'),
-        'corner type "texture" is not known, so "solid" is taken; the nearest is',
+        'corner type "texture" is not known, so "solid" is taken',
     ),
     "an unknown operation": (
         f'<Pattern type="Group"><operation type="maks"/>{circle()}{line()}</Pattern>',

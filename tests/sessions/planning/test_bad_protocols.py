@@ -126,7 +126,7 @@ BAD_DESIGNS = [
         PAIRS + 'blocks = 2\norder = "listed"',
         "order is of a block each condition; leave it out…",
     ),
-    (10, PAIRS + 'order = "random"', "order is 'random'; the nearest is…"),
+    (10, PAIRS + 'order = "random"', "order is 'random'; there is…"),
     (8, STRINGS.replace('"ab", "cd"', ""), "strings are none; give one or more"),
     (
         8,
@@ -187,7 +187,7 @@ BAD_DESIGNS = [
     (
         7,
         '[design]\nkind = "pairs"\nwords = 3\nstrings = ["ab"]',
-        "kind is 'pairs'; the nearest is …, and there is choice, combinations, items, list",
+        "kind is 'pairs'; there is choice, combinations, items, list",
     ),
     (7, "[design]\nkind = 3\nwords = 3", "kind is 3; it must be a string, in quotation marks"),
     (10, GAPS.replace('"c"', '"a"'), "string has no cell with a gap; give one with a left and…"),

@@ -93,7 +93,7 @@ def _column(
     """Column of the other program, or an InputError that names the nearest one."""
     if column not in sheet.frame:
         others = [str(name) for name in sheet.frame if name]
-        near = f"; {nearest(column, others)}" if others else ""
+        near = nearest(column, others)
         raise InputError(
             f"{sheet.name} has no column {column!r}, which {mapping.place(what)} names for "
             f"{whose}{near}"
@@ -122,7 +122,7 @@ def _keyed(text: str, key: str) -> str:
     if not isinstance(told, dict):
         raise ValueError(f"is {text!r}, which is no object of JSON to take {key!r} from")
     if key not in told:
-        near = f"; {nearest(key, told)}" if told else ""
+        near = nearest(key, told)
         raise ValueError(f"is {text!r}, which has no key {key!r}{near}")
     return _text(told[key])
 

@@ -133,7 +133,7 @@ def from_rows(name: str, rows: Sequence[Mapping[str, Any]]) -> Sheet:
 
 
 def _miss(name: str, others: Sequence[str]) -> str:
-    return f"there is no {name}" + (f", {nearest(name, others)}" if others else "")
+    return f"there is no {name}{nearest(name, others, lead=', ')}"
 
 
 def _frame(reader: Any, name: str) -> pd.DataFrame:

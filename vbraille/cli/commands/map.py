@@ -14,7 +14,7 @@ from vbraille.pictures import scenes
 from vbraille.pictures.inkfiles import ink_bytes
 from vbraille.pictures.scenewords import scene_lines, scene_text
 from vbraille.render import MODELS
-from vbraille.wording import count, nearest, spelled
+from vbraille.wording import count, spelled
 
 if TYPE_CHECKING:
     import argparse
@@ -88,7 +88,7 @@ def _kind(out: Path) -> str:
     kind = out.suffix.lower().removeprefix(".")
     if kind not in _KINDS:
         known = ", ".join(f".{kind}" for kind in _KINDS)
-        what = f"ends in .{kind}, {nearest(kind, _KINDS)}" if kind else "has no suffix"
+        what = f"ends in .{kind}" if kind else "has no suffix"
         raise InputError(f"--out {out} {what}; end its name in one of {known}")
     return kind
 

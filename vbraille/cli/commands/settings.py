@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import build_lengths, build_show
-from vbraille.cli.settled import chosen_profile
+from vbraille.cli.settled import bind_settings, chosen_profile
 from vbraille.cli.terminal import say_line
 from vbraille.files import settings_path
 from vbraille.render import MODELS
@@ -24,6 +24,7 @@ def run(arguments: argparse.Namespace) -> int:
         say_line(str(settings_path(arguments.settings)))
         return 0
     settings = load_settings(arguments.settings)
+    bind_settings(settings)  # which refuses what reading would
     there = "" if settings.path.exists() else " (not there)"
     say_line(f"settings file: {settings.path}{there}")
     profile = chosen_profile(arguments, settings)

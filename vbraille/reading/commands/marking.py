@@ -92,7 +92,7 @@ def _named(reader: Reader, name: str) -> BookmarkLike | None:
     found = marks.get(name) or (alike[0] if len(alike) == 1 else None)
     if found is None:
         reader.cue(Cue.NOT_FOUND)
-        reader.say(f"bookmark {name}: there is none; {nearest(name, marks)}")
+        reader.say(f"bookmark {name}: there is none{nearest(name, marks)}")
     return found
 
 

@@ -67,6 +67,7 @@ def open_again(opening: BookOpening) -> Book:
         keep_lines=opening.keep_lines,
         brf_table=opening.brf_table,
         form=opening.form,
+        wishes=("encoding", "keep_lines"),  # the reader has the book open with them
     )
     if opening.index is not None:
         source.adopt(opening.index)

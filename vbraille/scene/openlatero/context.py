@@ -56,7 +56,7 @@ class GenContext:
         reader = self.readers.get(kind)
         if reader is None:
             what = f'"{kind}"' if kind else "missing"
-            near = f"; {nearest(kind, self.readers)}" if kind else ""
+            near = nearest(kind, self.readers)
             element.forget()
             element.say(f"the type of this pattern is {what}, which is not known{near}; left out")
             return None

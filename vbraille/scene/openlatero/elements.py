@@ -183,7 +183,7 @@ class GenElement:
             self.say(f'{self.path} is "{_short(word)}", which is taken as "{word.lower()}"')
             return word.lower()
         self.say(
-            f'{self.path} "{_short(word)}" is not known, so "{default}" is taken; '
+            f'{self.path} "{_short(word)}" is not known, so "{default}" is taken'
             f"{nearest(word, words)}"
         )
         return default

@@ -48,7 +48,7 @@ def read_texture(element: GenElement, context: GenContext) -> AnyPattern | None:
     reader = _READERS.get(kind)
     if reader is None:
         what = f'"{kind}"' if kind else "missing"
-        near = f"; {nearest(kind, _READERS)}" if kind else ""
+        near = nearest(kind, _READERS)
         element.forget()
         element.say(f"the subtype of this texture is {what}, which is not known{near}; left out")
         return None

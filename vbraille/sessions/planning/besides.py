@@ -212,7 +212,9 @@ def _check_head(head: list[str], at: str, needed: tuple[str, ...]) -> None:
             raise InputError(f"{at}: two columns are named {name}; rename one")
     for name in needed:
         if name not in head:
-            raise InputError(f"{at}: there is no column {name}; {nearest(name, head)}, or add it")
+            raise InputError(
+                f"{at}: there is no column {name}{nearest(name, head)}; rename one, or add it"
+            )
 
 
 def _spelled(text: str, what: str, keys: SpellingKeys, written: bool) -> Masks:

@@ -178,7 +178,7 @@ def _problem_of_cross(own: tuple[Factor, ...], cross: tuple[Levels, ...]) -> str
         for factor, name in zip(own, levels, strict=True):
             known = [level.name for level in factor.levels]
             if name not in known:
-                return f"{at} has {name!r}, which {factor.name} has not; {nearest(name, known)}"
+                return f"{at} has {name!r}, which {factor.name} has not{nearest(name, known)}"
         if levels in cross[: number - 1]:
             return f"{at} is there before; leave one out"
         try:
