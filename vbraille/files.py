@@ -54,7 +54,14 @@ def whole_file(path: Path, *, replace: bool = False) -> Iterator[Path]:
             partial.unlink(missing_ok=True)
 
 
-def write_file(path: Path, content: bytes, *, replace: bool = False, durable: bool = False) -> None:
+def write_file(
+    path: Path,
+    content: bytes,
+    *,
+    replace: bool = False,
+    durable: bool = False,
+    private: bool = False,
+) -> None:
     """Write a file: whole, or not at all.
 
     Parameters
@@ -65,6 +72,8 @@ def write_file(path: Path, content: bytes, *, replace: bool = False, durable: bo
         Whether an existing file may be replaced.
     durable
         Whether it must be on the disk when this returns, and not in the system's memory alone.
+    private
+        Whether other users of the machine may not read it, whatever the umask says.
 
     Raises
     ------
@@ -78,7 +87,7 @@ def write_file(path: Path, content: bytes, *, replace: bool = False, durable: bo
     try:
         with whole_file(path, replace=replace) as partial:
             try:
-                file = partial.open("wb")
+                file = _begin(partial, private=private)
             except OSError as error:
                 raise InputError(f"{path} cannot be written: {error.strerror}") from None
             with file:
@@ -165,6 +174,7 @@ def write_folder(
     files: Mapping[str, bytes],
     *,
     durable: bool = False,
+    private: bool = False,
     clear: Callable[[Path], None] = shutil.rmtree,
 ) -> None:
     """Make a directory with files, and the directories that it is in: all of it, or nothing.
@@ -177,6 +187,9 @@ def write_folder(
         Content of each file, by its path in the directory.
     durable
         Whether all must be on the disk when this returns, and not in the system's memory alone.
+    private
+        Whether other users of the machine may read neither the directory nor those that are made
+        for it, whatever the umask says.
     clear
         Function that removes what a killed process left under the other name.
 
@@ -190,19 +203,20 @@ def write_folder(
     folder = folder.absolute()
     check_free(folder)
     partial = _partial(folder)
+    mode = 0o700 if private else 0o777
     made: list[Path] = []  # each is in the one before
     try:
         for parent in missing(folder.parent):
-            parent.mkdir()
+            parent.mkdir(mode)
             made.append(parent)
         if partial.exists():
             clear(partial)
-        partial.mkdir()
+        partial.mkdir(mode)
         made.append(partial)
         for name, content in files.items():
             path = partial / name
             path.parent.mkdir(parents=True, exist_ok=True)
-            with path.open("wb") as file:
+            with _begin(path, private=private) as file:
                 _fill(file, content, durable=durable)
         if durable:
             _sync(partial)
@@ -256,6 +270,14 @@ def missing(folder: Path) -> list[Path]:
 def _partial(path: Path) -> Path:
     """Path that a file or directory has until it is written whole."""
     return path.with_name(f".{path.name}.partial")
+
+
+def _begin(path: Path, *, private: bool) -> BinaryIO:
+    """Open a file for its content; what was there, which a killed process left, goes."""
+    if private:
+        path.unlink(missing_ok=True)
+        path.touch(0o600, exist_ok=False)
+    return path.open("wb")
 
 
 def _fill(file: BinaryIO, content: bytes, *, durable: bool) -> None:

@@ -46,6 +46,29 @@ def folder(ended, tmp_path):
     return shutil.copytree(ended[0], tmp_path / "s")
 
 
+def test_nobody_else_may_read_a_session_whatever_the_umask_says(tmp_path):
+    (tmp_path / "mini.toml").write_text(MINI)
+    folder = tmp_path / "sessions" / "s"
+    arguments = ("run", tmp_path / "mini.toml", *WHO, "--seed=1", "--hand=sweep:150", "--fast")
+    answers = tmp_path / "answers"
+    answers.write_text("l\n")
+    how = {"umask": 0, "capture_output": True}
+    trigger, port = os.openpty()
+    more = ("--answers", answers, "--out", folder, "--markers", f"serial:{os.ttyname(port)}")
+    program.run("session", *arguments, *more, **how)  # there are too few answers
+    with (folder / "journal.jsonl").open("ab") as file:
+        file.write(b"torn")
+    program.run("session", "resume", folder, "--answers", "simulated", "--fast", **how)
+    os.close(trigger)
+    os.close(port)
+    modes = {path.name: path.stat().st_mode & 0o777 for path in folder.iterdir()}
+    assert {"journal.torn", "journal.jsonl", "protocol.toml"} <= modes.keys()
+    assert any(name.startswith("trace") for name in modes)
+    assert any(name.startswith("markers") for name in modes)
+    assert set(modes.values()) == {0o600}
+    assert {p.stat().st_mode & 0o777 for p in (folder, folder.parent)} == {0o700}
+
+
 def test_protocols_are_listed_a_line_each(call):
     said = call("session", "protocols")
     assert (said.code, said.err) == (0, "")

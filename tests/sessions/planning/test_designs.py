@@ -309,7 +309,7 @@ REFUSED = [
     (FROM_FILE, {}, "file is 'i.csv', which cannot be read"),
     ('[design]\nkind = "items"\n', {}, "there is no table [items]; add it"),
     (ORDER, {"o_csv": "participant,1,2\nP01,flat,flat\n"}, "give each of flat, rough once"),
-    (ORDER, {"o_csv": "participant,1,2\nP01,flat,ruff\n"}, "condition is 'ruff'; there is flat, rough"),
+    (ORDER, {"o_csv": "participant,1,2\nP01,flat,ruff\n"}, "condition is 'ruff'; there is flat"),
     (
         LIST + "blocks = 1\n" + TEXTURE + "[rules]\nat_most_running = { txture = 2 }",
         {},

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import os
 import secrets
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -105,11 +104,8 @@ class KeyFile:
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(_HEAD)
         writer.writerows(self.codes.items())
-        before = os.umask(0o077)
-        try:
-            write_file(self.path, text.getvalue().encode(), replace=True, durable=True)
-        finally:
-            os.umask(before)
+        content = text.getvalue().encode()
+        write_file(self.path, content, replace=True, durable=True, private=True)
 
 
 def renamed(record: Record, name: str) -> Record:

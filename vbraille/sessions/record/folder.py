@@ -98,8 +98,9 @@ def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -
     sums = {name: sha256(content).hexdigest() for name, content in files.items()}
     # The others' checksums are in the journal, as its first event.
     files[journal.NAME] = journal.first_lines(Session(format=FORMAT, sha256=sums, t_s=0.0))
-    names = tuple(files)
-    write_folder(folder, files, durable=True, clear=lambda partial: _clear(partial, names))
+    write_folder(
+        folder, files, durable=True, private=True, clear=lambda partial: _clear(partial, files)
+    )
 
 
 def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:

@@ -214,7 +214,9 @@ class Journal:
         if not torn:
             return 0
         try:
-            with (self._path.parent / TORN).open("ab") as file:
+            aside = self._path.parent / TORN
+            aside.touch(0o600)
+            with aside.open("ab") as file:
                 file.write(torn + b"\n")
                 file.flush()
                 os.fsync(file.fileno())

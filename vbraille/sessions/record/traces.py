@@ -113,7 +113,8 @@ class TraceWriter:
         self._waiting: list[NDArray[np.void]] = []
         self._count = 0
         try:
-            self._file = path.open("xb", buffering=0)
+            path.touch(0o600, exist_ok=False)
+            self._file = path.open("wb", buffering=0)
         except OSError as error:
             raise self._fault(error) from None
 

@@ -75,7 +75,9 @@ class Markers:
         names = (path.stem.removeprefix("markers-") for path in folder.glob("markers-*.csv"))
         number = max((int(name) for name in names if name.isdecimal()), default=0) + 1
         with suppress(OSError):  # the list is no part of the record: a session needs it not
-            self._list = (folder / f"markers-{number:03}.csv").open("x", encoding="utf-8")
+            path = folder / f"markers-{number:03}.csv"
+            path.touch(0o600, exist_ok=False)
+            self._list = path.open("w", encoding="utf-8")
             self._list.write(HEAD)
         self._thread = Thread(target=self._send_all, name="markers", daemon=True)
         self._thread.start()
