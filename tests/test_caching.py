@@ -96,3 +96,11 @@ def test_a_first_reading_says_that_it_compiles(tmp_path):
     (Path(folder) / "engine" / "serialtick.run-1.nbc").touch()
     again = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     assert again.stdout == "None\n"
+    # What was compiled for one processor is of no use to another, and is left for the first.
+    another = {**environment, "NUMBA_CPU_NAME": "another"}
+    command[-1] += "; from vbraille.caching import keep_compiled as keep; print(keep())"
+    there = subprocess.run(command, env=another, capture_output=True, text=True, check=True)
+    assert there.stdout.startswith("compiling: ")
+    assert there.stdout.endswith("True\n")
+    back = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert back.stdout == "None\nTrue\n"

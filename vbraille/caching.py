@@ -14,11 +14,16 @@ import shutil
 import stat
 import sys
 import tempfile
+from contextlib import suppress
 from functools import cache
 from hashlib import sha256
+from importlib.util import find_spec
 from pathlib import Path
 
 _log = logging.getLogger(__name__)
+_PROCESSOR_VARIABLES = ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES", "NUMBA_ENABLE_AVX")
+# What tells kinds of processors apart, of Intel's and AMD's and of ARM's; how fast one is does not.
+_PROCESSOR_LINES = ("vendor_id", "cpu family", "model", "stepping", "flags", "Features", "CPU ")
 # The files that hold kernels, and what kernels call.
 _ROOMS = ("render/**/*.py", "devices/**/*.py", "engine/*.py")
 
@@ -30,6 +35,7 @@ def keep_compiled() -> bool:
     That is the package's own ``__pycache__``, else the user's caches, else a private folder. In
     each, the folder is named by the source of all kernels: numba compares the file of a function
     only, and would go on using one that has a changed function of another file compiled into it.
+    It is named by the processor, too, since what is compiled for another is of no use.
     """
     _leave_scipy_out()
     folder = _compiled_folder()
@@ -42,7 +48,7 @@ def keep_compiled() -> bool:
     # Not in the environment, where a child process would take it for a wish of its user.
     config.CACHE_DIR = str(folder)  # pyright: ignore[reportAttributeAccessIssue]
     for other in folder.parent.glob("vbraille-compiled-*"):
-        if other != folder:
+        if not other.name.startswith(folder.name.rpartition("-")[0]):
             shutil.rmtree(other, ignore_errors=True)
     return True
 
@@ -68,7 +74,7 @@ def _compiled_folder() -> Path | None:
     else:
         places = [Path(__file__).parent / "__pycache__", _user_folder("CACHE", ".cache")]
     place = next(filter(_is_writable, places), None) or _private_folder()
-    return None if place is None else place / f"vbraille-compiled-{_source()}"
+    return None if place is None else place / f"vbraille-compiled-{_source()}-{_processor()}"
 
 
 def _leave_scipy_out() -> None:
@@ -87,11 +93,23 @@ def _leave_scipy_out() -> None:
 
 
 def _source() -> str:
-    """Name the source of all kernels by the names, sizes and times of its files."""
+    """Name the source of all kernels, and their compiler, by its files' names, sizes and times."""
     root = Path(__file__).parent
     files = [root / "libc.py", *(file for room in _ROOMS for file in sorted(root.glob(room)))]
+    compiler = find_spec("numba")  # not imported, which takes long
+    if compiler is not None and compiler.origin is not None:
+        files.append(Path(compiler.origin))
     told = [(file.name, file.stat().st_size, file.stat().st_mtime_ns) for file in files]
     return sha256(repr(told).encode()).hexdigest()[:16]
+
+
+def _processor() -> str:
+    """Name the processor by what the system says of the first, or as numba's settings have it."""
+    told = [os.uname().machine, *map(os.environ.get, _PROCESSOR_VARIABLES)]
+    with suppress(OSError):
+        first = Path("/proc/cpuinfo").read_text(errors="replace").partition("\n\n")[0]
+        told += [line for line in first.splitlines() if line.startswith(_PROCESSOR_LINES)]
+    return sha256(repr(told).encode()).hexdigest()[:8]
 
 
 @cache
