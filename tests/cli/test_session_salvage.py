@@ -194,3 +194,29 @@ def test_of_a_whole_journal_salvage_is_all(call, ended, tmp_path):
         assert (said.code, said.err) == (0, "")
     one, other = (path.read_bytes() for path in tmp_path.glob("*.csv"))
     assert one == other
+
+
+def test_trials_after_a_lost_answer_by_which_they_were_chosen_are_exported(call, tmp_path):
+    folder = tmp_path / "s"
+    how = ("--seed", "1", "--answers", "simulated", "--hand", "sweep:300", "--fast")
+    run = ("session", "run", "tuning-width-adaptive", "--participant", "P07", *how)
+    assert program.run(*run, "--out", folder).returncode == 0
+    call("session", "export", folder, "--out", tmp_path / "whole.csv")
+    whole = table(tmp_path / "whole.csv")
+    line = damage(
+        folder, rb'"trial":4,"attempt":1,"answer":"', b'"trial":4,"attempt":1,"answer":"x'
+    )
+    said = call("session", "check", folder)
+    assert said.code == 1
+    assert f"line {line} does not match its checksum" in said.err + said.out
+    assert f"answers: {len(whole) - 1}" in said.out
+    said = call("session", "export", folder, "--salvage", "--out", tmp_path / "salvaged.csv")
+    assert said.code in (0, 1)
+    salvaged = table(tmp_path / "salvaged.csv")
+    fourth = salvaged.pop(3)
+    assert (fourth["presented"], fourth["answered"]) == (whole.pop(3)["presented"], "")
+    assert fourth["faults"] == f"events of the journal are lost: {line}"
+    names = ("trial", "condition", "presented", "answered", "dot_width_mm")
+    assert [[row[n] for n in names] for row in salvaged] == [
+        [row[n] for n in names] for row in whole
+    ]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from msgspec import structs
+
 from vbraille.errors import VbrailleError
 from vbraille.sessions.planning.procedure import Answered, FixedOrder
 from vbraille.sessions.planning.standing import is_conventional
@@ -91,6 +93,7 @@ class Progress:
         self._answers = ""
         self._trial = 0
         self._lost: list[int] = []
+        self._unasked = False  # an answer may be lost that the trials after it were chosen by
         self._paused_s: float | None = None
         self._next = self._ask()
         for event in events:
@@ -167,6 +170,8 @@ class Progress:
 
     def _ask(self) -> Trial | None:
         """Ask the procedure which trial comes after those that were answered."""
+        if self._unasked:
+            return None
         trial = self.procedure.next(self.history)
         if self.procedure.trials is None:
             self.trials.pop(self.done + 1, None)  # the choice made before an answer was corrected
@@ -175,7 +180,14 @@ class Progress:
         return trial
 
     def _record_of(self, event: events.AnyTime) -> TrialRecord:
-        record = (self.practice if event.practice else self.trials).get(event.trial)
+        records = self.practice if event.practice else self.trials
+        record = records.get(event.trial)
+        if record is None and self._unasked and not event.practice:
+            # The journal says what was shown; all else is as in the plan's trial of that number.
+            last = next(reversed(records.values())).trial
+            planned = next((t for t in self.plan.trials if t.number == event.trial), last)
+            trial = structs.replace(planned, number=event.trial)
+            record = records[event.trial] = TrialRecord(trial)
         if record is None:
             which = "practice trial" if event.practice else "trial"
             raise VbrailleError(
@@ -188,7 +200,9 @@ class Progress:
         """Mark all trials that the events lost before an event of this trial may belong to."""
         first, last = sorted((self._trial or trial, trial))
         for number in range(first, last + 1) if self._lost else ():
-            record = self.trials[number]
+            record = self.trials.get(number)
+            if record is None:  # all events of a trial that the answers chose are lost
+                continue
             record.lost = sorted({*record.lost, *self._lost})
         self._lost = []
 
@@ -220,6 +234,7 @@ class Progress:
                 self.ended = True
             case events.Lost():
                 self._lost.append(event.n)
+                self._unasked = self.procedure.trials is None
                 if self._trial:
                     self.trials[self._trial].lost.append(event.n)
 
