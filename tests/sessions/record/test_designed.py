@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+import pandas as pd
 import pytest
 
 from vbraille.analysis.input.study import load_study
@@ -76,6 +77,12 @@ def test_catch_trials_are_left_out_and_counted(tmp_path):
     assert left.what == "2 catch trials of P02"
     assert left.reason.endswith("2 answered right")
     assert set(study.trials["factor_gap"]) == {"far"}
+    # The column of the table tells the same, of a session that was not ended, too.
+    some = begin(tmp_path, "P03").run(Few(4))
+    table = pd.DataFrame(some.trials)
+    used = table[table.analysed == 1]
+    assert set(used.trial) == set(load_study([some.folder]).trials["trial"])
+    assert 0 < len(used) < 4 < len(table)
 
 
 def test_a_session_goes_on_with_the_same_trials_though_the_files_beside_are_gone(tmp_path):

@@ -29,6 +29,7 @@ _VALUES = {
     "correct": {"1": "all places are right", "0": "a place is wrong"},
     "returned": {"1": "the hand went back", "0": "it did not"},
     "early": {"1": "it does not count", "0": "it counts"},
+    "analysed": {"1": "the analysis uses the trial", "0": "it does not"},
     "warned": {"1": "the warning sounded", "0": "it did not"},
     "moved_by": {
         "person": "a person's hand",

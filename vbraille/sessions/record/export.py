@@ -184,6 +184,9 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
         "attempt": told.attempts,
         "paused_s": round(told.paused_s, 6),
         "early": int(told.early),
+        "analysed": int(
+            told.answer is not None and not (trial.catch and protocol.asks.name != "detect")
+        ),
         "warned": int("warning" in t_s),
         "faults": "; ".join(told.faults),
         "cue_time": told.wall.get("cue", ""),
