@@ -9,6 +9,7 @@ from __future__ import annotations
 import gzip
 import io
 import json
+from dataclasses import replace
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +24,7 @@ from vbraille.sessions.record.participants import label_of
 from vbraille.sessions.record.traces import posed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -92,7 +93,7 @@ def files(
         table = anonymous(record, table)
     made = {
         f"{stem}_beh.tsv": encode(to_csv(table, "\t", "n/a")),
-        f"{stem}_beh.json": _json(_beh(record, table[0])),
+        f"{stem}_beh.json": _json(_beh(record, table)),
     }
     for number, run in enumerate(runs_of(record), 1):
         ticks = traces.read(run.event.trace).ticks if run.event.trace else None
@@ -124,14 +125,19 @@ def _json(content: dict[str, Any]) -> bytes:
     return encode(json.dumps(content, ensure_ascii=False, indent=2) + "\n")
 
 
-def _beh(record: Record, columns: Iterable[str]) -> dict[str, Any]:
+def _beh(record: Record, table: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     described: dict[str, Any] = {
         SESSION: number_of(record),
         "TaskName": record.protocol.name,  # which the task in the files' names is made from
         "TaskDescription": f"{record.protocol.title} ({record.protocol.source})",
     }
     asked = {field.name: field.ask for field in record.protocol.fields}
-    described |= {name: entry_of(name, asked).to_bids() for name in columns}
+    for name in table[0]:
+        entry = entry_of(name, asked)
+        if entry.unit and any(" " in str(row[name]) for row in table):
+            # For BIDS a column with units has numbers, and not two in a cell.
+            entry = replace(entry, meaning=f"{entry.meaning}, in {entry.unit}", unit="")
+        described[name] = entry.to_bids()
     for name, what in describe_design(record.protocol).items():
         described[name] = {"Description": what}
     return described

@@ -58,8 +58,8 @@ COLUMNS = {
     "participant's key; empty if the protocol has no such key",
     "paused_s": "length of the pauses",
     "early": "1 if it was answered before it was read to its end: its duration does not count",
-    "analysed": "1 if the analysis uses the trial; 0 for a catch trial, unless detecting is what was "
-    "asked, and for one without an answer",
+    "analysed": "1 if the analysis uses the trial; 0 for a catch trial, unless detecting is what "
+    "was asked, and for one without an answer",
     "warned": "1 if the warning sounded",
     "faults": "what went wrong with the device in the trial, all attempts",
     "notes": "of the experimenter, typed in the trial",
