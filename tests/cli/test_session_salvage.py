@@ -220,3 +220,12 @@ def test_trials_after_a_lost_answer_by_which_they_were_chosen_are_exported(call,
     assert [[row[n] for n in names] for row in salvaged] == [
         [row[n] for n in names] for row in whole
     ]
+
+
+def test_a_last_line_that_was_taken_away_is_told(call, folder):
+    path = folder / "journal.jsonl"
+    assert "not closed" not in call("session", "check", folder).out
+    *lines, closed = path.read_bytes().splitlines(keepends=True)
+    assert b'"event":"closed"' in closed
+    path.write_bytes(b"".join(lines))
+    assert "its last run was not closed" in call("session", "check", folder).out

@@ -138,6 +138,12 @@ def _check_journal(told: JournalContents) -> Iterator[Finding]:
                 yield Finding(f"{journal.NAME}: damaged, {what}", good=False)
     else:
         yield Finding(f"{journal.NAME}: {len(told.events)} events, whole")
+        runs = [event for event in told.events if isinstance(event, Run)]
+        if runs and runs[-1].trace and not isinstance(told.events[-1], Closed):
+            yield Finding(
+                f"{journal.NAME}: its last run was not closed; it goes on, or was cut short, or "
+                f"lines were taken off its end"
+            )
     if told.torn:
         yield Finding(
             f"{journal.NAME}: its last line was cut short, {len(told.torn)} bytes; "
