@@ -6,6 +6,7 @@ import sys
 
 import pytest
 
+from tests.cli import program
 from tests.cli.test_bad_input import refused
 from tests.sessions.sittings import MINI, Session
 from vbraille.sessions.record import events, journal
@@ -137,6 +138,16 @@ def test_options_of_a_session(call, options, pattern):
 def test_what_a_protocol_asks_about_the_participant(call, options, pattern):
     said = call("session", "run", "legibility", *FAST, "--out", "s", *options.split())
     assert re.search(pattern, refused(said))
+
+
+def test_enter_alone_is_no_choice(room):
+    done = program.run(
+        "session", "run", "legibility", "--participant", "P07", "--seed=1", "--out", "s",
+        "--field", "masking_noise=yes", "--field", "hand=right", stdin=None, input="\n", cwd=room,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "nobody said finger" in done.stderr
+    assert not (room / "s").exists()
 
 
 def test_an_answer_to_a_field_is_one_line_of_text(call, room):

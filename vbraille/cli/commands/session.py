@@ -257,7 +257,7 @@ def _ask(field: Question, typed: Typed) -> str:
         if line is None:
             raise InputError(f"nobody said {field.name}; give --field {field.name}=…")
         text = line.strip()
-        if not field.choices or not text or text in field.choices:
+        if not field.choices or text in field.choices:
             return text
 
 
