@@ -277,8 +277,7 @@ def _conduct(parser: ArgumentParser) -> None:
         "--also",
         metavar="DISPLAY",
         help="For a protocol that shows something on a conventional display: take this one, as "
-        "brlapi:HOST:N for BRLTTY at another address, dotpad:PORT for a Dot Pad, hid or "
-        "hid:PATH for a display with USB's own protocol (default: BRLTTY's on this machine).",
+        "brlapi:HOST:N for BRLTTY at another address (default: BRLTTY's on this machine).",
     )
     parser.add_argument(
         "--markers",

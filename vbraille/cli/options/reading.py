@@ -92,8 +92,7 @@ def _reading(parser: ArgumentParser) -> None:
         "--also",
         metavar="DISPLAY",
         help="Show each line on a conventional display beside, and obey its keys: brlapi for the "
-        "one that BRLTTY drives, brlapi:HOST:N for BRLTTY at another address, dotpad:PORT for a "
-        "Dot Pad, hid or hid:PATH for a display with USB's own protocol (default: none).",
+        "one that BRLTTY drives, brlapi:HOST:N for BRLTTY at another address (default: none).",
     )
     parser.add_argument(
         "--cells",
