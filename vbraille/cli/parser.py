@@ -51,7 +51,7 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
     "page": (
         "Print the page as it is laid out, or write it for an embosser.",
         reading.page,
-        "vbraille page book.txt --layout bana --cells 40 --lines 25 --format brf --out book.brf",
+        "vbraille page book.txt --cells 40 --format brf --out book.brf",
     ),
     "structure": (
         "Print a book's outline, and what it has.",

@@ -1,4 +1,4 @@
-"""Pages of cells as BRF and PEF files, each in one strict form.
+"""Pages of cells as BRF and PEF files, each in one strict form; pages as a braille file has them.
 
 A page is its rows from the top, and a row the dot masks of its cells from the left margin.
 """
@@ -8,12 +8,15 @@ from __future__ import annotations
 import hashlib
 import uuid
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vbraille.braille.cells import Cells
+from vbraille.layout.wrapping import breaks_of, wrap
 from vbraille.translate.braillefiles.pef import DUBLIN_CORE, NAMESPACE
+from vbraille.translate.source import BlockKind
 from vbraille.wording import printable
 
 if TYPE_CHECKING:
@@ -21,11 +24,55 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Rows = Sequence[NDArray[np.uint8]]
+    from vbraille.translate.book import Book
+
+    Row = NDArray[np.uint8]
+    Rows = Sequence[Row]
 
 FORM_FEED = b"\f"
 _SIX_DOTS = bytes(range(64))
 _BRF = Cells.bare(np.arange(64, dtype=np.uint8)).to_brf().encode("ascii").ljust(256)
+
+
+def cut_pages(rows: Iterable[Row], lines: int) -> Iterator[list[Row]]:
+    """Cut rows into pages of a number of lines, the last of which may be shorter."""
+    rows = iter(rows)
+    while page := list(islice(rows, lines)):
+        yield page
+
+
+def kept_pages(book: Book, width: int | None = None) -> Iterator[list[Row]]:
+    """Pages of a book that is in braille already, with the lines that its file has.
+
+    Parameters
+    ----------
+    book
+        Book of ready cells.
+    width
+        Number of cells in a line, beyond which a line runs over, two cells in; None for lines of
+        any width.
+    """
+    page: list[Row] | None = None
+    number = 0
+    while (found := book.block(number)) is not None:
+        block, cells = found
+        number += 1
+        if block.kind is BlockKind.PAGE:
+            if page is not None:
+                yield page
+            page = []
+            continue
+        page = [] if page is None else page
+        if block.continues and page and width is None:
+            page[-1] = np.concatenate((page[-1], cells.masks))
+        elif width is None or len(cells) <= width:
+            page.append(cells.masks)
+        else:
+            breaks = breaks_of(block.text, cells)
+            for start, stop, indent in wrap(breaks, width, 0, min(2, width // 2)):
+                page.append(np.concatenate((np.zeros(indent, np.uint8), cells.masks[start:stop])))
+    if page is not None:
+        yield page
 
 
 def brf_pages(pages: Iterable[Rows]) -> Iterator[bytes]:
@@ -42,7 +89,7 @@ def brf_pages(pages: Iterable[Rows]) -> Iterator[bytes]:
         yield brf_lines(rows) + FORM_FEED
 
 
-def brf_lines(rows: Iterable[NDArray[np.uint8]]) -> bytes:
+def brf_lines(rows: Iterable[Row]) -> bytes:
     """Write lines of cells as BRF, without the end of a page.
 
     Raises
@@ -51,11 +98,6 @@ def brf_lines(rows: Iterable[NDArray[np.uint8]]) -> bytes:
         If a cell has dot 7 or 8, which BRF cannot write.
     """
     return b"".join(map(_brf_line, rows))
-
-
-def unicode_lines(rows: Iterable[NDArray[np.uint8]]) -> bytes:
-    """Write lines of cells as Unicode braille patterns in UTF-8, without the end of a page."""
-    return "".join(f"{_pattern(row)}\n" for row in rows).encode()
 
 
 @dataclass(frozen=True, slots=True)
