@@ -4,7 +4,7 @@
 makes a figure of it. `charts` says what charts of results hold, and
 `drawcharts` draws them. `scenes` makes deflection maps of tactile pictures;
 `overmap`, `abstract`, `raised` and `costs` make drawings of `ink`, which
-`inkfiles` writes. `figurefiles`, `draw`, `drawcharts`, `drawink` and `heatmaps`
+`inkfiles` writes. `figurefiles`, `draw`, `drawcharts`, and `drawink`
 alone import matplotlib, and so are not imported here.
 """
 

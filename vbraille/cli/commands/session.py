@@ -172,7 +172,6 @@ def _pilot(arguments: argparse.Namespace) -> int:
             folder,
             workers,
             noise=arguments.noise,
-            skin=arguments.skin,
             seed=arguments.seed,
             told=progress.of,
         )

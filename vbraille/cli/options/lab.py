@@ -253,8 +253,7 @@ def _conduct(parser: ArgumentParser) -> None:
         "--answers",
         metavar="SOURCE",
         help="Take answers that are typed, from a file with a line for each trial, or from a "
-        "simulated reader, simulated[:NOISE[:SKIN]], whose skin is strain or halfspace (default: "
-        "typed, or as the session began).",
+        "simulated reader, simulated[:NOISE] (default: typed, or as the session began).",
     )
     parser.add_argument(
         "--hand",
