@@ -164,18 +164,6 @@ def analyse(parser: ArgumentParser) -> None:
         help="Leave a participant out, and say why in the report; this may be given again.",
     )
     parser.add_argument(
-        "--sites",
-        action="store_true",
-        help="Take each folder that sessions or tables stand in for a site with participants of "
-        "its own: P01 of the folder berlin is berlin/P01.",
-    )
-    parser.add_argument(
-        "--mapping",
-        metavar="FILE.toml",
-        help="Read tables that another program wrote, such as PsychoPy, OpenSesame or jsPsych, by "
-        "this file: which of their columns is which of ours (default: tables have our columns).",
-    )
-    parser.add_argument(
         "--factors",
         type=names,
         metavar="NAME,NAME",
