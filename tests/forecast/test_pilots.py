@@ -130,7 +130,6 @@ def test_a_pilot_that_was_ended_goes_on_and_is_the_same(tmp_path):
 @heavy
 @pytest.mark.parametrize("text", [BY_THE_ANSWERS, IN_GROUPS], ids=["by the answers", "in groups"])
 def test_two_workers_pilot_what_one_does(text, tmp_path):
-    pytest.importorskip("dask")
     protocol = parse_protocol(text, "two.toml")
     one, two = (piloted(tmp_path / f"{n}", protocol=protocol, workers=Workers(n)) for n in (1, 2))
     tables = [path.relative_to(one) for path in one.rglob("*.csv")]

@@ -6,7 +6,6 @@ import csv
 import io
 import json
 import sys
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,7 +26,7 @@ def run(arguments: argparse.Namespace) -> int:
     out = None if arguments.out is None else Path(arguments.out)
     if out is not None:
         check_free(out)
-    workers = Workers(arguments.workers, arguments.cluster).available(partial(say_line, aside=True))
+    workers = Workers(arguments.workers, arguments.cluster)
     keep = None if arguments.keep is None else Path(arguments.keep)
     with WorkProgress() as progress:
         grid, found, ended = predict(arguments.grid, workers, keep=keep, told=progress.of)
