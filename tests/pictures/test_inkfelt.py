@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from tests.render.scene.twin import deflections
 from tests.tiers import by_tier, heavy
 from vbraille.pictures.abstract import abstract_drawing
 from vbraille.pictures.drawink import ink_png
@@ -14,7 +15,6 @@ from vbraille.pictures.ink import InkDiscs
 from vbraille.pictures.inkfelt import felt_contours
 from vbraille.pictures.looks import ABSTRACT, RAISED
 from vbraille.render.scene.assets import Assets
-from vbraille.render.scene.reference import deflections
 from vbraille.scene.patterns import Circle, PathShape, Polygon
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.shapes import StraightLine

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.render.scene.referencebraille import label_deflections, label_opacity
-from vbraille.render.scene.referencestrokes import (
+from tests.render.scene.twinbraille import label_deflections, label_opacity
+from tests.render.scene.twinstrokes import (
     coordinates,
     dots_deflection,
     dots_mask,
@@ -21,7 +21,7 @@ from vbraille.render.scene.referencestrokes import (
     drawn_profile,
     is_inside,
 )
-from vbraille.render.scene.referencewaves import (
+from tests.render.scene.twinwaves import (
     ActuatorPlaces,
     Values,
     axial_grating,

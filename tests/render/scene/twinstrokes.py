@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.render.scene.referencewaves import (
+from tests.render.scene.twinwaves import (
     ActuatorPlaces,
     Values,
     moved_on,
