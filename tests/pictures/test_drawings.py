@@ -11,8 +11,8 @@ from scipy.ndimage import label
 
 from vbraille.errors import InputError
 from vbraille.pictures.drawings import (
-    ArrayPlace,
     ArrayOnMap,
+    ArrayPlace,
     actuators_mm,
     bars_mm,
     check_on_canvas,
