@@ -15,7 +15,6 @@ import numpy as np
 from tests.benchmarks.timing import Result, vbraille
 from tests.conftest import SEED
 from tests.sessions.sittings import Session
-from vbraille.analysis.statistics.sphericity import mauchly_exact_p, mauchly_p
 from vbraille.engine.record import Flag
 from vbraille.sessions.planning.protocolfiles import builtin_text
 from vbraille.sessions.record import events
@@ -41,14 +40,12 @@ TABLE_COLUMNS = (
     "duration_s", "note",
 )  # fmt: skip
 TABLE_TRIALS, TABLE_PEOPLE = 100_000, 20
-STUDIES = 400_000
 _NS_A_TICK = 1_000_000_000 // TICKS_A_S
 _COUNTS_PER_MM = 200.0  # 5 µm, as the device needs
 _WRONG = 0.2  # of the answers
 
 
 def run() -> Iterator[Result]:
-    yield from mauchly()
     with tempfile.TemporaryDirectory() as name:
         folders = make_sittings(Path(name))
         whole = "analyse of five sessions of 78 trials of 12 s at 1 kHz"
@@ -66,28 +63,6 @@ def run() -> Iterator[Result]:
             f"analyse of {TABLE_TRIALS:,} trials of CSV, with the report", "≤ 20 s, ≤ 500 MB", 20,
             500, [table, "--out", report],
         )  # fmt: skip
-
-
-def mauchly() -> Iterator[Result]:
-    """Exact p of Mauchly's W against studies in which sphericity holds."""
-    random = np.random.default_rng(SEED)
-    for n, d, w in ((4, 3, 0.00141), (7, 5, 0.005), (9, 8, 1e-5), (20, 8, 0.05)):
-        scores = random.standard_normal((STUDIES, n - 1, d))
-        squares = np.einsum("mij,mik->mjk", scores, scores)
-        logs = np.linalg.slogdet(squares)[1]
-        logs -= d * np.log(np.trace(squares, axis1=1, axis2=2) / d)
-        share = float((logs <= np.log(w)).mean())
-        error = np.sqrt(share * (1 - share) / STUDIES)
-        exact, (_, _, expansion) = (
-            mauchly_exact_p(np.log(w), n, d),
-            mauchly_p(np.log(w), n, d, d + 1),
-        )
-        yield Result(
-            f"p of Mauchly's W = {w:g}, {n} participants, {d + 1} levels, {STUDIES:,} studies",
-            f"{share:.4f} ± 4 standard errors",
-            f"exact {exact:.4f}; R's expansion {expansion:.4f}",
-            abs(exact - share) <= 4 * error,
-        )
 
 
 def make_sittings(folder: Path, sittings: int = SITTINGS) -> list[Path]:

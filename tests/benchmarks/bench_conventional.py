@@ -16,9 +16,8 @@ import numpy as np
 from tests.benchmarks.bench_engine import INFO, ROOM, line
 from tests.benchmarks.timing import Result
 from tests.conventional.handytech import Brltty, missing, until
-from vbraille.conventional.brlapi import BrlapiDisplay
+from vbraille.conventional.brlapi import BrlapiDisplay, DisplayGoneError
 from vbraille.conventional.display import ConventionalDisplay
-from vbraille.conventional.driver import DisplayGoneError
 from vbraille.engine.host import Host
 from vbraille.layout.pages import Layout
 from vbraille.reading.alongside import Alongside

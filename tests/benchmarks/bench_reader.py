@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING
 
 from tests.benchmarks.timing import Result, vbraille
 from vbraille.sessions.planning.protocolfiles import builtin_text
-from vbraille.sessions.simulated.observer import SKINS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,18 +33,16 @@ CONTRASTS = (1.0, 0.8, 0.6, 0.4, 0.2)
 def run() -> Iterator[Result]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for skin in SKINS:
-            yield _textures(folder, skin)
+        yield _textures(folder)
         for condition in ("T100", "T0"):
             yield _contrasts(folder, condition)
 
 
-def _textures(folder: Path, skin: str) -> Result:
+def _textures(folder: Path) -> Result:
     plain = _only(folder, "T0")
-    noise = _search(folder, plain, skin)
+    noise = _search(folder, plain)
     all_shares = [
-        legibility(folder, "letters", number, noise, skin=skin)
-        for number in range(1, PARTICIPANTS + 1)
+        legibility(folder, "letters", number, noise) for number in range(1, PARTICIPANTS + 1)
     ]
     means = {name: statistics.mean(shares[name] for shares in all_shares) for name in PUBLISHED}
     order = _order(means)
@@ -56,7 +53,7 @@ def _textures(folder: Path, skin: str) -> Result:
     verdict = "agrees" if agrees else f"is {' < '.join(order)}, which does not agree"
     gain = means["T100"] - means["T0"]
     return Result(
-        f"letters identified by the simulated reader (skin: {skin}) with texture 0, 25, 100 % "
+        f"letters identified by the simulated reader with texture 0, 25, 100 % "
         f"(published {published}), {PARTICIPANTS} participants, noise {noise:g} so that the first "
         f"identifies about half without texture",
         "reported",
@@ -71,13 +68,13 @@ def _order(shares: dict[str, float]) -> list[str]:
     return sorted(shares, key=shares.__getitem__)
 
 
-def _search(folder: Path, protocol: str, skin: str) -> float:
+def _search(folder: Path, protocol: str) -> float:
     """Noise of the list with which the first participant identifies nearest to half at T0."""
     shares = {}
 
     def share(noise: float) -> float:
         if noise not in shares:
-            shares[noise] = legibility(folder, protocol, 1, noise, skin=skin)["T0"]
+            shares[noise] = legibility(folder, protocol, 1, noise)["T0"]
         return shares[noise]
 
     bisect_left(NOISES, -0.5, key=lambda noise: -share(noise))
@@ -110,13 +107,13 @@ def _only(folder: Path, condition: str) -> str:
 
 
 def legibility(
-    folder: Path, protocol: str, participant: int, noise: float, *options: str, skin: str = "strain"
+    folder: Path, protocol: str, participant: int, noise: float, *options: str
 ) -> dict[str, float]:
     """Share of the letters that a simulated reader identifies, each in its place, by condition."""
     with tempfile.TemporaryDirectory(dir=folder) as name:
         session = str(Path(name) / "session")
         who = ["--participant", f"P{participant:02}", "--seed", str(participant)]
-        how = ["--answers", f"simulated:{noise:g}:{skin}", "--hand", "device", "--fast", *options]
+        how = ["--answers", f"simulated:{noise:g}", "--hand", "device", "--fast", *options]
         command = vbraille("session", "run", protocol, *who, *how, "--out", session)
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         export = vbraille("session", "export", session)

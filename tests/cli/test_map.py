@@ -199,8 +199,7 @@ def test_the_array_is_drawn_where_it_is(scene, call, tmp_path):
 def test_a_drawing_in_svg_says_what_it_shows(scene, call, tmp_path):
     for name, options in {
         "map": ("--axes", "--array", "20,15"),
-        "abstract": ("--abstract",),
-        "raised": ("--raised", "--sheet", "letter"),
+        "outline": ("--outline",),
     }.items():
         out = tmp_path / f"{name}.svg"
         done = call("map", scene, "--out", out, *options)
@@ -210,21 +209,14 @@ def test_a_drawing_in_svg_says_what_it_shows(scene, call, tmp_path):
         assert root.find(f"{space}title").text == "A ring"
         words = root.find(f"{space}desc").text
         assert "vibrates: element ring, 25 Hz" in words
-        assert root.get("width").endswith("mm")
-    raised = (tmp_path / "raised.svg").read_text()
-    assert set(re.findall(r'(?:fill|stroke)="([^"]*)"', raised)) <= {
-        "#000000",
-        "#ffffff",
-        "#fff",
-        "none",
-    }
-    assert root.get("width") == "279.4mm"
-    assert "scale: 1 to 1" in done.out
+        assert root.get("role") == "img"
+    assert root.get("width") == f"{40 / 25.4 * 72:.6f}".rstrip("0") + "pt"
+    assert "true to scale" in done.out
 
 
 def test_a_pdf_has_the_size_of_the_paper(scene, call, tmp_path):
     out = tmp_path / "ring.pdf"
-    assert call("map", scene, "--out", out, "--raised").code == 0
+    assert call("map", scene, "--out", out, "--outline").code == 0
     content = out.read_bytes()
     assert content.startswith(b"%PDF")
     box = re.search(rb"/MediaBox \[ ?([0-9. ]+)\]", content)
@@ -245,8 +237,9 @@ def test_a_pdf_has_the_size_of_the_paper(scene, call, tmp_path):
         (("--out", "a.png", "--array", "2,15"), "the array is not on the canvas at 2,15"),
         (("--out", "a.png", "--array", "nan,15"), "the array is not on the canvas"),
         (("--out", "a.png", "--array", "5"), "'5' is no place; give X,Y in mm"),
-        (("--out", "a.png", "--abstract", "--raised"), "leave one of them out"),
-        (("--out", "a.csv", "--abstract"), "--abstract is no map; end --out in .svg"),
+        (("--out", "a.png", "--outline", "--axes"), "are for maps; leave out either these or"),
+        (("--out", "a.csv", "--outline"), "--outline is no map; end --out in .svg"),
+        (("--out", "a.png", "--raised"), "--raised is gone; --outline draws what is felt"),
         (
             ("--out", "a.gif", "--vibration", "sequence", "--axes"),
             "an animation has maps alone; leave out --array and --axes, or end --out in .png",
@@ -254,7 +247,7 @@ def test_a_pdf_has_the_size_of_the_paper(scene, call, tmp_path):
         (("--out", "a.gif"), "GIF is for --vibration sequence"),
         (("--out", "a.png", "--frames", "4"), "--frames and --parity are for --vibration sequ"),
         (("--out", "a.png", "--vibration", "sequence", "--frames", "1"), "--frames is 1; it must"),
-        (("--out", "a.png", "--sheet", "a4"), "--sheet is for raised drawings; add --raised"),
+        (("--out", "a.png", "--outline", "--sheet", "a4"), "--sheet is gone; print an --outline"),
         (("--out", "a.csv", "--axes"), "CSV has the map's numbers alone"),
     ],
 )

@@ -241,7 +241,7 @@ def test_a_file_that_changes_while_it_is_read_is_not_said_to_be_done(tmp_path):
         (8_000, 0, f"{big} has grown since it was opened; open it again to read what was added"),
     ]:
         big.write_text(paragraph * 6_000)
-        with program.start("page", big, "--workers", "1", text=True) as process:
+        with program.start("page", big, text=True) as process:
             process.stdout.readline()  # a pipe holds little: it waits for us
             with big.open("r+") as file:
                 file.truncate(size * len(paragraph))

@@ -44,6 +44,6 @@ def test_what_is_no_display_is_refused_before_anything_is_read(call, text):
     done = call("read", text, "--also", "brl")
     assert (done.code, done.out) == (2, "")
     assert done.err == (
-        "vbraille: --also is 'brl'; give brlapi, brlapi:HOST:N for BRLTTY on another machine, "
-        "dotpad:PORT for a Dot Pad, or hid for a display with USB's own protocol\n"
+        "vbraille: --also is 'brl'; give brlapi for the display of BRLTTY on this machine, "
+        "or brlapi:HOST:N, as in brlapi:127.0.0.1:0, for one elsewhere\n"
     )

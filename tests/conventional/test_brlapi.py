@@ -15,15 +15,21 @@ from tests.conventional.handytech import (
     until,
 )
 from tests.tiers import heavy
-from vbraille.conventional.brlapi import BrlapiDisplay, typed
+from vbraille.conventional.brlapi import (
+    BrlapiDisplay,
+    DisplayGoneError,
+    host_of,
+    load_library,
+    typed,
+)
 from vbraille.conventional.display import ConventionalDisplay
-from vbraille.conventional.driver import DisplayGoneError
 from vbraille.conventional.messages import (
     CellsTaken,
     DisplayAway,
     DisplayStands,
     KeyPressed,
 )
+from vbraille.errors import InputError
 
 SHOWN = bytes((0x11, 0xFF, 0x00, 0x80))
 
@@ -163,3 +169,16 @@ def test_another_service_at_the_port_is_no_brltty():
 )
 def test_what_its_keyboard_types(symbol, key):
     assert typed(symbol) == key
+
+
+@pytest.mark.parametrize(
+    "spec", ["", "brltty", "brlapi:localhost", "brlapi:a b:1", "brlapi:host:x", "hid", "dotpad:/d"]
+)
+def test_what_is_no_display_of_brltty_is_refused(spec):
+    with pytest.raises(InputError, match="brlapi:HOST:N"):
+        host_of(spec)
+
+
+def test_without_the_library_it_is_said_what_to_install():
+    with pytest.raises(InputError, match="packages brltty and lib"):
+        load_library("libbrlapi-of-nobody.so")

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from vbraille.conventional.driver import DisplayGoneError
+from vbraille.conventional.brlapi import DisplayGoneError
 from vbraille.conventional.driving import Driving
 from vbraille.conventional.messages import (
     TO_JSON,

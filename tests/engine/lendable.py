@@ -26,7 +26,7 @@ from vbraille.devices.serial.conversation import Conversation
 from vbraille.devices.serial.openserial import greet
 from vbraille.devices.serial.ports import Address
 from vbraille.devices.serial.serialdevice import SerialDevice
-from vbraille.devices.serial.seriallines import DescriptorLine
+from vbraille.devices.serial.seriallines import SerialLine
 from vbraille.devices.wire.codec import Decoder, Levels, encode
 from vbraille.devices.wire.messages import VERSION, Encoder, Frame, State
 from vbraille.engine.loop import Loop
@@ -82,13 +82,12 @@ class Port:
     """What `SerialPort` is, on a descriptor; it keeps what was read by Python."""
 
     address = Address("pair")
-    lost = 0
 
     def __init__(self, descriptor):
         self.gone = False
         self.losses = 0
         self.chunks = []
-        self._line = DescriptorLine(io.FileIO(descriptor, "r+"), descriptor)
+        self._line = SerialLine(io.FileIO(descriptor, "r+"))
 
     def read(self):
         chunk = self._try(self._line.read) or b""

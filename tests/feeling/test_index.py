@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from tests.render.scene.twin import opacity
 from vbraille.feeling.index import SceneIndex
 from vbraille.render.scene.assets import Assets
-from vbraille.render.scene.reference import opacity
 from vbraille.scene.patterns import Circle, Fill, Group, Polygon
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.shapes import StraightLine

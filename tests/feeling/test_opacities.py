@@ -5,9 +5,9 @@ import time
 
 import pytest
 
+from tests.render.scene.twin import opacity
 from vbraille.feeling.opacities import Opacities
 from vbraille.render.scene.assets import Assets
-from vbraille.render.scene.reference import opacity
 from vbraille.scene.dots import Dots
 from vbraille.scene.patterns import Circle, Fill, Polygon
 from vbraille.scene.scene import Canvas, Scene

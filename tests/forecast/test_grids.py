@@ -6,10 +6,7 @@ import pytest
 
 from vbraille.errors import InputError
 from vbraille.forecast.grids import GridTask, predict, predict_point, read_grid, to_json
-from vbraille.forecast.maps import map_of
 from vbraille.forecast.workers import Workers
-from vbraille.pictures.figurefiles import to_bytes
-from vbraille.pictures.heatmaps import draw_map
 
 GRID = """format = 1
 model = "vbd"
@@ -47,19 +44,6 @@ def test_each_point_is_predicted_once(path):
 def test_without_noise_all_is_read(path, tmp_path):
     (tmp_path / "grid.toml").write_text(GRID.replace("0.3", "0.0"))
     assert {one.legibility for one in predict(path, Workers())[1]} == {1.0}
-
-
-def test_a_map_has_every_share_in_its_place(path):
-    grid, found, _ = predict(path, Workers())
-    chart = map_of(grid, found)
-    assert (chart.down, chart.across) == ("contrast", "speed_mm_s")
-    assert [panel.title for panel in chart.panels] == ["text one", "text two"]
-    first, second = found[4:6]  # contrast 1, text one
-    assert chart.panels[0].shares[1] == (first.legibility, second.legibility)
-    assert map_of(grid, found[1:]).panels[0].shares[0][0] is None
-    drawn = to_bytes(draw_map(chart), "svg")
-    assert b"no data about people" in drawn
-    assert drawn == to_bytes(draw_map(chart), "svg")
 
 
 @pytest.mark.parametrize(

@@ -84,7 +84,6 @@ def test_an_odds_ratio_gives_the_other_shares():
 
 @heavy
 def test_two_workers_find_what_one_finds():
-    pytest.importorskip("dask")
     assert power(QUESTION, Workers(2)).rows == power(QUESTION, ONE).rows
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from tests.tiers import heavy
 from vbraille.errors import InputError, VbrailleError
-from vbraille.forecast.workers import HOW_TO_GET_DASK, Workers
+from vbraille.forecast.workers import Workers
 
 
 def doubled(task):
@@ -34,15 +34,6 @@ def slow(task):
     return task
 
 
-def begun(_task):
-    """Process of a worker, and what it was told as it began."""
-    quiet = [signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)]
-    return os.getpid(), [handler.name for handler in quiet], BEGUN_BY
-
-
-BEGUN_BY = os.getpid()  # a process that imported this anew would have its own
-
-
 def all_done(workers, tasks, function=doubled):
     found = {}
     workers.work(function, tasks, lambda number, result: found.setdefault(number, result))
@@ -56,7 +47,6 @@ def test_one_worker_does_each_task_in_its_order():
 
 
 def test_more_workers_do_each_task_once():
-    pytest.importorskip("dask")
     assert all_done(Workers(2), list(range(7))) == {number: 2 * number for number in range(7)}
     with pytest.raises(InputError, match="13 cannot be doubled"):
         all_done(Workers(2), [12, 13])
@@ -64,24 +54,11 @@ def test_more_workers_do_each_task_once():
         all_done(Workers(2), [1, 2], ended)
 
 
-def test_workers_are_forks_with_signals_of_their_own():
-    pytest.importorskip("dask")
-    before = signal.signal(signal.SIGTERM, lambda *_: None)
-    try:
-        found = all_done(Workers(2), [1, 2], begun).values()
-    finally:
-        signal.signal(signal.SIGTERM, before)
-    assert all(signals == ["SIG_DFL", "SIG_IGN"] for _, signals, _ in found)
-    assert {by for _, _, by in found} == {os.getpid()}
-    assert os.getpid() not in {process for process, _, _ in found}
-
-
 class Stop(BaseException):
     """What a signal raises in the middle of the work."""
 
 
 def test_work_that_is_stopped_waits_for_no_worker(tmp_path):
-    pytest.importorskip("dask")
     found = []
 
     def stop(number, _result):
@@ -104,7 +81,6 @@ def lasting(path):
 
 @heavy
 def test_workers_end_with_the_process_that_they_work_for():
-    pytest.importorskip("dask")
     run = subprocess.Popen([sys.executable, "-c", _BEGUN], stdout=subprocess.PIPE, text=True)
     try:
         workers = {int(run.stdout.readline()) for _ in range(2)}
@@ -159,17 +135,10 @@ def test_a_cluster_does_each_task_once_and_its_end_is_said():
 _CLUSTER = """
 from distributed import LocalCluster
 if __name__ == "__main__":
-    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         print(cluster.scheduler_address, flush=True)
         cluster.sync(__import__("asyncio").sleep, 120)
 """
-
-
-@pytest.mark.skipif(find_spec("dask") is not None, reason="dask is installed")
-def test_without_dask_one_worker_works_and_how_to_get_more_is_said():
-    told = []
-    assert Workers(2).available(told.append) == Workers()
-    assert told == [f"workers: 1, since dask is not installed; {HOW_TO_GET_DASK}"]
 
 
 @pytest.mark.parametrize("number", [0, -1, 257])

@@ -1,11 +1,21 @@
 """What cannot be shown is counted at its place, each thing once."""
 
-from tests.translate.braillefiles.test_ebraille import Made
 from vbraille.layout.pages import Layout
 from vbraille.layout.unshown import Unshown
 from vbraille.translate import Book, BrailleTable
-from vbraille.translate.documents.parted import Passage
+from vbraille.translate.documents.parted import PartedSource, Passage
 from vbraille.translate.source import Mark, MarkKind
+
+
+class Made(PartedSource):
+    """A source of these passages."""
+
+    def __init__(self, *made: Passage) -> None:
+        super().__init__("made", [1], "0" * 64)
+        self._made = made
+
+    def passages(self, _part):
+        return self._made
 
 
 def marked(text, *remarks, kind=MarkKind.UNSHOWN):
@@ -38,15 +48,10 @@ def test_lines_are_counted_as_they_are_shown():
     )
 
 
-def test_blocks_are_counted_once_and_few_kinds_are_named():
+def test_few_kinds_are_named():
     kinds = "abcdefg"
     source = Made(marked("x" * 9, *((n, kinds[n]) for n in range(7))))
+    (line,) = Layout(Book(source, BrailleTable("en-ueb-g1.ctb")), 40).lines()
     unshown = Unshown()
-    for _ in range(2):
-        unshown.see_block(source.block(0))
+    unshown.see(line)
     assert unshown.sentence.startswith("not shown: 7 things (1 a, 1 b, 1 c, 1 d, 1 e, 2 other thi")
-    book = Made(*BOOK)
-    whole = Unshown()
-    for number in range(3):
-        whole.see_block(book.block(number))
-    assert whole.sentence.startswith("not shown: 4 things (2 formulas")

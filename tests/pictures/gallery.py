@@ -37,13 +37,11 @@ GALLERY = [
     ),
     Shown("pictured", "-sequence", ("--vibration", "sequence", "--frames", "4", *COARSE), "gif"),
     Shown("pictured", "-array", ("--array", "14,27", "--resolution", "5", "--axes")),
-    Shown("pictured", "-abstract", ("--abstract", "--resolution", "5")),
-    Shown("pictured", "-raised", ("--raised", "--resolution", "5")),
-    Shown("joints", "-raised", ("--raised", *FINE)),
-    Shown("markers", "-abstract", ("--abstract", *FINE)),
-    Shown("markers", "-raised", ("--raised", *FINE)),
-    Shown("dotted", "-raised", ("--raised", *FINE)),
-    Shown("labelled", "-raised", ("--raised", "--resolution", "5")),
+    Shown("pictured", "-outline", ("--outline", "--resolution", "5")),
+    Shown("joints", "-outline", ("--outline", *FINE)),
+    Shown("markers", "-outline", ("--outline", *FINE)),
+    Shown("dotted", "-outline", ("--outline", *FINE)),
+    Shown("labelled", "-outline", ("--outline", "--resolution", "5")),
 ]
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import pytest
 
 from tests.reading.held import Held
 from tests.render.scene.lanes import lane_places
+from tests.render.scene.twin import deflections
 from tests.tiers import heavy
 from vbraille.feeling.bookfigures import BookFigures
 from vbraille.layout.pages import Layout
@@ -16,7 +17,6 @@ from vbraille.reading.commands.table import press
 from vbraille.reading.opened import OpenDevice
 from vbraille.render import STRESS2, STRESS2_8X8, model_of
 from vbraille.render.braille.straying import Straying
-from vbraille.render.scene.reference import deflections
 from vbraille.scene.reading import open_scene
 from vbraille.translate import Book
 from vbraille.translate.opening import open_source

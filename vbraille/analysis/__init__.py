@@ -37,8 +37,6 @@ def analyse(
     *,
     exclude: Mapping[str, str] | None = None,
     protocol: str | None = None,
-    sites: bool = False,
-    mapping: str | PathLike[str] | None = None,
     factors: Sequence[str] | None = None,
     correction: str = "holm",
     marks: Sequence[int] | None = None,
@@ -55,11 +53,6 @@ def analyse(
         Participants who are left out, each with the reason.
     protocol
         Name of the protocol whose trials are taken; None takes those of all.
-    sites
-        Whether each folder that something stands in has participants of its own.
-    mapping
-        Mapping file (docs/analysis.md) by which files of another program are read; None if the
-        files have our columns.
     factors
         Columns by which trials are compared; the column ``condition`` if not given.
     correction
@@ -91,8 +84,6 @@ def analyse(
         [Path(p) for p in given],
         exclude=exclude,
         protocol=protocol,
-        sites=sites,
-        mapping=None if mapping is None else Path(mapping),
     )
     return analyse_study(study, options)
 

@@ -51,7 +51,7 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
     "page": (
         "Print the page as it is laid out, or write it for an embosser.",
         reading.page,
-        "vbraille page book.txt --layout bana --cells 40 --lines 25 --format brf --out book.brf",
+        "vbraille page book.txt --cells 40 --format brf --out book.brf",
     ),
     "structure": (
         "Print a book's outline, and what it has.",
@@ -222,6 +222,19 @@ class _Help(argparse.HelpFormatter):
         return text if text.startswith("example:") else super()._fill_text(text, width, indent)
 
 
+# Options that there were, and what does the same.
+_GONE = {
+    "--abstract": "--outline draws what is felt",
+    "--raised": "--outline draws what is felt, black on white, for swell paper",
+    "--sheet": "print an --outline without scaling",
+    "--layout": "--cells 40 --format pef makes pages; file2brl lays out for embossers",
+    "--skin": "the simulated reader has one model of the skin",
+    "--sites": "give participants pseudonyms that tell the sites apart, such as B-P01",
+    "--mapping": "docs/analysis.md shows how pandas makes a table of trials",
+    "--workers": "one process translates",
+}
+
+
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors are one sentence."""
 
@@ -233,6 +246,10 @@ class _Parser(argparse.ArgumentParser):
         return super().format_help() + _keys(self.prog)
 
     def error(self, message: str) -> NoReturn:
+        what, _, arguments = message.partition(": ")
+        for option in arguments.split() if what == "unrecognized arguments" else ():
+            if instead := _GONE.get(option.partition("=")[0]):
+                raise InputError(f"{option} is gone; {instead}")
         raise InputError(f"{message} ({self.prog} --help says what there is)")
 
 

@@ -8,18 +8,19 @@ not asked for, since the library leaves garbage there.
 from __future__ import annotations
 
 import ctypes
+import re
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 
-from vbraille.conventional.driver import DisplayGoneError, filled
 from vbraille.conventional.messages import DisplayStands, KeyPressed, KeyTyped
-from vbraille.errors import InputError
+from vbraille.errors import DeviceError, InputError
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 LIBRARY: Final = "libbrlapi.so.0.8"
+_SPEC: Final = re.compile(r"brlapi(?::(|[^\s:]*:[0-9]{1,5}|/\S+))?")
 _NO_DRIVER: Final = "NoBraille"
 _ONLINE: Final = 9  # BRLAPI_PARAM_DEVICE_ONLINE
 _GLOBAL: Final = 1  # BRLAPI_PARAMF_GLOBAL
@@ -82,6 +83,38 @@ _Handler = ctypes.CFUNCTYPE(
 )
 
 
+class DisplayGoneError(DeviceError):
+    """The display is not there, or no longer; it may come back. The message says what helps."""
+
+
+def host_of(spec: str) -> str:
+    """Give the address in the spec of a display, once BRLTTY's library is loaded.
+
+    Parameters
+    ----------
+    spec
+        "brlapi", or "brlapi:HOST:N" for BRLTTY at another address.
+
+    Returns
+    -------
+    str
+        Address for `BrlapiDisplay`.
+
+    Raises
+    ------
+    InputError
+        If the text is no spec, or the library is not installed.
+    """
+    found = _SPEC.fullmatch(spec)
+    if found is None:
+        raise InputError(
+            f"{setting('also')} is {spec!r}; give brlapi for the display of BRLTTY on this "
+            f"machine, or brlapi:HOST:N, as in brlapi:127.0.0.1:0, for one elsewhere"
+        )
+    load_library()
+    return found[1] or ""
+
+
 @cache
 def load_library(name: str = LIBRARY) -> Any:
     """Load BRLTTY's library.
@@ -117,7 +150,7 @@ def load_library(name: str = LIBRARY) -> Any:
 
 
 class BrlapiDisplay:
-    """A `CellDriver` of the display that a BRLTTY drives.
+    """The display that a BRLTTY drives. A method raises `DisplayGoneError` if it is gone.
 
     Parameters
     ----------
@@ -176,8 +209,14 @@ class BrlapiDisplay:
         return DisplayStands(driver, model, columns.value, rows.value)
 
     def write(self, cells: bytes) -> None:
-        """Give BRLTTY the cells of the whole display."""
-        self._do(self._library.brlapi__writeDots, filled(cells, self._count))
+        """Show cells from the left, as many as have room, and nothing beside them.
+
+        Parameters
+        ----------
+        cells
+            Dot masks of the cells.
+        """
+        self._do(self._library.brlapi__writeDots, cells[: self._count].ljust(self._count, b"\0"))
 
     def pressed(self) -> list[KeyPressed | KeyTyped]:
         """Take the keys that have come."""

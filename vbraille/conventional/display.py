@@ -9,6 +9,7 @@ import time
 from contextlib import suppress
 from typing import TYPE_CHECKING, Final, Self
 
+from vbraille.conventional.brlapi import host_of
 from vbraille.conventional.messages import (
     TO_JSON,
     TOLD_FROM_JSON,
@@ -16,7 +17,6 @@ from vbraille.conventional.messages import (
     DisplayAway,
     DisplayStands,
 )
-from vbraille.conventional.spec import opener_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,8 +41,7 @@ class ConventionalDisplay:
     Parameters
     ----------
     spec
-        Which display: "brlapi", "brlapi:HOST:N" for BRLTTY on another machine, "dotpad:PORT",
-        "dotpad:PORT?pins", "hid" or "hid:PATH".
+        Which display: "brlapi", or "brlapi:HOST:N" for BRLTTY at another address.
     now_s
         Clock in seconds that does not go back.
 
@@ -56,11 +55,11 @@ class ConventionalDisplay:
     Raises
     ------
     InputError
-        If the text is no spec, or what the display needs is not installed.
+        If the text is no spec, or BRLTTY's library is not installed.
     """
 
     def __init__(self, spec: str, now_s: Callable[[], float] = time.monotonic) -> None:
-        opener_of(spec)  # so that the mistake is said here, and at once
+        self._host = host_of(spec)
         self.standing: DisplayStands | None = None
         self.away = ""
         self._now_s = now_s
@@ -70,14 +69,13 @@ class ConventionalDisplay:
         self._newest: bytes | None = None  # what should stand on the display, as a line of JSON
         self._left: bytes | None = None  # what of that waits for room in the pipe
         self._begun = b""
-        self._spec = spec
         self._process: subprocess.Popen[bytes] | None = None
         self._launch()
 
     def _launch(self) -> None:
         """Begin the process, which is told again what should stand on the display."""
         self._process = process = subprocess.Popen(
-            [sys.executable, "-m", _MODULE, self._spec],
+            [sys.executable, "-m", _MODULE, self._host],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             bufsize=0,

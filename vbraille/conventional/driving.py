@@ -11,9 +11,10 @@ import select
 import sys
 import time
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from vbraille.conventional.driver import DisplayGoneError
+from vbraille.conventional.brlapi import BrlapiDisplay, DisplayGoneError
 from vbraille.conventional.messages import (
     TO_JSON,
     WANTED_FROM_JSON,
@@ -21,12 +22,10 @@ from vbraille.conventional.messages import (
     CellsWanted,
     DisplayAway,
 )
-from vbraille.conventional.spec import opener_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.conventional.driver import CellDriver
     from vbraille.conventional.messages import FromDisplay
 
 CHECK_S: Final = 0.5  # from one question whether the display is still there to the next
@@ -51,7 +50,7 @@ class Driving:
         self,
         orders: int,
         tell: Callable[[FromDisplay], None],
-        open_display: Callable[[], CellDriver],
+        open_display: Callable[[], BrlapiDisplay],
     ) -> None:
         self._orders = orders
         self._tell = tell
@@ -81,7 +80,7 @@ class Driving:
             finally:
                 display.close()
 
-    def _drive(self, display: CellDriver) -> None:
+    def _drive(self, display: BrlapiDisplay) -> None:
         """Show what is wanted until the display goes away, is to be given back, or orders end."""
         self._tell(display.check())
         self._show(display)
@@ -111,13 +110,13 @@ class Driving:
             self._wanted = WANTED_FROM_JSON.decode(lines[-1])
         return bool(lines)
 
-    def _show(self, display: CellDriver) -> None:
+    def _show(self, display: BrlapiDisplay) -> None:
         display.write(self._wanted.cells or b"")
         self._tell(CellsTaken(self._wanted.number, time.monotonic_ns()))
 
 
 def main() -> int:
-    """Drive the display of the spec that is the first argument."""
+    """Drive the display of the BRLTTY whose address is the first argument; empty: the usual one."""
 
     def tell(message: FromDisplay) -> None:
         os.write(1, TO_JSON.encode(message) + b"\n")
@@ -126,7 +125,7 @@ def main() -> int:
     with suppress(PermissionError):
         os.nice(_URGENT)
     try:
-        Driving(sys.stdin.fileno(), tell, opener_of(sys.argv[1])).run()
+        Driving(sys.stdin.fileno(), tell, partial(BrlapiDisplay, sys.argv[1])).run()
     except BrokenPipeError:  # whoever was told is gone
         return 1
     return 0

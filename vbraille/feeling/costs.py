@@ -22,7 +22,7 @@ from vbraille.render.scene.compiling import SceneCompiler
 from vbraille.scene.bounds import bounds
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
@@ -129,8 +129,8 @@ def measure(program: Program, path: PosedPath, repeats: int = REPEATS) -> Costs:
     ValueError
         If the path has less than one batch of frames.
     """
-    at = batches_of(path)
-    taken_us = time_frames([program], at, repeats)[0]
+    at = _batches_of(path)
+    taken_us = _time_frames(program, at, repeats)
     middle = at.mean(axis=1)
     return Costs(
         middle[:, work.X],
@@ -141,7 +141,7 @@ def measure(program: Program, path: PosedPath, repeats: int = REPEATS) -> Costs:
     )
 
 
-def batches_of(path: PosedPath) -> NDArray[np.float64]:
+def _batches_of(path: PosedPath) -> NDArray[np.float64]:
     """Put the poses of a path into batches, as float64[batches, frames, 6] of `work`'s columns.
 
     Raises
@@ -159,48 +159,37 @@ def batches_of(path: PosedPath) -> NDArray[np.float64]:
     return at.reshape(batches, BATCH_FRAMES, 6)
 
 
-def time_frames(
-    programs: Sequence[Program], at: NDArray[np.float64], repeats: int
-) -> NDArray[np.float64]:
-    """Time the frames of programs for one display at the same poses, batch by batch.
-
-    Each batch is timed with all of the programs in turn, so that what slows the machine for a
-    while slows all of them.
+def _time_frames(program: Program, at: NDArray[np.float64], repeats: int) -> NDArray[np.float64]:
+    """Time the frames of a program, batch by batch.
 
     Parameters
     ----------
-    programs
-        The programs.
+    program
+        The program.
     at : float64[batches, frames, 6]
-        Poses, as `batches_of` has them.
+        Poses, as `_batches_of` has them.
     repeats
         How often each batch is timed.
 
     Returns
     -------
-    float64[programs, repeats, batches]
+    float64[repeats, batches]
         Time of a frame in µs, without that of the call.
     """
-    shape, kind = programs[0].shape, programs[0].kind
     batches, frames, _ = at.shape
     parts = np.zeros(frames, np.int64)
-    out = np.empty((frames, *shape), np.float32)
-    scratch = scratch_for(shape, kind)
-    taken_ns = np.empty((len(programs), repeats, batches), np.int64)
-    compiled = [(program.numbers, program.table) for program in programs]
-    kernels.poses(*compiled[0], scratch, at[0], parts, out)  # compiled, or loaded
-    empty_ns = _call_ns(programs[0])
+    out = np.empty((frames, *program.shape), np.float32)
+    scratch = scratch_for(program.shape, program.kind)
+    taken_ns = np.empty((repeats, batches), np.int64)
+    numbers, table = program.numbers, program.table
+    kernels.poses(numbers, table, scratch, at[0], parts, out)  # compiled, or loaded
+    empty_ns = _call_ns(program)
     now_ns = time.perf_counter_ns
     for repeat in range(repeats):
-        # Whoever comes first finds the poses far away in memory, and so they take turns.
-        order = [(number + repeat) % len(compiled) for number in range(len(compiled))]
         for batch in range(batches):
-            here = at[batch]
-            for number in order:
-                numbers, table = compiled[number]
-                begun_ns = now_ns()
-                kernels.poses(numbers, table, scratch, here, parts, out)
-                taken_ns[number, repeat, batch] = now_ns() - begun_ns
+            begun_ns = now_ns()
+            kernels.poses(numbers, table, scratch, at[batch], parts, out)
+            taken_ns[repeat, batch] = now_ns() - begun_ns
     return (taken_ns - empty_ns) / frames / 1000
 
 
@@ -264,22 +253,12 @@ def histogram(costs: Costs) -> list[tuple[float, float, float]]:
     ]
 
 
-def to_csv(costs: Costs, kinds_us: Mapping[str, NDArray[np.float64]] | None = None) -> str:
-    """Write places and costs as CSV: x_mm, y_mm, frame_us, and a column for each kind of pattern.
-
-    Parameters
-    ----------
-    costs
-        What was measured.
-    kinds_us : mapping of str to float64[n]
-        What each kind has in the time of a frame there, by the kind's name.
-    """
-    kinds_us = kinds_us or {}
+def to_csv(costs: Costs) -> str:
+    """Write places and costs as CSV: x_mm, y_mm and frame_us."""
     written = io.StringIO(newline="")
     writer = csv.writer(written, lineterminator="\n")
-    writer.writerow(("x_mm", "y_mm", "frame_us", *(f"{kind}_us" for kind in kinds_us)))
-    columns = (costs.x_mm, costs.y_mm, costs.frame_us, *kinds_us.values())
-    for row in np.stack(columns, axis=-1).tolist():
+    writer.writerow(("x_mm", "y_mm", "frame_us"))
+    for row in np.stack((costs.x_mm, costs.y_mm, costs.frame_us), axis=-1).tolist():
         writer.writerow(f"{value:.4f}" for value in row)
     return written.getvalue()
 

@@ -55,8 +55,8 @@ class GridFile(Table, frozen=True, kw_only=True):
         of the geometry in mm. All are crossed.
     speeds_mm_s
         Speeds of the hand.
-    noise, skin
-        Noise of the simulated reader and model of its skin.
+    noise
+        Noise of the simulated reader.
     answers
         How often each string is answered, each time with other noise.
     seed
@@ -74,7 +74,6 @@ class GridFile(Table, frozen=True, kw_only=True):
     style: dict[str, tuple[float, ...]] = msgspec.field(default_factory=dict)
     speeds_mm_s: tuple[float, ...]
     noise: float = 0.4
-    skin: Literal["strain", "halfspace"] = "strain"
     answers: int = 20
     seed: int = 1
 
@@ -202,7 +201,7 @@ def predict_point(task: GridTask) -> list[int]:
     grid, points = _read_once(task.text, task.where)
     point = points[task.number]
     model, style = MODELS[grid.model_name], grid.style_at(point)
-    observer = Observer(model.display, style, noise=grid.noise, skin=grid.skin)
+    observer = Observer(model.display, style, noise=grid.noise)
     sequence = np.random.SeedSequence(grid.seed, spawn_key=(task.number,))
     random = np.random.Generator(np.random.PCG64(sequence))
     counts = np.zeros(4, np.int64)

@@ -15,7 +15,6 @@ from vbraille.forecast.kept import KeptResults, work_on
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.session import Session
-from vbraille.sessions.simulated.observer import SKINS
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -95,7 +94,6 @@ def pilot(
     workers: Workers,
     *,
     noise: float,
-    skin: str,
     seed: int,
     told: Callable[[int, int], None] = lambda _done, _all: None,
 ) -> Path:
@@ -111,8 +109,8 @@ def pilot(
         New directory; or that of the same pilot, ended early, which then goes on.
     workers
         Who conducts the sessions; they are the same whoever does.
-    noise, skin
-        Noise of the simulated reader and model of its skin.
+    noise
+        Noise of the simulated reader.
     seed
         What plans, hands and noise are drawn by.
     told
@@ -129,7 +127,7 @@ def pilot(
         raise InputError(
             f"{setting('participants')} is {participants}; it must be 1 to {MOST_PILOTS}"
         )
-    answers = f"simulated:{noise:g}" + ("" if skin == SKINS[0] else f":{skin}")
+    answers = f"simulated:{noise:g}"
     tasks = [
         PilotTask(
             text=protocol.text,

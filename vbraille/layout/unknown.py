@@ -37,12 +37,8 @@ class Unknown:
         """Count the unknown characters of a line, unless it or a later one was counted before."""
         if line.number > self._last:
             self._last = line.number
-            self.see_text(line.text)
-
-    def see_text(self, text: str) -> None:
-        """Count the unknown characters of a text that was translated."""
-        if self._table.undefined:
-            self._counts.update(c for c in text if ord(c) in self._table.undefined)
+            if self._table.undefined:
+                self._counts.update(c for c in line.text if ord(c) in self._table.undefined)
 
     @property
     def sentence(self) -> str | None:

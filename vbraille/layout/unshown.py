@@ -10,13 +10,12 @@ from vbraille.wording import count
 
 if TYPE_CHECKING:
     from vbraille.layout.pages import Line
-    from vbraille.translate.source import Block
 
 _NAMED = 5  # at most so many kinds are named in the sentence, the most frequent
 
 
 class Unshown:
-    """Count what lines or blocks have remarks on, because it cannot be shown; each once."""
+    """Count what lines have remarks on, because it cannot be shown; each once."""
 
     def __init__(self) -> None:
         self._seen: set[tuple[int, str]] = set()  # places and targets of what was counted
@@ -28,12 +27,14 @@ class Unshown:
         if not block.marks or line.first >= line.after:
             return
         places = block.text.places
-        self._count(block, int(places[line.first]), int(places[line.after - 1]) + 1)
-
-    def see_block(self, block: Block) -> None:
-        """Count the remarks that begin in a block, each once, however often the block comes."""
-        if block.marks and len(block.text):
-            self._count(block, int(block.text.places[0]), block.text.end)
+        first, after = int(places[line.first]), int(places[line.after - 1]) + 1
+        for mark in block.marks:
+            place = mark.start, mark.target
+            if mark.kind is not MarkKind.UNSHOWN or not first <= mark.start < after:
+                continue
+            if place not in self._seen:
+                self._seen.add(place)
+                self._counts[mark.target or "other thing"] += 1
 
     @property
     def sentence(self) -> str | None:
@@ -49,12 +50,3 @@ class Unshown:
             f"not shown: {count(total, 'thing')} ({', '.join(named)}); "
             f"each is marked where it stands"
         )
-
-    def _count(self, block: Block, first: int, after: int) -> None:
-        for mark in block.marks:
-            place = mark.start, mark.target
-            if mark.kind is not MarkKind.UNSHOWN or not first <= mark.start < after:
-                continue
-            if place not in self._seen:
-                self._seen.add(place)
-                self._counts[mark.target or "other thing"] += 1

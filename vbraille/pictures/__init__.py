@@ -2,10 +2,9 @@
 
 `series`, `surface` and `resolving` compute a `FigureTable` of numbers for each picture, `draw`
 makes a figure of it. `charts` says what charts of results hold, and
-`drawcharts` draws them. `scenes` makes deflection maps of tactile pictures;
-`overmap`, `abstract`, `raised` and `costs` make drawings of `ink`, which
-`inkfiles` writes. `figurefiles`, `draw`, `drawcharts`, `drawink` and `heatmaps`
-alone import matplotlib, and so are not imported here.
+`drawcharts` draws them. `scenes` makes deflection maps of tactile pictures, `drawings` drawings of
+them. `figurefiles`, `draw`, `drawcharts`, `drawings` and `costs` import matplotlib, and so are not
+imported here.
 """
 
 from vbraille.caching import keep_fonts

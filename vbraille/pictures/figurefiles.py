@@ -16,7 +16,7 @@ from vbraille.errors import InputError
 from vbraille.files import whole_file
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from matplotlib.figure import Figure
 
@@ -58,7 +58,9 @@ def styled() -> Iterator[None]:
         yield
 
 
-def to_bytes(figure: Figure, kind: str, dpi: int = DPI) -> bytes:
+def to_bytes(
+    figure: Figure, kind: str, dpi: float = DPI, told: Mapping[str, str] | None = None
+) -> bytes:
     """Make the content of a figure's file.
 
     Parameters
@@ -67,11 +69,14 @@ def to_bytes(figure: Figure, kind: str, dpi: int = DPI) -> bytes:
         What the file is, a key of `METADATA`: png, svg or pdf.
     dpi
         Resolution of a PNG, in dots per inch.
+    told
+        What the file says of itself, by the keywords of its kind; the figure's title if not given.
     """
     content = io.BytesIO()
     # A figure that is laid out already would be so again, and come out otherwise.
     with styled(), rc_context({"figure.constrained_layout.use": False}):
-        metadata = {"Title": figure.get_suptitle().replace("\n", " "), **METADATA[kind]}
+        told = {"Title": figure.get_suptitle().replace("\n", " ")} if told is None else told
+        metadata = {**told, **METADATA[kind]}
         if kind == "png":
             _write_png(figure, content, dpi, metadata)
         else:
@@ -82,7 +87,7 @@ def to_bytes(figure: Figure, kind: str, dpi: int = DPI) -> bytes:
     return content.getvalue()
 
 
-def _write_png(figure: Figure, content: io.BytesIO, dpi: int, metadata: dict[str, str]) -> None:
+def _write_png(figure: Figure, content: io.BytesIO, dpi: float, metadata: dict[str, str]) -> None:
     """Write a PNG; one of greys alone has a byte a pixel, and takes a quarter of the time."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from PIL import Image

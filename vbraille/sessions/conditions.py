@@ -56,7 +56,7 @@ class Conditions:
         "serial:PORT:BAUD"; None for none.
     also
         Conventional display, for a protocol that shows something on one, such as
-        "brlapi:HOST:N" or "dotpad:PORT"; None for the one that BRLTTY drives on this machine.
+        "brlapi:HOST:N"; None for the one that BRLTTY drives on this machine.
 
     Raises
     ------

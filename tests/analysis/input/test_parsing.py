@@ -1,5 +1,7 @@
 """Columns of text to trials: what is understood, what is left out, what is refused."""
 
+import re
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -278,3 +280,41 @@ def test_what_is_no_comparison(presented, answered, more):
 def test_a_table_without_rows_has_nothing():
     found = parse([Sheet("t", pd.DataFrame(columns=NEEDED.split(), dtype=object))])
     assert (found.trials, found.comparisons, found.left_out) == (None, None, ())
+
+
+OWN = "participant,condition,question,presented,answered\n"
+
+
+@pytest.mark.parametrize(
+    ("row", "outcome"),
+    [
+        ("detect,yes,yes", "hit"),
+        ("detect,yes,no", "miss"),
+        ("detect,no,yes", "false alarm"),
+        ("detect,no,no", "correct rejection"),
+        ("same-different,different,different", "hit"),
+        ("same-different,different,same", "miss"),
+        ("same-different,same,different", "false alarm"),
+        ("same-different,same,same", "correct rejection"),
+    ],
+)
+def test_an_outcome_follows_from_what_was_presented_and_answered(tmp_path, row, outcome):
+    path = tmp_path / "own.csv"
+    path.write_text(f"{OWN}A,all,{row}\n")
+    assert [*parse([read_csv(path)]).judgements["outcome"]] == [outcome]
+
+
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("detect,st,yes", "outcome is missing, and presented is 'st', which does not tell it"),
+        ("detect,yes,y", "answered is 'y'; to the question 'detect' it must be yes or no"),
+        ("same-different,0.5,same", "give outcome, or presented as different or same"),
+    ],
+)
+def test_an_outcome_that_does_not_follow_is_asked_for(tmp_path, row, said):
+    path = tmp_path / "own.csv"
+    path.write_text(f"{OWN}A,all,detect,yes,yes\nA,all,{row}\n")
+    with pytest.raises(InputError, match=re.escape(said)) as caught:
+        parse([read_csv(path)])
+    assert str(caught.value).startswith("own.csv line 3: ")

@@ -51,7 +51,7 @@ def session(folder, seed=1, who="P01"):
 
 @pytest.fixture(scope="module")
 def sites(tmp_path_factory):
-    """Two sites with a session of one name and one participant's pseudonym."""
+    """Two folders with a session of one name and one participant's pseudonym."""
     room = tmp_path_factory.mktemp("sites")
     return [session(room / site / "P01-orders", seed=n) for n, site in enumerate("xy", 1)]
 
@@ -126,18 +126,9 @@ def test_sessions_of_one_folder_name_are_told_apart(sites):
     assert {word for word, _ in study.about} >= {"Session x/P01-orders", "Session y/P01-orders"}
     (warning,) = [w for w in study.warnings if "told apart" in w]
     assert "x/P01-orders and y/P01-orders" in warning
-    assert "P01 is taken for one person. If they are several, give --sites." in warning
+    assert "P01 is taken for one person." in warning
     slopes = tables(analyse_study(study, Options()))["slopes"]
     assert len(slopes.rows) == 2
-
-
-def test_sites_have_participants_of_their_own(sites):
-    study = load_study(sites, sites=True)
-    assert levels(study.trials.participant) == ("x/P01", "y/P01")
-    assert not [w for w in study.warnings if "told apart" in w]
-    left = load_study(sites, sites=True, exclude={"x/P01": "moved house"})
-    assert levels(left.trials.participant) == ("y/P01",)
-    assert [sitting.name for sitting in left.sittings] == ["y/P01-orders"]
 
 
 def exports(sites, tmp_path):
@@ -150,7 +141,7 @@ def exports(sites, tmp_path):
     return found
 
 
-def test_so_are_the_tables_of_two_sites(sites, tmp_path):
+def test_so_are_the_tables_of_two_folders(sites, tmp_path):
     paths = exports(sites, tmp_path)
     study = load_study(paths)
     assert levels(study.trials.session) == (
@@ -159,9 +150,6 @@ def test_so_are_the_tables_of_two_sites(sites, tmp_path):
     )
     assert len(study.trials) == 24
     assert any("taken for one person" in warning for warning in study.warnings)
-    apart = load_study(paths, sites=True)
-    assert levels(apart.trials.participant) == ("x/P01", "y/P01")
-    assert levels(apart.trials.session) == ("x/P01-orders", "y/P01-orders")
 
 
 def test_tables_without_sessions_are_their_files(tmp_path):

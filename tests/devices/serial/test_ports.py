@@ -18,7 +18,6 @@ from vbraille.errors import InputError, VbrailleError
         ("/dev/ttyACM0", Address("/dev/ttyACM0")),
         ("./vb0?baud=115200", Address("./vb0", 115200)),
         ("socket://host:1?baud=300", Address("socket://host:1", 300)),
-        ("spy:///dev/x?file=log&baud=300&all", Address("spy:///dev/x?file=log&all", 300)),
     ],
 )
 def test_addresses(text, address):
@@ -64,52 +63,33 @@ def test_what_is_no_port(tmp_path, name, sentence):
 @pytest.mark.parametrize(
     ("url", "sentence"),
     [
-        ("foo://bar", "for there is no kind of port foo://; give a path such as /dev/ttyACM0, or"),
-        ("../x://y", "for there is no kind of port ../x://; give a path"),
-        ("socket://127.0.0.1", "for it needs the number of a port from 1 to 65535; an example is"),
-        (
-            "socket://[::1]:99999",
-            "for it needs a host and the number of a port from 1 to 65535; an",
-        ),
-        ("socket://[::1", "for it needs a host and the number of a port"),
-        ("socket://localhost:abc", "for it needs a host and the number of a port"),
-        ("socket://localhost:-1", "for it needs a host and the number of a port"),
-        ("socket://localhost:0", "for it needs the number of a port from 1"),
-        ("socket://:7000", "for it names no host; an example is socket://192.168.1.5:7000"),
-        ("socket://h:1/x", "for nothing can follow the number of the port, as '/x' does"),
-        ("socket://h:1?x=1", "for socket:// has no option 'x' (there is logging)"),
-        ("socket://h:1?logging=loud", "for logging is 'loud' and must be one of debug, info"),
-        ("rfc2217://127.0.0.1", "for it needs the number of a port from 1 to 65535"),
-        ("rfc2217://[::1]:99999", "for it needs a host and the number of a port"),
-        ("rfc2217://h:1?timeout=x", "for timeout is 'x' and must be a number of seconds"),
-        ("loop://?logging=loud", "for logging is 'loud' and must be one of"),
-        ("spy://", "for it names no port; an example is spy:///dev/ttyACM0?file=bytes.txt"),
-        ("spy:///dev/x?foo=1", "for spy:// has no option 'foo' (there is file, color, raw, all)"),
-        ("spy:///dev/x?file=/none/x", "for there is no folder for the file '/none/x'"),
-        ("alt:///dev/x?class=time", "for class is 'time' and must be one of Serial, PosixPoll"),
-        ("hwgrep://", "for it has nothing to look for; an example is hwgrep://Arduino"),
-        ("hwgrep://[", "for '[' is no regular expression"),
-        ("hwgrep://x&n=0", "for n is '0' and must be 1 for the first port found, 2 for the next"),
-        ("hwgrep://x&foo=1", "for hwgrep:// has no option 'foo' (there is n, skip_busy)"),
-        ("cp2110://x", "for the Python package hidapi is not installed, which it needs"),
+        ("foo://bar", "is no port; give a path, such as /dev/ttyACM0"),
+        ("../x://y", "is no port; give a path"),
+        ("spy:///dev/ttyACM0", "is no port; give a path"),
+        ("hwgrep://Arduino", "or one of /dev/serial/by-id/, or socket://192.168.1.5:7000"),
+        ("rfc2217://127.0.0.1:7000", "or socket://192.168.1.5:7000"),
+        ("socket://127.0.0.1", "needs a host and the number of a port, as in socket://192"),
+        ("socket://[::1]:99999", "needs a host and the number of a port"),
+        ("socket://[::1", "needs a host and the number of a port"),
+        ("socket://localhost:abc", "needs a host and the number of a port"),
+        ("socket://localhost:-1", "needs a host and the number of a port"),
+        ("socket://localhost:0", "needs a host and the number of a port"),
+        ("socket://:7000", "needs a host and the number of a port"),
+        ("socket://h:1/x", "needs a host and the number of a port"),
+        ("socket://h:1?x=1", "there is no option 'x' of a serial port; there is baud"),
     ],
 )
-def test_a_url_that_cannot_be_one_says_what_is_wrong_in_it(url, sentence):
+def test_a_url_that_is_no_socket_says_what_to_give(url, sentence):
     with pytest.raises(InputError) as raised:
         open_serial(url, info())
-    assert str(raised.value).startswith(f"{url} cannot be opened, {sentence}")
+    assert sentence in str(raised.value)
 
 
 @pytest.mark.parametrize(
     ("url", "sentence"),
     [
         ("socket://127.0.0.1:1", "127.0.0.1 is there, but nothing answers at its port 1; start"),
-        ("rfc2217://127.0.0.1:1", "127.0.0.1 is there, but nothing answers at its port 1; start"),
         ("socket://no.such.invalid:1", "there is no computer no.such.invalid; see that"),
-        ("spy:///dev/none", "there is no port spy:///dev/none; "),
-        ("alt:///dev/none", "there is no port alt:///dev/none; "),
-        ("spy:///dev/null", "spy:///dev/null is no serial port; choose another"),
-        ("hwgrep://nothing_fits_this", "no port fits hwgrep://nothing_fits_this; 'vbraille device"),
     ],
 )
 def test_a_url_that_was_not_opened_says_why_in_our_own_words(url, sentence):
@@ -124,7 +104,7 @@ def test_a_url_that_was_not_opened_says_why_in_our_own_words(url, sentence):
     [
         (errno.ETIMEDOUT, "host does not answer; see that it is on and in this network"),
         (errno.EHOSTUNREACH, "there is no way to host; see that it is on and in this network"),
-        (errno.EPROTO, "socket://host:1 cannot be opened, for what answers there does not do what"),
+        (errno.EPROTO, "socket://host:1 cannot be opened; see that host and port are right"),
     ],
 )
 def test_what_pyserial_put_its_own_words_around_is_still_told(number, sentence):

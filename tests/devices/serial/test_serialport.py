@@ -5,6 +5,7 @@ import os
 import socket
 import threading
 import tty
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ import serial
 from tests.engine.test_loop import info
 from vbraille.devices.serial.openserial import open_serial
 from vbraille.devices.serial.ports import Address, explain, open_serial_port
-from vbraille.devices.serial.seriallines import DescriptorLine, ThreadedLine, open_line
+from vbraille.devices.serial.seriallines import SerialLine, open_line
 from vbraille.devices.serial.serialport import SerialPort
 from vbraille.errors import DeviceError
 
@@ -86,7 +87,6 @@ def wait_for(line, wanted: int) -> bytes:
 def test_a_terminal_is_read_and_written_without_waiting(ends):
     peer, name = ends
     line = open_line(Address(name))
-    assert isinstance(line, DescriptorLine)
     assert line.read() == b""
     os.write(peer, FRAME)
     assert wait_for(line, len(FRAME)) == FRAME
@@ -119,13 +119,16 @@ class Sockets(serial.SerialBase):
         self.ours.setblocking(False)
         self.ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 4096)
 
+    def fileno(self):
+        return self.ours.fileno()
+
     def close(self):
         self.ours.close()
 
 
 def test_a_frame_is_dropped_where_only_the_rest_of_the_one_before_fits():
     port = Sockets()
-    line = DescriptorLine(port, port.ours.fileno())
+    line = SerialLine(port)
     big = b"x" * 1_000_000 + b"\0"
     assert line.write(big)  # begun
     assert not line.drained()
@@ -233,115 +236,15 @@ def test_a_socket_is_a_descriptor_too():
     server.close()
 
 
-def test_a_loop_has_threads_which_end():
-    line = open_line(Address("loop://"))
-    assert isinstance(line, ThreadedLine)
-    assert line.write(FRAME)
-    assert wait_for(line, len(FRAME)) == FRAME
-    assert line.drained()
-    line.close()
-    assert not [thread for thread in threading.enumerate() if thread.name == "vbraille port"]
-
-
-def test_a_loop_is_no_device():
+def test_what_echoes_is_no_device(ends):
+    peer, name = ends
     now_ns = 0
 
     def pause(_seconds):
         nonlocal now_ns
         now_ns += 1_000_000
-        for _ in range(20):
-            os.sched_yield()  # the threads of the loop have a time of their own
+        with suppress(BlockingIOError):
+            os.write(peer, os.read(peer, 65536))
 
     with pytest.raises(DeviceError, match="makes no sense: it is no vbraille device"):
-        open_serial("loop://", info(), now_ns=lambda: now_ns, pause=pause)
-
-
-def test_a_spy_sees_what_is_sent_and_read(ends, tmp_path):
-    peer, name = ends
-    log = tmp_path / "log"
-    port = open_serial_port(Address(f"spy://{name}?file={log}"))
-    line = ThreadedLine(port)
-    assert line.write(b"to the device\0")
-    os.write(peer, b"to the host\0")
-    assert wait_for(line, 12) == b"to the host\0"
-    while not line.drained():
-        os.sched_yield()
-    line.close()
-    port.formatter.output.close()
-    text = log.read_text()
-    assert "TX   0000  74 6F 20 74 68 65 20 64" in text
-    assert sum(line.split()[1] == "RX" for line in text.splitlines()) >= 1
-
-
-class Stuck(serial.SerialBase):
-    """A handler whose writes wait until they are let go, and which then fails."""
-
-    def __init__(self):
-        super().__init__()
-        self.begun, self.go_on = threading.Event(), threading.Event()
-        self.written, self.fault = [], None
-        self.closed_ = False
-
-    def _reconfigure_port(self):
-        pass
-
-    def read(self, _size=1):
-        self.go_on.wait(0.01)
-        return b""
-
-    def write(self, frame):
-        self.written.append(bytes(frame))
-        self.begun.set()
-        self.go_on.wait(10)
-        if self.fault:
-            raise self.fault
-
-    def close(self):
-        self.closed_ = True
-
-
-def test_a_handler_that_waits_keeps_nobody_waiting_and_the_newest_frame_wins():
-    stuck = Stuck()
-    line = ThreadedLine(stuck)
-    assert line.write(b"first")
-    stuck.begun.wait(10)
-    for i in range(100):
-        assert line.write(b"%d" % i)
-        assert line.read() == b""
-    assert not line.drained()
-    assert line.lost == 99
-    stuck.go_on.set()
-    while not line.drained():
-        os.sched_yield()
-    assert stuck.written == [b"first", b"99"]
-    line.close()
-    assert stuck.closed_
-
-
-def test_a_frame_that_a_handler_gave_up_is_counted_and_ended():
-    stuck = Stuck()
-    line = ThreadedLine(stuck)
-    stuck.fault = serial.SerialTimeoutException("Write timeout")
-    line.write(b"first")
-    stuck.begun.wait(10)
-    line.write(b"second")
-    stuck.go_on.set()
-    while len(stuck.written) < 2:
-        os.sched_yield()
-    assert stuck.written == [b"first", b"\0second"]
-    line.close()
-    assert line.lost == 2
-
-
-@pytest.mark.parametrize("fault", [AttributeError("no socket"), OSError("gone")])
-def test_whatever_a_handler_raises_its_line_is_gone(fault):
-    stuck = Stuck()
-    line = ThreadedLine(stuck)
-    stuck.fault = fault
-    line.write(b"first")
-    stuck.go_on.set()
-    with pytest.raises(OSError, match=str(fault)):
-        wait_for(line, 1)
-    with pytest.raises(OSError, match=str(fault)):
-        line.write(b"second")
-    line.close()
+        open_serial(name, info(), now_ns=lambda: now_ns, pause=pause)

@@ -8,6 +8,7 @@ from tests.reading.chapters import BOOK, Chapters
 from tests.reading.commands.test_moving import finger_at
 from tests.reading.commands.test_searching import Seeker
 from tests.reading.test_reader import Bench
+from vbraille.layout.braillepages import Imprint, pef
 from vbraille.reading.beside import Beside
 from vbraille.reading.cues import Cue
 from vbraille.reading.echo import Echo
@@ -15,7 +16,6 @@ from vbraille.reading.seeking.answering import Answering
 from vbraille.translate import Book, BrailleTable, Cells
 from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.braillefiles.pef import PefBook
-from vbraille.translate.braillefiles.writing import Imprint, pef
 from vbraille.translate.documents.parted import Passage
 from vbraille.translate.source import Mark, MarkKind
 

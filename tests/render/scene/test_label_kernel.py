@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.render.scene.twinbraille import label_deflections, label_opacity
 from tests.tiers import examples
 from vbraille.braille.geometry import PRESETS
 from vbraille.render import STRESS2_8X8, VBD, Tuning
@@ -20,7 +21,6 @@ from vbraille.render.scene.brailleplaces import (
     pack_label,
     size_mm,
 )
-from vbraille.render.scene.referencebraille import label_deflections, label_opacity
 from vbraille.scene.labels import Label
 
 _FIRST, _WORDS = 7, 11  # a label's numbers and words stand anywhere in those of a program

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from tests.render.scene.lanes import lane_places
+from tests.render.scene.twinbraille import label_deflections
 from vbraille.errors import InputError
 from vbraille.labelling import write_labels
 from vbraille.render import LATERO, STRESS2_8X8, Straying
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import compile_scene
 from vbraille.render.scene.figures import FIGURE, PAGE, page_with_figure
-from vbraille.render.scene.referencebraille import label_deflections
 from vbraille.scene.bitmap import Bitmap
 from vbraille.scene.labels import Label
 from vbraille.scene.patterns import Circle, Group, Image, LinearGrating, Tile, Uniform

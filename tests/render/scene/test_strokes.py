@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from vbraille.render.scene.reference import deflection, mask, places
-from vbraille.render.scene.referencestrokes import (
+from tests.render.scene.twin import deflection, mask, places
+from tests.render.scene.twinstrokes import (
     coordinates,
     dot_profile,
     groove,

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from tests.render.scene.scenes import distortions, examples, numbers, turn_peaks, vibrations
 from tests.render.scene.showing import bitmap_of
-from vbraille.render.scene.reference import deflection, places
-from vbraille.render.scene.referencewaves import (
+from tests.render.scene.twin import deflection, places
+from tests.render.scene.twinwaves import (
     distorted,
     gradual,
     intensity,

@@ -5,6 +5,7 @@ import random
 import numpy as np
 import pytest
 
+from tests.render.scene.twin import deflections
 from tests.scene.openlatero import reference
 from tests.scene.openlatero.files import (
     circle,
@@ -19,7 +20,6 @@ from tests.scene.openlatero.files import (
     waves,
 )
 from vbraille.render.scene.assets import Assets
-from vbraille.render.scene.reference import deflections
 from vbraille.scene.openlatero import read_gen
 
 SQUARE = ("20,20", "70,20", "70,60", "20,60")

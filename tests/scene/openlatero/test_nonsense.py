@@ -4,10 +4,10 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.render.scene.twin import deflections
 from tests.scene.openlatero.files import scene
 from tests.tiers import examples
 from vbraille.render.scene.assets import Assets
-from vbraille.render.scene.reference import deflections
 from vbraille.scene.openlatero import read_gen
 from vbraille.scene.openlatero.reading import TYPES
 from vbraille.scene.openlatero.textures import SUBTYPES

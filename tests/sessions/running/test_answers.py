@@ -88,18 +88,6 @@ def test_a_file_gives_its_lines_in_order_without_comments(tmp_path):
     assert ScriptedAnswers(path, after=2).left == [("cd", 4), ("undo", 5)]
 
 
-def test_a_spec_may_choose_the_skin():
-    given = parse_protocol(MINI, "mini.toml")
-    plan = make_plan(given, "P01", 1)
-    names = ["simulated:0.2:strain", "simulated:0.2:halfspace"]
-    answers = [parse_answers(name, given, plan) for name in names]
-    assert [one.name for one in answers] == names
-    skins = [{reader.skin for reader in one._observers.values()} for one in answers]
-    assert skins == [{"strain"}, {"halfspace"}]
-    with pytest.raises(InputError, match="no skin 'leather'; give strain or halfspace"):
-        parse_answers("simulated:0.2:leather", given, plan)
-
-
 @pytest.mark.parametrize("spec", ["simulated:x", "simulated:-1", "simulated:nan", "simulated:1e9"])
 def test_a_noise_that_is_none_is_one_sentence(spec):
     protocol = parse_protocol(MINI, "test")

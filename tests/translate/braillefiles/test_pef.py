@@ -11,10 +11,9 @@ from lxml import etree
 
 from tests.tiers import examples
 from vbraille.errors import InputError
-from vbraille.layout.embossed import kept_pages
+from vbraille.layout.braillepages import Imprint, kept_pages, pef
 from vbraille.translate import BlockKind, Book
 from vbraille.translate.braillefiles.pef import PefBook
-from vbraille.translate.braillefiles.writing import Imprint, pef
 
 SAMPLES = Path(__file__).parent / "samples"
 SCHEMA = etree.RelaxNG(file=str(SAMPLES / "pef-2008-1-full.rng"))

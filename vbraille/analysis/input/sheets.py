@@ -81,23 +81,13 @@ class Sheet:
         return float(text.replace(",", ".") if self.decimal_comma else text)
 
 
-def read_csv(
-    path: Path,
-    *,
-    encoding: str | None = None,
-    delimiter: str | None = None,
-    escape: str | None = None,
-) -> Sheet:
+def read_csv(path: Path) -> Sheet:
     """Read a CSV file whose first row has the names of the columns.
 
     Parameters
     ----------
     path
         The file.
-    encoding, delimiter
-        Name of its encoding and sign between its columns; None for what the file itself tells.
-    escape
-        Sign before a quotation mark that is part of a value; None if such a mark is doubled.
 
     Raises
     ------
@@ -111,15 +101,11 @@ def read_csv(
     kind = binary_kind(content[:512])
     if kind is not None:
         raise InputError(f"{path} is {kind}; give a CSV file or the directory of a session")
-    if encoding is None:
-        found = find_encoding(content[:65_536])
-        text = content[found.skip :].decode(found.name, "replace")
-    else:
-        text = content.decode(encoding, "replace").removeprefix("\ufeff")
+    found = find_encoding(content[:65_536])
+    text = content[found.skip :].decode(found.name, "replace")
     first = text.lstrip().split("\n", 1)[0]
-    if delimiter is None:
-        delimiter = max(_DELIMITERS, key=first.count)
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, escapechar=escape)
+    delimiter = max(_DELIMITERS, key=first.count)
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter)
     try:
         frame = _frame(reader, path.name)
     except csv.Error as error:

@@ -1,9 +1,8 @@
-"""What trials come from, each under a name of its own: two sites may have one folder's name."""
+"""Names of sessions and tables that tell them apart, and sessions that are there twice."""
 
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
@@ -12,7 +11,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from pathlib import Path
 
-    from vbraille.analysis.input.sheets import Sheet
     from vbraille.analysis.input.sittings import SessionTrials
 
 
@@ -34,27 +32,6 @@ def distinct_names(paths: Sequence[Path]) -> list[str]:
             for name, path in zip(names, paths, strict=True)
         ]
     return names
-
-
-def named(sitting: SessionTrials, name: str, site: str = "") -> SessionTrials:
-    """Session under another name; if a site is given, its participant is named after it as well."""
-    who = f"{site}/{sitting.head['participant']}" if site else sitting.head["participant"]
-    return replace(
-        sitting,
-        name=name,
-        head=sitting.head | {"participant": who},
-        rows=[row | {"session": name, "participant": who} for row in sitting.rows],
-        examples=tuple(replace(example, participant=who) for example in sitting.examples),
-    )
-
-
-def of_site(sheet: Sheet, site: str) -> Sheet:
-    """Sheet with its participants and sessions under the name of a site."""
-    frame = sheet.frame.copy()
-    for name in {"participant", "session"} & set(frame):
-        stripped = frame[name].str.strip()
-        frame[name] = frame[name].mask(stripped != "", f"{site}/" + stripped)
-    return replace(sheet, frame=frame)
 
 
 def check_copies(sittings: Iterable[SessionTrials]) -> None:
@@ -85,7 +62,7 @@ def told_apart(sittings: Iterable[SessionTrials]) -> list[str]:
         of[sitting.folder.resolve().name, sitting.head["participant"]].append(sitting)
     return [
         f"Sessions {' and '.join(sitting.name for sitting in alike)} are told apart by where they "
-        f"are; their participant {who} is taken for one person. If they are several, give --sites."
+        f"are; their participant {who} is taken for one person."
         for (_, who), alike in of.items()
         if len(alike) > 1
     ]

@@ -8,13 +8,11 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
-from vbraille.analysis.input.mapped import read_mapped
-from vbraille.analysis.input.mapping import load_mapping
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.scoretable import of_sheet
 from vbraille.analysis.input.sheets import from_rows, read_csv
 from vbraille.analysis.input.sittings import read_sitting
-from vbraille.analysis.input.sources import check_copies, distinct_names, named, of_site, told_apart
+from vbraille.analysis.input.sources import check_copies, distinct_names, told_apart
 from vbraille.analysis.input.trials import LeftOut, chosen, natural
 from vbraille.errors import InputError
 from vbraille.version import __version__
@@ -26,7 +24,6 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-    from vbraille.analysis.input.mapping import TrialMapping
     from vbraille.analysis.input.scoretable import Scores
     from vbraille.analysis.input.sheets import Sheet
     from vbraille.analysis.input.sittings import SessionTrials
@@ -71,8 +68,6 @@ def load_study(
     *,
     exclude: Mapping[str, str] | None = None,
     protocol: str | None = None,
-    sites: bool = False,
-    mapping: Path | None = None,
 ) -> Study:
     """Read sessions' directories and CSV files.
 
@@ -84,11 +79,6 @@ def load_study(
         Participants who are left out, each with the reason.
     protocol
         Name of the protocol whose trials are taken; None takes those of all.
-    sites
-        Whether each folder that something stands in has participants of its own.
-    mapping
-        Mapping file by which the files, which another program wrote, are read; None if they have
-        our columns.
 
     Raises
     ------
@@ -98,15 +88,12 @@ def load_study(
         If a session has lost what it began with.
     """
     _check_paths(paths)
-    theirs = None if mapping is None else load_mapping(mapping)
-    sittings, files, ruled_out = _read(paths, theirs, sites=sites)
-    if theirs is not None and not files:
-        raise InputError(f"{theirs.where} is for files of another program; give such files as well")
+    sittings, files = _read(paths)
     sheets = list(files.values())
     sources = [*(from_rows(sitting.name, sitting.rows) for sitting in sittings), *sheets]
     apart = told_apart(sittings)
     parsed = parse(sources)
-    left_out = [*ruled_out, *parsed.left_out]
+    left_out = [*parsed.left_out]
     parts = (parsed.trials, parsed.comparisons, parsed.judgements)
     for rule in _rules(exclude or {}, protocol):
         parts, sittings = rule.apply(parts, sittings)
@@ -121,9 +108,6 @@ def load_study(
         (f"File {sheet.name}", f"{count(len(sheet), 'row')}, SHA-256 {_sum(path)}")
         for path, sheet in files.items()
     ]
-    if theirs is not None and mapping is not None:
-        program = f"{theirs.program}; " if theirs.program else ""
-        about.append((f"Mapping {theirs.where}", f"{program}SHA-256 {_sum(mapping)}"))
     about += [(f"Session {sitting.name}", _describe_sitting(sitting)) for sitting in sittings]
     about += _versions(sittings)
     faults = tuple(f"{sitting.name}: {what}" for sitting in sittings for what in sitting.faults)
@@ -230,33 +214,21 @@ def _check_paths(paths: Sequence[Path]) -> None:
         seen.add(path.resolve())
 
 
-def _read(
-    paths: Sequence[Path], mapping: TrialMapping | None, *, sites: bool
-) -> tuple[list[SessionTrials], dict[Path, Sheet], list[LeftOut]]:
-    """Sessions and tables, each under a name that no other has, and rows that are in none."""
-    resolved = [path.resolve() for path in paths]
-    names = dict(zip(paths, distinct_names(resolved), strict=True))
-    homes = list(dict.fromkeys(path.parent for path in resolved)) if sites else []
-    site_of = dict(zip(homes, distinct_names(homes), strict=True))
-    site = {path: site_of.get(at.parent, "") for path, at in zip(paths, resolved, strict=True)}
+def _read(paths: Sequence[Path]) -> tuple[list[SessionTrials], dict[Path, Sheet]]:
+    """Read sessions and tables, each under a name that no other has."""
+    names = dict(zip(paths, distinct_names([path.resolve() for path in paths]), strict=True))
     sittings = [
-        named(read_sitting(path), names[path], site[path]) for path in paths if path.is_dir()
+        replace(sitting, name=name, rows=[row | {"session": name} for row in sitting.rows])
+        for sitting, name in ((read_sitting(path), names[path]) for path in paths if path.is_dir())
     ]
     sittings.sort(key=lambda sitting: (natural(sitting.head["participant"]), natural(sitting.name)))
     check_copies(sittings)
-    files: dict[Path, Sheet] = {}
-    left_out: list[LeftOut] = []
-    for path in sorted(names, key=lambda path: names[path]):
-        if path.is_dir():
-            continue
-        if mapping is None:
-            sheet = read_csv(path)
-        else:
-            sheet, without = read_mapped(path, mapping)
-            left_out += without
-        sheet = replace(sheet, name=names[path])
-        files[path] = of_site(sheet, site[path]) if sites else sheet
-    return sittings, files, left_out
+    files = {
+        path: replace(read_csv(path), name=names[path])
+        for path in sorted(names, key=lambda path: names[path])
+        if not path.is_dir()
+    }
+    return sittings, files
 
 
 def _describe(

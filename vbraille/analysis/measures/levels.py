@@ -92,9 +92,9 @@ ANOVA = Schema(
     "A factor of which every participant has one level is between participants, beside others that "
     "are within. Corrected is by Greenhouse and Geisser's epsilon, which "
     "is too careful with few participants, or by Huynh and Feldt's. Mauchly's test is of "
-    "sphericity; where its two p differ, participants are too few for the expansion, and the exact "
-    "one holds. The interval of partial eta² is by noncentral F. A participant with a missing cell "
-    "is left out whole; repeated scores of a cell are averaged first.",
+    "sphericity; with few participants its p is too small. The interval of partial eta² is by "
+    "noncentral F. A participant with a missing cell is left out whole; repeated scores of a cell "
+    "are averaged first.",
     (
         Column("measure", "measure", "what is compared, with its unit"),
         Column("effect", "effect", "factors that act together"),
@@ -109,7 +109,6 @@ ANOVA = Schema(
         Column("p_huynh_feldt", "p Huynh-Feldt", "corrected by that epsilon instead", Kind.P),
         Column("mauchly_w", "W", "Mauchly's", Kind.NUMBER),
         Column("mauchly_p", "p of W", "that sphericity holds, as R's mauchly.test", Kind.P),
-        Column("mauchly_p_exact", "exact p of W", "by the distribution of W itself", Kind.P),
         Column("partial_eta2", "partial eta²", "effect size", Kind.NUMBER),
         Column("partial_low", "from", "lower end of its 95 % interval", Kind.NUMBER),
         Column("partial_high", "to", "upper end", Kind.NUMBER),

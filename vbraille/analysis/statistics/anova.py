@@ -52,7 +52,7 @@ class Effect:
         Greenhouse and Geisser's epsilon, and p with both degrees of freedom multiplied by it.
     huynh_feldt, p_huynh_feldt
         Huynh and Feldt's epsilon, and p with both degrees of freedom multiplied by it.
-    mauchly_w, mauchly_chi2, mauchly_df, mauchly_p, mauchly_p_exact
+    mauchly_w, mauchly_chi2, mauchly_df, mauchly_p
         Mauchly's test of sphericity; see `sphericity`.
     partial_eta2, partial_low, partial_high
         SS_effect / (SS_effect + SS_error), and its 95 % interval by noncentral F.
@@ -77,7 +77,6 @@ class Effect:
     mauchly_chi2: float | None
     mauchly_df: int | None
     mauchly_p: float | None
-    mauchly_p_exact: float | None
     partial_eta2: float | None
     partial_low: float | None
     partial_high: float | None
@@ -236,7 +235,6 @@ def _effect(
         mauchly_chi2=found.chi2,
         mauchly_df=found.df,
         mauchly_p=found.p,
-        mauchly_p_exact=found.p_exact,
         partial_eta2=of_effect / (of_effect + of_error),
         partial_low=low,
         partial_high=high,

@@ -7,16 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import loggamma
 from scipy.stats import chi2
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-# The exact distribution of W is summed in parts of so many points, up to so many parts: three
-# contrasts need some 50,000 points, more contrasts fewer.
-_PART, _PARTS = 4096, 64
-_LEFT = 1e-11  # the sum ends once a whole part adds less than this
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,9 +27,8 @@ class Sphericity:
     w, chi2, df
         Mauchly's W, the statistic that is about chi-square, and its degrees of freedom.
     p
-        p of W, by the expansion that R's ``mauchly.test`` takes.
-    p_exact
-        p of W, by its exact distribution.
+        p of W, by the expansion that R's ``mauchly.test`` takes; too small where participants are
+        few for the contrasts.
     note
         Why something is None; may be empty.
     """
@@ -46,7 +39,6 @@ class Sphericity:
     chi2: float | None = None
     df: int | None = None
     p: float | None = None
-    p_exact: float | None = None
     note: str = ""
 
 
@@ -87,9 +79,7 @@ def sphericity(z: NDArray[np.float64], *, cells: int, one_factor: bool) -> Spher
         )
     log_w = min(0.0, float(np.log(d * shares).sum()))
     statistic, df, p = mauchly_p(log_w, n, d, cells)
-    return Sphericity(
-        epsilon, wide, math.exp(log_w), statistic, df, p, mauchly_exact_p(log_w, n, d)
-    )
+    return Sphericity(epsilon, wide, math.exp(log_w), statistic, df, p)
 
 
 def huynh_feldt(epsilon: float, n: int, d: int, groups: int = 1) -> float:
@@ -136,37 +126,3 @@ def mauchly_p(log_w: float, n: int, d: int, cells: int) -> tuple[float, int, flo
     order = (d + 2) * (d - 1) * (d - 2) * (2 * d**3 + 6 * d**2 + 3 * cells + 2)
     p = first + order / (288 * (d * scale) ** 2) * (second - first)
     return statistic, df, min(max(p, 0.0), 1.0)
-
-
-def mauchly_exact_p(log_w: float, n: int, d: int) -> float:
-    """Probability that W is this small or smaller, if sphericity holds.
-
-    The moments of W (Mauchly 1940; Anderson 2003, 10.7.3) are those of a product of
-    independent beta variables with a_j = (n - 1 - j)/2 and b_j = j/2 + j/d, j = 1 … d - 1.
-    So its distribution is a Mellin integral, which is summed along a line left of 0, where
-    equal steps converge as fast as the integrand is smooth.
-
-    Parameters
-    ----------
-    log_w, n, d
-        What they are in `mauchly_p`.
-    """
-    if d == 2:  # one beta variable, whose b is 1
-        return math.exp(log_w * (n - 2) / 2)
-    j = np.arange(1, d)
-    a, b = (n - 1 - j) / 2, j / 2 + j / d
-    at = -min(1.0, a.min() / 2)  # between the poles at 0 and at -a
-    step = -2 * math.pi * at / 30  # leaves an aliasing error of e⁻³⁰
-    whole = (loggamma(a + b) - loggamma(a)).sum()
-    total = 0.0
-    for part in range(_PARTS):
-        s = at + 1j * step * np.arange(part * _PART, (part + 1) * _PART)[:, None]
-        moments = np.exp((loggamma(a + s) - loggamma(a + b + s)).sum(axis=1) + whole)
-        s = s[:, 0]
-        values = (moments * np.exp(-log_w * s) / -s).real
-        if not part:
-            values[0] /= 2
-        total += float(values.sum())
-        if float(np.abs(values).sum()) * step < _LEFT:
-            break
-    return min(max(total * step / math.pi, 0.0), 1.0)

@@ -58,14 +58,12 @@ def _analysed(arguments: argparse.Namespace) -> Results:
             arguments.paths,
             exclude=arguments.exclude,
             protocol=arguments.protocol,
-            sites=arguments.sites,
-            mapping=arguments.mapping,
             factors=arguments.factors,
             correction=correction,
             marks=arguments.marks,
             seed=seed,
         )
-    for name in ("factors", "protocol", "exclude", "marks", "sites", "mapping"):
+    for name in ("factors", "protocol", "exclude", "marks"):
         if getattr(arguments, name):
             raise InputError(f"--{name} is of trials, not of scores; leave it out")
     return analyse_scores(arguments.scores, correction=correction, seed=seed)

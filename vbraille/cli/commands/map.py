@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,6 @@ from vbraille.errors import InputError
 from vbraille.feeling.loading import load_scene
 from vbraille.files import write_file, write_files
 from vbraille.pictures import scenes
-from vbraille.pictures.inkfiles import ink_bytes
 from vbraille.pictures.scenewords import scene_lines, scene_text
 from vbraille.render import MODELS
 from vbraille.wording import count, spelled
@@ -23,13 +21,13 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.pictures.ink import InkDrawing, InkMark
+    from vbraille.pictures.drawings import ArrayOnMap
     from vbraille.render.scene.assets import Assets
     from vbraille.scene.scene import Scene
 
 _KINDS = ("png", "svg", "csv", "pdf", "gif")
 _FRAMES, _MOST_FRAMES = 8, 500
-_FINE_PIXELS_PER_MM = 12.0  # of drawings without grays, of which a PNG has edges
+_FINE_PIXELS_PER_MM = 12.0  # of outlines, of which a PNG has edges
 # When vibrations of 50 Hz are at their ends: an array that is drawn shows them best then.
 _ARRAY_TIME_S = 0.005
 _SHOWN = "shown: a deflection map, rest white and full swing black"
@@ -44,15 +42,18 @@ def run(arguments: argparse.Namespace) -> int:
     numbered = arguments.vibration == "sequence" and kind != "gif"
     if not arguments.force:
         _check_free(out, numbered=numbered)
-    loaded = load_scene(arguments.file, MODELS[arguments.model].style)
+    style = MODELS[arguments.model].style
+    if arguments.outline:  # dots of braille without a texture, which is too fine for paper
+        style = style.replace(texture=0.0)
+    loaded = load_scene(arguments.file, style)
     scene, assets, title = loaded.scene, loaded.assets, loaded.title
     for note in loaded.notes:
         say_line(spelled(note), aside=True)
     draw = _map
     if arguments.vibration == "sequence":
         draw = _animation
-    elif arguments.abstract or arguments.raised:
-        draw = _drawing
+    elif arguments.outline:
+        draw = _outline
     try:
         if numbered:
             said = _numbered(scene, assets, arguments, kind, title)
@@ -96,21 +97,15 @@ def _kind(out: Path) -> str:
 def _check(arguments: argparse.Namespace, kind: str) -> None:
     """Refuse options that do not go together."""
     sequence = arguments.vibration == "sequence"
-    drawn = "--abstract" if arguments.abstract else "--raised" if arguments.raised else ""
     for wrong, problem in (
         (
-            arguments.abstract and arguments.raised,
-            "--abstract and --raised are two drawings; leave one of them out",
-        ),
-        (drawn and kind in ("csv", "gif"), f"{drawn} is no map; end --out in .svg, .pdf or .png"),
-        (
-            drawn and (arguments.array or arguments.axes or sequence),
-            f"--array, --axes and --vibration sequence are for maps; leave out either these or "
-            f"{drawn}",
+            arguments.outline and kind in ("csv", "gif"),
+            "--outline is no map; end --out in .svg, .pdf or .png",
         ),
         (
-            arguments.sheet != "canvas" and not arguments.raised,
-            "--sheet is for raised drawings; add --raised or leave it out",
+            arguments.outline and (arguments.array or arguments.axes or sequence),
+            "--array, --axes and --vibration sequence are for maps; leave out either these or "
+            "--outline",
         ),
         (
             kind == "gif" and (arguments.array or arguments.axes),
@@ -161,17 +156,16 @@ def _pixels_said(scene: Scene, per_mm: float) -> str:
 
 def _array(
     scene: Scene, assets: Assets, arguments: argparse.Namespace, time_s: float
-) -> tuple[tuple[InkMark, ...], list[str]]:
-    """Marks of the array as it is at a time, if it is wanted, and what is said of it."""
+) -> tuple[ArrayOnMap | None, list[str]]:
+    """Put the array on the scene as it is at a time, if it is wanted, and say what is shown."""
     if arguments.array is None:
-        return (), []
-    from vbraille.pictures import overmap
+        return None, []
+    from vbraille.pictures import drawings  # loads matplotlib
 
     display = MODELS[arguments.model].display
-    place = overmap.ArrayPlace(*arguments.array)
-    overmap.check_on_canvas(scene.canvas, display, place)
-    frame = overmap.array_deflections(scene, assets, display, place, time_s)
-    return overmap.array_marks(display, place, frame), [
+    place = drawings.ArrayPlace(*arguments.array)
+    drawings.check_on_canvas(scene.canvas, display, place)
+    return drawings.show_array(scene, assets, display, place, time_s), [
         f"array: {MODELS[arguments.model].title}, centre at ({place.x_mm:g}, {place.y_mm:g}) "
         f"mm, turned by {place.angle_deg:g}°",
         f"bars: shifted to the {display.rest_side} at rest and away from it at full swing, "
@@ -186,20 +180,20 @@ def _content(
     kind: str,
     title: str,
     deflections: NDArray[np.float32],
-    over: tuple[InkMark, ...],
+    over: ArrayOnMap | None,
     said: list[str],
 ) -> bytes:
     """Make the file of one map, with what is over it and around it."""
     per_mm = _per_mm(arguments)
     if kind == "csv":
         return scenes.map_csv(deflections, per_mm)
-    if kind == "png" and not over and not arguments.axes:
+    if kind == "png" and over is None and not arguments.axes:
         told = {"Title": title, "Description": _told(scene, said)}
         return scenes.png(scenes.grays(deflections), per_mm, told)
-    from vbraille.pictures.overmap import map_drawing
+    from vbraille.pictures.drawings import drawing_bytes, map_figure
 
-    drawing = map_drawing(scene, deflections, over, axes=arguments.axes)
-    return ink_bytes(_named(drawing, scene, title, said), kind, per_mm)
+    figure = map_figure(scene.canvas, deflections, over, axes=arguments.axes)
+    return drawing_bytes(figure, kind, per_mm, title, _told(scene, said))
 
 
 def _period_s(scene: Scene, arguments: argparse.Namespace) -> float:
@@ -290,32 +284,26 @@ def _animation(
     return scenes.gif(maps, f"{title}. {_told(scene, said)}"), said
 
 
-def _drawing(
+def _outline(
     scene: Scene, assets: Assets, arguments: argparse.Namespace, kind: str, title: str
 ) -> tuple[bytes, list[str]]:
-    if arguments.raised:
-        from vbraille.pictures.raised import raised_drawing
+    from vbraille.pictures.drawings import drawing_bytes, outline_figure
 
-        sheet = None if arguments.sheet == "canvas" else arguments.sheet
-        drawing = raised_drawing(scene, assets, sheet)
-        said = ["shown: a raised drawing, black where the paper swells", *drawing.said]
-    else:
-        from vbraille.pictures.abstract import abstract_drawing
-
-        drawing = abstract_drawing(scene, assets)
-        said = ["shown: an abstract drawing, darker where it is stronger, dots where it vibrates"]
     per_mm = arguments.resolution or _FINE_PIXELS_PER_MM
     if kind == "png":
         scenes.check_pixels(scene.canvas, per_mm)
-    return ink_bytes(_named(drawing, scene, title, said), kind, per_mm), said
+    canvas = scene.canvas
+    said = [
+        "shown: an outline drawing, black where more than half of the strongest deflection is felt",
+        f"paper: {canvas.width_mm:g} × {canvas.height_mm:g} mm, true to scale; print without "
+        "scaling",
+    ]
+    figure = outline_figure(scene, assets)
+    return drawing_bytes(figure, kind, per_mm, title, _told(scene, said)), said
 
 
 def _per_mm(arguments: argparse.Namespace) -> float:
     return scenes.PIXELS_PER_MM if arguments.resolution is None else arguments.resolution
-
-
-def _named(drawing: InkDrawing, scene: Scene, title: str, said: list[str]) -> InkDrawing:
-    return replace(drawing, title=title, description=_told(scene, said))
 
 
 def _told(scene: Scene, said: list[str]) -> str:

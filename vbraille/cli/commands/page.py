@@ -2,79 +2,186 @@
 
 from __future__ import annotations
 
-import os
+import sys
+from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli import embossing
 from vbraille.cli.build import build_book, build_lengths, lay_out
 from vbraille.cli.settled import TRANSLATION, settle
-from vbraille.errors import InputError
+from vbraille.cli.terminal import say_line
+from vbraille.errors import InputError, VbrailleError
+from vbraille.files import whole_file
+from vbraille.layout.braillepages import (
+    FORM_FEED,
+    Imprint,
+    brf_lines,
+    brf_pages,
+    cut_pages,
+    kept_pages,
+    pef,
+)
 from vbraille.render import MODELS
-from vbraille.translate.ahead import BookAhead
-from vbraille.wording import printable
+from vbraille.translate.source import BlockKind
+from vbraille.wording import count, printable, spelled
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Callable, Iterable, Iterator
 
+    from vbraille.cli.build import Page
     from vbraille.layout.pages import Line
     from vbraille.translate import Book
 
-_USUAL_WORKERS, _MOST_WORKERS = 4, 64  # with more than four, laying out takes the longest
+_CELLS, _LINES = 40, 25  # of a page of paper, where nothing else is asked for
+_MOST_CELLS = 200
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the lines, or write them to a file."""
     settle(arguments, TRANSLATION)
-    embossing.check(arguments)
-    workers = _workers(arguments)
+    _check(arguments)
     book = build_book(arguments, six_dots=arguments.format == "brf")
-    with BookAhead(book, workers) as ahead:
-        return _write(arguments, ahead)
-
-
-def _write(arguments: argparse.Namespace, book: Book) -> int:
-    if _keeps_pages(arguments, book) and arguments.format == "brf":
-        return embossing.write_kept(arguments, book)
-    if arguments.layout or arguments.format == "ebrl" or _keeps_pages(arguments, book):
-        return embossing.emboss(arguments, book)
-    width = arguments.cells or (embossing.CELLS if arguments.format == "pef" else None)
-    model = build_lengths(arguments, MODELS[arguments.model or "stress2"])
-    page = lay_out(arguments, book, model, width)
-    if arguments.format == "pef":
-        embossing.write_pef(arguments, page)
+    if _keeps_pages(arguments, book):
+        _write_kept(arguments, book)
     else:
-        with embossing.output(arguments) as write:
-            for line in page.lines():
-                write(f"{_format(line, arguments.format)}\n".encode("utf-8", "surrogatepass"))
-    page.say_note()
-    page.say_unknown()
+        _write_laid(arguments, book)
     return 0
 
 
-def _workers(arguments: argparse.Namespace) -> int:
-    """Number of processes that translate a long book.
+def _check(arguments: argparse.Namespace) -> None:
+    """Check that the options go together, before anything is read.
 
     Raises
     ------
     InputError
-        If the option is out of range.
+        If they do not.
     """
-    asked = arguments.workers
-    if asked is not None:
-        if not 1 <= asked <= _MOST_WORKERS:
-            raise InputError(f"--workers is {asked}; it must be 1 to {_MOST_WORKERS}")
-        return asked
-    if arguments.layout is None and arguments.lines[1] is not None:
-        return 1  # others would translate what nobody wants
-    return min(len(os.sched_getaffinity(0)), _USUAL_WORKERS)
+    cells, out = arguments.cells, arguments.out
+    if cells is not None and not 1 <= cells <= _MOST_CELLS:
+        raise InputError(f"--cells is {cells}; it must be 1 to {_MOST_CELLS}")
+    if arguments.model is not None and (cells is not None or arguments.format == "pef"):
+        raise InputError("a page has as many cells as --cells says; leave out --model")
+    if out is not None:
+        if Path(out).exists() and not arguments.force:
+            raise InputError(_taken(out))
+        if not Path(out).parent.is_dir():
+            raise InputError(f"there is no directory {Path(out).parent}; make it, or use another")
 
 
 def _keeps_pages(arguments: argparse.Namespace, book: Book) -> bool:
-    """Whether a book in braille is written with its own lines and pages, on no display's lines."""
+    """Tell if a book in braille is written with its own lines and pages, on no display's lines."""
     asked = arguments.cells or arguments.out or arguments.format == "pef"
     shown = arguments.model or arguments.geometry or arguments.lines != (1, None)
-    in_files = arguments.format in ("brf", "pef") and arguments.layout is None
-    return bool(book.source.in_cells and in_files and asked and not shown)
+    return bool(book.source.in_cells and arguments.format in ("brf", "pef") and asked and not shown)
+
+
+def _write_laid(arguments: argparse.Namespace, book: Book) -> None:
+    """Write lines as they are laid out for a display or for a number of cells."""
+    width = arguments.cells or (_CELLS if arguments.format == "pef" else None)
+    model = build_lengths(arguments, MODELS[arguments.model or "stress2"])
+    page = lay_out(arguments, book, model, width)
+    with _output(arguments) as write:
+        for content in _checked(_laid(page, arguments.format)):
+            write(content)
+    page.say_note()
+    page.say_unknown()
+
+
+def _laid(page: Page, how: str) -> Iterable[bytes]:
+    if how != "pef":
+        return (f"{_format(line, how)}\n".encode("utf-8", "surrogatepass") for line in page.lines())
+    pages = cut_pages((line.masks for line in page.lines()), _LINES)
+    width, book = page.layout.width, page.layout.book
+    return pef(pages, _imprint_of(book, width, _LINES), width, _LINES, rowgap=_rowgap(book))
+
+
+def _write_kept(arguments: argparse.Namespace, book: Book) -> None:
+    """Write a book that is in braille already, with the lines and pages of its file."""
+    pages = kept_pages(book, arguments.cells)
+    said = None
+    if arguments.format == "pef":
+        found = list(pages)
+        if not found:
+            raise InputError(f"{book.source.name} has nothing in it to emboss; give another")
+        cells = max([1, *(row.size for page in found for row in page)])
+        lines = max([1, *(len(page) for page in found)])
+        content = pef(found, _imprint_of(book, cells, lines), cells, lines, rowgap=_rowgap(book))
+        said = f"pages: {count(len(found), 'page')} of {lines} lines, {cells} cells each"
+    elif (first := book.block(0)) is not None and first[0].kind is BlockKind.PAGE:
+        content = brf_pages(pages)
+    else:
+        content = (FORM_FEED * (made > 0) + brf_lines(rows) for made, rows in enumerate(pages))
+    with _output(arguments) as write:
+        for part in _checked(content):
+            write(part)
+    for note in filter(None, (*book.notes(), said)):
+        say_line(spelled(note), aside=True)
+
+
+def _checked(contents: Iterable[bytes]) -> Iterator[bytes]:
+    """Pass on what is written.
+
+    Raises
+    ------
+    InputError
+        If a cell has dots that BRF does not have.
+    """
+    try:
+        yield from contents
+    except ValueError as error:
+        raise InputError(f"{error}; give --format unicode, which writes all eight") from None
+
+
+@contextmanager
+def _output(arguments: argparse.Namespace) -> Iterator[Callable[[bytes], object]]:
+    """Give a function that writes to the file of --out, whole or not at all, or prints.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be made, or is there already and may not be replaced.
+    VbrailleError
+        If the disk cannot take it.
+    """
+    name = arguments.out
+    if name is None:
+        yield lambda content: sys.stdout.write(content.decode("utf-8", "surrogatepass"))
+        return
+    path = Path(name)
+    if not path.name or path.is_dir():
+        raise InputError(f"{name} is a directory; give the name of a file in it")
+    try:
+        with whole_file(path, replace=arguments.force) as partial:
+            try:
+                file = partial.open("wb")
+            except OSError as error:
+                raise InputError(f"{name} cannot be written: {error.strerror}") from None
+            with file:
+                yield file.write
+    except FileExistsError:
+        raise InputError(_taken(name)) from None
+    except OSError as error:
+        raise VbrailleError(f"{name} could not be written: {error.strerror}") from None
+
+
+def _taken(name: str) -> str:
+    return f"{name} is there already; choose another name, or replace it by --force"
+
+
+def _imprint_of(book: Book, cells: int, lines: int) -> Imprint:
+    """Say of a file that is written from a book which book it is, and how it was made."""
+    source, table = book.source, book.table
+    language = source.language
+    if not language and table is not None and table.info is not None:
+        language = table.info.language
+    title = source.title or Path(source.name).stem
+    made_with = (None if table is None else table.name, "pef", cells, lines)
+    return Imprint.of_file(title, language, source.sha256(), *made_with)
+
+
+def _rowgap(book: Book) -> int:
+    return int(book.table is not None and book.table.eight_dots)
 
 
 def _format(line: Line, how: str) -> str:
@@ -84,7 +191,4 @@ def _format(line: Line, how: str) -> str:
         return line.printed.to_dots()
     if how == "unicode":
         return line.printed.to_unicode()
-    try:
-        return line.printed.to_brf()
-    except ValueError as error:
-        raise InputError(f"{error}; give --format unicode, which writes all eight dots") from None
+    return line.printed.to_brf()

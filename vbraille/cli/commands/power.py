@@ -6,7 +6,6 @@ import csv
 import json
 import sys
 from dataclasses import asdict, fields
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -37,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
         studies=arguments.studies,
         seed=SEED if arguments.seed is None else arguments.seed,
     )
-    workers = Workers(arguments.workers, arguments.cluster).available(partial(say_line, aside=True))
+    workers = Workers(arguments.workers, arguments.cluster)
     keep = None if arguments.keep is None else Path(arguments.keep)
     with WorkProgress() as progress:
         table = power(question, workers, keep=keep, told=progress.of)

@@ -6,7 +6,6 @@ import csv
 import io
 import json
 import sys
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,18 +26,12 @@ def run(arguments: argparse.Namespace) -> int:
     out = None if arguments.out is None else Path(arguments.out)
     if out is not None:
         check_free(out)
-    workers = Workers(arguments.workers, arguments.cluster).available(partial(say_line, aside=True))
+    workers = Workers(arguments.workers, arguments.cluster)
     keep = None if arguments.keep is None else Path(arguments.keep)
     with WorkProgress() as progress:
         grid, found, ended = predict(arguments.grid, workers, keep=keep, told=progress.of)
     if out is not None:
-        from vbraille.forecast.maps import map_of
-        from vbraille.pictures.figurefiles import to_bytes
-        from vbraille.pictures.heatmaps import draw_map
-
-        figure = draw_map(map_of(grid, found))
-        files = {f"map.{kind}": to_bytes(figure, kind) for kind in ("png", "svg")}
-        write_folder(out, {"predictions.csv": _csv(found).encode(), **files})
+        write_folder(out, {"predictions.csv": _csv(found).encode()})
     if arguments.json:
         json.dump(to_json(grid, found), sys.stdout, ensure_ascii=False, indent=1)
         print()
@@ -50,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
             where = ", ".join(f"{name} {value}" for name, value in one.point.items())
             say_line(f"{where}: {100 * one.legibility:.1f} % of the characters right")
         if out is not None:
-            say_line(f"written: {out / 'predictions.csv'}, map.png, map.svg")
+            say_line(f"written: {out / 'predictions.csv'}")
     if ended is not None:
         sys.stdout.flush()
         raise ended

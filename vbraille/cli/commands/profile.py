@@ -21,7 +21,6 @@ from vbraille.feeling.costs import (
     measure,
     to_csv,
 )
-from vbraille.feeling.kindcosts import costs_of_kinds
 from vbraille.feeling.loading import load_scene
 from vbraille.feeling.paths import path_of
 from vbraille.files import write_file
@@ -32,7 +31,6 @@ if TYPE_CHECKING:
     import argparse
 
     from vbraille.feeling.costs import Costs
-    from vbraille.feeling.kindcosts import KindCosts
 
 _RATE_HZ = 1000.0
 
@@ -51,8 +49,6 @@ def run(arguments: argparse.Namespace) -> int:
     except ValueError as error:
         raise InputError(f"{error}; take a longer path") from None
     _say(costs)
-    whole, dearest = costs_of_kinds(program, path, int(costs.frame_us.argmax()))
-    _say_kinds(whole, dearest)
     say_line(f"program: {program.nbytes / 1000:.1f} kB, {len(loaded.scene.elements)} elements")
     if arguments.elements:
         found = list(costs_of_elements(loaded, display, path, _RATE_HZ))
@@ -62,9 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
                 f"{cost.most_us:.2f} µs at most"
             )
     if arguments.out is not None:
-        write_file(
-            Path(arguments.out), to_csv(costs, whole.kinds_us).encode(), replace=arguments.force
-        )
+        write_file(Path(arguments.out), to_csv(costs).encode(), replace=arguments.force)
         say_line(f"written: {arguments.out}")
     if arguments.map is not None:
         # Only who wants a picture waits for what draws it.
@@ -116,14 +110,3 @@ def _say(costs: Costs) -> None:
     for low, high, share in histogram(costs):
         if share:
             say_line(f"histogram: {low:.2f} to {high:.2f} µs: {share:.1%}")
-
-
-def _say_kinds(whole: KindCosts, dearest: KindCosts) -> None:
-    """Say what each kind of pattern has in it, a kind a line."""
-    for kind in whole.found:
-        mean, most = (max(costs.share(kind), 0.0) for costs in (whole, dearest))
-        say_line(f"kind {kind}: {mean:.1%} of the mean, {most:.1%} of the most")
-    say_line(
-        f"kinds together: {whole.told_apart:.1%} of the mean, {dearest.told_apart:.1%} of the "
-        "most, each measured by leaving it out"
-    )

@@ -164,7 +164,7 @@ def _pilot(arguments: argparse.Namespace) -> int:
 
     protocol = load_protocol(arguments.protocol)
     folder = Path(arguments.out or f"pilot-{protocol.name}")
-    workers = Workers(arguments.workers).available(partial(say_line, aside=True))
+    workers = Workers(arguments.workers)
     with WorkProgress() as progress:
         report = pilot(
             protocol,
@@ -172,7 +172,6 @@ def _pilot(arguments: argparse.Namespace) -> int:
             folder,
             workers,
             noise=arguments.noise,
-            skin=arguments.skin,
             seed=arguments.seed,
             told=progress.of,
         )

@@ -110,12 +110,6 @@ def session_pilot(parser: ArgumentParser) -> None:
         help="Give the simulated reader this much noise, from 0 for none (default: 0.4).",
     )
     parser.add_argument(
-        "--skin",
-        choices=("strain", "halfspace"),
-        default="strain",
-        help="Let the simulated reader feel by this model of the skin (default: strain).",
-    )
-    parser.add_argument(
         "--out",
         metavar="DIR",
         help="Keep the sessions and the report in this new directory (default: pilot-PROTOCOL).",

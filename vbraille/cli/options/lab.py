@@ -164,18 +164,6 @@ def analyse(parser: ArgumentParser) -> None:
         help="Leave a participant out, and say why in the report; this may be given again.",
     )
     parser.add_argument(
-        "--sites",
-        action="store_true",
-        help="Take each folder that sessions or tables stand in for a site with participants of "
-        "its own: P01 of the folder berlin is berlin/P01.",
-    )
-    parser.add_argument(
-        "--mapping",
-        metavar="FILE.toml",
-        help="Read tables that another program wrote, such as PsychoPy, OpenSesame or jsPsych, by "
-        "this file: which of their columns is which of ours (default: tables have our columns).",
-    )
-    parser.add_argument(
         "--factors",
         type=names,
         metavar="NAME,NAME",
@@ -253,8 +241,7 @@ def _conduct(parser: ArgumentParser) -> None:
         "--answers",
         metavar="SOURCE",
         help="Take answers that are typed, from a file with a line for each trial, or from a "
-        "simulated reader, simulated[:NOISE[:SKIN]], whose skin is strain or halfspace (default: "
-        "typed, or as the session began).",
+        "simulated reader, simulated[:NOISE] (default: typed, or as the session began).",
     )
     parser.add_argument(
         "--hand",
@@ -277,8 +264,7 @@ def _conduct(parser: ArgumentParser) -> None:
         "--also",
         metavar="DISPLAY",
         help="For a protocol that shows something on a conventional display: take this one, as "
-        "brlapi:HOST:N for BRLTTY at another address, dotpad:PORT for a Dot Pad, hid or "
-        "hid:PATH for a display with USB's own protocol (default: BRLTTY's on this machine).",
+        "brlapi:HOST:N for BRLTTY at another address (default: BRLTTY's on this machine).",
     )
     parser.add_argument(
         "--markers",

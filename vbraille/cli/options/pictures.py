@@ -11,8 +11,6 @@ TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     from argparse import ArgumentParser
 
-SHEETS = ("canvas", "a4", "letter", "11x11.5")
-
 
 def scene_map(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille map``."""
@@ -76,26 +74,12 @@ def scene_map(parser: ArgumentParser) -> None:
         help="Draw the array of this display, in whose style labels are written as well (default: "
         "stress2-8x8).",
     )
+    parser.add_argument("--axes", action="store_true", help="Draw axes in mm around the picture.")
     parser.add_argument(
-        "--axes", action="store_true", help="Draw axes in mm and a scale bar around the picture."
-    )
-    parser.add_argument(
-        "--abstract",
+        "--outline",
         action="store_true",
-        help="Draw what the picture is made of instead, as lines, fills and dots.",
-    )
-    parser.add_argument(
-        "--raised",
-        action="store_true",
-        help="Draw it for swell paper or an embosser instead: black lines on white that fingers "
-        "can follow, with braille at its standard distances.",
-    )
-    parser.add_argument(
-        "--sheet",
-        choices=SHEETS,
-        default="canvas",
-        help="Put a raised drawing on paper of this size, in the middle and smaller if need be "
-        "(default: canvas, paper of the size of the picture).",
+        help="Draw what is felt in black on white instead, true to scale, for eyes and for swell "
+        "paper (default: a deflection map).",
     )
 
 

@@ -92,8 +92,7 @@ def _reading(parser: ArgumentParser) -> None:
         "--also",
         metavar="DISPLAY",
         help="Show each line on a conventional display beside, and obey its keys: brlapi for the "
-        "one that BRLTTY drives, brlapi:HOST:N for BRLTTY at another address, dotpad:PORT for a "
-        "Dot Pad, hid or hid:PATH for a display with USB's own protocol (default: none).",
+        "one that BRLTTY drives, brlapi:HOST:N for BRLTTY at another address (default: none).",
     )
     parser.add_argument(
         "--cells",
@@ -140,10 +139,10 @@ def page(parser: ArgumentParser) -> None:
     groups.layout(parser)
     parser.add_argument(
         "--format",
-        choices=("unicode", "brf", "dots", "text", "pef", "ebrl"),
+        choices=("unicode", "brf", "dots", "text", "pef"),
         default="unicode",
-        help="Write Unicode braille, ASCII braille (BRF), dot numbers, the text of each line, PEF, "
-        "or eBraille (default: unicode).",
+        help="Write Unicode braille, ASCII braille (BRF), dot numbers, the text of each line, or "
+        "PEF (default: unicode).",
     )
     parser.add_argument(
         "--out", metavar="FILE", help="Write to this file, whole or not at all (default: print)."
@@ -156,21 +155,7 @@ def page(parser: ArgumentParser) -> None:
         type=whole,
         metavar="N",
         help="Lay out for lines of so many cells, whatever the display (default: the display's, "
-        "or 40 on pages).",
-    )
-    parser.add_argument(
-        "--layout",
-        choices=("bana",),
-        help="Make pages to be embossed by the literary layout of the Braille Authority of North "
-        "America, with page numbers; --lines 25 then says how many lines a page has (default: "
-        "lines without pages).",
-    )
-    parser.add_argument(
-        "--workers",
-        type=whole,
-        metavar="N",
-        help="Translate a long text in so many processes (default: one for each processor, at "
-        "most 4; only one for --lines 1-10 and the like).",
+        "or 40 in PEF).",
     )
     parser.set_defaults(model=None)  # so that it is known whether a display was asked for
 

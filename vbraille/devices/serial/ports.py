@@ -1,27 +1,28 @@
 """Serial ports: which there are, how one is opened, and how it is found again.
 
-PATH[?baud=N]          /dev/ttyACM0, or a link to it
-SCHEME://…[?baud=N]    pyserial's: socket://, spy://, loop://, hwgrep://, …
+PATH[?baud=N]          /dev/ttyACM0, or a link to it, such as one of /dev/serial/by-id/
+socket://HOST:PORT     the serial line of another computer, over TCP
 """
 
 from __future__ import annotations
 
 import errno
 import os
+import socket
 import stat
 import termios
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
+from urllib.parse import urlsplit
 
 import serial
 from serial.tools import list_ports
 
-from vbraille.devices.serial.urls import check_url, explain_url
 from vbraille.errors import DeviceError, InputError, VbrailleError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Iterator
 
     from serial.tools.list_ports_common import ListPortInfo
 
@@ -31,6 +32,8 @@ BAUD: Final = 921_600
 _LOWEST_BAUD, _HIGHEST_BAUD = 300, 12_000_000
 # Group that owns a port where only a group may open it, in the usual case.
 _GROUP = "dialout"
+_SOCKET: Final = "socket://"
+_EXAMPLE: Final = "socket://192.168.1.5:7000"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +43,7 @@ class Address:
     Parameters
     ----------
     url
-        A path, or a URL that pyserial knows.
+        A path, or the URL of a socket.
     baud
         Symbols a second; None if the rate was not given.
     """
@@ -97,16 +100,32 @@ def parse_address(text: str) -> Address:
     url, _, query = text.partition("?")
     if not url:
         raise InputError(f"serial: needs a port, as in serial:/dev/ttyACM0; {_there_is()}")
-    baud, others = None, []
+    if "://" in url:
+        _check_socket(url)
+    baud = None
     for option in filter(None, query.split("&")):
         name, _, value = option.partition("=")
         if name == "baud":
             baud = _parse_baud(value)
-        elif "://" in url:
-            others.append(option)  # an option for pyserial
         else:
             raise InputError(f"there is no option {name!r} of a serial port; there is baud")
-    return Address(url + ("?" + "&".join(others) if others else ""), baud)
+    return Address(url, baud)
+
+
+def _check_socket(url: str) -> None:
+    """Raise InputError if a URL is not that of a socket."""
+    if not url.lower().startswith(_SOCKET):
+        raise InputError(
+            f"{url} is no port; give a path, such as /dev/ttyACM0 or one of /dev/serial/by-id/, or "
+            f"{_EXAMPLE}"
+        )
+    try:
+        parts = urlsplit(url)
+        whole = parts.hostname and parts.port and parts.path in ("", "/")
+    except ValueError:
+        whole = False
+    if not whole:
+        raise InputError(f"{url} needs a host and the number of a port, as in {_EXAMPLE}")
 
 
 def _parse_baud(text: str) -> int:
@@ -135,8 +154,6 @@ def open_serial_port(address: Address, url: str | None = None) -> serial.SerialB
         If the port cannot be opened.
     """
     url = url or address.url
-    if not address.is_path:
-        check_url(url)
     try:
         if address.is_path and not stat.S_ISCHR(Path(url).stat().st_mode):
             raise _no_port(url)
@@ -170,7 +187,33 @@ def explain(fault: Exception, url: str) -> VbrailleError:
         )
     if number in (errno.EBUSY, errno.EAGAIN):
         return DeviceError(f"{url} is busy; end the other program that uses it")
-    return explain_url(fault, url) if "://" in url else _no_port(url)
+    return _explain_socket(fault, url) if "://" in url else _no_port(url)
+
+
+def _explain_socket(fault: BaseException, url: str) -> VbrailleError:
+    parts = urlsplit(url)
+    host, port = parts.hostname, parts.port
+    for cause in _causes(fault):
+        number = cause.errno if isinstance(cause, OSError) else None
+        if isinstance(cause, socket.gaierror):
+            return InputError(f"there is no computer {host}; see that its name is right")
+        if isinstance(cause, TimeoutError) or number == errno.ETIMEDOUT:
+            return DeviceError(f"{host} does not answer; see that it is on and in this network")
+        if number in (errno.ENETUNREACH, errno.EHOSTUNREACH):
+            return DeviceError(f"there is no way to {host}; see that it is on and in this network")
+        if number == errno.ECONNREFUSED:
+            return DeviceError(
+                f"{host} is there, but nothing answers at its port {port}; start what is to "
+                f"answer, or give another number"
+            )
+    return DeviceError(f"{url} cannot be opened; see that host and port are right")
+
+
+def _causes(fault: BaseException | None) -> Iterator[BaseException]:
+    """Go through an exception and its causes: pyserial puts its own around the system's."""
+    while fault is not None:
+        yield fault
+        fault = fault.__cause__ or fault.__context__
 
 
 def _no_port(url: str) -> InputError:

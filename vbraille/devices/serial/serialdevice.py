@@ -115,7 +115,7 @@ class SerialDevice(Device):
         """Counts of what went wrong so far, by name."""
         conversation = self.conversation
         return {
-            "frames not sent": self._unsent + self.port.lost,
+            "frames not sent": self._unsent,
             "states missed": conversation.states.missed,
             "watchdog trips": conversation.trips.count,
             "watchdog reports not believed": conversation.trips.disbelieved,

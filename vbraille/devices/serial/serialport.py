@@ -62,7 +62,6 @@ class SerialPort:
         self.losses = 0
         self._list_ports = list_ports
         self._look_s = look_s
-        self._lost_before = 0
         self._finder: _Finder | None = None
         self._identity = identify(address, list_ports)
         self._line = open_line(address)
@@ -72,18 +71,12 @@ class SerialPort:
         """Serial number of the device on USB; empty if none is known."""
         return "" if self._identity is None else self._identity.serial_number
 
-    @property
-    def lost(self) -> int:
-        """Number of frames that were taken and then did not go out."""
-        return self._lost_before + self._line.lost
-
     def read(self) -> bytes:
         """Bytes that have come; none while the port is gone. This never waits."""
         if self._finder is not None:
             line = self._finder.found
             if line is None:
                 return b""
-            self._lost_before += self._line.lost
             _log.info("%s is back", self.address.url)
             self._line = line
             self._finder = None

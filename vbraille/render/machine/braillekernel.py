@@ -1,4 +1,4 @@
-"""The compiled inner loops of braille in a picture; `referencebraille` is their twin in numpy.
+"""The compiled inner loops of braille in a picture, of which the tests have a twin in numpy.
 
 Both take the places of many actuators at once, x and y of the canvas in mm, and fill a number for
 each. ``numbers`` is a whole program's; a label's run in it begins at ``first``, with the places

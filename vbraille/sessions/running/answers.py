@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 from vbraille.errors import InputError
 from vbraille.sessions.running.keypress import KeyPress, TerminalKey
 from vbraille.sessions.running.reader import Simulated
-from vbraille.sessions.simulated.observer import SKINS
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -186,7 +185,7 @@ class ScriptedAnswers:
 def parse_answers(spec: str, protocol: Design, plan: Plan, after: int = 0) -> Answers:
     """Make the source of answers for a spec.
 
-    That is ``typed``, ``simulated[:NOISE[:SKIN]]``, or a file's name.
+    That is ``typed``, ``simulated[:NOISE]``, or a file's name.
 
     Raises
     ------
@@ -199,12 +198,11 @@ def parse_answers(spec: str, protocol: Design, plan: Plan, after: int = 0) -> An
     if spec == PROGRAM:
         raise InputError(f"the answers came from a program; give {setting('answers')} typed")
     if kind == "simulated":
-        number, _, skin = noise.partition(":")
         try:
-            loud = float(number or 0.0)
+            loud = float(noise or 0.0)
         except ValueError:
-            raise InputError(f"noise is {number!r}; give a number, such as simulated:0.2") from None
-        answers = Simulated(protocol, plan, loud, skin or SKINS[0])
+            raise InputError(f"noise is {noise!r}; give a number, such as simulated:0.2") from None
+        answers = Simulated(protocol, plan, loud)
     else:
         from difflib import get_close_matches  # takes long to load
 

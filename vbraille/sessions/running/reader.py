@@ -27,7 +27,7 @@ from vbraille.sessions.planning.questions import (
 )
 from vbraille.sessions.running import comparing
 from vbraille.sessions.simulated import judging
-from vbraille.sessions.simulated.observer import SKINS, Observer
+from vbraille.sessions.simulated.observer import Observer
 
 if TYPE_CHECKING:
     from vbraille.render.braille.models import Model
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.running.comparing import DotPair
-    from vbraille.sessions.simulated.observer import Parameter, Skin
+    from vbraille.sessions.simulated.observer import Parameter
     from vbraille.sessions.simulated.skin import Exploration
 
 MOST_NOISE = 100.0
@@ -60,27 +60,17 @@ class Simulated:
         number and the attempt of the trial.
     noise
         Noise of the reader, described at `vbraille.sessions.simulated.observer`.
-    skin
-        Model of the skin, one of `vbraille.sessions.simulated.observer.SKINS`.
 
     Raises
     ------
     InputError
-        If the protocol is for paper, the noise is out of range, or there is no such skin.
+        If the protocol is for paper, or the noise is out of range.
     """
 
     typed = False
     felt = True
 
-    def __init__(
-        self, protocol: Protocol, plan: Plan, noise: float = 0.0, skin: str = SKINS[0]
-    ) -> None:
-        chosen: Skin | None = next((one for one in SKINS if one == skin), None)
-        if chosen is None:
-            raise InputError(
-                f"there is no skin {skin!r}; give {' or '.join(SKINS)}, as in "
-                f"simulated:0.2:{SKINS[-1]}"
-            )
+    def __init__(self, protocol: Protocol, plan: Plan, noise: float = 0.0) -> None:
         if protocol.medium == "paper":
             raise InputError(
                 f"{protocol.name} is read on paper, which the simulated reader cannot feel; "
@@ -93,16 +83,16 @@ class Simulated:
             )
         if not 0 <= noise <= MOST_NOISE:
             raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
-        self.name = f"simulated:{noise:g}" + (f":{skin}" if skin != SKINS[0] else "")
+        self.name = f"simulated:{noise:g}"
         model: Model = protocol.model
 
-        def told(condition: Condition, skin: Skin) -> Observer:
+        def told(condition: Condition) -> Observer:
             style = protocol.style_of(condition)
             style = replace(model.style, mapping=style.mapping, geometry=style.geometry)
-            return Observer(model.display, style, noise=noise, skin=skin)
+            return Observer(model.display, style, noise=noise)
 
         self._noise = noise
-        self._observers = {c.name: told(c, chosen) for c in protocol.conditions}
+        self._observers = {c.name: told(c) for c in protocol.conditions}
         self._lead_cells = protocol.lead_cells
         self._parameter = protocol.parameter or ""
         self._question = protocol.asks

@@ -30,8 +30,6 @@ wave w = [1 + cos(2πu/W)] / 2 without smoothing, and depends on W and p alone. 
 reached if nine tenths of its width were felt. The line between two neighbouring places that were
 felt counts as felt too, unless they are more than W / 2 apart.
 
-`vbraille.sessions.simulated.halfspace` has another model of evidence, which can be chosen instead.
-
 **Best of the passes.** A place is 5 µm long. At each place, only the moment that moved the skin
 most counts, whichever the pass and the pair. So a pass that a fade or a rest has weakened is
 replaced by any better pass, and is not averaged with it.
@@ -55,11 +53,6 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from vbraille.braille.dots import PLACES, mask_of
-from vbraille.sessions.simulated.halfspace import (
-    reference_strain,
-    strains_below,
-    without_receptors,
-)
 from vbraille.sessions.simulated.skin import (
     STILL_MM_S,
     Exploration,
@@ -76,8 +69,6 @@ if TYPE_CHECKING:
     from vbraille.render.braille.style import BrailleStyle
 
 Parameter = Literal["dot width", "gap"]
-Skin = Literal["strain", "halfspace"]
-SKINS: tuple[Skin, ...] = ("strain", "halfspace")
 
 PLACE_MM = 0.005
 LEAST_FELT = 1e-3  # least evidence, in units of E₀, that counts as felt
@@ -126,9 +117,6 @@ class Observer:
     noise
         Standard deviation of the noise, 0 or more: in units of E₀ for evidence, and in units of
         the nominal length for lengths.
-    skin
-        What evidence is: "strain" for equation 3, "halfspace" for equation 8 of
-        `vbraille.sessions.simulated.halfspace`.
 
     Raises
     ------
@@ -140,19 +128,15 @@ class Observer:
     __slots__ = (
         "_channels",
         "_half_mm",
-        "_left_out",
         "_pairs",
         "_steps",
         "_swings",
         "array",
         "geometry",
         "noise",
-        "skin",
     )
 
-    def __init__(
-        self, array: Display, style: BrailleStyle, *, noise: float = 0.0, skin: Skin = "strain"
-    ) -> None:
+    def __init__(self, array: Display, style: BrailleStyle, *, noise: float = 0.0) -> None:
         if array.columns < 2:
             raise ValueError("the array has 1 column; it must have 2 or more")
         mapping, own = style.mapping, style.rows_on(array)
@@ -161,7 +145,6 @@ class Observer:
         self.array = array
         self.geometry = style.geometry
         self.noise = noise
-        self.skin = skin
         self._half_mm = array.span_mm / 2
         self._steps = math.ceil(array.column_pitch_mm / PLACE_MM)
         # Rows that show the same dots are one channel; each dot has the number of its channel.
@@ -180,16 +163,7 @@ class Observer:
         for channel, kind in enumerate(kinds):
             weights[own][list(kind), channel] = signs[list(kind)] / len(kind)
         differences = np.diff(np.eye(array.columns), axis=1) / array.column_pitch_mm
-        self._left_out = 0  # pairs at each end of the array by which nothing is felt
-        if skin == "strain":
-            self._pairs = _per_frame(weights, differences)
-        else:  # the channels twice: for the strain along x, and for the shear
-            pairs = array.columns - 1
-            self._left_out = without_receptors(pairs, array.column_pitch_mm)
-            felt = slice(self._left_out, pairs - self._left_out)
-            below = strains_below(pairs, array.column_pitch_mm)
-            both = [_per_frame(weights, differences @ strain[:, felt]) for strain in below]
-            self._pairs = np.concatenate(both, axis=-1)
+        self._pairs = _per_frame(weights, differences)
         self._swings = _per_frame(weights, np.eye(array.columns))
 
     def felt(self, exploration: Exploration, places: int) -> Touch:
@@ -214,7 +188,7 @@ class Observer:
             return Touch(evidence)
         strain = self._felt(near, self._pairs)
         # Distance of the outermost pair from the centre.
-        reach_mm = self._half_mm - (self._left_out + 0.5) * pitch_mm
+        reach_mm = self._half_mm - 0.5 * pitch_mm
         between_mm = near.x_mm - reach_mm
         wave = Wave.best(between_mm, strain, pitch_mm, self._steps)
         rates = Rates(wave, pitch_mm / self._steps, geometry.dot_width_mm / 2)
@@ -227,21 +201,11 @@ class Observer:
                 over = (near.x_mm >= left_mm - reach_mm) & (near.x_mm <= right_mm + reach_mm)
                 over &= moving
                 speed_mm_s = float(np.median(speeds[over])) if over.any() else 0.0
-                rms = self._rms(rates, left_mm, right_mm, smoothing_mm(speed_mm_s))
+                rms = rates.rms(left_mm, right_mm, smoothing_mm(speed_mm_s))
                 for dot, channel in self._channels.items():
                     if PLACES[dot][0] == side:
                         evidence[place, dot - 1] = rms[channel]
-        reference = reference_per_mm2 if self.skin == "strain" else reference_strain
-        return Touch(evidence / reference(geometry.dot_width_mm, pitch_mm))
-
-    def _rms(
-        self, rates: Rates, left_mm: float, right_mm: float, sigma_mm: float
-    ) -> NDArray[np.float64]:
-        """Evidence between two places by channel, not yet in units of E₀."""
-        if self.skin == "strain":
-            return rates.rms(left_mm, right_mm, sigma_mm)
-        along, shear = np.split(rates.rms_of_values(left_mm, right_mm, sigma_mm), 2)
-        return np.hypot(along, shear)
+        return Touch(evidence / reference_per_mm2(geometry.dot_width_mm, pitch_mm))
 
     def answer(self, touch: Touch, random: np.random.Generator) -> list[int | None]:
         """Dot masks of the cells felt; None for a cell without the hand, or if nothing was felt."""

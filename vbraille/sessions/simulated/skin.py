@@ -188,13 +188,6 @@ class Rates:
         rate = np.diff(smooth, axis=1) / self._step_mm
         return _rms(rate, felt)
 
-    def rms_of_values(
-        self, left_mm: float, right_mm: float, sigma_mm: float
-    ) -> NDArray[np.float64]:
-        """Rms of the smoothed wave itself; float64[channels], NaN if it was not felt there."""
-        smooth, felt = self._smoothed(left_mm, right_mm, sigma_mm)
-        return _rms((smooth[:, 1:] + smooth[:, :-1]) / 2, felt)
-
     def _smoothed(
         self, left_mm: float, right_mm: float, sigma_mm: float
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:

@@ -1,0 +1,344 @@
+"""Drawings of scenes, true to scale: maps with axes and the array, and outlines of what is felt."""
+
+from __future__ import annotations
+
+import io
+import math
+from typing import TYPE_CHECKING, NamedTuple, cast
+from xml.sax.saxutils import escape
+
+import numpy as np
+from matplotlib.collections import PathCollection, PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path as Outline
+
+from vbraille.errors import InputError
+from vbraille.pictures.figurefiles import METADATA, styled, to_bytes
+from vbraille.pictures.scenes import grays, map_places
+from vbraille.pictures.scenewords import vibrations
+from vbraille.pictures.words import plain
+from vbraille.wording import setting
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from vbraille.display import Display
+    from vbraille.render.scene.assets import Assets
+    from vbraille.scene.scene import Canvas, Scene
+
+KINDS = ("svg", "pdf", "png")
+MM_PER_INCH = 25.4
+_POINTS_PER_MM = 72 / MM_PER_INCH
+# Margins of a picture with axes, in mm: left, right, above and below.
+_MARGINS_MM = 11.0, 3.0, 2.0, 9.0
+_BAR_SHARES = 0.3, 0.7  # of the pitches, where the size of contactors is not known
+_HAIR_MM = 0.15
+# How far a bar is drawn from the middle of its place to either side, as a share of the pitch: as
+# far as bars can go without touching; true deflections would be too small to be seen.
+_SHIFT = 0.3
+_OUTLINE_PER_MM, _OUTLINE_PIXELS = 8.0, 9_000_000
+# Times over a swing of 50 Hz, the fastest that there is: what vibrates is up at one of them.
+_UP_S = (0.0, 0.005, 0.01, 0.015)
+
+
+class ArrayPlace(NamedTuple):
+    """Where an array stands on a picture: its centre in mm, and how far it is turned, in degrees.
+
+    The angle turns it against the clock, as in `vbraille.pose`.
+    """
+
+    x_mm: float
+    y_mm: float
+    angle_deg: float = 0.0
+
+
+class ArrayOnMap(NamedTuple):
+    """An array on a map.
+
+    Parameters
+    ----------
+    display, place
+        The array, and where it is.
+    deflections : float64[rows, columns]
+        Deflections of its actuators, from 0 to 1.
+    """
+
+    display: Display
+    place: ArrayPlace
+    deflections: NDArray[np.float64]
+
+
+def actuators_mm(display: Display, place: ArrayPlace) -> NDArray[np.float64]:
+    """Places of an array's actuators on the canvas, by the convention of `vbraille.pose`.
+
+    Returns
+    -------
+    float64[rows, columns, 2]
+        x and y in mm.
+    """
+    right = display.column_offsets_mm() - display.span_mm / 2
+    down = display.row_offsets_mm() - display.depth_mm / 2
+    return _turned(np.stack(np.meshgrid(right, down), axis=-1), place)
+
+
+def check_on_canvas(canvas: Canvas, display: Display, place: ArrayPlace) -> None:
+    """Check that all actuators of an array are on a canvas.
+
+    Raises
+    ------
+    InputError
+        If one is not, or the place is no number.
+    """
+    x, y = np.moveaxis(actuators_mm(display, place), -1, 0)
+    inside = (x >= 0) & (x <= canvas.width_mm) & (y >= 0) & (y <= canvas.height_mm)
+    if not (all(map(math.isfinite, place)) and inside.all()):
+        raise InputError(
+            f"the array is not on the canvas at {place.x_mm:g},{place.y_mm:g}: {setting('array')} "
+            f"is its centre, and all of it must be from 0,0 to "
+            f"{canvas.width_mm:g},{canvas.height_mm:g} mm"
+        )
+
+
+def show_array(
+    scene: Scene, assets: Assets, display: Display, place: ArrayPlace, time_s: float
+) -> ArrayOnMap:
+    """Put an array on a scene.
+
+    Parameters
+    ----------
+    scene, assets
+        A resolved scene, and what it takes from image files and labels.
+    display, place
+        The array, and where it is.
+    time_s
+        Time for what vibrates or moves.
+    """
+    from vbraille.render.scene.canvas import SceneMap  # loads the kernels
+
+    drawn = SceneMap(scene, assets)
+    places, frame = actuators_mm(display, place), np.empty(display.shape)
+    for (row, column), _ in np.ndenumerate(frame):
+        x, y = places[row, column]
+        frame[row, column] = drawn.deflections(
+            np.array([x]), np.array([y]), time_s=time_s, parity=(row + column) % 2
+        )[0, 0]
+    return ArrayOnMap(display, place, frame)
+
+
+def bars_mm(shown: ArrayOnMap) -> NDArray[np.float64]:
+    """Corners of the bars that stand for contactors, shifted by their deflections.
+
+    A bar at rest stands as far to the side of rest as it can, one at full swing as far to the
+    other; the shift is larger than the true one.
+
+    Returns
+    -------
+    float64[rows × columns, 4, 2]
+        x and y in mm.
+    """
+    display = shown.display
+    wide, tall = _bar_size_mm(display)
+    side = 1.0 if display.rest_side == "right" else -1.0
+    shifts = side * _SHIFT * display.column_pitch_mm * (1.0 - 2.0 * shown.deflections)
+    right = display.column_offsets_mm() - display.span_mm / 2
+    down = display.row_offsets_mm() - display.depth_mm / 2
+    middles = np.stack(np.meshgrid(right, down), axis=-1)
+    middles[..., 0] += shifts
+    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (wide / 2, tall / 2)
+    return _turned(middles.reshape(-1, 1, 2) + corners, shown.place)
+
+
+def map_figure(
+    canvas: Canvas,
+    deflections: NDArray[np.floating],
+    array: ArrayOnMap | None = None,
+    *,
+    axes: bool = False,
+) -> Figure:
+    """Draw a deflection map true to scale, with the array over it and axes if they are wanted.
+
+    Parameters
+    ----------
+    canvas
+        The canvas that the map covers.
+    deflections : floating[rows, columns]
+        Deflections of the scene.
+    array
+        An array over the map.
+    axes
+        Whether there are axes in mm.
+    """
+    figure, place = _sheet(canvas, _MARGINS_MM if axes else (0.0, 0.0, 0.0, 0.0))
+    place.set_axis_on()
+    for spine in place.spines.values():
+        spine.set_visible(axes)
+    if not axes:
+        place.set_axis_off()
+    place.tick_params(labelsize=7)
+    if axes:
+        place.set_xlabel("mm", fontsize=7, loc="right", labelpad=1)
+    place.imshow(
+        grays(deflections),
+        cmap="gray",
+        vmin=0,
+        vmax=255,
+        extent=(0, canvas.width_mm, canvas.height_mm, 0),
+        interpolation="none",
+        aspect="auto",
+    )
+    if array is not None:
+        _draw_array(place, array)
+    return figure
+
+
+def outline_figure(scene: Scene, assets: Assets) -> Figure:
+    """Draw what is felt in black on white, for eyes and for paper that swells where it is black.
+
+    Black is where a finger feels more than half of the scene's strongest deflection, with all that
+    vibrates up. Strokes that meet are joined, since the drawing follows what is felt.
+
+    Parameters
+    ----------
+    scene, assets
+        A resolved scene, and what it takes from image files and labels.
+    """
+    canvas = scene.canvas
+    figure, place = _sheet(canvas, (0.0, 0.0, 0.0, 0.0))
+    contours = felt_contours(scene, assets)
+    if contours:
+        # Contours of holes run the other way round, so that one filled path leaves the holes.
+        whole = Outline.make_compound_path(*(Outline(c, closed=True) for c in contours))
+        place.add_patch(PathPatch(whole, facecolor="black", edgecolor="none"))
+    return figure
+
+
+def felt_contours(scene: Scene, assets: Assets) -> list[NDArray[np.float64]]:
+    """Closed lines in mm around what is felt at more than half of the strongest deflection.
+
+    Returns
+    -------
+    list of float64[n, 2]
+        Contours; those of holes run the other way round.
+    """
+    from contourpy import FillType, contour_generator
+
+    from vbraille.render.scene.canvas import SceneMap  # loads the kernels
+
+    canvas = scene.canvas
+    area = canvas.width_mm * canvas.height_mm
+    per_mm = min(_OUTLINE_PER_MM, math.sqrt(_OUTLINE_PIXELS / area))
+    x, y = map_places(canvas, per_mm)
+    drawn = SceneMap(scene, assets)
+    vibrates = any(True for element in scene.elements for _ in vibrations(element))
+    felt = np.zeros((y.size, x.size), np.float32)
+    for time_s in _UP_S if vibrates else _UP_S[:1]:
+        np.maximum(felt, drawn.deflections(x, y, time_s=time_s, parity=0), out=felt)
+    strongest = float(felt.max())
+    if strongest <= 0:
+        return []
+    step = 1 / per_mm
+    # A rim at rest closes what goes beyond the canvas, at its edge.
+    x, y = (np.concatenate([[at[0] - step], at, [at[-1] + step]]) for at in (x, y))
+    lines = contour_generator(x, y, np.pad(felt, 1), fill_type=FillType.OuterOffset)
+    # A plateau at exactly the half would be all steps of rounding.
+    found = cast("tuple[list[NDArray], list[NDArray]]", lines.filled(0.51 * strongest, math.inf))
+    edge = np.array([canvas.width_mm, canvas.height_mm])
+    return [
+        np.clip(part, 0.0, edge)
+        for points, breaks in zip(*found, strict=True)
+        for part in np.split(points, breaks[1:-1].astype(int))
+    ]
+
+
+def drawing_bytes(
+    figure: Figure, kind: str, pixels_per_mm: float, title: str, description: str
+) -> bytes:
+    """Make the file of a drawing, with its title and description in it.
+
+    Parameters
+    ----------
+    figure
+        The drawing.
+    kind
+        What the file is, one of `KINDS`.
+    pixels_per_mm
+        Resolution of a PNG.
+    title, description
+        What it shows, in a word and in sentences; in an SVG screen readers say them.
+    """
+    title, description = plain(title), plain(description)
+    told = {"Title": title, "Description": description}
+    if kind == "png":
+        told = {key: text for key, text in told.items() if text.strip()}
+        return to_bytes(figure, kind, pixels_per_mm * MM_PER_INCH, told)
+    if kind == "svg":
+        content = to_bytes(figure, kind, told={"Title": title})
+        begin, end = content.index(b"<svg "), content.index(b">", content.index(b"<svg "))
+        named = ' role="img" aria-labelledby="title description"'
+        words = (
+            f'\n <title id="title">{escape(title)}</title>'
+            f'\n <desc id="description">{escape(description)}</desc>'
+        )
+        tag = content[begin:end] + named.encode() + b">" + words.encode()
+        return content[:begin] + tag + content[end + 1 :]
+    content = io.BytesIO()
+    with styled():
+        metadata = {"Title": title, "Subject": description, **METADATA["pdf"]}
+        figure.savefig(content, format="pdf", metadata=metadata)
+    return content.getvalue()
+
+
+def _sheet(canvas: Canvas, margins_mm: tuple[float, float, float, float]) -> tuple[Figure, Axes]:
+    """Make paper of the canvas's size and its margins, with axes in mm of the canvas, y down."""
+    left, right, above, below = margins_mm
+    width, height = canvas.width_mm + left + right, canvas.height_mm + above + below
+    with styled():
+        figure = Figure(figsize=(width / MM_PER_INCH, height / MM_PER_INCH), facecolor="white")
+        figure.set_layout_engine("none")
+        axes = figure.add_axes(
+            (left / width, below / height, canvas.width_mm / width, canvas.height_mm / height)
+        )
+    axes.set_axis_off()
+    axes.set(xlim=(0, canvas.width_mm), ylim=(canvas.height_mm, 0), aspect="auto")
+    return figure, axes
+
+
+def _draw_array(axes: Axes, shown: ArrayOnMap) -> None:
+    """Draw a frame, a line in the middle of each contactor's place, and the bars."""
+    display, place = shown.display, shown.place
+    _, tall = _bar_size_mm(display)
+    half = np.array(
+        [display.span_mm + 1.4 * display.column_pitch_mm, display.depth_mm + tall + 0.8]
+    )
+    frame = _turned(np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half / 2, place)
+    ends = actuators_mm(display, ArrayPlace(0, 0)).reshape(-1, 1, 2)
+    middles = _turned(ends + np.array([(0, -tall / 2), (0, tall / 2)]), place)
+    bars = bars_mm(shown)
+    hair = _HAIR_MM * _POINTS_PER_MM
+    for color, width in (("white", 4 * hair), ("black", 2 * hair)):
+        axes.add_collection(PolyCollection([frame], facecolors="none", edgecolors=color, lw=width))
+    lines = [Outline(line) for line in middles]
+    axes.add_collection(PathCollection(lines, facecolors="none", edgecolors="0.5", linewidths=hair))
+    axes.add_collection(
+        PolyCollection([*bars], facecolors="black", edgecolors="white", lw=2 * hair)
+    )
+
+
+def _bar_size_mm(display: Display) -> tuple[float, float]:
+    wide, tall = display.contactor_mm or (
+        _BAR_SHARES[0] * display.column_pitch_mm,
+        _BAR_SHARES[1] * display.row_pitch_mm,
+    )
+    return min(wide, 0.4 * display.column_pitch_mm), tall
+
+
+def _turned(offsets_mm: NDArray[np.floating], place: ArrayPlace) -> NDArray[np.float64]:
+    """Turn offsets from the array's centre, and put them on the canvas; float64[…, 2] both."""
+    angle = math.radians(place.angle_deg)
+    cosine, sine = math.cos(angle), math.sin(angle)
+    x, y = offsets_mm[..., 0], offsets_mm[..., 1]
+    return np.stack(
+        [place.x_mm + x * cosine + y * sine, place.y_mm + y * cosine - x * sine], axis=-1
+    )
