@@ -205,10 +205,10 @@ def write_folder(
             with path.open("wb") as file:
                 _fill(file, content, durable=durable)
         if durable:
-            _sync(partial)
+            sync_names(partial)
         partial.rename(folder)
         if durable:
-            _sync(folder.parent)
+            sync_names(folder.parent)
     except BaseException as fault:
         if partial in made:
             shutil.rmtree(partial, ignore_errors=True)
@@ -277,8 +277,8 @@ def _name(partial: Path, path: Path) -> None:
         partial.rename(path)
 
 
-def _sync(folder: Path) -> None:
-    """Have a directory's names on the disk."""
+def sync_names(folder: Path) -> None:
+    """Have the names in a directory on the disk, so that new files outlast a loss of power."""
     descriptor = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(descriptor)

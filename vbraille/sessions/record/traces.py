@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from vbraille.errors import VbrailleError
+from vbraille.files import sync_names
 from vbraille.sessions.record.journal import Tie
 
 if TYPE_CHECKING:
@@ -114,6 +115,7 @@ class TraceWriter:
         self._count = 0
         try:
             self._file = path.open("xb", buffering=0)
+            sync_names(path.parent)
         except OSError as error:
             raise self._fault(error) from None
 
