@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, Unpack
 
 from vbraille.devices.base import Device, Placing
 from vbraille.devices.events import Button, Knob
@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from vbraille.layout.pages import Layout, Line
     from vbraille.reading.beside import Beside
     from vbraille.render.braille.models import Model
+    from vbraille.render.braille.style import StyleChanges
     from vbraille.simulation.pointing import Pointer
     from vbraille.simulation.steering import Steering
 
@@ -332,7 +333,7 @@ class OpenDevice(DeviceInUse):
         if reader.under.hopeless is not None:
             raise DeviceError(reader.under.hopeless)
 
-    def tune(self, **turned: Any) -> None:
+    def tune(self, **turned: Unpack[StyleChanges]) -> None:
         """Show lines in a style of which some values differ from now on; see `Reader.tune`.
 
         Raises
