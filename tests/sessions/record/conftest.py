@@ -16,7 +16,7 @@ def synced(monkeypatch):
 
     def sync(descriptor):
         real(descriptor)
-        path = Path(os.readlink(f"/proc/self/fd/{descriptor}"))
+        path = Path(f"/proc/self/fd/{descriptor}").readlink()
         folder = path if path.is_dir() else path.parent
         sizes = {file.name: file.stat().st_size for file in folder.iterdir() if file.is_file()}
         done.append(("" if path.is_dir() else path.name, sizes))
