@@ -21,6 +21,7 @@ OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 TOLD = (
     "vbraille",
     "vbraille.analysis",
+    "vbraille.files",
     "vbraille.reading.frames",
     "vbraille.reading.opening",
     "vbraille.render.braille.style",

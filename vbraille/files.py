@@ -286,6 +286,37 @@ def sync_names(folder: Path) -> None:
         os.close(descriptor)
 
 
+def no_formula(text: str) -> str:
+    """Text for a cell of a CSV that no spreadsheet takes for a formula; `cell_text` undoes it.
+
+    An apostrophe stands before what begins like a formula and is no number.
+
+    >>> no_formula("=HYPERLINK(1)"), no_formula("-2.5"), no_formula("?")
+    ("'=HYPERLINK(1)", '-2.5', '?')
+    """
+    return f"'{text}" if _is_formula(text) else text
+
+
+def cell_text(cell: str) -> str:
+    """Text that `no_formula` made a cell of.
+
+    >>> cell_text("'=HYPERLINK(1)"), cell_text("'tis")
+    ('=HYPERLINK(1)', "'tis")
+    """
+    return cell[1:] if cell.startswith("'") and _is_formula(cell[1:]) else cell
+
+
+def _is_formula(text: str) -> bool:
+    begun = text.lstrip("'")
+    if len(begun) < 2 or begun[0] not in "=+-@\t\r":
+        return False
+    try:
+        float(text)
+    except ValueError:
+        return True
+    return False
+
+
 def settings_path(given: str | None = None) -> Path:
     """Path of the settings file: an option's, the environment's, or the platform's."""
     chosen = given or os.environ.get(SETTINGS_VARIABLE)
