@@ -117,7 +117,7 @@ def test_what_a_host_did_before_its_death_is_still_told(tmp_path, monkeypatch):
     log = tmp_path / "log"
     with Host(f"logged:{log}", info(), ROOM) as host:
         host.show(picture(mapping="sheared"), 1)
-        before = until(host, lasting(200))
+        before = until(host, lasting(400))  # its notice is told by then, and no more is to be heard
         done = len(seen(log))
         with os.fdopen(os.pidfd_open(host.process_id)) as ended:
             while len(seen(log)) < done + 100:
