@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self, Unpack
 
 from vbraille.devices.base import Device, Placing
 from vbraille.devices.events import Button, Knob
+from vbraille.devices.registry import find_driver
 from vbraille.devices.saying import told
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host
@@ -135,6 +136,7 @@ class OpenDevice(DeviceInUse):
                 poll_ticks=max(1, round(_POLL_S * rate_hz)),
             )
         else:
+            find_driver(device)  # before a process is begun for what is not there
             spawned, steering = begun or (None, steering_of(device))
             if has_hand(device):
                 self._hand = OpenHand(moved, steering, pointer)
