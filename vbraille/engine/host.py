@@ -37,7 +37,8 @@ if TYPE_CHECKING:
     from vbraille.render.program import Program
 
 # Opening may take a second or two; a controller that starts up, or a name that must be found, more.
-_OPEN_S = 10.0
+OPEN_S = 10.0
+OPENING = "open its device"
 # Fading takes 0.1 s; a driver may have to wait for a device that is gone.
 _END_S = 5.0
 # A loop that has done no tick for so long is held up by its driver.
@@ -49,6 +50,14 @@ _log = logging.getLogger(__name__)
 
 class HostDiedError(VbrailleError):
     """The host process ended without a word; `Host.start` begins another."""
+
+
+def too_slow(device: str, what: str) -> DeviceError:
+    """Fault of a driver that has not opened its device, or done a first tick, in `OPEN_S`."""
+    return DeviceError(
+        f"the driver {device.partition(':')[0]} did not {what} within {OPEN_S:g} s; see whether "
+        f"the device is there and switched on, or tell whoever wrote the driver"
+    )
 
 
 class Host:
@@ -142,7 +151,7 @@ class Host:
         """
         if not self._launched:
             self.launch()
-        self._wait(lambda: self._info is not None, "open its device")
+        self._wait(lambda: self._info is not None, OPENING)
         assert self._info is not None
         if self._first not in (None, self._info):
             raise InputError(f"{self._info.name} is another device than before; start anew with it")
@@ -388,13 +397,10 @@ class Host:
             if not self._at_driver:
                 continue
             if until_s is None:
-                until_s = time.monotonic() + _OPEN_S
+                until_s = time.monotonic() + OPEN_S
             elif time.monotonic() > until_s:
                 self._process.kill()
-                self._fault = DeviceError(
-                    f"the driver {self._driver} did not {what} within {_OPEN_S:g} s; see "
-                    f"whether the device is there and switched on, or tell whoever wrote the driver"
-                )
+                self._fault = too_slow(self._device, what)
                 raise self._end()
 
     def _hear(self) -> bool:
