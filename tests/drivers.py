@@ -34,6 +34,11 @@ class Logged(SimulatedDevice):
         super()._send(frame)
         self.log.write(frame.tobytes())
 
+    def _release(self):
+        super()._release()
+        if self.fault == "jammed":
+            raise OSError("the lock is jammed")
+
     def take_events(self):
         return [Notice(255, "three hundred frames")] if self.frames == 300 else []
 

@@ -21,6 +21,7 @@ OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 TOLD = (
     "vbraille",
     "vbraille.analysis",
+    "vbraille.files",
     "vbraille.reading.frames",
     "vbraille.reading.opening",
     "vbraille.render.braille.style",
@@ -136,7 +137,10 @@ class Still(vbraille.Device):
         (lambda: vbraille.VBD.style.replace(texture=2), "texture is 2; it must be 0 to 1"),
         (lambda: vbraille.VBD.style.replace(texture="x"), "texture is 'x'; it must be a number"),
         (lambda: vbraille.VBD.style.replace(mapping="sheared"), r"MAPPINGS\['sheared'\]"),
-        (lambda: vbraille.VBD.style.replace(wave=1), "a style has no wave; it has profile, "),
+        (
+            lambda: vbraille.VBD.style.replace(texure=1),
+            "no texure; the nearest is texture$",
+        ),
         (lambda: vbraille.VBD.style.replace(cell_gap_mm=0), "cell gap is 0 mm; it must be 0.1"),
         (lambda: vbraille.render_text("a", display="vbd"), "'vbd'; give vbraille.VBD$"),
         (lambda: vbraille.render_text("a", display=3), "give vbraille.VBD, vbraille.STRESS2 or"),

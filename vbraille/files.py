@@ -219,10 +219,10 @@ def write_folder(
             with _begin(path, private=private) as file:
                 _fill(file, content, durable=durable)
         if durable:
-            _sync(partial)
+            sync_names(partial)
         partial.rename(folder)
         if durable:
-            _sync(folder.parent)
+            sync_names(folder.parent)
     except BaseException as fault:
         if partial in made:
             shutil.rmtree(partial, ignore_errors=True)
@@ -299,13 +299,44 @@ def _name(partial: Path, path: Path) -> None:
         partial.rename(path)
 
 
-def _sync(folder: Path) -> None:
-    """Have a directory's names on the disk."""
+def sync_names(folder: Path) -> None:
+    """Have the names in a directory on the disk, so that new files outlast a loss of power."""
     descriptor = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
+
+
+def no_formula(text: str) -> str:
+    """Text for a cell of a CSV that no spreadsheet takes for a formula; `cell_text` undoes it.
+
+    An apostrophe stands before what begins like a formula and is no number.
+
+    >>> no_formula("=HYPERLINK(1)"), no_formula("-2.5"), no_formula("?")
+    ("'=HYPERLINK(1)", '-2.5', '?')
+    """
+    return f"'{text}" if _is_formula(text) else text
+
+
+def cell_text(cell: str) -> str:
+    """Text that `no_formula` made a cell of.
+
+    >>> cell_text("'=HYPERLINK(1)"), cell_text("'tis")
+    ('=HYPERLINK(1)', "'tis")
+    """
+    return cell[1:] if cell.startswith("'") and _is_formula(cell[1:]) else cell
+
+
+def _is_formula(text: str) -> bool:
+    begun = text.lstrip("'")
+    if len(begun) < 2 or begun[0] not in "=+-@\t\r":
+        return False
+    try:
+        float(text)
+    except ValueError:
+        return True
+    return False
 
 
 def settings_path(given: str | None = None) -> Path:

@@ -77,6 +77,12 @@ def test_a_csv_has_full_precision_and_nothing_where_nothing_is_known():
     assert read[3] == ["S4", "", "no trials"]
 
 
+def test_no_text_of_a_csv_is_a_formula():
+    rows = (("=HYPERLINK(1)", 0.5, "+1 dB"), ("S2", -0.5, "-"))
+    text = to_csv(table_of((WHO, SHARE, NOTE_COLUMN), rows).frame)
+    assert text.splitlines()[1:] == ["'=HYPERLINK(1),0.5,'+1 dB", "S2,-0.5,-"]
+
+
 @pytest.mark.parametrize(
     ("columns", "rows", "reason"),
     [

@@ -2,6 +2,7 @@
 
 import io
 import re
+import sys
 import zipfile
 
 import pytest
@@ -193,6 +194,41 @@ def test_options_of_a_showing(call, text, options, pattern, command):
 )
 def test_options_of_a_reading(call, text, options, pattern):
     assert re.search(pattern, refused(call("read", text, *options.split(" "))))
+
+
+@pytest.fixture(scope="module")
+def audited():
+    """Programs that this process begins, as Python's own audit tells; a hook stays for good."""
+    begun = []
+    sys.addaudithook(
+        lambda event, told: event == "subprocess.Popen" and begun.append(list(map(str, told[1])))
+    )
+    return begun
+
+
+@pytest.mark.parametrize(
+    ("command", "pattern"),
+    [
+        ("read {text} --device nosuch", "there is no device kind 'nosuch'"),
+        ("read {text} --device nosuch:x", "there is no device kind 'nosuch'"),
+        ("read {text}.none", "there is no file"),
+        ("read {text} --table nosuch.ctb", "there is no braille table"),
+        ("read {text} --language xx", "there is no table for language"),
+        ("read {text} --grade 7", "there is no grade 7"),
+        ("read {text} --model nosuch", "invalid choice: 'nosuch'"),
+        ("feel {text} --device nosuch:x", "there is no device kind 'nosuch'"),
+        ("device check nosuch:x", "there is no device kind 'nosuch'"),
+        ("device info nosuch:x", "there is no device kind 'nosuch'"),
+    ],
+)
+def test_what_is_not_there_is_refused_before_anything_is_begun_or_compiled(
+    call, text, audited, monkeypatch, tmp_path, command, pattern
+):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kernels"))  # which has none yet
+    audited.clear()
+    assert pattern in refused(call(*command.format(text=text).split()))
+    assert audited == []
+    assert list(tmp_path.glob("kernels/**/*.nb?")) == []
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 
 import pytest
 
+from tests import drivers
 from tests.cli import program
 from tests.tiers import heavy
 from vbraille.display import Display
@@ -137,3 +138,11 @@ def test_a_file_that_cannot_be_used_is_one_sentence(spec, tmp_path, call, text, 
     assert refused.code == 2
     assert refused.err.count("\n") == 1
     assert said in refused.err
+
+
+def test_a_driver_that_never_opens_its_device_is_named_and_ended(tmp_path):
+    module = "import time\n\ndef open_never(address, wanted):\n    time.sleep(600)\n"
+    environment = drivers.install(tmp_path, "never", "open_never", module)
+    done = program.run("device", "info", "never:", env=environment)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.startswith("vbraille: the driver never did not open its device within 10 s")

@@ -69,6 +69,15 @@ def test_a_bug_in_the_loop_still_rests(driver, texts, tmp_path):
     fades(frames)
 
 
+def test_a_driver_that_cannot_let_go_is_named_once_the_actuators_rest(driver, texts, tmp_path):
+    done, frames = read(driver, texts, tmp_path / "log", "jammed")
+    assert done.returncode == 1
+    _, sentence = done.stderr.splitlines()
+    assert "the driver logged" in sentence
+    assert "the lock is jammed" in sentence
+    fades(frames)
+
+
 def test_a_device_that_is_gone_is_said_in_one_sentence(driver, texts, tmp_path):
     done, frames = read(driver, texts, tmp_path / "log", "gone")
     assert done.returncode == 1

@@ -96,6 +96,24 @@ def test_every_frame_that_was_sent_is_made_again_bit_for_bit(tmp_path):
     assert ((ticks["share"] > 0) & (ticks["share"] < 1)).sum() > 20
 
 
+def test_a_driver_that_cannot_let_go_is_named_and_the_session_is_whole(tmp_path):
+    protocol, answers, log = (tmp_path / name for name in ("p.toml", "answers", "log"))
+    protocol.write_text(STRINGS)
+    answers.write_text("cab\nxyz\n")
+    done = program.run(
+        *session(
+            protocol, tmp_path / "s", "--answers", answers, "--device", f"logged:{log},jammed"
+        ),
+        env=drivers.install(tmp_path),
+    )
+    assert done.returncode == 1
+    assert "the driver logged" in done.stderr
+    assert "the lock is jammed" in done.stderr
+    assert whole(tmp_path / "s")
+    assert len(events(tmp_path / "s", "closed")) == 1
+    assert [row["answered"] for row in rows(tmp_path / "s")] == ["⠉⠁⠃", "⠭⠽⠵"]
+
+
 def test_a_carriage_too_short_for_the_strings_is_said_before_anything_is_begun(tmp_path, mini):
     with simulated(tmp_path, "--model", "vbd", "--travel", "20") as (spec, _):
         done = program.run(

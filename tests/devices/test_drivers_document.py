@@ -1,5 +1,6 @@
 """The driver in docs/drivers.md: complete, under 60 lines, and it works as printed."""
 
+import inspect
 import re
 import socket
 import struct
@@ -10,7 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from vbraille.display import Display
 from vbraille.errors import InputError
+from vbraille.pose import Pose
 from vbraille.testing.conformance import CHECKS
 
 PAGE = Path(__file__).parents[2] / "docs" / "drivers.md"
@@ -35,7 +38,8 @@ class Peer:
             if not frame:
                 return
             self.frames.append(frame)
-            state = struct.pack("<QI", 1000 * len(self.frames), 100 * len(self.frames))
+            count = 20_000 - abs(100 * len(self.frames) % 40_000 - 20_000)  # a carriage that sways
+            state = struct.pack("<QI", 1000 * len(self.frames), count)
             self.socket.sendto(state, host)
 
     def __enter__(self):
@@ -69,6 +73,18 @@ def address(peer):
 @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
 def test_it_conforms(driver, address, check):
     check(lambda: driver.open_netbox(address, None))
+
+
+@pytest.mark.parametrize(("heading", "kind"), [("`Display`", Display), ("`Pose`", Pose)])
+def test_the_page_names_all_fields_in_their_order(heading, kind):
+    told = PAGE.read_text().partition(f"### {heading}\n")[2].partition("\n#")[0]
+    rows = [row.split("|") for row in told.splitlines() if row.startswith("| `")]
+    names = [name for row in rows for name in re.findall(r"`(\w+)`", row[1])]
+    assert names == list(inspect.signature(kind).parameters)
+    usual = {name: row[3].strip(' `"') for row in rows for name in re.findall(r"`(\w+)`", row[1])}
+    for name, parameter in inspect.signature(kind).parameters.items():
+        given = "" if parameter.default is inspect.Parameter.empty else str(parameter.default)
+        assert usual[name] == given.removesuffix(".0")
 
 
 def test_it_has_under_60_lines():

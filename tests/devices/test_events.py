@@ -20,6 +20,7 @@ from vbraille.devices.events import (
     NotInTime,
     Placed,
     Silent,
+    Stalled,
     Stranger,
     Unplugged,
     WatchdogTripped,
@@ -37,6 +38,10 @@ SAID = [
     (
         Silent(101.5),
         "device: silent, and sent to rest; reading goes on once it speaks",
+    ),
+    (
+        Stalled(1020.0),
+        "device: its driver has not answered for 1 s; reading goes on once it does",
     ),
     (Back(times=3), "device: back (3 times in the last second)"),
     (

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import pytest
 
+from tests.baddrivers import BAD, Good
 from tests.devices.bench import Bench
 from tests.engine.test_loop import info
 from tests.tiers import heavy
 from vbraille.devices.wire.messages import Encoder
 from vbraille.engine.checking import check
 from vbraille.engine.clock import ManualClock
-from vbraille.simulation.simulated import SimulatedDevice
 
 SMALL = {"rows": 1, "columns": 2, "inverted": b"\0\1", "gain": b"\xff\xff", "enabled": b"\1\1"}
 
@@ -58,6 +58,9 @@ def test_what_is_as_it_should_be_is_fit_and_measured(checked):
     ) in said
     (tripped,) = [line for line in said if line.startswith("watchdog: tripped")]
     assert re.match(r"watchdog: tripped 3 of 3 times, median 5[01]\.0 ms after the last", tripped)
+    # It does not hold its own trips against the device.
+    assert [line for line in said if line.startswith("device: ")] == []
+    assert "watchdog trips: 0" in said
 
 
 def late(bench):
@@ -168,6 +171,17 @@ def test_a_device_of_two_axes_is_shown_a_corner_and_has_no_stop(checked):
     assert place.startswith("place: 5.0 to 5.0 mm from the left edge, of 300 mm;")
 
 
+@pytest.mark.parametrize(
+    ("driver", "found"), BAD.items(), ids=lambda each: getattr(each, "__name__", "")
+)
+def test_a_bad_driver_is_not_fit_by_the_name_of_its_fault(driver, found):
+    clock, said = ManualClock(), []
+    device = driver(replace(info(), rows=1, columns=2), clock)
+    assert check(device, clock, said.append) == 1
+    assert said[-1].startswith("verdict: not fit to be read on: ")
+    assert found in said[-1]
+
+
 def test_a_slow_but_right_clock_and_a_carriage_at_its_stop_are_fit(checked):
     def spoil(bench):
         clock_at(0.99)(bench)
@@ -178,7 +192,7 @@ def test_a_slow_but_right_clock_and_a_carriage_at_its_stop_are_fit(checked):
 
 def test_what_a_device_does_not_tell_is_said_with_the_verdict():
     clock, said = ManualClock(), []
-    with SimulatedDevice(replace(info(), rows=1, columns=2), clock.now_ns) as device:
+    with Good(replace(info(), rows=1, columns=2), clock) as device:
         assert check(device, clock, said.append) == 0
     assert said[-1] == (
         "verdict: fit to be read on, but what it has taken and its watchdog could not be tested"

@@ -107,6 +107,48 @@ def test_notes_counts_and_the_device_s_fault(tmp_path, monkeypatch):
     assert host.counts == {"frames": 300}
 
 
+def seen(log):
+    """Frames that a driver has logged so far."""
+    return np.fromfile(log).reshape(-1, 6, 10)
+
+
+def test_what_a_host_did_before_its_death_is_still_told(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", drivers.install(tmp_path)["PYTHONPATH"])
+    log = tmp_path / "log"
+    with Host(f"logged:{log}", info(), ROOM) as host:
+        host.show(picture(mapping="sheared"), 1)
+        before = until(host, lasting(400))  # its notice is told by then, and no more is to be heard
+        done = len(seen(log))
+        with os.fdopen(os.pidfd_open(host.process_id)) as ended:
+            while len(seen(log)) < done + 100:
+                select.select([], [], [], 0.01)
+            os.kill(host.process_id, signal.SIGKILL)
+            assert select.select([ended], [], [], PATIENCE_S)[0]
+        ticks = host.poll()
+        assert ticks["tick"][0] == before["tick"][-1] + 1
+        assert (np.diff(ticks["tick"]) == 1).all()
+        # All but the last frame, whose record may be half written.
+        ours = seen(log)[-ticks.size - 1 :].astype(np.float32)
+        assert ticks.size >= 99
+        assert any((ours[n : n + ticks.size] == ticks["frame"]).all() for n in (0, 1))
+        with pytest.raises(HostDiedError, match="signal 9"):
+            host.poll()
+
+
+def test_what_a_device_did_before_its_fault_is_told_to_the_last_tick(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", drivers.install(tmp_path)["PYTHONPATH"])
+    log = tmp_path / "log"
+    with Host(f"logged:{log},gone", info(), ROOM) as host:
+        with os.fdopen(os.pidfd_open(host.process_id)) as ended:
+            assert select.select([ended], [], [], PATIENCE_S)[0]
+        ticks = host.poll()
+        assert 0 < ticks.size <= 300
+        assert ticks["tick"].tolist() == list(range(ticks.size))
+        assert len(seen(log)) == 300 > ticks.size  # the first ones were a rehearsal
+        with pytest.raises(DeviceError, match="the device is gone"):
+            host.poll()
+
+
 def test_a_device_that_cannot_be_opened():
     before = descriptors()
     with pytest.raises(InputError, match="no device kind 'nothing'"):

@@ -7,6 +7,8 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import pytest
 
@@ -14,9 +16,17 @@ from tests import drivers
 from tests.engine.test_host import PATIENCE_S, ROOM, descriptors, lasting, until
 from tests.engine.test_loop import info
 from vbraille.devices.base import Placing
-from vbraille.devices.events import Changed, Difference, Notice, NotInTime, Stranger
+from vbraille.devices.events import (
+    Back,
+    Changed,
+    Difference,
+    Notice,
+    NotInTime,
+    Stalled,
+    Stranger,
+)
 from vbraille.engine.host import Host, HostDiedError
-from vbraille.errors import DeviceError
+from vbraille.errors import DeviceError, VbrailleError
 
 _HEAD = """
 import ctypes, os, subprocess, sys, time
@@ -136,6 +146,82 @@ def test_a_driver_that_waits_for_ever_outlives_a_killed_parent_by_seconds(tmp_pa
         parent.communicate()
         for host in hosts:
             os.close(host)
+
+
+def test_a_driver_that_waits_for_ever_is_told_of_and_ended_while_its_parent_lives(
+    tmp_path, monkeypatch
+):
+    for name, body in _STUCK.items():
+        source = source_of(body.format(wait=_WAIT))
+        monkeypatch.setenv(
+            "PYTHONPATH", drivers.install(tmp_path, name, "open_other", source)["PYTHONPATH"]
+        )
+    hosts = {name: Host(f"{name}:", info(), ROOM) for name in _STUCK}
+    for host in hosts.values():
+        host.launch()
+    for name in ("closed", "read"):
+        hosts[name].start()
+    told = []
+    until(
+        hosts["read"],
+        lambda _new: (
+            told.extend(hosts["read"].take_events())
+            or any(isinstance(event, Stalled) for event in told)
+        ),
+    )
+    (stalled,) = (event for event in told if isinstance(event, Stalled))
+    assert 1000 < stalled.stalled_ms < 2000
+    processes = [host.process_id for host in hosts.values()]
+    with ThreadPoolExecutor() as pool:
+        ending = {
+            "the driver opened did not open its device within 10 s": hosts["opened"].start,
+            "the driver closed did not let the device go within 5 s": hosts["closed"].close,
+            "the driver read did not let the device go within 5 s": hosts["read"].close,
+        }
+        for said, ended in {said: pool.submit(end) for said, end in ending.items()}.items():
+            with pytest.raises(DeviceError, match=said):
+                ended.result(PATIENCE_S)
+    for host in hosts.values():
+        host.close()  # it has ended, and was told of
+    assert not any(Path(f"/proc/{number}").exists() for number in processes)
+
+
+def test_a_driver_that_blocks_once_is_told_of_and_so_is_its_return(driver):
+    driver(
+        """
+def read(self):
+    if self.frames == 300:
+        time.sleep(1.5)
+    return super().read()
+"""
+    )
+    told = []
+    with Host("other:", info(), ROOM) as host:
+        until(host, lambda _new: told.extend(host.take_events()) or Back() in told)
+    kinds = [type(event) for event in told if isinstance(event, Stalled | Back)]
+    assert kinds == [Stalled, Back]
+
+
+@pytest.mark.parametrize("let_go", ["return 1 / 0", "os._exit(7)"])
+def test_a_driver_that_fails_to_let_go_is_told_of_after_all_else_went_well(driver, let_go):
+    driver(f"def _release(self):\n    {let_go}")
+    before = descriptors()
+    host = Host("other:", info(), ROOM)
+    host.start()
+    until(host, lasting(100))
+    with pytest.raises(VbrailleError, match=r"ZeroDivisionError|exit code 7"):
+        host.close()
+    assert descriptors() == before
+
+
+def test_an_error_is_not_hidden_by_a_driver_that_fails_to_let_go(driver):
+    driver("def _release(self):\n    return 1 / 0")
+
+    def fail(_ticks):
+        raise KeyError
+
+    with pytest.raises(KeyError), Host("other:", info(), ROOM) as host:
+        until(host, fail)
 
 
 _FORKS = """

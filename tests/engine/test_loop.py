@@ -1,5 +1,7 @@
 """The loop on the manual clock: order, deadlines, and that nothing jumps."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -352,8 +354,28 @@ def test_rate_has_bounds(clock, device, rate):
         Loop(device, clock, rate_hz=rate)
 
 
-@pytest.mark.parametrize("x_mm", [-64654392.32, float("nan"), float("inf")])
-def test_a_carriage_that_cannot_be_there_is_told_with_what_to_do(clock, device, x_mm):
+@pytest.mark.parametrize(
+    ("x_mm", "to_do"),
+    [
+        (-64654392.32, "switch it off .* look at its encoder"),
+        (float("nan"), "its driver must give numbers"),
+        (float("inf"), "its driver must give numbers"),
+    ],
+)
+def test_a_carriage_that_cannot_be_there_is_told_with_what_to_do(clock, device, x_mm, to_do):
     device.shift_mm = x_mm
-    with pytest.raises(DeviceError, match=r"where it cannot be; switch it off .* look at its enc"):
+    with pytest.raises(DeviceError, match=f"where it cannot be; {to_do}") as told:
         run(Loop(device, clock), 0.01)
+    assert "INFO" not in str(told.value)  # which few devices have
+
+
+class Turned(SimulatedDevice):
+    def read(self):
+        return super().read()._replace(theta_rad=0.3)
+
+
+def test_an_angle_ends_the_reading_where_the_display_says_that_none_is_measured(clock):
+    turns = replace(info(), turns=True)
+    run(Loop(Turned(turns, clock.now_ns), clock), 0.01)
+    with pytest.raises(DeviceError, match=r"turned by 0.3 rad, .* must give Display turns=True"):
+        run(Loop(Turned(info(), clock.now_ns), clock), 0.01)

@@ -1,10 +1,11 @@
 """Who may watch and steer, and by which names a server is called."""
 
+import os
 import socket
 
 import pytest
 
-from vbraille.live.admission import Admission, Right, reachable
+from vbraille.live.admission import Admission, Right, owner_of, reachable
 
 HERE = Admission("127.0.0.1", 4000)
 THERE = Admission("192.0.2.7", 4000)
@@ -25,6 +26,29 @@ def test_elsewhere_watching_needs_a_token():
     assert THERE.right("", from_page=True) is Right.NONE
     assert THERE.right(THERE.watch_token, from_page=True) is Right.WATCH
     assert THERE.right(THERE.steer_token, from_page=True) is Right.STEER
+
+
+def test_on_loopback_only_the_user_who_reads_and_root_may_connect():
+    own = os.getuid()
+    for owner in (own, 0, None):
+        assert HERE.is_for(owner)
+    assert not HERE.is_for(own + 1)
+    assert THERE.is_for(own + 1)
+
+
+@pytest.mark.parametrize(
+    ("family", "host"), [(socket.AF_INET, "127.0.0.1"), (socket.AF_INET6, "::1")]
+)
+def test_the_owner_of_a_connection_is_known(family, host):
+    with (
+        socket.create_server((host, 0), family=family) as server,
+        socket.create_connection(server.getsockname()[:2]) as client,
+    ):
+        accepted, peer = server.accept()
+        with accepted:
+            assert owner_of(peer, accepted.getsockname()) == os.getuid()
+            assert owner_of((peer[0], peer[1], 1), (host, 1)) is None
+        assert owner_of(client.getpeername(), ("192.0.2.1", 1)) is None
 
 
 @pytest.mark.parametrize("token", ["wrong", " ", "é", "\ud800"], ids=ascii)

@@ -1,6 +1,9 @@
 """The server's door: files, headers, names, origins, and how many come in."""
 
+import os
 import socket
+import subprocess
+import sys
 from contextlib import ExitStack
 
 import pytest
@@ -39,6 +42,30 @@ def test_every_answer_has_the_headers_of_safety(address, path):
     for name, value in HEADERS:
         assert headers[name] == value
     assert "Server" not in headers
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can be another user for a while")
+def test_another_user_of_this_machine_is_shown_nothing_even_with_the_token(server, address):
+    script = (
+        "import json, os, sys\n"
+        "from websockets.sync.client import connect\n"
+        "from websockets.exceptions import InvalidStatus\n"
+        "os.setuid(65534)\n"
+        "try:\n"
+        "    with connect(sys.argv[1], origin=sys.argv[2], compression=None) as page:\n"
+        "        page.send(json.dumps({'ask': 'hello', 'token': sys.argv[3]}))\n"
+        "        print(page.recv(20))\n"
+        "except InvalidStatus as refused:\n"
+        "    print(refused.response.status_code, refused.response.body.decode())\n"
+    )
+    origin, token = address.split("/#")
+    live = f"{origin.replace('http', 'ws', 1)}/live"
+    for given in ("", token):
+        asked = [sys.executable, "-c", script, live, origin, given]
+        said = subprocess.run(asked, check=True, capture_output=True, text=True).stdout
+        assert said.startswith("403 another user of this machine reads here")
+    with page(server.admission.watching_address) as opened:
+        assert opened.frame().header["rows"] == 6
 
 
 def test_the_policy_lets_nothing_in_from_outside():

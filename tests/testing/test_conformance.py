@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from tests.baddrivers import BAD, Good
 from tests.engine.test_loop import info
 from vbraille.devices import Device, open_device
 from vbraille.errors import InputError
@@ -22,8 +23,9 @@ from vbraille.testing.conformance import (
 
 
 @pytest.mark.parametrize("check", CHECKS)
-def test_the_simulated_device_conforms(check):
-    check(lambda: open_device("sim:", info()))
+@pytest.mark.parametrize("opened", [Good, lambda: open_device("sim:", info())])
+def test_the_simulated_device_conforms(opened, check):
+    check(opened)
 
 
 class Unchecked(SimulatedDevice):
@@ -125,6 +127,20 @@ class RestedOrNot(SimulatedDevice):
 def test_broken_devices_are_caught(broken, check):
     with pytest.raises(AssertionError):
         check(lambda: broken(info()))
+
+
+@pytest.mark.parametrize(
+    ("driver", "said"), BAD.items(), ids=lambda each: getattr(each, "__name__", "")
+)
+def test_a_bad_driver_fails_by_the_name_of_its_fault(driver, said):
+    failed = []
+    for check in (check_samples, check_close):
+        try:
+            check(driver)
+        except (AssertionError, OSError) as fault:
+            failed.append(str(fault))
+    assert failed
+    assert all(said in fault for fault in failed)
 
 
 def test_a_carriage_that_paces_from_its_left_stop_is_right():

@@ -22,6 +22,7 @@ import numpy as np
 import pandas as pd
 
 from vbraille.braille.spelling import UNREAD
+from vbraille.files import no_formula
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -286,8 +287,11 @@ class ResultTable:
 
 
 def to_csv(frame: pd.DataFrame) -> str:
-    """Text of a table as CSV: numbers in full precision, a missing value empty."""
-    return frame.to_csv(index=False, lineterminator="\n")
+    """Text of a table as CSV: numbers in full precision, a missing value empty, no formulas."""
+    safe = frame.copy(deep=False)
+    for name, values in frame.select_dtypes(["object", "string", "category"]).items():
+        safe[name] = values.map(lambda text: no_formula(text) if isinstance(text, str) else text)
+    return safe.to_csv(index=False, lineterminator="\n")
 
 
 def to_print(value: Value, kind: Kind) -> str:

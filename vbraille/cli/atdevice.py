@@ -2,26 +2,56 @@
 
 from __future__ import annotations
 
+import signal
 from abc import ABC, abstractmethod
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
 from vbraille.cli.stoppable import POLL_S, STOPPED
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
+from vbraille.devices.registry import opened_device
 from vbraille.devices.saying import placing_sentence
-from vbraille.engine.host import HostDiedError
+from vbraille.engine.host import OPEN_S, OPENING, HostDiedError, too_slow
 from vbraille.errors import InputError
 from vbraille.reading.commands.table import press
 from vbraille.reading.context import Context
 from vbraille.reading.keyed import Keyed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from vbraille.cli.live import LiveView
     from vbraille.cli.stoppable import StoppableKeyboard
+    from vbraille.devices.base import Device
     from vbraille.devices.events import Event
+    from vbraille.display import Display
     from vbraille.reading.opened import OpenDevice
+
+
+@contextmanager
+def opened_in_time(spec: str, wanted: Display | None) -> Iterator[Device]:
+    """Open a device in this process as `opened_device` does, unless its driver takes too long.
+
+    Raises
+    ------
+    InputError, DeviceError
+        In the cases of `opened_device`; `DeviceError` also for a driver that takes too long.
+    """
+
+    def late(*_: object) -> None:
+        raise too_slow(spec, OPENING)
+
+    before = signal.signal(signal.SIGALRM, late)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, OPEN_S)
+        with opened_device(spec, wanted) as device:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            yield device
+    finally:
+        if signal.getsignal(signal.SIGALRM) is late:  # a signal that was heard has a timer, too
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, before)
 
 
 class Occupied(Keyed, Protocol):

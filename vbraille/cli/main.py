@@ -18,6 +18,7 @@ from vbraille.wording import printable, spelled
 
 TYPE_CHECKING = False  # importing typing, for its constant, takes as long as all the rest
 if TYPE_CHECKING:
+    from argparse import Namespace
     from collections.abc import Sequence
 
     from vbraille.engine.spawning import Spawned
@@ -141,7 +142,7 @@ def _call(argv: Sequence[str] | None) -> int:
             # A hand on a picture may stand still, and waits for somebody.
             pointed = arguments.monitor or arguments.command == "feel"
             arguments.pointer = _pointer() if pointed else None
-            arguments.begun = _begin_host(arguments.file, arguments.pointer)
+            arguments.begun = _begin_host(arguments) if _may_begin(arguments) else None
             if arguments.begun is not None:
                 begun.callback(arguments.begun[0].end)
         with EAR.at_once():
@@ -156,16 +157,25 @@ def _pointer() -> Pointer:
     return Pointer()
 
 
-def _begin_host(file: str | None, pointer: Pointer | None) -> tuple[Spawned, Steering] | None:
-    """Begin the process that drives the device, which loads while the text is opened.
-
-    Nothing is begun for a file that is not there.
-    """
+def _may_begin(arguments: Namespace) -> bool:
+    """Whether all that is asked for may be there; a table and the like are looked at later."""
+    file, device = arguments.file, arguments.device
     if file not in (None, "-") and not os.path.isfile(file):  # noqa: PTH113 - pathlib loads long
-        return None
+        return False
+    if any(getattr(arguments, name, None) is not None for name in ("table", "language", "grade")):
+        return False
+    if device in (None, "sim"):
+        return True
+    from importlib.metadata import entry_points
+
+    return bool(entry_points(group="vbraille.devices", name=device.partition(":")[0]))
+
+
+def _begin_host(arguments: Namespace) -> tuple[Spawned, Steering]:
+    """Begin the process that drives the device, which loads while the text is opened."""
     from vbraille.engine.spawning import spawn
     from vbraille.simulation.steering import Steering
 
-    steering = Steering()
+    steering, pointer = Steering(), arguments.pointer
     pointed = () if pointer is None else (pointer.descriptor,)
     return spawn((steering.descriptor, *pointed)), steering

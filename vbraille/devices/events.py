@@ -64,6 +64,19 @@ class Silent(Event):
 
 
 @dataclass(frozen=True, slots=True)
+class Stalled(Event):
+    """The driver has not come back from a call, so that the device is neither read nor sent frames.
+
+    Parameters
+    ----------
+    stalled_ms
+        Time for which no tick was done, in ms.
+    """
+
+    stalled_ms: float
+
+
+@dataclass(frozen=True, slots=True)
 class Back(Event):
     """A device that was away can be read on again."""
 
@@ -305,6 +318,7 @@ _KINDS: Final = {
     for kind in (
         Unplugged,
         Silent,
+        Stalled,
         Back,
         Stranger,
         Changed,

@@ -56,7 +56,7 @@ def open_device(
     DeviceError
         If the device cannot be opened.
     """
-    driver = _driver(spec)
+    driver = find_driver(spec)
     with naming(driver):
         device = driver.load()(spec.partition(":")[2], wanted)
         _check_device(driver, device)
@@ -87,12 +87,18 @@ def opened_device(
         In the cases of `open_device`; `DeviceError` also for any exception of somebody else's
         driver.
     """
-    with naming(_driver(spec)), open_device(spec, wanted, fits=fits, often=often) as device:
+    with naming(find_driver(spec)), open_device(spec, wanted, fits=fits, often=often) as device:
         yield device
 
 
-def _driver(spec: str) -> EntryPoint:
-    """Entry point of a spec's kind; InputError if there is no such kind."""
+def find_driver(spec: str) -> EntryPoint:
+    """Find the entry point of a spec's kind, without loading it.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind.
+    """
     kind, _, _ = spec.partition(":")
     found = entry_points(group=GROUP, name=kind) if kind else ()
     if not found:

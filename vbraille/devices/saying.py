@@ -20,6 +20,7 @@ from vbraille.devices.events import (
     Placed,
     Placing,
     Silent,
+    Stalled,
     Stranger,
     Unplugged,
     WatchdogTripped,
@@ -117,6 +118,14 @@ def _(_event: Unplugged) -> str:
 @_say.register
 def _(_event: Silent) -> str:
     return "device: silent, and sent to rest; reading goes on once it speaks"
+
+
+@_say.register
+def _(event: Stalled) -> str:
+    return (
+        f"device: its driver has not answered for {event.stalled_ms / 1e3:.0f} s; "
+        f"reading goes on once it does"
+    )
 
 
 @_say.register

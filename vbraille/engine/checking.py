@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.devices.base import Placing
+from vbraille.devices.events import WatchdogTripped
 from vbraille.devices.saying import shown_place, told
 from vbraille.devices.wire.messages import RAMP_MS, WATCHDOG_MS
 from vbraille.engine.checkup import (
     NS_PER_S,
+    Watch,
     hold_rate,
     round_trips_ms,
     swing_each,
@@ -56,16 +58,20 @@ def check(device: Device, clock: Clock, say: Callable[[str], None]) -> int:
     DeviceError
         If the device is gone, or gives no place within a minute.
     """
-    return _Check(device, clock, say).run()
+    with Watch(device, clock) as watch:
+        return _Check(device, clock, say, watch).run()
 
 
 class _Check:
     """One check; each of its parts says what it measured and gives what is wrong."""
 
-    def __init__(self, device: Device, clock: Clock, say: Callable[[str], None]) -> None:
+    def __init__(
+        self, device: Device, clock: Clock, say: Callable[[str], None], watch: Watch
+    ) -> None:
         self._device = device
         self._clock = clock
         self._say = say
+        self._watch = watch
         self._shown = False  # whether its place was chosen here, and says nothing
 
     def run(self) -> int:
@@ -84,16 +90,28 @@ class _Check:
         ]
         self._say_notes()
         wrong += self._watchdog()
-        self._say_notes()
+        self._say_notes(tripped=True)
+        wrong += [*self._watch.faults(), *self._end()]
         if wrong:
             self._say(f"verdict: not fit to be read on: {'; '.join(wrong)}")
             return 1
         self._say(f"verdict: fit to be read on{self._but()}")
         return 0
 
-    def _say_notes(self) -> None:
-        for sentence in told(self._device.take_events()):
+    def _say_notes(self, *, tripped: bool = False) -> None:
+        """Say what the device has told, but for trips of its watchdog that were asked for."""
+        events = self._device.take_events()
+        asked = WatchdogTripped if tripped else ()
+        for sentence in told(event for event in events if not isinstance(event, asked)):
             self._say(sentence)
+
+    def _end(self) -> list[str]:
+        """Let the device go, which its driver may fail at."""
+        try:
+            self._device.close()
+        except Exception as fault:
+            return [f"its driver cannot let it go ({type(fault).__name__}: {fault})"]
+        return []
 
     def _but(self) -> str:
         """Remarks that go with a verdict that is good."""
@@ -112,10 +130,10 @@ class _Check:
         return ["every one of its actuators is disabled"] if all_off else []
 
     def _wait_for_place(self) -> None:
-        """Wait for any place: frames are not taken without one."""
+        """Wait for any place, or a wrong one: frames are not taken without one."""
         device, clock = self._device, self._clock
         begun_ns, minutes = clock.now_ns(), 0
-        while device.read() is None:
+        while device.read() is None and not self._watch.found:
             passed_s = (clock.now_ns() - begun_ns) / NS_PER_S
             if device.placing is Placing.STOP:
                 device.set_zero()
@@ -143,7 +161,10 @@ class _Check:
             return []
         if math.isnan(rate.clock_s):
             return ["it told neither its time nor its place"]
-        return [f"its clock goes {rate.clock_s:.2f} times as fast as it should; see to its time_us"]
+        return [
+            f"its clock goes {rate.clock_s:.2f} times as fast as it should; see to its time_us, or "
+            f"to time_ns of its driver's poses"
+        ]
 
     def _place(self, rate: Rate) -> list[str]:
         info = self._device.display
@@ -164,7 +185,7 @@ class _Check:
         off_mm = low_mm if low_mm < -_PLACE_SLACK_MM else high_mm
         return [
             f"its carriage is at {off_mm:.1f} mm from the {edge}, where it cannot be; see to "
-            f"{shown_place(info)}, the counts and their sign in its INFO"
+            f"{shown_place(info)}, its counts and their sign"
         ]
 
     def _round_trips(self) -> list[str]:
@@ -174,7 +195,10 @@ class _Check:
             return []
         if not taken.size:
             self._say("round trip: none, for no frame was acknowledged")
-            return ["it acknowledges none of the frames that it is sent; see to its frame_sequence"]
+            return [
+                "it acknowledges none of the frames that it is sent; see to its frame_sequence, "
+                "or to acknowledged_ns of its driver"
+            ]
         low, median, high = np.percentile(taken, (1, 50, 99))
         self._say(f"round trip: median {median:.2f} ms, 98 % within {low:.2f} to {high:.2f} ms")
         if taken.size < _ROUND_TRIPS:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+import resource
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from vbraille.devices.wire.messages import WATCHDOG_MS
 from vbraille.engine.clock import ManualClock
+from vbraille.engine.constants import JUMP_MM_S
 from vbraille.engine.local import LocalEngine
+from vbraille.pose import Pose
 from vbraille.render.program import vibration
 from vbraille.simulation.simulated import SimulatedDevice
 
@@ -31,6 +35,8 @@ _LOOK_NS = 50_000
 _HELD = 0.3
 _HOLD_S = 0.1
 _TRIP_PATIENCE_S = 0.5
+# What a driver's read and write may take together, as a share of a tick.
+_MOST_OF_TICK = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +60,119 @@ class Rate:
     work_us: tuple[float, float]
     clock_s: float
     x_mm: tuple[float, float]
+
+
+class Watch:
+    """Eye on a driver: how long each `read` and `write` of its device takes, and what it gives.
+
+    While it is entered it stands before these two methods. What no driver may give, such as NaN,
+    goes no further than here.
+
+    Parameters
+    ----------
+    device
+        An open device.
+    clock
+        The clock by which calls are timed.
+    """
+
+    def __init__(self, device: Device, clock: Clock) -> None:
+        self._device = device
+        self._clock = clock
+        self._calls = {"read": device.read, "write": device.write}
+        self._own = {name: call for name, call in self._calls.items() if name in vars(device)}
+        self._spent_ns: dict[str, list[int]] = {name: [] for name in self._calls}
+        self._found: dict[str, str] = {}
+        self._last: Pose | None = None
+        self._last_ns = 0
+
+    def __enter__(self) -> Self:
+        vars(self._device).update(read=self._read, write=self._write)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for name in self._calls:
+            del vars(self._device)[name]
+        vars(self._device).update(self._own)
+
+    @property
+    def found(self) -> bool:
+        """Whether the driver gave anything wrong so far."""
+        return bool(self._found)
+
+    def faults(self) -> list[str]:
+        """Clauses on what was wrong with the driver so far, each kind of fault once."""
+        period_ms = 1e3 / self._device.display.rate_hz
+        median_ms = {name: np.median(ns or [0]) / 1e6 for name, ns in self._spent_ns.items()}
+        found = list(self._found.values())
+        if sum(median_ms.values()) > _MOST_OF_TICK * period_ms:
+            told = " and ".join(f"its {name} takes {ms:.2f} ms" for name, ms in median_ms.items())
+            found.append(f"{told}, of the {period_ms:g} ms that a tick has; neither may wait")
+        for name, spent_ns in self._spent_ns.items():
+            longest_ms = max(spent_ns, default=0) / 1e6
+            if longest_ms > WATCHDOG_MS:
+                found.append(f"its {name} took {longest_ms:.0f} ms once; it may not wait")
+        return found
+
+    def _read(self) -> Pose | None:
+        sample: object = self._timed("read")
+        if sample is None:
+            return None
+        if not isinstance(sample, Pose):
+            self._find("kind", f"its read gives {sample!r}, where it must give a Pose or None")
+            return None
+        if not all(map(math.isfinite, sample)):
+            where = ", ".join(f"{name} {value}" for name, value in sample._asdict().items())
+            self._find("number", f"its read gives a place that is no number ({where})")
+            return None
+        if sample.theta_rad and not self._device.display.turns:
+            self._find(
+                "angle",
+                f"its read gives an angle of {sample.theta_rad:g} rad, and its Display has no "
+                f"turns=True",
+            )
+            sample = sample._replace(theta_rad=0.0)
+        self._compare(sample)
+        return sample
+
+    def _compare(self, sample: Pose) -> None:
+        """Look whether the clock or the place of a sample can follow those of the last one."""
+        now_ns, last = self._clock.now_ns(), self._last
+        if last is not None:
+            back_ns = last.time_ns - sample.time_ns
+            if back_ns > 0:
+                self._find("clock", f"its clock goes back, once by {back_ns / 1e6:g} ms")
+            elapsed_s = max((now_ns - self._last_ns) / NS_PER_S, 1 / self._device.display.rate_hz)
+            far_mm = max(abs(sample.x_mm - last.x_mm), abs(sample.y_mm - last.y_mm))
+            if far_mm > JUMP_MM_S * elapsed_s:
+                self._find(
+                    "jump",
+                    f"its carriage jumps, once by {far_mm:.4g} mm in {1e3 * elapsed_s:.3g} ms, "
+                    f"faster than any hand",
+                )
+        self._last, self._last_ns = sample, now_ns
+
+    def _write(self, frame: NDArray[np.float64]) -> None:
+        self._timed("write", frame)
+
+    def _timed(self, name: str, *given: Any) -> Any:
+        clock, call = self._clock, self._calls[name]
+        waits, busy_ns, now_ns = _waits(), clock.busy_ns(), clock.now_ns()
+        try:
+            return call(*given)
+        finally:
+            # Time for which the system gave the processor to others is not the driver's.
+            waited = _waits() != waits
+            own_ns = clock.now_ns() - now_ns if waited else clock.busy_ns() - busy_ns
+            self._spent_ns[name].append(own_ns)
+
+    def _find(self, kind: str, fault: str) -> None:
+        self._found.setdefault(kind, fault)
+
+
+def _waits() -> int:
+    """How often this thread has waited for something of its own accord."""
+    return resource.getrusage(resource.RUSAGE_THREAD).ru_nvcsw
 
 
 def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
@@ -95,13 +214,10 @@ def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
 
 
 def warm_up(display: Display) -> None:
-    """Compile what `hold_rate` calls, before there is a device whose watchdog could trip."""
+    """Compile and load what `hold_rate` calls, before a device's watchdog could trip meanwhile."""
     clock = ManualClock()
     with SimulatedDevice(display, clock.now_ns) as device:
-        engine = LocalEngine(device, clock, poll_ticks=2)
-        engine.loop.show(vibration(display, 1.0))
-        engine.poll()
-        engine.loop.fade_to_rest()
+        hold_rate(device, clock, 1 / display.rate_hz)
 
 
 def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:

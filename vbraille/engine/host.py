@@ -7,11 +7,13 @@ import logging
 import os
 import select
 import subprocess
+import sys
+import time
 from contextlib import suppress
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, Self
 
-from vbraille.devices.events import from_json
+from vbraille.devices.events import Back, Stalled, from_json
 from vbraille.display import Display
 from vbraille.engine import shared
 from vbraille.engine.engine import place_of
@@ -34,8 +36,13 @@ if TYPE_CHECKING:
     from vbraille.engine.spawning import Spawned
     from vbraille.render.program import Program
 
+# Opening may take a second or two; a controller that starts up, or a name that must be found, more.
+OPEN_S = 10.0
+OPENING = "open its device"
 # Fading takes 0.1 s; a driver may have to wait for a device that is gone.
 _END_S = 5.0
+# A loop that has done no tick for so long is held up by its driver.
+_STALL_S = 1.0
 # How long to wait for an answer before looking whether there is a process that could give it.
 _LOOK_S = 0.1
 _log = logging.getLogger(__name__)
@@ -43,6 +50,14 @@ _log = logging.getLogger(__name__)
 
 class HostDiedError(VbrailleError):
     """The host process ended without a word; `Host.start` begins another."""
+
+
+def too_slow(device: str, what: str) -> DeviceError:
+    """Fault of a driver that has not opened its device, or done a first tick, in `OPEN_S`."""
+    return DeviceError(
+        f"the driver {device.partition(':')[0]} did not {what} within {OPEN_S:g} s; see whether "
+        f"the device is there and switched on, or tell whoever wrote the driver"
+    )
 
 
 class Host:
@@ -119,6 +134,10 @@ class Host:
         self._lost_before = 0
         self._paused = False
         self._launched = self._ready = False
+        self._at_driver = False  # whether all is compiled and loaded, and the driver has its turn
+        self._ended = False  # whether its end was told
+        self._empty_s: float | None = None  # since when polls have found no tick
+        self._stalled = False
 
     def open(self) -> Display:
         """Start the process, wait until it has opened the device, and tell what that device is.
@@ -128,12 +147,12 @@ class Host:
         Raises
         ------
         VbrailleError
-            If the device cannot be opened, or is another than at the first start.
+            If the device cannot be opened, or not in time, or is another than at the first start.
         """
         if not self._launched:
             self.launch()
-        while self._info is None:
-            self._wait()
+        self._wait(lambda: self._info is not None, OPENING)
+        assert self._info is not None
         if self._first not in (None, self._info):
             raise InputError(f"{self._info.name} is another device than before; start anew with it")
         return self._info
@@ -151,11 +170,10 @@ class Host:
         Raises
         ------
         VbrailleError
-            If the device cannot be opened, or is another than at the first start.
+            If the device cannot be opened, or not in time, or is another than at the first start.
         """
         self._first = self.open()
-        while not self._ready:
-            self._wait()
+        self._wait(lambda: self._ready, "do a first tick")
         self._launched = False
         if self._shown is not None:
             self._posted.post(*self._shown)
@@ -172,6 +190,8 @@ class Host:
             self._before, self._lost_before = self.tally, self.lost
         self._info = self._fault = self.newest = None
         self._paused = self._ready = False
+        self._at_driver = self._ended = self._stalled = False
+        self._empty_s = None
         self._heard = b""
         spawned, self._spawned = self._spawned or spawn(self._pass_fds), None
         spawned.taken = True
@@ -217,6 +237,11 @@ class Host:
         if self._mailbox is None:
             raise DeviceError("no device is open; start the host first")
         return self._mailbox
+
+    @property
+    def _driver(self) -> str:
+        """Name of the driver in sentences."""
+        return self._device.partition(":")[0]
 
     @property
     def process_id(self) -> int | None:
@@ -280,9 +305,24 @@ class Host:
         self.lost = self._lost_before + self._ring.lost
         if ticks.size:
             self.newest = ticks[-1]
-        if not alive and not ticks.size:
+        elif not alive:
             raise self._end()
+        self._look(ticks.size > 0)
         return ticks
+
+    def _look(self, ticked: bool) -> None:
+        """Tell once that the driver holds up the loop, and once that it does no more."""
+        now_s = time.monotonic()
+        if ticked:
+            self._empty_s = None
+            if self._stalled:
+                self._stalled = False
+                self._events.append(Back())
+        elif self._empty_s is None:
+            self._empty_s = now_s
+        elif not self._stalled and now_s - self._empty_s > _STALL_S:
+            self._stalled = True
+            self._events.append(Stalled(1e3 * (now_s - self._empty_s)))
 
     def take_events(self) -> Sequence[Event]:
         """Take the events of the device and its host since the last call."""
@@ -290,7 +330,13 @@ class Host:
         return events
 
     def close(self) -> None:
-        """Have the host bring the array to rest and end; further calls do nothing."""
+        """Have the host bring the array to rest and end; further calls do nothing.
+
+        Raises
+        ------
+        VbrailleError
+            If the device could not be let go. An error that is under way is more, and goes on.
+        """
         process = self._process
         if process is None:
             if self._spawned is not None:
@@ -306,10 +352,17 @@ class Host:
         _log.info("process %d has ended: exit code %d", process.pid, code)
         while self._hear():
             pass
+        # A host that still compiles may be ended like this; one whose end was told is told of once.
+        well = self._ended or not self._at_driver or (code == 0 and self._fault is None)
+        fault = None if well else self._end()
         if process.stdout is not None:
             process.stdout.close()
         self._process = None
         self._forget_memory()
+        if fault is not None:
+            _log.info("closing failed: %s", fault)
+            if sys.exc_info()[0] is None:
+                raise fault
 
     def _forget_memory(self) -> None:
         self._mailbox = self._ring = None  # the view of shared memory holds a descriptor
@@ -333,11 +386,22 @@ class Host:
         assert self._process.stdout is not None
         return self._process.stdout.fileno()
 
-    def _wait(self) -> None:
-        """Wait a moment for an answer; if the host has ended, raise the reason."""
-        select.select((self._answers(),), (), (), _LOOK_S)
-        if not self._hear():
-            raise self._end()
+    def _wait(self, done: Callable[[], bool], what: str) -> None:
+        """Wait until the driver has done something; if it never will, raise the reason."""
+        assert self._process is not None
+        until_s = None
+        while not done():
+            select.select((self._answers(),), (), (), _LOOK_S)
+            if not self._hear():
+                raise self._end()
+            if not self._at_driver:
+                continue
+            if until_s is None:
+                until_s = time.monotonic() + OPEN_S
+            elif time.monotonic() > until_s:
+                self._process.kill()
+                self._fault = too_slow(self._device, what)
+                raise self._end()
 
     def _hear(self) -> bool:
         """Take the host's answers; tell whether more may come.
@@ -364,12 +428,19 @@ class Host:
             return self._process.wait(_END_S)
         except subprocess.TimeoutExpired:
             self._process.kill()
+            if self._fault is None and self._at_driver:
+                self._fault = DeviceError(
+                    f"the driver {self._driver} did not let the device go within {_END_S:g} s, "
+                    f"and was ended; switch the device off if it does not rest, and tell whoever "
+                    f"wrote the driver"
+                )
             return self._process.wait()
 
     def _take(self, answer: dict[str, Any]) -> None:
         if "opened" in answer:
             self._info = Display(**answer["opened"])
             self.calibration = answer["calibration"]
+        self._at_driver = self._at_driver or "opening" in answer
         self._ready = self._ready or "ready" in answer
         if answer.get("event"):
             self._events.append(from_json(answer["event"]))
@@ -381,6 +452,7 @@ class Host:
     def _end(self) -> VbrailleError:
         """Reason why there is no host any more."""
         code = self._reap()
+        self._ended = True
         # An exception that is kept would keep all frames of its traceback alive.
         fault, self._fault = self._fault, None
         if fault is not None:

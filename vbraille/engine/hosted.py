@@ -245,6 +245,7 @@ def run(orders: RawIOBase, descriptor: int, parent: int, channel: Channel) -> No
     wanted = Display(**config["wanted"])
     _log.info("compiled, or loaded what was, in %.0f ms", compiled_ms)
     how = {name: config[name] for name in ("fits", "often")}
+    channel.say(opening=True)
     with opened_device(config["device"], wanted, **how) as device:
         rate_hz = min(wanted.rate_hz, device.display.rate_hz)
         corrected = correct_by_kept(Path(config["settings"]), device)

@@ -199,6 +199,8 @@ class Loop:
         else:
             times_ns[0, 1], pose[POSE_X], pose[POSE_Y], pose[POSE_THETA] = sample
             pose[POSED] = 1.0
+            if pose[POSE_THETA] and not device.display.turns:
+                raise self._nowhere()
         slot = ring.begin()
         done = self.state.advance(
             times_ns, self._poses, device.rested, device.taking, ring.columns, slot
@@ -230,16 +232,26 @@ class Loop:
 
     def _nowhere(self) -> DeviceError:
         x_mm, y_mm, theta_rad = self._poses[0, POSE_X:]
-        axes = self.device.display.axes
+        display = self.device.display
         where = f"{x_mm} mm"
-        if "y" in axes or y_mm:
+        if "y" in display.axes or y_mm:
             where += f" along x and {y_mm} mm along y"
-        if "θ" in axes or theta_rad:
+        if "θ" in display.axes or theta_rad:
             where += f", turned by {theta_rad} rad"
+        says = f"{display.name} says that its carriage is at {where}"
+        if not np.isfinite(self._poses[0, POSE_X:]).all():
+            return DeviceError(
+                f"{says}, where it cannot be; its driver must give numbers, or None as long as it "
+                f"knows none: tell whoever wrote it"
+            )
+        if theta_rad and not display.turns:
+            return DeviceError(
+                f"{says}, and that it measures no angle; its driver must give Display turns=True, "
+                f"or Pose no angle: tell whoever wrote it"
+            )
         return DeviceError(
-            f"{self.device.display.name} says that its carriage is at {where}, "
-            f"where it cannot be; switch it off and on, and if it says so again, look at its "
-            f"encoder and at the counts that its INFO tells, with 'vbraille device check'"
+            f"{says}, where it cannot be; switch it off and on, and if it says so again, look at "
+            f"its encoder and its counts with 'vbraille device check'"
         )
 
     def _run_steadily(self, lent: Lent, mailbox: Mailbox | None) -> None:

@@ -8,11 +8,15 @@ header is checked). `docs/live-view.md` tells the rules.
 from __future__ import annotations
 
 import ipaddress
+import os
 import secrets
 import socket
+import sys
+from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Final
+from pathlib import Path
+from typing import Any, Final
 
 LOOPBACK: Final = "127.0.0.1"
 _HTTP_PORT: Final = 80
@@ -74,6 +78,16 @@ class Admission:
         port = "" if self.port == _HTTP_PORT else f":{self.port}"
         return f"http://{_spelled(host)}{port}/" + (f"#{token}" if token else "")
 
+    def is_for(self, owner: int | None) -> bool:
+        """Whether a user of this machine may connect, on loopback the server's own or root.
+
+        Parameters
+        ----------
+        owner
+            Number of the user who owns the other end of a connection; None if that is not known.
+        """
+        return not self.on_loopback or owner in (None, 0, os.getuid())
+
     def right(self, token: str, *, from_page: bool) -> Right:
         """Right of whoever sends this token.
 
@@ -82,8 +96,8 @@ class Admission:
         token
             What was sent; "" without one.
         from_page
-            Whether it came from a page of this server, as a browser's Origin header says. Whatever
-            else connects needs a token even to watch on loopback.
+            Whether it came from a page of this server, as a browser's Origin header says, of a user
+            who is known. Whatever else connects needs a token even to watch on loopback.
         """
         if _same(token, self.steer_token):
             return Right.STEER if self.steers else Right.WATCH
@@ -113,6 +127,38 @@ class Admission:
         if self.port == _HTTP_PORT:
             allowed |= {_spelled(name).lower() for name in names}
         return host.lower() in allowed
+
+
+def owner_of(peer: tuple[Any, ...], local: tuple[Any, ...]) -> int | None:
+    """User of this machine who owns the other end of a connection, by the kernel's table.
+
+    Parameters
+    ----------
+    peer, local
+        Address and port, first of all, of the other end and of this one.
+
+    Returns
+    -------
+    int or None
+        Number of the user; None if the other end is on another machine, or nobody knows.
+    """
+    table = "tcp6" if ":" in peer[0] else "tcp"
+    with suppress(OSError, ValueError):
+        ends = [_in_table(peer), _in_table(local)]
+        for line in Path(f"/proc/net/{table}").read_text().splitlines()[1:]:
+            columns = line.split()
+            if columns[1:3] == ends:
+                return int(columns[7])
+    return None
+
+
+def _in_table(end: tuple[Any, ...]) -> str:
+    """Address and port as the kernel's table has them: words in the machine's own order."""
+    family = socket.AF_INET6 if ":" in end[0] else socket.AF_INET
+    address = socket.inet_pton(family, end[0])
+    words = [address[at : at + 4] for at in range(0, len(address), 4)]
+    host = "".join(f"{int.from_bytes(word, sys.byteorder):08X}" for word in words)
+    return f"{host}:{end[1]:04X}"
 
 
 def is_loopback(host: str) -> bool:

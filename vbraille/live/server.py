@@ -22,7 +22,7 @@ from websockets.http11 import Request as HttpRequest
 from websockets.http11 import Response
 
 from vbraille.errors import InputError
-from vbraille.live.admission import LOOPBACK, Admission
+from vbraille.live.admission import LOOPBACK, Admission, owner_of
 from vbraille.live.messages import MOST_BYTES
 from vbraille.live.pagefiles import HEADERS, page_files
 from vbraille.live.talking import MOST_QUEUED, Held, Talk
@@ -148,12 +148,18 @@ class LiveServer:
             hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
             host = hosts[0] if len(hosts) == 1 else ""
             local = str(connection.local_address[0])
+            owner = owner_of(connection.remote_address, connection.local_address)
         except (TypeError, IndexError):  # it is gone already
             return _response(HTTPStatus.BAD_REQUEST, "the connection is gone\n")
         if not self.admission.is_ours(host, local):
             return _response(
                 HTTPStatus.MISDIRECTED_REQUEST,
                 "this server has another name; open the address that vbraille said\n",
+            )
+        if not self.admission.is_for(owner):
+            return _response(
+                HTTPStatus.FORBIDDEN,
+                "another user of this machine reads here; --host lets others watch by a token\n",
             )
         if request.path != SOCKET_PATH:
             found = self._files.get(request.path)

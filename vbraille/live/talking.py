@@ -13,7 +13,7 @@ import msgspec
 from websockets.exceptions import ConnectionClosed
 
 from vbraille.errors import VbrailleError
-from vbraille.live.admission import Right
+from vbraille.live.admission import Right, owner_of
 from vbraille.live.framing import map_bytes
 from vbraille.live.messages import (
     VERSION,
@@ -142,8 +142,10 @@ class Talk:
             ) from None
         if not isinstance(hello, PageHello):
             raise _EndTalkError("the first message is hello")
-        request = self._connection.request
-        from_page = request is not None and "Origin" in request.headers
+        connection = self._connection
+        request = connection.request
+        known = owner_of(connection.remote_address, connection.local_address) is not None
+        from_page = known and request is not None and "Origin" in request.headers
         self._right = self._admission.right(hello.token, from_page=from_page)
         if self._right is Right.NONE:
             raise _EndTalkError(

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, Unpack
 
 from vbraille.devices.base import Device, Placing
 from vbraille.devices.events import Button, Knob
+from vbraille.devices.registry import find_driver
 from vbraille.devices.saying import told
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from vbraille.layout.pages import Layout, Line
     from vbraille.reading.beside import Beside
     from vbraille.render.braille.models import Model
+    from vbraille.render.braille.style import StyleChanges
     from vbraille.simulation.pointing import Pointer
     from vbraille.simulation.steering import Steering
 
@@ -134,6 +136,7 @@ class OpenDevice(DeviceInUse):
                 poll_ticks=max(1, round(_POLL_S * rate_hz)),
             )
         else:
+            find_driver(device)  # before a process is begun for what is not there
             spawned, steering = begun or (None, steering_of(device))
             if has_hand(device):
                 self._hand = OpenHand(moved, steering, pointer)
@@ -332,7 +335,7 @@ class OpenDevice(DeviceInUse):
         if reader.under.hopeless is not None:
             raise DeviceError(reader.under.hopeless)
 
-    def tune(self, **turned: Any) -> None:
+    def tune(self, **turned: Unpack[StyleChanges]) -> None:
         """Show lines in a style of which some values differ from now on; see `Reader.tune`.
 
         Raises

@@ -185,7 +185,7 @@ class TuningCourse:
         if stand.knob is None or stand.span is None:
             return stand.style
         value = stand.span.pair[which - 1 if self._lower_first else 2 - which]
-        return stand.style.replace(**{stand.knob.field: value})
+        return stand.knob.applied(stand.style, value)
 
     def choose(self, which: Which) -> TuningCourse:
         """Course after a choice.
@@ -220,7 +220,7 @@ class TuningCourse:
                 number, which = made
                 span = span.after(lower=(which == 1) == _lower_first(number))
             settled = span.found(knob)
-            style = style.replace(**{knob.field: settled.value})
+            style = knob.applied(style, settled.value)
             found.append(settled)
         return _Stand(style, tuple(found), None, None)
 

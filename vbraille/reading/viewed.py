@@ -6,7 +6,7 @@ from collections import deque
 from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.base import Placing
-from vbraille.devices.events import Back, Changed, Silent, Stranger, Unplugged
+from vbraille.devices.events import Back, Changed, Silent, Stalled, Stranger, Unplugged
 from vbraille.devices.saying import say
 from vbraille.live.messages import LineShown, ViewState
 from vbraille.live.states import (
@@ -35,7 +35,7 @@ _PLACES: Final = {
     Placing.MARK: "place: the carriage has to pass its mark",
     Placing.STOP: "place: the carriage has to be shown its place",
 }
-_GONE: Final = (Unplugged, Silent, Stranger)
+_GONE: Final = (Unplugged, Silent, Stalled, Stranger)
 _BACK: Final = (Back, Changed)
 
 

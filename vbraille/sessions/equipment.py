@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.devices import open_device
+from vbraille.devices.registry import find_driver
 from vbraille.engine.host import Host
 from vbraille.errors import InputError
 from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
@@ -53,6 +54,7 @@ def usual_engine(
         from vbraille.engine.batch import BatchEngine
 
         return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
+    find_driver(spec)  # before anything is compiled for what is not there
     most = max(len(protocol.line(stimulus.masks)) for stimulus in plan.stimuli())
     inherited = [channel.descriptor for channel in channels]
     return Host(spec, wanted, protocol.model.style.room(wanted, most), pass_fds=inherited)

@@ -21,8 +21,9 @@ from vbraille.devices.base import Device
 from vbraille.devices.interface import misfits, wrong_values
 from vbraille.display import Display
 from vbraille.engine.advance import HOME_MM
+from vbraille.engine.checkup import NS_PER_S, Watch
+from vbraille.engine.clock import RealClock
 from vbraille.errors import DeviceError, InputError
-from vbraille.pose import Pose
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -54,21 +55,27 @@ def check_members(open_device: Open) -> None:
 
 
 def check_samples(open_device: Open) -> None:
-    """Samples have finite places within the travel, and times that never go back."""
-    with _opened(open_device) as device:
-        info, last_ns = device.display, None
-        for _ in range(100):
+    """For a second at its rate, `read` and `write` wait for nothing, and samples can be true.
+
+    Their places are finite, within the travel and no jump away from one another, their times never
+    go back, and an angle is only told where the display turns.
+    """
+    clock = RealClock()
+    with _opened(open_device) as device, Watch(device, clock) as watch:
+        info, frame = device.display, _frame(device, 0.0)
+        slack = 1 / info.counts_per_mm
+        begun_ns = due_ns = clock.now_ns()
+        while due_ns < begun_ns + _LOOKING_S * NS_PER_S:
             sample = device.read()
-            if sample is None:
-                continue
-            assert isinstance(sample, Pose), "read gives a Pose or None"
-            assert all(map(math.isfinite, sample[1:])), "a place is a number"
-            slack = 1 / info.counts_per_mm
-            way_mm = sample.x_mm + info.span_mm / 2
-            assert -slack <= way_mm, "at the left stop the array's centre is at -span_mm / 2"
-            assert way_mm <= info.travel_mm + slack, "the travel ends"
-            assert last_ns is None or sample.time_ns >= last_ns, "time never goes back"
-            last_ns = sample.time_ns
+            device.write(frame)
+            if sample is not None:
+                way_mm = sample.x_mm + info.span_mm / 2
+                assert -slack <= way_mm, "at the left stop the array's centre is at -span_mm / 2"
+                assert way_mm <= info.travel_mm + slack, "the travel ends"
+            due_ns = max(due_ns + round(NS_PER_S / info.rate_hz), clock.now_ns())
+            clock.sleep_until_ns(due_ns)
+        for fault in watch.faults():
+            raise AssertionError(fault)
 
 
 def check_left_stop(open_device: Open) -> None:

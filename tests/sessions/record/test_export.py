@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.sessions.sittings import COMPARED, MINI, Session, of
+from vbraille.analysis.input.sheets import read_csv
 from vbraille.sessions.record.columns import COLUMNS
 from vbraille.sessions.record.export import Traces, rows, to_csv
 from vbraille.sessions.record.folder import load
@@ -100,6 +101,17 @@ def test_an_undone_answer_is_beside_the_one_that_counts(tmp_path):
     assert table[2]["notes"] == 'so, "so"'
     read = list(csv.DictReader(io.StringIO(to_csv(table))))
     assert [row["notes"] for row in read] == ["", "", 'so, "so"', ""]
+
+
+def test_a_note_that_begins_like_a_formula_is_none_and_is_read_again_as_it_was(tmp_path):
+    table = rows(Session(tmp_path / "s").sit().record)[:1]
+    plain = ("-2.5", "-", "'tis", "a=1")
+    for note in ("=HYPERLINK(1)", "-2+3", "- tired", "@x", "'=1", "\t=1", *plain):
+        sheet = tmp_path / "sheet.csv"
+        sheet.write_text(to_csv([table[0] | {"notes": note}]))
+        written = next(csv.DictReader(io.StringIO(sheet.read_text())))["notes"]
+        assert written == (note if note in plain else f"'{note}")
+        assert read_csv(sheet).frame["notes"].to_list() == [note]
 
 
 def test_comparisons_have_two_values_and_no_duration(tmp_path):

@@ -1,6 +1,5 @@
 """The journal: every event whole, or said not to be."""
 
-import os
 import subprocess
 import sys
 
@@ -92,6 +91,20 @@ def test_a_torn_tail_is_set_aside_and_the_journal_goes_on(folder):
     assert (told.events[-1].text, told.damage, told.torn) == ("after", None, b"")
 
 
+def test_a_torn_tail_is_on_the_disk_elsewhere_before_it_is_cut_off_and_so_is_the_cut(
+    folder, synced
+):
+    whole = fill(folder)
+    (folder / journal.NAME).write_bytes(whole[:-9])
+    torn = whole[:-9].rpartition(b"\n")[2]
+    synced.clear()
+    with Journal(folder) as book:
+        book.set_torn_aside()
+    before = {journal.NAME: len(whole) - 9, journal.TORN: len(torn) + 1}
+    after = before | {journal.NAME: len(whole) - 9 - len(torn)}
+    assert synced == [(journal.TORN, before), ("", before), (journal.NAME, after)]
+
+
 def test_a_whole_journal_has_nothing_to_set_aside(folder):
     fill(folder)
     with Journal(folder) as book:
@@ -143,12 +156,10 @@ with Journal(Path({str(folder)!r})) as book:
     assert told.damage is None
 
 
-def test_an_answer_is_synced_before_it_is_said_to_be_in(folder, monkeypatch):
-    synced = []
-    real = os.fsync
-    monkeypatch.setattr(os, "fsync", lambda file: (synced.append(1), real(file)))
+def test_an_answer_is_synced_before_it_is_said_to_be_in(folder, synced):
     with Journal(folder) as book:
         book.append(Answer(trial=1, attempt=1, answer="⠁", t_s=0.0))
-        assert len(synced) == 1
+        whole = {journal.NAME: (folder / journal.NAME).stat().st_size}
+        assert synced == [(journal.NAME, whole)]
         book.append(Cue(trial=1, t_s=0.0))
         assert len(synced) == 1

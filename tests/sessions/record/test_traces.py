@@ -5,9 +5,10 @@ import gzip
 import numpy as np
 import pytest
 
+from tests.sessions.sittings import Session, of
 from vbraille.engine.ring import tick_dtype
 from vbraille.errors import VbrailleError
-from vbraille.sessions.record.journal import Tie
+from vbraille.sessions.record.journal import NAME, Tie
 from vbraille.sessions.record.traces import (
     CHUNK_TICKS,
     LEFT_TRACE,
@@ -71,6 +72,32 @@ def test_a_chunk_is_on_the_disk_when_it_is_full(tmp_path):
     writer.sync()
     assert read_trace(path).ticks.size == CHUNK_TICKS + 5
     writer.close()
+
+
+def test_a_trace_that_was_synced_is_whole_on_the_disk_and_so_is_its_name(tmp_path, synced):
+    path = tmp_path / "trace-001.gz"
+    writer = TraceWriter(path)
+    assert synced == [("", {path.name: 0})]
+    writer.add(ticks(0, 5))
+    writer.sync()
+    whole = path.stat().st_size
+    assert synced[1:] == [(path.name, {path.name: whole})]
+    assert read_trace(path).ticks.size == 5
+    writer.close()
+    assert path.stat().st_size == whole
+
+
+def test_each_answer_of_a_session_finds_the_trace_of_its_trial_on_the_disk(tmp_path, synced):
+    session = Session(tmp_path / "s")
+    answers = len(of(session.sit().events, "answer"))
+    found, on_disk, begun = 0, 0, 0
+    for name, sizes in synced:
+        if name == "trace-001.gz":
+            on_disk = sizes[name]
+        elif name == NAME and on_disk > begun:
+            assert sizes["trace-001.gz"] == on_disk
+            found, begun = found + 1, on_disk
+    assert found == answers > 0
 
 
 def test_a_trace_cut_short_is_read_to_its_last_whole_chunk(tmp_path, rng):

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from vbraille.errors import InputError
+from vbraille.files import cell_text
 from vbraille.translate.documents.encodings import binary_kind, find_encoding
 from vbraille.wording import nearest
 
@@ -140,6 +141,8 @@ def _frame(reader: Any, name: str) -> pd.DataFrame:
                 f"{len(heads)} columns; mend that line"
             )
         for column, value in zip(columns, row, strict=True):
-            column.append(known.setdefault(value, value))
+            if (text := known.get(value)) is None:
+                text = known[value] = cell_text(value)
+            column.append(text)
         lines.append(reader.line_num)
     return pd.DataFrame(dict(zip(heads, columns, strict=True)), lines, dtype=object)

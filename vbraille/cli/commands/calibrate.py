@@ -6,10 +6,10 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
+from vbraille.cli.atdevice import opened_in_time
 from vbraille.cli.stoppable import STOPPED, StoppableKeyboard
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
-from vbraille.devices import opened_device
 from vbraille.devices.base import Placing
 from vbraille.devices.calibration import Calibration
 from vbraille.devices.calibrations import load, name_of, path_of, save
@@ -63,7 +63,7 @@ def calibrate(arguments: argparse.Namespace, wanted: Display | None) -> int:
         actuators itself.
     """
     settings = settings_path()
-    with Keyboard() as keyboard, opened_device(arguments.spec, wanted) as device:
+    with Keyboard() as keyboard, opened_in_time(arguments.spec, wanted) as device:
         path = path_of(settings, name_of(device))
         if arguments.forget:
             return _forget(path)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from vbraille.cli.atdevice import opened_in_time
 from vbraille.cli.commands.calibrate import calibrate, say_calibration
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
-from vbraille.devices import opened_device
+from vbraille.devices.registry import find_driver
 from vbraille.devices.saying import say
 from vbraille.engine.checking import check
 from vbraille.engine.checkup import warm_up
@@ -31,9 +32,10 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.action == "calibrate":
         return calibrate(arguments, _wanted(arguments))
     if arguments.action == "check":
+        find_driver(arguments.spec)
         with EAR.at_once():
             warm_up(_wanted(arguments) or MODELS["stress2"].display)
-    with opened_device(arguments.spec, _wanted(arguments)) as device:
+    with opened_in_time(arguments.spec, _wanted(arguments)) as device:
         _describe(device)
         if arguments.action == "info":
             say_calibration(device, settings_path())

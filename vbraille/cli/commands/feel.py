@@ -16,7 +16,7 @@ from vbraille.cli.stoppable import StoppableKeyboard
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.events import Button
-from vbraille.devices.registry import check_actuators
+from vbraille.devices.registry import check_actuators, find_driver
 from vbraille.display import check_rate
 from vbraille.errors import InputError
 from vbraille.feeling.commands import BOUND
@@ -65,6 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
     seed = 1 if arguments.seed is None else arguments.seed
     moved = parse_hand(hand, seed, pointed=True)
     wanted = replace(MODELS[arguments.model or _MODEL].display, rate_hz=rate_hz)
+    find_driver(arguments.device)
     loaded = load_scene(arguments.file, model_of(wanted).style)
     if is_simulated(arguments.device):
         _check(loaded, wanted, arguments.at)

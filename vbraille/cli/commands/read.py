@@ -17,7 +17,7 @@ from vbraille.cli.settled import bind_settings, chosen_profile, settle
 from vbraille.cli.stoppable import StoppableKeyboard
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
-from vbraille.devices.registry import check_actuators, check_height, check_travel
+from vbraille.devices.registry import check_actuators, check_height, check_travel, find_driver
 from vbraille.display import USUAL_RATE_HZ, check_rate
 from vbraille.errors import InputError
 from vbraille.reading.beside import Beside
@@ -70,8 +70,7 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = wanted.display
     if arguments.model is not None or is_simulated(arguments.device):
         build_show(arguments, asked)
-    if (note := compiling_note()) is not None:
-        print(note, file=sys.stderr, flush=True)
+    find_driver(arguments.device)
     with ExitStack() as listening, Keyboard(beside=arguments.file == "-") as keyboard:
         if arguments.advance == "key" and not keyboard.attached:
             raise InputError("--advance key needs a terminal to type at; leave it out without one")
@@ -83,6 +82,12 @@ def run(arguments: argparse.Namespace) -> int:
         say = say_line if live is None else live.say
         hearing = listening.enter_context(Hearing(say, cues, echo=echo))
         also = _also(arguments, listening, hearing)
+        # A text or a table that is not there is refused before anything is begun or compiled.
+        places = listening.enter_context(KeptPlaces.open())
+        opened = open_to_resume(arguments, places)
+        listening.callback(opened.book.source.close)
+        if (note := compiling_note()) is not None:
+            print(note, file=sys.stderr, flush=True)
         device = OpenDevice(
             arguments.device,
             wanted,
@@ -96,9 +101,6 @@ def run(arguments: argparse.Namespace) -> int:
             on_share=None if live is None else live.share,
         )
         try:
-            places = listening.enter_context(KeptPlaces.open())
-            opened = open_to_resume(arguments, places)
-            listening.callback(opened.book.source.close)
             if arguments.speech:
                 hearing.speak(language_of(opened.book, arguments.language))
             display = device.find()

@@ -17,7 +17,7 @@ from vbraille.display import USUAL_RATE_HZ, check_rate
 from vbraille.errors import InputError
 from vbraille.files import write_file
 from vbraille.layout.pages import Layout
-from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
+from vbraille.layout.texts import cells_per_line, choose_table
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.opened import HAND, OpenDevice
 from vbraille.reading.practice import practice_text
@@ -58,6 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     with ExitStack() as listening, Keyboard() as keyboard:
         if not keyboard.attached:
             raise InputError("vbraille tune is led by keys; start it at a terminal")
+        book = _book(arguments)
         device = OpenDevice(
             arguments.device,
             wanted,
@@ -77,7 +78,9 @@ def run(arguments: argparse.Namespace) -> int:
                 settings, profile, replace(usual, style=replace(usual.style, geometry=geometry))
             )
             course = _Guided(arguments, settings, profile, model)
-            text = _text(arguments, model)
+            text = Layout(book, cells_per_line(model.style.geometry, model.display))
+            if text.line(1) is None:
+                raise InputError(f"{arguments.file} has no text in it; give a text file")
             device.start(replace(model, style=course.course.shown(1)))
             keys = listening.enter_context(StoppableKeyboard(keyboard))
             device.show(text)
@@ -88,22 +91,18 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _text(arguments: argparse.Namespace, model: Model) -> Layout:
-    """Text to practise on, in lines for the display.
+def _book(arguments: argparse.Namespace) -> Book:
+    """Text to practise on, and its table.
 
     Raises
     ------
     InputError
-        If the text cannot be used.
+        If one of the two cannot be used.
     """
-    width = cells_per_line(model.style.geometry, model.display)
     table = choose_table(arguments.language, arguments.grade, arguments.table)
     if arguments.file is None:
-        return lay_out_text(practice_text(arguments.language), width, table)
-    layout = Layout(Book(Document.open(arguments.file), table), width)
-    if layout.line(1) is None:
-        raise InputError(f"{arguments.file} has no text in it; give a text file")
-    return layout
+        return Book(Document.from_text(practice_text(arguments.language)), table)
+    return Book(Document.open(arguments.file), table)
 
 
 class _Guided:

@@ -7,7 +7,7 @@ no numbers; the ones that a display can show come one after the other.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.dots import DOT_ROWS
 from vbraille.braille.geometry import BOUNDS_MM
@@ -54,6 +54,11 @@ class StyleKnob:
     step: float
     low: float
     high: float
+
+    def applied(self, style: BrailleStyle, value: float) -> BrailleStyle:
+        """Style in which the knob has another value."""
+        changes: dict[str, Any] = {self.field: value}
+        return style.replace(**changes)
 
     def value(self, style: BrailleStyle) -> float:
         """Value of a style."""
@@ -181,7 +186,7 @@ def with_values(
         If a value is out of range, or not for this display. The message begins with the name of
         the value, with blanks for underscores and without its unit, where one value is at fault.
     """
-    changes: dict[str, object] = {}
+    changes: dict[str, Any] = {}
     for name, value in values.items():
         if name in KNOBS:
             knob = KNOBS[name]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 from numbers import Integral, Real
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from vbraille.render.braille.profiles import Profile, coefficients
 from vbraille.render.braille.straying import MOST_TILT_RAD, Straying
 from vbraille.render.braille.tuning import Tuning
 from vbraille.render.work import ProgramKind
+from vbraille.wording import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,6 +28,26 @@ if TYPE_CHECKING:
 
 
 _USUAL = Straying()
+
+
+class StyleChanges(TypedDict, total=False):
+    """Fields that a style is changed in: its own, and those of its `Tuning` and its `Geometry`."""
+
+    profile: Profile
+    mapping: Mapping
+    geometry: Geometry
+    tuning: Tuning
+    first_row: int | None
+    straying: Straying
+    texture: float
+    contrast: float
+    cycles: int
+    dot_width_mm: float
+    dot_spacing_mm: float
+    cell_gap_mm: float
+    row_spacing_mm: float
+    line_pitch_mm: float
+    travel_mm: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +78,7 @@ class BrailleStyle:
     first_row: int | None = None
     straying: Straying = _USUAL
 
-    def replace(self, **changes: Any) -> Self:
+    def replace(self, **changes: Unpack[StyleChanges]) -> Self:
         """Make a style that differs from this one in the given fields.
 
         Parameters
@@ -77,9 +98,9 @@ class BrailleStyle:
         >>> VBD.style.replace(texture=0.5).tuning
         Tuning(texture=0.5, contrast=1.0, cycles=7)
         """
-        others = dict(changes)
-        turned = {name: _number(name, others.pop(name)) for name in _TUNED & changes.keys()}
-        lengths = {name: _number(name, others.pop(name)) for name in _LENGTHS & changes.keys()}
+        others: dict[str, Any] = {**changes}
+        turned = {name: _number(name, others.pop(name)) for name in _TUNED if name in changes}
+        lengths = {name: _number(name, others.pop(name)) for name in _LENGTHS if name in changes}
         for name, value in others.items():
             _check_field(name, value)
         try:
@@ -224,8 +245,8 @@ _KINDS: dict[str, tuple[tuple[type, ...], str]] = {
 }
 
 
-_TUNED = {field.name for field in fields(Tuning)}
-_LENGTHS = {field.name for field in fields(Geometry)}
+_TUNED = [field.name for field in fields(Tuning)]
+_LENGTHS = [field.name for field in fields(Geometry)]
 
 
 def _number(name: str, value: object) -> Any:
@@ -238,8 +259,7 @@ def _number(name: str, value: object) -> Any:
 def _check_field(name: str, value: object) -> None:
     """Raise InputError if a style has no such field, or it cannot have such a value."""
     if name not in _KINDS:
-        parts = (field.name for part in (Tuning, Geometry) for field in fields(part))
-        raise InputError(f"a style has no {name}; it has {', '.join((*_KINDS, *parts))}")
+        raise InputError(f"a style has no {name}; {nearest(name, (*_KINDS, *_TUNED, *_LENGTHS))}")
     kinds, wanted = _KINDS[name]
     if not isinstance(value, kinds):
         raise InputError(f"{name} is {value!r}; it must be {wanted}")

@@ -16,6 +16,7 @@ import io
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from vbraille.files import no_formula
 from vbraille.sessions.record.columns import COLUMNS, WRITTEN
 
 if TYPE_CHECKING:
@@ -117,7 +118,7 @@ def to_codebook(files: Mapping[str, Iterable[CodebookEntry]]) -> str:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(HEAD)
     for name, entries in files.items():
-        writer.writerows([name, *_row(entry)] for entry in entries)
+        writer.writerows(map(no_formula, (name, *_row(entry))) for entry in entries)
     return text.getvalue()
 
 

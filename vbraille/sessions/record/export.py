@@ -13,6 +13,7 @@ import numpy as np
 from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.braille.spelling import to_braille
 from vbraille.engine.record import Flag
+from vbraille.files import no_formula
 from vbraille.sessions.planning.appearance import TUNED
 from vbraille.sessions.planning.design import StringList
 from vbraille.sessions.planning.standing import is_conventional
@@ -320,12 +321,18 @@ def _trajectory(
 
 
 def to_csv(table: list[dict[str, Any]], delimiter: str = ",", missing: str = "") -> str:
-    """Rows that have the same columns, as the text of a table with a head."""
+    """Rows that have the same columns, as the text of a table with a head.
+
+    In a table with commas, which people open in spreadsheets, no text is a formula.
+    """
     text = io.StringIO()
     writer = csv.writer(text, delimiter=delimiter, lineterminator="\n")
     writer.writerow(table[0])
     for row in table:
-        writer.writerow([missing if value == "" else value for value in row.values()])
+        cells = [missing if value == "" else value for value in row.values()]
+        if delimiter == ",":
+            cells = [no_formula(cell) if isinstance(cell, str) else cell for cell in cells]
+        writer.writerow(cells)
     return text.getvalue()
 
 

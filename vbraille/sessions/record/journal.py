@@ -21,6 +21,7 @@ from zlib import crc32
 import msgspec
 
 from vbraille.errors import InputError, VbrailleError
+from vbraille.files import sync_names
 from vbraille.sessions.record.eventlines import read, to_json
 from vbraille.sessions.record.events import Session
 
@@ -220,6 +221,7 @@ class Journal:
                 file.write(torn + b"\n")
                 file.flush()
                 os.fsync(file.fileno())
+            sync_names(self._path.parent)
             os.ftruncate(self._file, self.told.good_bytes)
             self._length = self.told.good_bytes
             os.fsync(self._file)

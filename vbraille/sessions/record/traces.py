@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from vbraille.errors import VbrailleError
+from vbraille.files import sync_names
 from vbraille.sessions.record.journal import Tie
 
 if TYPE_CHECKING:
@@ -115,6 +116,7 @@ class TraceWriter:
         try:
             path.touch(0o600, exist_ok=False)
             self._file = path.open("wb", buffering=0)
+            sync_names(path.parent)
         except OSError as error:
             raise self._fault(error) from None
 

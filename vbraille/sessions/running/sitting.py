@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.caching import compiling_note
 from vbraille.devices.registry import TRAVEL_TOLERANCE_MM
-from vbraille.errors import InputError
+from vbraille.engine.host import HostDiedError
+from vbraille.errors import DeviceError, InputError
 from vbraille.sessions.planning.standing import is_conventional
 from vbraille.sessions.record import events
 from vbraille.sessions.record.clocks import Moment, boot, gap, say_moved
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.display import Display
+    from vbraille.errors import VbrailleError
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.folder import Record
@@ -162,14 +164,15 @@ class Sitting:
                 Console(course, self._answers, say=self._say, real=self._real, look=look).run()
             finally:
                 self._before_rest()
-                if display is not None:
-                    display.close()
+                fault = None if display is None else _closed(display)
             if display is not None:
                 counts = {name: count for name, count in display.engine.counts.items() if count}
                 lost = display.engine.lost
                 trace = display.close_trace()
                 course.book.log(events.Closed, lost=lost, counts=counts, **trace)
             self._say(f"record: {sum_of((record.folder / NAME).read_bytes())}")
+        if fault is not None:
+            raise fault
         return progress
 
     def _display(self, record: Record, book: Journal) -> OnDevice | None:
@@ -205,6 +208,15 @@ class Sitting:
                 f"torn: {len(book.told.torn)} bytes at the end of the journal are in journal.torn"
             )
         return told
+
+
+def _closed(display: OnDevice) -> VbrailleError | None:
+    """Close a display, and give the fault of a device that could not be let go."""
+    try:
+        display.close()
+    except (DeviceError, HostDiedError) as fault:
+        return fault
+    return None
 
 
 def make_sound(wanted: str, answers: Answers, say: Callable[[str], None]) -> Sound:
