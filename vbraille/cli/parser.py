@@ -29,9 +29,9 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         "vbraille feel house.scene --device latero:192.168.1.10",
     ),
     "books": (
-        "List the books that were read, and where reading goes on.",
+        "List the books that were read, or read on in one of them.",
         reading.books,
-        "vbraille books --json",
+        "vbraille books 2",
     ),
     "keys": (
         "List the keys that are obeyed while reading.",
@@ -259,6 +259,11 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
             isinstance(value, list) and name != "paths"
         ):  # Python before 3.13 takes the value of --name=-- away
             parser.error(f"argument --{name.replace('_', '-')}: expected one argument")
+    if arguments.command == "books" and arguments.number is not None:
+        if arguments.json or arguments.forget is not None:
+            parser.error("a number alone opens its book; leave out either that or the option")
+        log = () if arguments.log is None else ("--log", arguments.log)
+        return parser.parse_args(["read", "--book", str(arguments.number), *log])
     return arguments
 
 

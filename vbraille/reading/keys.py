@@ -11,9 +11,12 @@ import re
 
 PASTE = "paste:"  # before the first line of a pasted text, the two of which stand for one key
 PASTE_REST = "paste, rest:"  # before more of that line, which comes when it was taken for all
-ESCAPE = "escape"
+ESC, ESCAPE = "\x1b", "escape"
 PASTE_ON, PASTE_OFF = b"\x1b[?2004h", b"\x1b[?2004l"  # switch marks around pasted text on and off
-ESCAPE_S = 0.05  # an Escape that nothing follows for so long is the key Escape
+# An Escape that nothing follows for so long is the key Escape: a slow line may take as long to
+# bring the rest of an arrow, and readline waits as long (keyseq-timeout).
+ESCAPE_S = 0.5
+_ALT_S = 0.05  # what comes later than this after an Escape, and begins no sequence, is a key alone
 BROKEN_S = 1.0  # the rest of a sequence or of a paste does not come so long after its last byte
 # So many different characters in one read are no typing: they are a paste that is not marked.
 BURST = 20
@@ -112,9 +115,14 @@ class Keys:
 
     def feed(self, typed: bytes, now_s: float) -> list[str]:
         """Names of the keys that these bytes, which came now, complete."""
+        late = now_s - self._fed_s >= _ALT_S
         self._fed_s = now_s
-        self._tail += self._decoder.decode(typed)
-        keys = self._take()
+        more = self._decoder.decode(typed)
+        keys = []
+        if late and self._tail == ESC and more and more[0] not in "[O":
+            keys, self._tail = [ESCAPE], ""
+        self._tail += more
+        keys += self._take()
         plain = [key for key in keys if len(key) == 1]
         within = now_s < self._burst_end_s
         if not within and (len(plain) < BURST or len(set(plain)) == 1):
@@ -130,7 +138,7 @@ class Keys:
     def wait(self, now_s: float) -> list[str]:
         """Keys that are complete because nothing has come until now."""
         since_s = now_s - self._fed_s
-        if self._tail == "\x1b" and not self._pasting and since_s >= ESCAPE_S:
+        if self._tail == ESC and not self._pasting and since_s >= ESCAPE_S:
             self._tail = ""
             return [ESCAPE]
         if since_s >= BROKEN_S:
