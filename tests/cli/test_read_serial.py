@@ -42,7 +42,7 @@ def test_a_text_is_read_to_its_end_on_a_device_that_has_passed_its_mark(tmp_path
     with simulated(tmp_path, "--encoder", "index", "--model", "vbd") as (spec, device):
         done = program.run("read", text, "--device", spec, "--lines", "1-2", "--dot-row", "2")
         assert done.returncode == 0, done.stderr
-        assert done.stderr == "line width: 28 cells, table en-ueb-g2.ctb\n"
+        assert done.stderr == program.line_width(28)
         assert lines(done.stdout) == ["line: 1", "line: 2"]
         assert done.stdout.splitlines()[-1].startswith("summary: lines 2,")
         device.send_signal(signal.SIGTERM)
@@ -149,13 +149,13 @@ def test_the_page_is_laid_out_for_the_travel_that_there_is(call, tmp_path, text)
     with simulated(tmp_path, "--travel", "60") as (spec, _):
         done = call("read", text, "--device", spec, "--lines", "1-3")
         assert done.code == 0, done.err
-        assert done.err == "line width: 4 cells, table en-ueb-g2.ctb\n"
+        assert done.err == program.line_width(4)
         said = [line for line in done.out.splitlines() if line.startswith("text: ")]
         assert " ".join(line.removeprefix("text: ") for line in said) == "one two three"
         if TIER > Tier.TEST:  # a shorter travel is laid out for without a device, too
             narrower = call("read", text, "--device", spec, "--travel", "50", "--lines", "1")
             assert narrower.code == 0, narrower.err
-            assert narrower.err == "line width: 3 cells, table en-ueb-g2.ctb\n"
+            assert narrower.err == program.line_width(3)
         for option, value, sentence in REFUSED:
             done = call("read", text, "--device", spec, option, value)
             assert done.code == 2

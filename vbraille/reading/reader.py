@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from vbraille.reading.queries import Counted, Query
     from vbraille.render import BrailleStyle, Model
     from vbraille.translate import Book
+    from vbraille.translate.source import Mark
 
 _TRAIL = 100  # places that are kept to go back to
 
@@ -85,6 +86,7 @@ class Reader(LineReader):
         self.book_before: tuple[Book, Book] | None = None
         self.fold_accents = self.backward = False
         self.sought = ""
+        self.followed: Mark | None = None  # link or reference that was followed last
         # Whether lines are as wide as somebody says, and not as wide as the hand can go.
         self._fixed = layout.width != self.under.width
         self._book = layout.book  # which is the one that the other process knows
@@ -316,11 +318,6 @@ class Reader(LineReader):
         """Say which line a jump has led to, and which heading, or something else, that is."""
         line = self.line
         self.announce(what or ("" if line is None else heading_name(line)))
-
-    @property
-    def came_from(self) -> int | None:
-        """Place of the source before the last jump; None if there was none."""
-        return self._trail[-1] if self._trail else None
 
     def bring_under(self, place: int) -> bool:
         """Move the line so that a place of it is under the finger, and keep that place as `hit`.

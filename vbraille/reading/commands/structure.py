@@ -146,6 +146,7 @@ def follow(reader: Reader) -> None:
     elif not mark.target.startswith("#"):
         reader.say(f"link: {mark.target}")
     else:
+        reader.followed = mark
         arrive(reader, leads_to, mark.kind.value, backward=False)
 
 
@@ -202,9 +203,9 @@ def _refers(source: Source, place: int | None, names: tuple[str, ...]) -> bool:
 
 def _go_back_from_note(reader: Reader, names: tuple[str, ...]) -> None:
     """Go to where a note was followed from, or else to the last reference to it before it."""
-    source, line = reader.layout.book.source, reader.line
-    if _refers(source, reader.came_from, names) and reader.jump_back():
-        reader.announce_jump()
+    source, line, followed = reader.layout.book.source, reader.line, reader.followed
+    if followed is not None and followed.target in names:
+        arrive(reader, followed.start, "reference", backward=True, kind=LINK)
     elif line is not None:
         query = FindKind(LINK, block_of(source, line), backward=True, targets=names)
         reader.find(
