@@ -86,7 +86,8 @@ def test_reading_goes_by_the_file_unless_an_option_says_otherwise(call, text, se
 
 
 def test_a_page_takes_language_grade_and_table_and_braille_stays_braille(call, text, settings):
-    assert call("page", text, "--settings", settings).err == program.line_width(26, program.UNCONTRACTED)
+    said = call("page", text, "--settings", settings)
+    assert said.err == program.line_width(26, program.UNCONTRACTED)
     braille = text.with_suffix(".brf")
     braille.write_text("ABC\n")
     said = call("page", braille, "--settings", settings, "--format", "brf")

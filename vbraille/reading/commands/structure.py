@@ -5,9 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from vbraille.reading.commands.figures import feel
 from vbraille.reading.cues import Cue
-from vbraille.reading.figured import figure_of_block
 from vbraille.reading.queries import FindKind, FindLine, FindPage, FindShare
 from vbraille.reading.seeking.kinds import EACH_ITEM, IMAGE, LINK, START, first_place, marks_of
 from vbraille.reading.whereabouts import (
@@ -126,20 +124,14 @@ def ask_place(reader: Reader) -> None:
 
 
 def follow(reader: Reader) -> None:
-    """Go to what the link under the finger speaks of; from a note, back to its reference.
-
-    On the line of a figure that has no link under the finger, the figure is felt.
-    """
-    line, mark = reader.line, _link_here(reader)
-    source = reader.layout.book.source
+    """Go to what the link under the finger speaks of; from a note, back to its reference."""
+    mark, source = _link_here(reader), reader.layout.book.source
     leads_to = None
     if mark is not None and mark.target.startswith("#"):
         leads_to = source.anchor(mark.target[1:])
     names = _names_of_note(reader)
     if names and (mark is None or _refers(source, leads_to, names)):
         _go_back_from_note(reader, names)
-    elif mark is None and line is not None and figure_of_block(line):
-        feel(reader)
     elif mark is None:
         reader.cue(Cue.NOT_FOUND)
         reader.say("link: none here")

@@ -256,7 +256,7 @@ COMMANDS = (
     Command(
         "FOLLOW",
         ("\n",),
-        "follow the link under the finger; feel the figure of this line; from a note, go back",
+        "follow the link or note under the finger; from a note, go back",
         structure.follow,
     ),
     Command("FEEL", ("G",), "feel the figure of this line, alone", figures.feel),
