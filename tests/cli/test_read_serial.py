@@ -1,7 +1,9 @@
 """Reading on a device at a serial line: the whole path, pseudo-terminal and processes included."""
 
+import ctypes
 import os
 import re
+import resource
 import signal
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,6 +13,8 @@ from tests.cli import program
 from tests.cli.program import Terminal
 from tests.tiers import TIER, Tier, by_tier, heavy
 from vbraille import __version__
+
+_PR_CAPBSET_DROP, _CAP_SYS_NICE = 24, 23
 
 
 @contextmanager
@@ -25,6 +29,12 @@ def simulated(tmp_path, *options):
     finally:
         process.terminate()
         process.communicate()
+
+
+def without_real_time():
+    """Take the right to real-time priority away, from whoever is about to run a program."""
+    resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
+    ctypes.CDLL(None).prctl(_PR_CAPBSET_DROP, _CAP_SYS_NICE, 0, 0, 0)  # which root would have
 
 
 def lines(said):
@@ -50,6 +60,18 @@ def test_a_text_is_read_to_its_end_on_a_device_that_has_passed_its_mark(tmp_path
     assert "greeted by a host" in told
     assert int(re.search(r"frames (\d+)", told)[1]) > 1000
     assert "Traceback" not in done.stderr
+
+
+def test_a_real_device_is_told_of_ticks_and_priority_and_a_simulated_one_is_not(tmp_path, text):
+    options = ("--lines", "1", "--no-places")
+    done = program.run("read", text, "--hand", "sweep:1000", *options, preexec_fn=without_real_time)
+    assert done.returncode == 0, done.stderr
+    assert not re.search("timing|real-time|tick", done.stdout + done.stderr)
+    with simulated(tmp_path) as (spec, _):
+        done = program.run("read", text, "--device", spec, *options, preexec_fn=without_real_time)
+        assert done.returncode == 0, done.stderr
+    assert "timing: no real-time priority, so that ticks may come late" in done.stdout
+    assert re.search(r", ticks \d+, late ticks \d+\n$", done.stdout)
 
 
 def test_a_slower_device_is_read_on_at_its_own_rate_unless_another_is_asked_for(

@@ -1,11 +1,13 @@
 """Keys and buttons of somebody's own."""
 
 import io
+from pathlib import Path
 
 import pytest
 
 from tests.reading.commands.test_choosing import Scroll
 from tests.reading.test_reader import TEXT, Bench
+from vbraille.cli.options import groups
 from vbraille.errors import InputError
 from vbraille.reading.beside import Beside
 from vbraille.reading.bindings import Bindings
@@ -13,6 +15,7 @@ from vbraille.reading.commands.table import KEY_SETS, bound_by, press_button, tu
 from vbraille.reading.context import Context
 from vbraille.reading.echo import Echo
 from vbraille.reading.knobturns import SETTLED_S, KnobTurns
+from vbraille.settings.parsing import parse_settings
 from vbraille.translate import Book, BrailleTable
 from vbraille.translate.documents.html import HtmlBook
 
@@ -128,6 +131,13 @@ def test_a_key_is_written_as_people_say_it(written, sent):
 def test_keys_are_named_in_words_that_speech_says(sent, name):
     bench = bench_with(stay=True)
     assert bench.press(["?", sent])[1].startswith(f"{name}: ")
+
+
+def test_options_and_settings_know_the_ready_sets():
+    assert tuple(KEY_SETS) == groups.KEY_SETS
+    for keys in KEY_SETS:
+        settings = parse_settings(f'[read]\nkeys = "{keys}"\n', Path("settings.toml"))
+        assert settings.read["keys"] == keys
 
 
 @pytest.mark.parametrize("keys", KEY_SETS)
