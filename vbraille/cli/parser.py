@@ -259,12 +259,21 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
             isinstance(value, list) and name != "paths"
         ):  # Python before 3.13 takes the value of --name=-- away
             parser.error(f"argument --{name.replace('_', '-')}: expected one argument")
-    if arguments.command == "books" and arguments.number is not None:
-        if arguments.json or arguments.forget is not None:
-            parser.error("a number alone opens its book; leave out either that or the option")
-        log = () if arguments.log is None else ("--log", arguments.log)
-        return parser.parse_args(["read", "--book", str(arguments.number), *log])
     return arguments
+
+
+def read_instead(arguments: argparse.Namespace) -> argparse.Namespace:
+    """Arguments of ``vbraille read`` in place of ``vbraille books N``, which opens the book.
+
+    Raises
+    ------
+    InputError
+        If another option of ``vbraille books`` is given, too.
+    """
+    if arguments.json or arguments.forget is not None:
+        raise InputError("a number alone opens its book; leave out either that or the option")
+    log = () if arguments.log is None else ("--log", arguments.log)
+    return parse(["read", "--book", str(arguments.number), *log])
 
 
 def _add(
