@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
+from vbraille.reading.nearby import within
 from vbraille.reading.queries import FindKind, FindLine, FindPage, FindShare
 from vbraille.reading.seeking.kinds import EACH_ITEM, IMAGE, LINK, START, first_place, marks_of
 from vbraille.reading.whereabouts import (
@@ -177,10 +178,11 @@ def _names_of_note(reader: Reader) -> tuple[str, ...]:
     """Targets of references to the note that the reader is in; none if it is no note."""
     line, source = reader.line, reader.layout.book.source
     number = 0 if line is None else block_of(source, line)
-    while (block := source.block(number)) is not None and block.kind is BlockKind.NOTE:
+    for _, block in within(source, number, backward=True):
+        if block.kind is not BlockKind.NOTE:
+            break
         if block.anchors:  # of a note in several blocks the first has them
             return tuple(f"#{name}" for name in block.anchors)
-        number -= 1
     return ()
 
 
