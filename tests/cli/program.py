@@ -12,6 +12,13 @@ import time
 
 PROGRAM = [sys.executable, "-m", "vbraille"]
 PATIENCE_S = 60.0
+CONTRACTED = "Unified English contracted braille, grade 2"
+UNCONTRACTED = "Unified English uncontracted braille, grade 1"
+
+
+def line_width(cells, braille=CONTRACTED):
+    """The line on standard error that says how wide lines are, and in which braille."""
+    return f"line width: {cells} cell{'s' * (cells != 1)}, {braille}\n"
 
 
 def run(*arguments, **options):

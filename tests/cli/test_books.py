@@ -1,4 +1,4 @@
-"""``vbraille books``: one line each, and forgetting."""
+"""``vbraille books``: one line each, opening and forgetting."""
 
 import json
 import subprocess
@@ -95,3 +95,45 @@ def test_days_as_people_say_them(ago, said):
     now = datetime(2026, 5, 11, 12, tzinfo=UTC)
     book = ListedBook(1, "Title", "", (now - ago).timestamp(), None, missing=False)
     assert describe(book, now) == f"Title, {said}, from standard input"
+
+
+FAST = ("--hand", "sweep:1000", "--echo", "text")
+
+
+def test_a_book_is_opened_by_its_number_with_the_options_that_it_was_read_with(
+    call, tmp_path, monkeypatch
+):
+    monkeypatch.setenv(ENVIRONMENT, str(tmp_path / "places.sqlite"))
+    for name, keys in (("one", "x"), ("two", "n")):
+        (tmp_path / f"{name}.txt").write_text(f"First of {name}.\n\nSecond of {name}.\n")
+        with program.Terminal("read", tmp_path / f"{name}.txt", "--advance", "key") as terminal:
+            terminal.until("h says the keys")
+            terminal.type(f"n{keys}q")
+            assert terminal.end() == 0
+    said = call("read", "--book", "2", *FAST)
+    assert said.code == 0
+    assert said.err == program.line_width(26, program.UNCONTRACTED)
+    assert "text: First" not in said.out
+    assert "text: Second of one.\n" in said.out
+    said = program.run("books", "2")  # the list begins with the last one read
+    assert said.returncode == 0
+    assert "text: Second of two.\n" in said.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("books", "3"), "there is no book 3; there are 2 books, and vbraille books lists them"),
+        (("read", "--book", "0"), "there is no book 0; there are 2 books"),
+        (("books", "1"), "second.txt, is not there any more; give its file, or choose another"),
+        (("read", __file__, "--book", "1"), "leave out either that or the file"),
+        (("books", "1", "--json"), "a number alone opens its book"),
+        (("books", "one"), "one"),
+    ],
+)
+@pytest.mark.usefixtures("kept")
+def test_a_number_that_opens_nothing_is_one_sentence(call, arguments, sentence):
+    said = call(*arguments)
+    assert (said.code, said.out) == (2, "")
+    assert sentence in said.err
+    assert said.err.count("\n") == 1

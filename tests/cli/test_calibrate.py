@@ -45,7 +45,7 @@ def test_a_round_is_led_left_taken_up_and_kept(spec, tmp_path, call):
         terminal.until("actuator 1 of 3: row 1, column 1\r\n")
         press("u", "undo: nothing was found")
         press("c", "compare: no other actuator was found to be well")
-        press("x", "no command: 'x'; h says the keys")
+        press("x", "no command: x; h says the keys")
         press("h", "q: leave; the same command goes on from here")
         press("d", "found: dead", "actuator 2 of 3: row 1, column 2")
         assert kept(tmp_path) == [{"row": 1, "column": 1, "state": "dead"}]

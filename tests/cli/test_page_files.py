@@ -40,7 +40,7 @@ def test_the_same_book_in_brf_pef_and_unicode_and_back(call, texts, tmp_path):
 def test_lines_without_pages(call, text, tmp_path):
     said = call("page", text, "--cells", "9", "--format", "brf")
     assert said.out.splitlines()[:2] == ['  "O TWO', "?REE"]
-    assert said.err == "line width: 9 cells, table en-ueb-g2.ctb\n"
+    assert said.err == program.line_width(9)
     out = tmp_path / "lines.txt"
     assert call("page", text, "--format", "text", "--out", out).out == ""
     assert out.read_text() == "one two three\nfour five six\nseven eight nine\n"

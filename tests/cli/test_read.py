@@ -15,10 +15,7 @@ from vbraille.reading import COMMANDS, Context
 from vbraille.reading.commands.table import commands_of
 from vbraille.translate import Book, BrailleTable, Document
 
-SUMMARY = (
-    r"summary: lines (\d+), seconds (\d+\.\d), mean scanning speed (\d+\.\d) mm/s, "
-    r"ticks (\d+), late ticks (\d+)"
-)
+SUMMARY = r"summary: lines (\d+), seconds (\d+\.\d), mean scanning speed (\d+\.\d) mm/s"
 FAST = ("--hand", "sweep:1000")
 
 
@@ -39,15 +36,14 @@ def spoken(path, first, last, labels=("line", "cells", "text")):
 def test_without_a_terminal_it_runs_through_and_says_each_line(text):
     done = program.run("read", text, "--hand", "sweep:900", "--lines", "2-3")
     assert done.returncode == 0
-    assert done.stderr == "line width: 26 cells, table en-ueb-g2.ctb\n"
+    assert done.stderr == program.line_width(26)
     *lines, summary = of_lines(done.stdout)
     assert lines == spoken(text, 2, 3)
     found = re.fullmatch(SUMMARY, summary)
-    read, seconds, speed, ticks, late = map(float, found.groups())
+    read, seconds, speed = map(float, found.groups())
     assert read == 2
     assert 300 < speed <= 910
     assert 1 < seconds < 60
-    assert seconds == pytest.approx((ticks + late) / 1000, abs=0.051)
 
 
 def with_closed(streams, *arguments):
@@ -102,7 +98,7 @@ def test_the_other_model_and_the_tuning(call, text):
     )
     said = call("read", text, *FAST, *options.split())
     assert said.code == 0
-    assert said.err == "line width: 28 cells, table en-ueb-g2.ctb\n"
+    assert said.err == program.line_width(28)
     *lines, summary = of_lines(said.out)
     assert [line.split(" ")[0] for line in lines] == ["line:", "cells:"]
     assert lines[0] == "line: 3"
@@ -147,7 +143,7 @@ def test_keys_at_a_terminal(tmp_path, text):
             return terminal.until(rf"(^|\n){re.escape(said)}\r\n")
 
         start = terminal.until("h says the keys\r\n")
-        assert start.splitlines()[0] == "line width: 26 cells, table en-ueb-g2.ctb"
+        assert start.splitlines()[0] == program.line_width(26)[:-1]
         assert terminal.settings() != terminal.before
         helped = press("h", "q: stop reading").splitlines()
         assert [line for line in helped if ": " in line and not line.startswith("speed")] == [
@@ -164,19 +160,19 @@ def test_keys_at_a_terminal(tmp_path, text):
         press("c", "contrast: 0.9")
         press(" ", "paused")
         press(" ", "reading")
-        press("Q", "no command: 'Q'; h says the keys")
+        press("Y", "no command: shift-y; h says the keys")
         press("n", "line: 2")
         press("\x1bOB", "line: 3")
         press("n", "last line")
         press("\x1bOA", "line: 2")
         press("\x1b[A", "line: 1")
         press("p", "first line")
-        press("\x1b[24~", "no command: 'f12'; h says the keys")
-        press("\x1b[1;5C", "no command: 'ctrl-right'; h says the keys")
-        press("\x1b[99~é", "no command: 'é'; h says the keys")
+        press("\x1b[24~", "no command: f12; h says the keys")
+        press("\x1b[1;5C", "no command: ctrl-right; h says the keys")
+        press("\x1b[99~é", "no command: é; h says the keys")
         assert "~" not in terminal.printed  # a sequence that stands for no key is passed over whole
         press("\x1b[200~nq\nq\x1b[201~", "paste: text that is pasted is passed over; type the keys")
-        press("\x04", "no command: '\\x04'; h says the keys")
+        press("\x04", "no command: ctrl-d; h says the keys")
         terminal.type("q")
         assert terminal.end() == 0
         assert terminal.settings() == terminal.before
@@ -248,7 +244,7 @@ def test_a_book_is_found_one_s_way_in_by_keys_at_a_terminal(text):
         press("\x1b[C", "line: 8")
         press("\x1b[D", "line: 7")
         press("\x1b[H", "cells: 1 to 26")
-        press("x", "table: en-ueb-g1.ctb")
+        press("x", "table: Unified English uncontracted braille, grade 1")
         press("?", "learn: a key says what it does; this key again or q ends it")
         press("q", "learn: off")
         press("/given up\x1b", "search: type the text, Enter", "text: given up")
@@ -276,8 +272,11 @@ def test_a_text_is_typed_and_keys_in_pieces_until_the_terminal_goes_away():
         terminal.type("one\n\ntwo\n\x04")
         terminal.until("h says the keys")
         terminal.type_apart([b"\xc3", b"\xa9"])
-        terminal.until("no command: 'é'; h says the keys")
-        terminal.type_apart([b"\x1b[", b"B"])
+        terminal.until("no command: é; h says the keys")
+        for piece in (b"\x1b", b"["):  # as over a slow line
+            terminal.type_apart([piece])
+            assert terminal.silent(0.1)
+        terminal.type_apart([b"B"])
         terminal.until("line: 2\r\ntext: two\r\n")
         terminal.hang_up()
         assert terminal.process.wait(program.PATIENCE_S) == 1

@@ -95,7 +95,7 @@ def test_a_text_is_read_on_eight_rows_of_eight(tmp_path):
         done = program.run(
             "read", tmp_path / "text.txt", "--device", spec, "--grade", "1", "--echo", "cells"
         )
-    assert (done.returncode, done.stderr) == (0, "line width: 10 cells, table en-ueb-g1.ctb\n")
+    assert (done.returncode, done.stderr) == (0, program.line_width(10, program.UNCONTRACTED))
     assert done.stdout.splitlines()[-1].startswith("summary: lines 2,")
     cells = re.findall("^cells: (.*)$", done.stdout, re.MULTILINE)
     assert cells == ["⠀⠀⠝⠕", "⠀⠀⠃⠗⠁⠊⠇⠇⠑"]

@@ -63,7 +63,7 @@ def test_a_key_feels_it_on_a_slider_and_the_same_place_is_read_on(water):
         terminal.type("G")
         terminal.until("figure: none on this line\r\n")
         terminal.type("n")
-        terminal.until("figure: Water cycle, 40 mm × 30 mm; G feels it\r\n")
+        terminal.until("figure: Water cycle, 40 mm × 30 mm; shift-g feels it\r\n")
         terminal.type("G")
         said = terminal.until("goes back to the text\r\n")
         assert "picture: Water cycle\r\n" in said

@@ -64,7 +64,7 @@ def test_a_page_is_the_hand_of_a_reading_and_turns_its_knobs(text):
             page.ask(ask="point", x_mm=-5.4)
             said = process.stdout.read().decode()
         assert process.wait(program.PATIENCE_S) == 0
-        assert process.stderr.read() == b"line width: 26 cells, table en-ueb-g2.ctb\n"
+        assert process.stderr.read() == program.line_width(26).encode()
     for sentence in (
         "hand: moved in the live view",
         "texture: 0.5",

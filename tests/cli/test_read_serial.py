@@ -1,7 +1,9 @@
 """Reading on a device at a serial line: the whole path, pseudo-terminal and processes included."""
 
+import ctypes
 import os
 import re
+import resource
 import signal
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,6 +13,8 @@ from tests.cli import program
 from tests.cli.program import Terminal
 from tests.tiers import TIER, Tier, by_tier, heavy
 from vbraille import __version__
+
+_PR_CAPBSET_DROP, _CAP_SYS_NICE = 24, 23
 
 
 @contextmanager
@@ -25,6 +29,12 @@ def simulated(tmp_path, *options):
     finally:
         process.terminate()
         process.communicate()
+
+
+def without_real_time():
+    """Take the right to real-time priority away, from whoever is about to run a program."""
+    resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
+    ctypes.CDLL(None).prctl(_PR_CAPBSET_DROP, _CAP_SYS_NICE, 0, 0, 0)  # which root would have
 
 
 def lines(said):
@@ -42,7 +52,7 @@ def test_a_text_is_read_to_its_end_on_a_device_that_has_passed_its_mark(tmp_path
     with simulated(tmp_path, "--encoder", "index", "--model", "vbd") as (spec, device):
         done = program.run("read", text, "--device", spec, "--lines", "1-2", "--dot-row", "2")
         assert done.returncode == 0, done.stderr
-        assert done.stderr == "line width: 28 cells, table en-ueb-g2.ctb\n"
+        assert done.stderr == program.line_width(28)
         assert lines(done.stdout) == ["line: 1", "line: 2"]
         assert done.stdout.splitlines()[-1].startswith("summary: lines 2,")
         device.send_signal(signal.SIGTERM)
@@ -50,6 +60,18 @@ def test_a_text_is_read_to_its_end_on_a_device_that_has_passed_its_mark(tmp_path
     assert "greeted by a host" in told
     assert int(re.search(r"frames (\d+)", told)[1]) > 1000
     assert "Traceback" not in done.stderr
+
+
+def test_a_real_device_is_told_of_ticks_and_priority_and_a_simulated_one_is_not(tmp_path, text):
+    options = ("--lines", "1", "--no-places")
+    done = program.run("read", text, "--hand", "sweep:1000", *options, preexec_fn=without_real_time)
+    assert done.returncode == 0, done.stderr
+    assert not re.search("timing|real-time|tick", done.stdout + done.stderr)
+    with simulated(tmp_path) as (spec, _):
+        done = program.run("read", text, "--device", spec, *options, preexec_fn=without_real_time)
+        assert done.returncode == 0, done.stderr
+    assert "timing: no real-time priority, so that ticks may come late" in done.stdout
+    assert re.search(r", ticks \d+, late ticks \d+\n$", done.stdout)
 
 
 def test_a_slower_device_is_read_on_at_its_own_rate_unless_another_is_asked_for(
@@ -149,13 +171,13 @@ def test_the_page_is_laid_out_for_the_travel_that_there_is(call, tmp_path, text)
     with simulated(tmp_path, "--travel", "60") as (spec, _):
         done = call("read", text, "--device", spec, "--lines", "1-3")
         assert done.code == 0, done.err
-        assert done.err == "line width: 4 cells, table en-ueb-g2.ctb\n"
+        assert done.err == program.line_width(4)
         said = [line for line in done.out.splitlines() if line.startswith("text: ")]
         assert " ".join(line.removeprefix("text: ") for line in said) == "one two three"
         if TIER > Tier.TEST:  # a shorter travel is laid out for without a device, too
             narrower = call("read", text, "--device", spec, "--travel", "50", "--lines", "1")
             assert narrower.code == 0, narrower.err
-            assert narrower.err == "line width: 3 cells, table en-ueb-g2.ctb\n"
+            assert narrower.err == program.line_width(3)
         for option, value, sentence in REFUSED:
             done = call("read", text, "--device", spec, option, value)
             assert done.code == 2

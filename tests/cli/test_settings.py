@@ -70,21 +70,22 @@ def test_reading_goes_by_the_file_unless_an_option_says_otherwise(call, text, se
     said = program.run(*command)
     assert said.returncode == 0
     # Dots that stand closer leave room for more cells; grade and echo are the file's.
-    assert said.stderr == "line width: 28 cells, table en-ueb-g1.ctb\n"
+    assert said.stderr == program.line_width(28, program.UNCONTRACTED)
     assert said.stdout.startswith("line: 1\ntext: one two three\n")
     options = ("--table", "fr-bfu-comp6.utb", "--dot-spacing", "3.7", "--echo", "none")
     # An option goes before the file in every command; a page needs no process.
     page = call("page", text, "--settings", settings, *options[:-2])
-    assert page.err == "line width: 26 cells, table fr-bfu-comp6.utb\n"
+    assert page.err == program.line_width(26, "French uncontracted braille")
     if TIER is Tier.TEST:
         return
     said = program.run(*command, *options)
-    assert said.stderr == "line width: 26 cells, table fr-bfu-comp6.utb\n"
+    assert said.stderr == program.line_width(26, "French uncontracted braille")
     assert not said.stdout.startswith("line")
 
 
 def test_a_page_takes_language_grade_and_table_and_braille_stays_braille(call, text, settings):
-    assert call("page", text, "--settings", settings).err.endswith("table en-ueb-g1.ctb\n")
+    said = call("page", text, "--settings", settings)
+    assert said.err == program.line_width(26, program.UNCONTRACTED)
     braille = text.with_suffix(".brf")
     braille.write_text("ABC\n")
     said = call("page", braille, "--settings", settings, "--format", "brf")
@@ -152,3 +153,48 @@ def test_a_turn_at_a_terminal_is_saved_and_undone(tmp_path, text, settings):
     saved = tomllib.loads(settings.read_text())["profile"]["evening"]["stress2"]
     assert (saved["contrast"], saved["dot_spacing_mm"]) == (0.6, 3.0)
     assert settings.read_text().startswith("# mine\n")
+
+
+def test_a_ready_set_of_keys_is_chosen_by_the_file_or_an_option(call, text, settings):
+    settings.write_text('[read]\nkeys = "nvda"\n[keys]\nLNDN = ["full stop"]\n')
+    listed = call("keys", "--settings", settings).out.splitlines()
+    assert "NXHEADING: h: next heading" in listed
+    assert "LNDN: full stop: next line" in listed
+    usual = call("keys", "--settings", settings, "--keys", "usual").out.splitlines()
+    assert "NXHEADING: e: next heading" in usual
+    assert "LNDN: full stop: next line" in usual
+    assert call("keys").out == call("keys", "--keys", "usual").out
+    said = call("settings", "--settings", settings).out.splitlines()
+    assert "keys: nvda (mine.toml line 2)" in said
+    assert "keys: usual (default)" in call("settings").out.splitlines()
+    assert "keys: nvda (option)" in call("settings", "--keys", "nvda").out.splitlines()
+    with program.Terminal("read", text, "--advance", "key", "--settings", settings) as terminal:
+        terminal.until("f1 says the keys\r\n")
+        terminal.type("h")
+        terminal.until("heading: none after this\r\n")
+        terminal.type(".")
+        terminal.until("line: 2\r\n")
+        terminal.type("q")
+        terminal.until("quote: none after this\r\n")
+        terminal.type("\x04")
+        assert terminal.end() == 0
+
+
+@pytest.mark.parametrize("keys", ['"jaws"', "1"])
+def test_a_set_of_keys_that_there_is_not_is_one_sentence(call, settings, keys):
+    settings.write_text(f"[read]\nkeys = {keys}\n")
+    said = call("keys", "--settings", settings)
+    assert (said.code, said.out) == (2, "")
+    assert "mine.toml line 2" in said.err
+    assert said.err.count("\n") == 1
+
+
+def test_a_terminal_that_goes_away_ends_reading_whatever_its_keys_mean(text, settings):
+    settings.write_text('[read]\nkeys = "nvda"\n')
+    ignoring = f"trap '' HUP; exec {' '.join(program.PROGRAM)} read {text} --advance key"
+    with program.Terminal(f"{ignoring} --settings {settings}", program=["sh", "-c"]) as terminal:
+        terminal.until("f1 says the keys\r\n")
+        terminal.type("/")
+        terminal.until("search: type the text, Enter\r\n")
+        terminal.hang_up()
+        terminal.process.wait(program.PATIENCE_S)

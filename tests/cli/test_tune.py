@@ -27,7 +27,7 @@ def test_a_course_is_led_left_taken_up_and_saved(tmp_path):
         said = terminal.until("choice 1 of 28: texture\r\nnow: 1\r\n")
         assert "profile: evening is new, and is made when it is saved\r\n" in said
         press("u", "undo: nothing was chosen")
-        press("x", "no command: 'x'; h says the keys")
+        press("x", "no command: x; h says the keys")
         press("h", "q: leave; the same command goes on from here")
         press(" ", "now: 2")
         press(" ", "now: 1")

@@ -1,15 +1,27 @@
 """Keys and buttons of somebody's own."""
 
+import io
+from pathlib import Path
+
 import pytest
 
 from tests.reading.commands.test_choosing import Scroll
 from tests.reading.test_reader import TEXT, Bench
+from vbraille.cli.options import groups
 from vbraille.errors import InputError
 from vbraille.reading.beside import Beside
 from vbraille.reading.bindings import Bindings
-from vbraille.reading.commands.table import bound_by, press_button, turn_knob
+from vbraille.reading.commands.table import KEY_SETS, bound_by, press_button, turn_knob
 from vbraille.reading.context import Context
+from vbraille.reading.echo import Echo
 from vbraille.reading.knobturns import SETTLED_S, KnobTurns
+from vbraille.settings.parsing import parse_settings
+from vbraille.translate import Book, BrailleTable
+from vbraille.translate.documents.html import HtmlBook
+
+NVDA = """<p>First.<h1>A heading</h1><h2>A lower heading</h2><ul><li>An item<li>Another item</ul>
+<table><tr><td>A cell</table><blockquote>A quotation</blockquote><p><img src="p.png"
+alt="A picture"><p><a href="#x">A link</a><p><a href="#x">Another link</a>"""
 
 
 def bench_with(keys=None, buttons=None, **options):
@@ -20,18 +32,18 @@ def bench_with(keys=None, buttons=None, **options):
 def test_a_key_is_moved_to_another_command_and_help_says_so():
     bench = bench_with({"LNDN": ("j",), "PAUSE": ("space", "P"), "SPEAK_CURR_WORD": ("n",)})
     assert bench.press("jn") == ["line: 2", "word: none here"]
-    assert bench.press(["down"]) == ["no command: 'down'; h says the keys"]
+    assert bench.press(["down"]) == ["no command: down; h says the keys"]
     assert bench.press("P ") == ["paused", "reading"]
     said = bench.press("h")
     assert "j: next line" in said
-    assert "space or P: rest the array at once, or go on" in said
+    assert "space or shift-p: rest the array at once, or go on" in said
     assert "n: say the word under the finger" in said
 
 
 def test_a_key_that_is_taken_leaves_its_command_the_others():
     bench = bench_with({"HELP": ("n",)})
     assert bench.press(["down"]) == ["line: 2"]
-    assert bench.press("é") == ["no command: 'é'; n says the keys"]
+    assert bench.press("é") == ["no command: é; n says the keys"]
     assert bench.reader.bound.keys_of("LNDN") == ("down",)
 
 
@@ -85,11 +97,94 @@ def test_a_fault_among_keys_says_its_line():
         ("ctrl-d", "\x04"),
         ("shift-tab", "backtab"),
         ("escape", "escape"),
+        ("full stop", "."),
+        ("Shift-A", "A"),
+        ("shift-é", "É"),
+        ("alt-comma", "alt-,"),
+        ("ctrl-i", "\t"),
+        ("ctrl-backslash", "\x1c"),
     ],
 )
 def test_a_key_is_written_as_people_say_it(written, sent):
     bench = bench_with({"LNDN": (written,)})
     assert bench.press([sent]) == ["line: 2"]
+
+
+@pytest.mark.parametrize(
+    ("sent", "name"),
+    [
+        (".", "full stop"),
+        ("'", "apostrophe"),
+        ("\x0c", "ctrl-l"),
+        ("\x00", "ctrl-space"),
+        ("\x1f", "ctrl-underscore"),
+        ("A", "shift-a"),
+        ("É", "shift-é"),
+        ("alt-.", "alt-full stop"),
+        ("alt-\x0c", "alt-ctrl-l"),
+        ("-", "minus"),
+        ("é", "é"),
+        ("ß", "ß"),
+        ("\u200b", "character 200b"),
+    ],
+)
+def test_keys_are_named_in_words_that_speech_says(sent, name):
+    bench = bench_with(stay=True)
+    assert bench.press(["?", sent])[1].startswith(f"{name}: ")
+
+
+def test_options_and_settings_know_the_ready_sets():
+    assert tuple(KEY_SETS) == groups.KEY_SETS
+    for keys in KEY_SETS:
+        settings = parse_settings(f'[read]\nkeys = "{keys}"\n', Path("settings.toml"))
+        assert settings.read["keys"] == keys
+
+
+@pytest.mark.parametrize("keys", KEY_SETS)
+def test_every_key_has_a_name_that_speech_says_and_settings_take(keys):
+    bound = bound_by(Bindings(), keys)
+    for command in bound.commands:
+        names = bound.keys_of(command.name)
+        assert names
+        assert not any(set(name) & set("!\"#$%&'()*+,./:;<=>?@[\\]^_`{|}~") for name in names)
+        if command.keys != ("any key",):
+            again = bound_by(Bindings({command.name: names}), keys)
+            assert again.find(command.keys[-1], command.contexts[0]).name == command.name
+
+
+def test_nvda_s_letters_go_where_its_users_expect():
+    book = Book(HtmlBook(io.BytesIO(NVDA.encode()), "book.html"), BrailleTable("en-ueb-g1.ctb"))
+    bound = bound_by(Bindings(), "nvda")
+    bench = Bench(book=book, width=40, echo=Echo.TEXT, beside=Beside(bound=bound))
+    for keys, text in {
+        "h": "A heading",
+        "2": "A lower heading",
+        "l": "• An item",
+        "i": "• Another item",
+        "I": "• An item",
+        "t": "A cell",
+        "q": "A quotation",
+        "g": "A picture",
+        "k": "A link",
+        "\t": "Another link",
+        "L": "• An item",
+        "H": "A lower heading",
+        "p": "• An item",
+    }.items():
+        assert bench.press(keys)[-1] == f"text: {text}", keys
+    assert bench.press("Q")[-1] == "quote: none before this"
+    assert not bench.reader.done
+    assert bench.press(["f7"])[-1].startswith("contents: type a number")
+    bench.press(["escape", "\x04"])
+    assert bench.reader.done
+
+
+def test_keys_of_somebody_s_own_come_before_a_ready_set():
+    bound = bound_by(Bindings({"LNDN": ("h",), "NXHEADING": ("n",)}), "nvda")
+    assert bound.keys_of("LNDN") == ("h",)
+    assert bound.keys_of("NXHEADING") == ("n",)
+    assert bound.keys_of("PRHEADING") == ("shift-h",)
+    assert bound.find("h", Context.READING).name == "LNDN"
 
 
 def test_a_button_does_what_its_command_does():

@@ -203,7 +203,7 @@ def test_one_that_a_page_has_no_room_for_is_a_line(tmp_path, rows, scene):
     bench = Bench(tmp_path, rows=rows, scene=scene)
     assert bench.texts[:3] == ["ab", CAPTION, AFTER]
     bench.to(5.0, 1.5 * PITCH_MM)
-    assert any(s.startswith("figure: Water cycle") and "G feels it" in s for s in bench.said)
+    assert any(s.startswith("figure: Water cycle") and "shift-g feels it" in s for s in bench.said)
 
 
 def test_another_tuning_changes_its_braille_and_not_the_place(bench):
@@ -246,11 +246,11 @@ def test_a_key_feels_it_alone_and_leads_back(tmp_path):
     bench = Bench(tmp_path, model=STRESS2, rows=0)
     assert bench.press("G") == ["figure: none on this line"]
     bench.press("n")
-    assert bench.said[-2] == "figure: Water cycle, 40 mm × 30 mm; G feels it"
+    assert bench.said[-2] == "figure: Water cycle, 40 mm × 30 mm; shift-g feels it"
     bench.run(0.3)
     said = bench.press("G")
     assert said[0] == "picture: Water cycle"
-    assert said[-1] == "G or escape goes back to the text"
+    assert said[-1] == "shift-g or escape goes back to the text"
     frame = bench.to(12.0, 0.0)
     wanted = twin(bench, 12.0, 15.0).reshape(frame.shape)
     assert wanted.max() > 0.5

@@ -108,15 +108,34 @@ def test_it_does_not_matter_where_reads_end(sent, data):
     assert pressed == [name for key in sent if (name := NAMES[key])]
 
 
-def test_an_escape_alone_is_one_after_50_ms():
+def test_an_escape_alone_is_one_after_half_a_second():
     keys = Keys()
     assert keys.feed(b"\x1b", 1.0) == []
-    assert keys.wait(1.049) == []
-    assert keys.wait(1.051) == ["escape"]
-    assert keys.feed(b"[A", 1.06) == ["[", "A"]
+    assert keys.wait(1.499) == []
+    assert keys.wait(1.501) == ["escape"]
+    assert keys.feed(b"[A", 1.51) == ["[", "A"]
     assert keys.feed(b"\x1b\x1b[A", 2.0) == ["escape", "up"]
-    assert keys.feed(b"\x1b", 3.0) == []
-    assert keys.feed(b"[A", 3.2) == ["up"]  # nobody has looked meanwhile: it was there
+
+
+@pytest.mark.parametrize("sent", [sent for sent in NAMES if sent[0] == "\x1b" and len(sent) > 2])
+def test_a_slow_line_may_bring_a_key_in_bytes_that_are_100_ms_apart(sent):
+    keys, pressed = Keys(), []
+    for n, byte in enumerate(sent.encode()):
+        pressed += keys.feed(bytes([byte]), n / 10)
+        pressed += keys.wait(n / 10 + 0.099)
+    assert pressed + keys.wait(n / 10 + 9) == [*filter(None, [NAMES[sent]])]
+
+
+@pytest.mark.parametrize(
+    ("then", "pressed"),
+    [("n", ["n"]), ("é", ["é"]), ("O", ["O"]), ("[", ["["]), ("O2", ["O", "2"]), ("\n", ["\n"])],
+)
+def test_keys_pressed_soon_after_an_escape_are_no_part_of_it(then, pressed):
+    keys, found = Keys(), []
+    for n, key in enumerate(["\x1b", *then]):
+        found += keys.feed(key.encode(), n / 5)
+        found += keys.wait(n / 5 + 0.199)
+    assert found + keys.wait(n / 5 + 0.51) == ["escape", *pressed]
 
 
 def test_a_sequence_that_does_not_go_on_is_given_up():

@@ -16,7 +16,7 @@ from vbraille.translate.documents.parted import PartedSource, Passage
 from vbraille.translate.source import BlockKind
 
 WORDS = ("one", "two", "One  two", "caf\u00e9", "cafe\u0301", "Stra\u00dfe", "x" * 9_000)
-KINDS = [kind.value for kind in BlockKind] + ["link", "start"]
+KINDS = [kind.value for kind in BlockKind] + ["link", "image", "each item", "start"]
 
 
 class Pages(PartedSource):
@@ -48,7 +48,7 @@ QUERIES = st.one_of(
     st.builds(FindText, st.sampled_from(NEEDLES), st.integers(0, 30_000) | st.integers(0, 40),
               st.booleans(), st.booleans()),
     st.builds(FindKind, st.sampled_from(KINDS), st.integers(0, 20), st.booleans(),
-              st.integers(0, 2), st.integers(0, 2)),
+              st.integers(0, 2), st.sampled_from(((), ("#x",), ("#y",)))),
     st.builds(FindShare, st.floats(0, 1)),
     st.builds(FindPage, st.sampled_from(("1", " IV ", "2"))),
 )  # fmt: skip

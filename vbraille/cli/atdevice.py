@@ -14,6 +14,7 @@ from vbraille.devices.registry import opened_device
 from vbraille.devices.saying import placing_sentence
 from vbraille.engine.host import OPEN_S, OPENING, HostDiedError, too_slow
 from vbraille.errors import InputError
+from vbraille.reading.bindings import spoken
 from vbraille.reading.commands.table import press
 from vbraille.reading.context import Context
 from vbraille.reading.keyed import Keyed
@@ -75,6 +76,17 @@ def say_faults(device: OpenDevice) -> None:
     faults = ", ".join(f"{name} {count}" for name, count in device.counts.items() if count)
     if faults:
         say_line(f"device: {faults}")
+
+
+def seconds_of(device: OpenDevice, rate_hz: float) -> str:
+    """Words for how long a device was driven, at a rate."""
+    return f"seconds {(device.tally.ticks + device.tally.late) / rate_hz:.1f}"
+
+
+def ticks_of(device: OpenDevice) -> tuple[str, ...]:
+    """Words for the number of ticks and of late ones; none for a device that is not there."""
+    tally = device.tally
+    return () if device.has_hand else (f"ticks {tally.ticks}", f"late ticks {tally.late}")
 
 
 class AtDevice(ABC):
@@ -186,7 +198,12 @@ class AtDevice(ABC):
         """Keys typed; before that, the process stops for a while if it is told to."""
         if self._keys.asked:
             self._suspend()
-        return self._keys.pressed(POLL_S)
+        there = self._keys.attached
+        keys = self._keys.pressed(POLL_S)
+        if there and not self._keys.attached:  # whatever its keys meant
+            self._who.quit()
+            return []
+        return keys
 
     def _suspend(self) -> None:
         """Stop, with the array at rest, until the shell says to go on."""
@@ -227,19 +244,22 @@ class AtDevice(ABC):
         self._tell(standing=f"fault: {fault}")
         if not self._keys.attached:
             raise fault
-        self._who.say(f"fault: {fault}; space begins again, q stops")
-        while True:
-            keys = self._pressed()
+        again, stop = self._who.key("PAUSE", " "), self._who.key("QUIT", "q")
+        self._who.say(f"fault: {fault}; {again} begins again, {stop} stops")
+        while not self._who.done:
+            keys = [spoken(key) for key in self._pressed()]
             if self._live is not None:
                 self._live.take()  # which nobody can do now
             self._tell()
-            if "q" in keys:
+            if stop in keys:
                 self._who.quit()
-                return
-            if " " in keys:
+            elif again in keys:
                 break
-            if keys:
-                self._who.say("fault: nothing drives the device; space begins again, q stops")
+            elif keys:
+                said = f"{again} begins again, {stop} stops"
+                self._who.say(f"fault: nothing drives the device; {said}")
+        if self._who.done:
+            return
         self._device.start_again()
         self._who.say(self.doing)
         self._tell(standing="")

@@ -289,7 +289,7 @@ def lay_out(
         raise InputError(f"{name} ends at line {lines}; --lines {first} is past that")
     cells = "1 cell" if width == 1 else f"{width} cells"
     table = book.table
-    written = "braille as it is" if table is None else f"table {table.name}"
+    written = "braille as it is" if table is None else table.said
     say_line(f"line width: {cells}, {written}", aside=True)
     unknown = None if table is None else Unknown(table, Undefined(arguments.undefined))
     return Page(layout, model, first, last, unknown)

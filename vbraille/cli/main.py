@@ -128,9 +128,11 @@ def _run(argv: Sequence[str] | None) -> tuple[str, int]:
 
 def _call(argv: Sequence[str] | None) -> int:
     with EAR.at_once():
-        from vbraille.cli.parser import parse
+        from vbraille.cli.parser import parse, read_instead
     try:
         arguments = parse(argv)
+        if arguments.command == "books" and arguments.number is not None:
+            arguments = read_instead(arguments)
     except SystemExit:  # --help and --version have been printed
         return 0
     if arguments.log is not None:

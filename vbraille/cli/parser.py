@@ -29,9 +29,9 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         "vbraille feel house.scene --device latero:192.168.1.10",
     ),
     "books": (
-        "List the books that were read, and where reading goes on.",
+        "List the books that were read, or read on in one of them.",
         reading.books,
-        "vbraille books --json",
+        "vbraille books 2",
     ),
     "keys": (
         "List the keys that are obeyed while reading.",
@@ -277,6 +277,20 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
         ):  # Python before 3.13 takes the value of --name=-- away
             parser.error(f"argument --{name.replace('_', '-')}: expected one argument")
     return arguments
+
+
+def read_instead(arguments: argparse.Namespace) -> argparse.Namespace:
+    """Arguments of ``vbraille read`` in place of ``vbraille books N``, which opens the book.
+
+    Raises
+    ------
+    InputError
+        If another option of ``vbraille books`` is given, too.
+    """
+    if arguments.json or arguments.forget is not None:
+        raise InputError("a number alone opens its book; leave out either that or the option")
+    log = () if arguments.log is None else ("--log", arguments.log)
+    return parse(["read", "--book", str(arguments.number), *log])
 
 
 def _add(

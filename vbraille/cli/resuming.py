@@ -12,7 +12,7 @@ from vbraille.cli.build import book_of, build_book
 from vbraille.cli.settled import TRANSLATION
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
-from vbraille.reading.places import BookOptions, last_book, resume
+from vbraille.reading.places import BookOptions, book_to_open, last_book, resume
 from vbraille.reading.seeking import BookOpening, Seeker
 from vbraille.render.braille.knobs import kept_values, with_values
 from vbraille.settings.chosen import display_name
@@ -114,7 +114,7 @@ class BookToRead:
 
 
 def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToRead:
-    """Open the book of the options, or the last one if they name none.
+    """Open the book of the options, by its file or number, or the last one if they name none.
 
     Parameters
     ----------
@@ -126,9 +126,11 @@ def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToR
     Raises
     ------
     InputError
-        If there is no last book, or the book cannot be read.
+        If there is no such book, or it cannot be read.
     """
     said = _said(arguments)
+    if arguments.file is not None and arguments.book is not None:
+        raise InputError("--book names a book by its number; leave out either that or the file")
     if arguments.file is None:
         _take_last(arguments, places, said)
     book = build_book(arguments)
@@ -165,8 +167,11 @@ def _said(arguments: argparse.Namespace) -> frozenset[str]:
 
 
 def _take_last(arguments: argparse.Namespace, places: KeptPlaces, said: frozenset[str]) -> None:
-    """Read the last book, by the options of its last reading where no others are given."""
-    kept = last_book(places)
+    """Read the last book, or that of a number, by the options of its last reading.
+
+    Options that are given come before those.
+    """
+    kept = last_book(places) if arguments.book is None else book_to_open(places, arguments.book)
     arguments.file = str(kept.path)
     options = kept.options
     if any(getattr(options, name) is not None for name in TRANSLATION):

@@ -61,12 +61,20 @@ def chosen_profile(arguments: argparse.Namespace, settings: Settings) -> str:
     return arguments.profile
 
 
-def bind_settings(settings: Settings) -> Bound:
+def bind_settings(settings: Settings, keys: str | None) -> Bound:
     """Give commands the keys and buttons that the settings file has for them.
+
+    Parameters
+    ----------
+    settings
+        Settings of the file.
+    keys
+        Name of the ready set of keys; None for the one of the settings.
 
     Raises
     ------
     InputError
         If a command is not known, a key would call two commands, or a button is none.
     """
-    return bound_by(Bindings(settings.keys, settings.buttons, settings.where))
+    ready = keys or settings.read.get("keys", "usual")
+    return bound_by(Bindings(settings.keys, settings.buttons, settings.where), ready)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.reading.bindings import ANY, Bindings, Command, bind
 from vbraille.reading.commands import control
-from vbraille.reading.commands.table import say_keys
+from vbraille.reading.commands.table import TYPING, say_keys
 from vbraille.reading.context import Context
 
 if TYPE_CHECKING:
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 STEP_MM, FAR_MM = 1.0, 10.0
 # Buttons of the device, by their numbers.
 BUTTONS = {"1": "HERE", "2": "DESCRIBE", "3": "PAUSE"}
-_TYPING = (Context.PROMPT,)
 
 
 def _move(right: float, down: float) -> Callable[[Feeler], None]:
@@ -96,9 +95,7 @@ COMMANDS = (
         _does("quit"),
         (Context.READING, Context.PLACING, Context.LEARNING),
     ),
-    Command("ENTER", ("\n",), "take the text that was typed", control.enter, _TYPING),
-    Command("ERASE", ("\x7f", "\b"), "take the last character back", control.erase, _TYPING),
-    Command("GIVE_UP", ("escape",), "forget what was typed", control.give_up, _TYPING),
+    *TYPING,
     Command(
         "ZERO",
         (ANY,),

@@ -11,6 +11,7 @@ from vbraille.feeling.guiding import Guide
 from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import check_fits, load_scene, with_known
 from vbraille.feeling.opacities import Opacities
+from vbraille.reading.bindings import spoken
 from vbraille.reading.context import Context
 from vbraille.reading.cues import Cue
 from vbraille.reading.prompt import Prompt
@@ -115,6 +116,7 @@ class Feeler:
         self._aim: tuple[float, float] | None = None  # where keys have sent the hand
         self._looked_at = (math.nan, math.nan)
         self._guide: Guide | None = None
+        self._names: list[str] = []  # of elements that were typed
         self._index = self._index_of(loaded)
 
     @property
@@ -133,9 +135,9 @@ class Feeler:
         self._say(sentence)
 
     def key(self, name: str, usual: str) -> str:
-        """Key that calls a command, for a sentence."""
+        """Name of a key that calls a command, for a sentence."""
         keys = () if self.bound is None else self.bound.keys_of(name)
-        return keys[0] if keys else usual
+        return keys[0] if keys else spoken(usual)
 
     def quit(self) -> None:
         """Stop feeling."""
@@ -218,7 +220,7 @@ class Feeler:
 
     def ask_element(self) -> None:
         """Ask for the name of an element, and go there."""
-        self.prompt = Prompt("element", self.go_to)
+        self.prompt = Prompt("element", self.go_to, others=self._names)
         self.context = Context.PROMPT
         self.say("go to an element: type its title or id, then enter")
 

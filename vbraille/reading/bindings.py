@@ -15,16 +15,52 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
 ANY = "any key"
-_SPOKEN = {
+# Signs by their names, as speech may pass over the signs themselves.
+_SIGNS = {
+    ".": "full stop",
+    ",": "comma",
+    ";": "semicolon",
+    ":": "colon",
+    "!": "exclamation mark",
+    "?": "question mark",
+    "'": "apostrophe",
+    '"': "quotation mark",
+    "`": "grave accent",
+    "/": "slash",
+    "\\": "backslash",
+    "|": "bar",
+    "-": "minus",
+    "_": "underscore",
+    "+": "plus",
+    "*": "star",
+    "=": "equals",
+    "<": "less than",
+    ">": "greater than",
+    "(": "left parenthesis",
+    ")": "right parenthesis",
+    "[": "left bracket",
+    "]": "right bracket",
+    "{": "left brace",
+    "}": "right brace",
+    "#": "number sign",
+    "%": "percent",
+    "&": "ampersand",
+    "@": "at sign",
+    "$": "dollar",
+    "^": "circumflex",
+    "~": "tilde",
     " ": "space",
     "\n": "enter",
-    "\x7f": "backspace",
-    "\b": "ctrl-h",
     "\r": "return",
     "\t": "tab",
+    "\x7f": "backspace",
+    "\0": "ctrl-space",
+    "backtab": "shift-tab",
 }
-_TYPED = {"space": " ", "enter": "\n", "return": "\r", "backspace": "\x7f", "tab": "\t"}
-_TYPED |= {"shift-tab": "backtab", **{f"ctrl-{chr(96 + n)}": chr(n) for n in range(1, 27)}}
+_CONTROLS = {chr(n): f"ctrl-{chr(96 + n)}" for n in range(1, 27)}
+_CONTROLS |= {chr(28 + n): f"ctrl-{_SIGNS[sign]}" for n, sign in enumerate("\\]^_")}
+_SPOKEN = _CONTROLS | _SIGNS
+_TYPED = {name: key for names in (_CONTROLS, _SIGNS) for key, name in names.items()}
 _HELD_KEY = re.compile(rf"((?:{'|'.join(HELD)})*)(.+)", re.DOTALL | re.IGNORECASE)
 _DISPLAY_KEY = re.compile(r"display ([A-Za-z][A-Za-z0-9_]*)")
 # Commands of BRLTTY that are a little more than one of ours, and go by its name.
@@ -232,15 +268,19 @@ def _sent(name: str, where: str) -> str:
         return name
     if name.lower() in _TYPED:
         return _TYPED[name.lower()]
-    found = _HELD_KEY.fullmatch(name)
-    written, key = ("", "") if found is None else found.groups()
+    written, key = _held(name)
     held = "".join(word for word in HELD if word in written.lower())
     if key.lower() in NAMED:
         return f"{held}{key.lower()}"
     character = _TYPED.get(key.lower(), key)
-    if held == "alt-" and len(character) == 1:
+    if "shift-" in held and len(character) == 1 and len(character.upper()) == 1:
+        held, character = held.replace("shift-", ""), character.upper()
+    if held in ("", "alt-") and len(character) == 1:
         return f"{held}{character}"
-    near = nearest(key.lower(), (*sorted(NAMED), *_TYPED))
+    if held in ("ctrl-", "alt-ctrl-") and f"ctrl-{key.lower()}" in _TYPED:
+        return f"{held.removesuffix('ctrl-')}{_TYPED[f'ctrl-{key.lower()}']}"
+    names = (*sorted(NAMED), *(word for word in _TYPED if "-" not in word))
+    near = nearest(key.lower(), names)
     near = near or '; write a character, or a name such as "down" or "ctrl-n"'
     raise InputError(f"{where}: there is no key {name!r}{near}")
 
@@ -251,6 +291,30 @@ def _check_name(name: str, names: Mapping[str, Command] | tuple[str, ...], where
         raise InputError(f"{where}: there is no {kind} {name!r}{nearest(name.upper(), names)}")
 
 
-def spoken(key: str) -> str:
-    """Name of a key as people say it."""
-    return _SPOKEN.get(key, key)
+def spoken(key: str, *, typed: bool = False) -> str:
+    r"""Name of a key as people say it, and speech as well; settings take it, too.
+
+    Parameters
+    ----------
+    key
+        Key, as `vbraille.reading.keys` names it.
+    typed
+        Whether it stands for the character that it types, and not for what is pressed.
+
+    >>> spoken("."), spoken("A"), spoken("\x0c"), spoken("alt-,")
+    ('full stop', 'shift-a', 'ctrl-l', 'alt-comma')
+    """
+    held, name = _held(key)
+    if name in _SPOKEN:
+        name = _SPOKEN[name]
+    elif len(name) == 1 and name.lower() != name and len(name.lower()) == 1:
+        name = f"capital {name}" if typed else f"shift-{name.lower()}"
+    elif len(name) == 1 and not name.isprintable():
+        name = f"character {ord(name):04x}"
+    return held + name
+
+
+def _held(key: str) -> tuple[str, str]:
+    """Words for what is held with a key, and the key."""
+    found = _HELD_KEY.fullmatch(key)
+    return ("", key) if found is None else (found[1], found[2])

@@ -38,6 +38,11 @@ class DeviceInUse:
     _model: Model | None = None
 
     @property
+    def has_hand(self) -> bool:
+        """Whether a simulated hand moves the device, which is then simulated itself."""
+        return self._hand.steering is not None
+
+    @property
     def pointer(self) -> Pointer | None:
         """Where somebody may hold the simulated hand; None also if a person moves the device."""
         return self._hand.pointer

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.engine.upright import Upright
 from vbraille.reading.beside import Beside
+from vbraille.reading.bindings import spoken
 from vbraille.reading.cues import Cue
 from vbraille.reading.echo import Echo
 from vbraille.reading.ranged import LineRange
@@ -340,15 +341,15 @@ class LineReader:
         self.put(Window(line, self.under.width))
         return True
 
-    def announce(self) -> None:
-        """Say which line is under the hand, unless its echo has just done so."""
+    def announce(self, what: str = "") -> None:
+        """Say which line is under the hand, and what it is, unless its echo has just done so."""
         if not self._echoed and self.line is not None:
-            self.say(place_sentence(self.layout, self.line))
+            self.say(place_sentence(self.layout, self.line, what))
 
     def key(self, name: str, usual: str) -> str:
-        """Key that calls a command, for a sentence."""
+        """Name of a key that calls a command, for a sentence."""
         keys = () if self.bound is None else self.bound.keys_of(name)
-        return keys[0] if keys else usual
+        return keys[0] if keys else spoken(usual)
 
     def quit(self) -> None:
         """Stop reading."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vbraille.reading.nearby import look, look_everywhere
-from vbraille.reading.queries import Counted, Failed, Found, NotFound, Searched
+from vbraille.reading.queries import Counted, Failed, Found, Listed, NotFound, Searched
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,7 +40,7 @@ class Looking:
         self._counted = counted
         self._verbose = verbose
         self._say = say
-        self._then: Callable[[int | None], None] | None = None
+        self._then: Callable[[Any], None] | None = None
         self._said_s: float | None = None
 
     @property
@@ -52,7 +52,7 @@ class Looking:
         self,
         source: Source,
         query: Query,
-        then: Callable[[int | None], None],
+        then: Callable[[Any], None],
         seeker: SeekerLike | None = None,
     ) -> None:
         """Look for something; one that was looked for before is given up.
@@ -64,20 +64,21 @@ class Looking:
         query
             What is looked for.
         then
-            Function that is called with its place, or None if it is nowhere: now or later.
+            Function that is called with its place, with the headings, or with None if it is
+            nowhere: now or later.
         seeker
             The process that looks through the whole book; None to do so here.
         """
         self.cancel(seeker)
         found = look(source, query)
-        if isinstance(found, int) or found is None:
+        if found is not query:
             then(found)
         elif seeker is None:
             then(look_everywhere(source, query))
         else:
             self._then, self._said_s = then, None
             self._say("searching")
-            seeker.ask(found)
+            seeker.ask(query)
 
     def poll(self, seeker: SeekerLike, source: Source, now_s: float) -> None:
         """Take what the other process has found; called again and again, with the time."""
@@ -98,9 +99,12 @@ class Looking:
             elif isinstance(answer, Failed):
                 self._then = None
                 self._say(f"search: {answer.sentence}")
-            elif isinstance(answer, Found | NotFound):
+            elif isinstance(answer, Found | Listed | NotFound):
                 then, self._then = self._then, None
-                then(answer.character if isinstance(answer, Found) else None)
+                if isinstance(answer, Listed):
+                    then(answer.headings)
+                else:
+                    then(answer.character if isinstance(answer, Found) else None)
 
     def cancel(self, seeker: SeekerLike | None) -> bool:
         """Give up what is looked for; False if nothing is."""

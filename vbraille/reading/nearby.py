@@ -13,10 +13,11 @@ from vbraille.reading.queries import (
     FindPage,
     FindShare,
     FindText,
+    ListHeadings,
     Query,
 )
 from vbraille.reading.seeking.kinds import blocks_from
-from vbraille.reading.seeking.steps import steps
+from vbraille.reading.seeking.steps import Found, steps
 from vbraille.translate.text import to_text
 
 if TYPE_CHECKING:
@@ -55,17 +56,18 @@ _REACHES = {
     FindKind: Reach(),
     FindShare: Reach(least=2),
     FindPage: Reach(),
+    ListHeadings: Reach(),
 }
 
 
-def look(source: Source, query: Query) -> int | Query | None:
+def look(source: Source, query: Query) -> Found | Query | None:
     """Look for something for as long as a hand does not notice.
 
     Returns
     -------
-    int, Query or None
-        Place of the source where it is; None if it is nowhere; or the question, if that is not
-        known yet.
+    int, tuple, Query or None
+        Place of the source where it is, or the headings; None if it is nowhere; or the question,
+        if that is not known yet.
     """
     if isinstance(query, CountLines | FindLine):
         return query
@@ -78,13 +80,13 @@ def look(source: Source, query: Query) -> int | Query | None:
     return None
 
 
-def look_everywhere(source: Source, query: Query) -> int | None:
+def look_everywhere(source: Source, query: Query) -> Found | None:
     """Look for something, however long that takes.
 
     Returns
     -------
-    int or None
-        Place of the source where it is; None if it is nowhere.
+    int, tuple or None
+        Place of the source where it is, or the headings; None if it is nowhere.
     """
     if isinstance(query, CountLines | FindLine):
         return None

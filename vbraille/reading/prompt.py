@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 LONGEST = 200  # characters
+_MOST_EARLIER = 50  # texts that are kept to be brought again
 
 
 @dataclass(slots=True)
@@ -23,25 +24,73 @@ class Prompt:
         Function that is called with the answer, without blanks around it.
     again
         The answer if nothing is typed; empty if there is none.
-    typed
+    others
+        Texts that can be brought instead of being typed, such as earlier answers.
+    at
+        Index of the text that is brought next by going on; past the last if None.
+
+    Attributes
+    ----------
+    typed : str
         What has been typed so far.
+    cursor : int
+        Place in it where the next character goes.
     """
 
     label: str
     then: Callable[[str], None]
     again: str = ""
+    others: list[str] = field(default_factory=list)
+    at: int | None = None
     typed: str = ""
+    cursor: int = 0
 
     def press(self, key: str) -> None:
         """Take a key that is a character; others are passed over."""
         if len(key) == 1 and key.isprintable() and len(self.typed) < LONGEST:
-            self.typed += key
+            self.typed = self.typed[: self.cursor] + key + self.typed[self.cursor :]
+            self.cursor += 1
 
     def paste(self, text: str) -> None:
         """Take those characters of a pasted line that could have been typed."""
         for character in text:
             self.press(character)
 
-    def erase(self) -> None:
-        """Take the last character away."""
-        self.typed = self.typed[:-1]
+    @property
+    def here(self) -> str:
+        """Character at the cursor; empty at the end."""
+        return self.typed[self.cursor : self.cursor + 1]
+
+    @property
+    def word_start(self) -> int:
+        """Place where the word before the cursor begins."""
+        return self.typed[: self.cursor].rstrip().rfind(" ") + 1
+
+    def erase(self, start: int, end: int | None = None) -> str:
+        """Take away, and give, what stands between two places; up to the cursor if one is given."""
+        start, end = max(start, 0), self.cursor if end is None else end
+        gone = self.typed[start:end]
+        self.typed = self.typed[:start] + self.typed[end:]
+        self.cursor = min(self.cursor, start)
+        return gone
+
+    def move(self, steps: int) -> None:
+        """Move the cursor by so many characters, as far as there is text."""
+        self.cursor = min(max(self.cursor + steps, 0), len(self.typed))
+
+    def bring(self, step: int) -> bool:
+        """Take one of the others for what is typed; False if there is none on that side."""
+        before = len(self.others) if self.at is None else self.at
+        at = before + step
+        if not 0 <= at < len(self.others):
+            return False
+        self.at, self.typed = at, self.others[at]
+        self.cursor = len(self.typed)
+        return True
+
+    def keep(self, answer: str) -> None:
+        """Keep an answer among the others, for the next time."""
+        if answer in self.others:
+            self.others.remove(answer)
+        self.others.append(answer)
+        del self.others[:-_MOST_EARLIER]

@@ -37,24 +37,25 @@ class FindKind(msgspec.Struct, frozen=True, tag="kind"):
     Parameters
     ----------
     kind
-        Value of a `BlockKind`, "link" for a block with a link in it, or "start" for one, of
-        whatever kind, with which a paragraph begins.
+        Value of a `BlockKind`; "link" or "image" for a block with one in it; "each item" for an
+        item of whatever list; or "start" for a block, of whatever kind, with which a paragraph
+        begins.
     block
         Number of the block after which, or before which, it is looked for.
     backward
-        Whether the nearest block before is wanted; if it is part of a list or a table of which
-        no row was wanted, the first of that.
+        Whether the nearest block before is wanted; if it is part of a list, a table or a
+        quotation other than the one that the block is in, the first of that.
     level
         Greatest level of a heading that is wanted; 0 for any.
-    group
-        Number of a list or table that is not wanted, since the reader is in it; 0 for none.
+    targets
+        Targets of the links that are wanted; none for all.
     """
 
     kind: str
     block: int
     backward: bool = False
     level: int = 0
-    group: int = 0
+    targets: tuple[str, ...] = ()
 
 
 class FindShare(msgspec.Struct, frozen=True, tag="share"):
@@ -67,6 +68,10 @@ class FindPage(msgspec.Struct, frozen=True, tag="page"):
     """Where a page begins, by its number as the book writes it, or counts it in a braille file."""
 
     label: str
+
+
+class ListHeadings(msgspec.Struct, frozen=True, tag="headings"):
+    """All headings of the book."""
 
 
 class CountLines(msgspec.Struct, frozen=True, tag="count"):
@@ -102,13 +107,28 @@ class FindLine(msgspec.Struct, frozen=True, tag="line"):
     table: str = ""
 
 
-Query = FindText | FindKind | FindShare | FindPage | FindLine | CountLines
+Query = FindText | FindKind | FindShare | FindPage | FindLine | ListHeadings | CountLines
 
 
 class Found(msgspec.Struct, frozen=True, tag="found"):
     """A place of the source, and the index by which it is reached without reading up to it."""
 
     character: int
+    index: Index
+
+
+class ListedHeading(msgspec.Struct, frozen=True, array_like=True):
+    """A heading: its level, from 1, its text, and the place of the source where it begins."""
+
+    level: int
+    title: str
+    character: int
+
+
+class Listed(msgspec.Struct, frozen=True, tag="listed"):
+    """The headings of the book, and where its blocks are."""
+
+    headings: tuple[ListedHeading, ...]
     index: Index
 
 
@@ -153,4 +173,4 @@ class Indexed(msgspec.Struct, frozen=True, tag="indexed"):
     index: Index
 
 
-Answer = Found | NotFound | Searched | Counted | Failed | Indexed
+Answer = Found | Listed | NotFound | Searched | Counted | Failed | Indexed

@@ -11,6 +11,7 @@ from vbraille.reading.linereader import LineReader
 from vbraille.reading.looking import Looking
 from vbraille.reading.prompt import Prompt
 from vbraille.reading.queries import CountLines
+from vbraille.reading.whereabouts import heading_name
 from vbraille.reading.window import Window
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from vbraille.reading.queries import Counted, Query
     from vbraille.render import BrailleStyle, Model
     from vbraille.translate import Book
+    from vbraille.translate.source import Mark
 
 _TRAIL = 100  # places that are kept to go back to
 
@@ -80,13 +82,17 @@ class Reader(LineReader):
         self.styles_before: list[BrailleStyle] = []  # before each turn that was not taken back
         self.context = Context.READING
         self.prompt: Prompt | None = None
+        # The book as it is read, and as it was before its table was changed last.
+        self.book_before: tuple[Book, Book] | None = None
         self.fold_accents = self.backward = False
         self.sought = ""
+        self.followed: Mark | None = None  # link or reference that was followed last
         # Whether lines are as wide as somebody says, and not as wide as the hand can go.
         self._fixed = layout.width != self.under.width
         self._book = layout.book  # which is the one that the other process knows
         self._counting = False
         self._at = at
+        self._answers: dict[str, list[str]] = {}  # that were typed, by what they were called
         self._trail: list[int] = []
         self._hit: int | None = None
 
@@ -238,7 +244,7 @@ class Reader(LineReader):
             share = before.share_at(x_mm, geometry)
             self.put(window.under(new_cell, share, x_mm, self.style.geometry))
 
-    def find(self, query: Query, then: Callable[[int | None], None]) -> None:
+    def find(self, query: Query, then: Callable[[Any], None]) -> None:
         """Look for something in the book, and call a function with its place, or None.
 
         What is near comes at once; what is far may come while reading goes on.
@@ -253,6 +259,8 @@ class Reader(LineReader):
         then: Callable[[Reader, str], None],
         *,
         again: str = "",
+        others: list[str] | None = None,
+        at: int | None = None,
     ) -> None:
         """Ask for a text, which is then typed in silence.
 
@@ -266,8 +274,13 @@ class Reader(LineReader):
             Function that is called with the reader and the text.
         again
             The text if nothing is typed.
+        others, at
+            Texts that can be brought instead of being typed, and which of them is the present one;
+            None for what was typed under the label before.
         """
-        self.prompt = Prompt(label, lambda text: then(self, text), again)
+        if others is None:
+            others = self._answers.setdefault(label, [])
+        self.prompt = Prompt(label, lambda text: then(self, text), again, others, at)
         self.context = Context.PROMPT
         self.say(f"{what}: {how}")
 
@@ -279,13 +292,32 @@ class Reader(LineReader):
             return None
         return hit if int(line.cells.starts[0]) <= hit < line.cells.end else None
 
-    def arrive(self, place: int | None) -> bool:
-        """Go to what was found, say which line that is, and keep it as `hit`; False if none."""
+    def arrive(self, place: int | None, what: str = "") -> bool:
+        """Go to what was found, and keep it as `hit`.
+
+        Parameters
+        ----------
+        place
+            Place of the source; None for none.
+        what
+            Words for what was found, which are said with the line; empty for a heading's, if the
+            line is one.
+
+        Returns
+        -------
+        bool
+            Whether it is among the lines that are read.
+        """
         if place is None or not self.jump(place):
             return False
         self._hit = place
-        self.announce()
+        self.announce_jump(what)
         return True
+
+    def announce_jump(self, what: str = "") -> None:
+        """Say which line a jump has led to, and which heading, or something else, that is."""
+        line = self.line
+        self.announce(what or ("" if line is None else heading_name(line)))
 
     def bring_under(self, place: int) -> bool:
         """Move the line so that a place of it is under the finger, and keep that place as `hit`.

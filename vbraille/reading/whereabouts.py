@@ -71,12 +71,30 @@ def line_name(layout: Layout, line: Line) -> str:
     return f"line {layout.number_of(line)}" if is_counted(layout) else "the line"
 
 
-def place_sentence(layout: Layout, line: Line) -> str:
-    """Where a line is: its number, or its share and page while the lines are not counted."""
+def place_sentence(layout: Layout, line: Line, what: str = "") -> str:
+    """Where a line is: its number, or its share and page while the lines are not counted.
+
+    Parameters
+    ----------
+    layout, line
+        The line.
+    what
+        Words for what stands there, which come first; empty for none.
+    """
     if is_counted(layout):
-        return f"line: {layout.number_of(line)}"
+        number = layout.number_of(line)
+        return f"{what}, line {number}" if what else f"line: {number}"
     label = page_label(layout.book.source, line)
-    return f"place: {percent(layout, line)} %" + (f", page {label}" if label else "")
+    place = f"{percent(layout, line)} %" + (f", page {label}" if label else "")
+    return f"{what}, {place}" if what else f"place: {place}"
+
+
+def heading_name(line: Line) -> str:
+    """Words for the heading that a line is of, with its level; empty if it is of none."""
+    block = line.block
+    if block.kind is not BlockKind.HEADING:
+        return ""
+    return f"heading {block.level}: {' '.join(str(block.text).split())}"
 
 
 def whereabouts(layout: Layout, line: Line) -> Iterator[str]:

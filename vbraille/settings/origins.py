@@ -32,6 +32,7 @@ USUAL = {
     "verbose": "no",
     "straying": "line",
     "band": f"{BAND:g}",
+    "keys": "usual",
 }
 
 

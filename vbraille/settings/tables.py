@@ -28,6 +28,8 @@ class ReadTable(Table, frozen=True):
         `vbraille.render.braille.straying`.
     also
         Conventional display that shows the lines, too.
+    keys
+        Ready set of keys, before those of the table ``[keys]``.
     """
 
     profile: str | None = None
@@ -46,6 +48,7 @@ class ReadTable(Table, frozen=True):
     verbose: bool | None = None
     straying: Literal["line", "free"] | None = None
     band: float | None = None
+    keys: Literal["usual", "nvda"] | None = None
 
     def __post_init__(self) -> None:
         check_range("band", self.band, *BAND_BOUNDS)

@@ -225,6 +225,22 @@ class BrailleTable:
         return next((t for t in list_tables() if t.name == Path(self.name).name), None)
 
     @cached_property
+    def said(self) -> str:
+        """Language and grade in words, such as "German contracted braille, grade 2".
+
+        A table that does not say what it is has its name.
+        """
+        with _lock:
+            title, index, grade = (
+                (_get_info(self._list, key) or b"").decode("utf-8", "replace")
+                for key in (b"display-name", b"index-name", b"grade")
+            )
+        words = title or index
+        if not words:
+            return self.name
+        return f"{words}, grade {grade}" if grade else words
+
+    @cached_property
     def eight_dots(self) -> bool:
         """Whether this is a table of eight-dot braille; a six-dot table writes no dot 7 or 8.
 

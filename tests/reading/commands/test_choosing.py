@@ -8,8 +8,9 @@ from tests.reading.commands.test_moving import finger_at
 from tests.reading.test_reader import TEXT, Bench
 from vbraille.reading.beside import Beside
 from vbraille.reading.cues import Cue
-from vbraille.translate import Book
+from vbraille.translate import Book, BrailleTable
 from vbraille.translate.braillefiles.lines import open_brf
+from vbraille.translate.documents.html import HtmlBook
 
 
 class Scroll:
@@ -44,8 +45,8 @@ def test_another_table_shows_the_same_text_under_the_finger(key):
     finger_at(bench, 7)
     before, cells = bench.reader.character, bench.reader.line.printed.to_unicode()
     said = bench.press(key)
-    assert said[-1].startswith("table: ")
-    assert said[-1] == f"table: {bench.reader.layout.book.table.name}"
+    assert said[-1] == f"table: {bench.reader.layout.book.table.said}"
+    assert ".ctb" not in said[-1]
     bench.run(0.05)
     first, after = bench.reader.line.source(bench.reader.cell)
     assert first <= before < after
@@ -55,8 +56,8 @@ def test_another_table_shows_the_same_text_under_the_finger(key):
 
 def test_contracted_and_back_is_as_it_was():
     bench = Bench(TEXT)
-    assert bench.press("x") == ["table: en-ueb-g1.ctb"]
-    assert bench.press("x") == ["table: en-ueb-g2.ctb"]
+    assert bench.press("x") == ["table: Unified English uncontracted braille, grade 1"]
+    assert bench.press("x") == ["table: Unified English contracted braille, grade 2"]
 
 
 def test_a_language_that_there_is_not_changes_nothing():
@@ -65,7 +66,9 @@ def test_a_language_that_there_is_not_changes_nothing():
     assert said[:2] == ["language: type its tag such as fr, Enter", "language: xx"]
     assert said[2].startswith("table: there is no table for language 'xx'; the nearest is xh")
     assert bench.reader.layout.book.table.name == "en-ueb-g2.ctb"
-    assert bench.press("yen\n")[2] == "table: en-ueb-g2.ctb, as before"
+    assert (
+        bench.press("yen\n")[2] == "table: Unified English contracted braille, grade 2, as before"
+    )
 
 
 def test_braille_that_is_read_as_it_is_has_no_table():
@@ -101,3 +104,31 @@ def test_lines_come_by_time_while_the_reader_wants_it_and_does_not_rest():
 
 def test_without_a_scroll_it_is_said():
     assert Bench(TEXT).press("v+-") == ["autoscroll: there is none here"] * 3
+
+
+FRENCH = "<p>A word, <span lang='fr'>la forêt était très belle</span>, and on.</p>"
+
+
+@pytest.mark.parametrize("grade", [None, 2])
+def test_contracted_and_back_restores_a_passage_in_another_language(grade):
+    source = HtmlBook(BytesIO(FRENCH.encode()), "book.html", language="en")
+    book = Book(source, BrailleTable("en-ueb-g2.ctb"), grade=grade)
+    bench = Bench(book=book, width=60)
+    before = bench.reader.line.printed.to_unicode()
+    bench.press("x")
+    assert bench.reader.line.printed.to_unicode() != before
+    bench.press("x")
+    assert bench.reader.line.printed.to_unicode() == before
+    bench.press("xyfr\nyen\nx")
+    uncontracted = bench.reader.line.printed.to_unicode()
+    bench.press("x")
+    assert bench.reader.line.printed.to_unicode() != uncontracted
+
+
+def test_contracted_again_after_the_book_was_closed_has_passages_as_is_usual():
+    source = HtmlBook(BytesIO(FRENCH.encode()), "book.html", language="en")
+    usual = Bench(book=Book(source, BrailleTable("en-ueb-g2.ctb")), width=60)
+    turned = Book(source, BrailleTable("en-ueb-g1.ctb"), language="en", grade=1)
+    bench = Bench(book=turned, width=60)
+    bench.press("x")
+    assert bench.reader.line.printed.to_unicode() == usual.reader.line.printed.to_unicode()

@@ -67,7 +67,7 @@ def test_case_and_blanks_do_not_matter_and_accents_only_if_asked(bench):
 def test_a_search_goes_backward_again_and_with_the_last_text():
     cues = []
     bench = Bench(TEXT, width=30, beside=Beside(cue=cues.append))
-    assert bench.press(".") == ["search: nothing was searched yet; / asks what"]
+    assert bench.press(".") == ["search: nothing was searched yet; slash asks what"]
     bench.press(">")
     assert bench.press("\\the\n") == ["search backward: type the text, Enter", "text: the",
                                       "line: 3"]  # fmt: skip
@@ -82,7 +82,7 @@ def test_escape_forgets_and_an_empty_text_searches_nothing(bench):
     bench.press("/th")
     assert bench.press(["escape"]) == ["text: given up"]
     assert bench.press("/\n")[1:] == ["text: nothing was typed"]
-    assert bench.press(["/", "up", "f5", "ctrl-left", "é", "\n"])[1:3] == ["text: é", "line: 1"]
+    assert bench.press(["/", "f5", "ctrl-left", "é", "\n"])[1:3] == ["text: é", "line: 1"]
     assert bench.press(["escape"]) == ["search: nothing is looked for"]
 
 
@@ -167,3 +167,45 @@ def test_a_text_across_two_pieces_of_a_long_paragraph_is_found_both_ways():
     assert look(document, FindText("left right", place, backward=True)) is None
     assert look_everywhere(document, FindText("left right", len(text), True)) == place
     assert look_everywhere(document, FindText("left right", place + 1)) is None
+
+
+@pytest.mark.parametrize(
+    ("keys", "said", "typed"),
+    [
+        (["a", "b", "left", "c"], ["cursor: b"], "acb"),
+        (["a", "b", "left", "left", "left", "c"], ["cursor: b", "cursor: a", "cursor: a"], "cab"),
+        (["a", "b", "home", "c", "end", "d"], ["cursor: a", "cursor: end"], "cabd"),
+        (["a", "b", "\x01", "right", "\x7f", "\x05"],
+         ["cursor: a", "cursor: b", "cursor: end"], "b"),
+        (["a", ".", "B", " ", "\t"], ["text: a.B "], "a.B"),
+        (["a", ".", "B", " ", "c", "left", "left", "left", "left"],
+         ["cursor: c", "cursor: space", "cursor: capital B", "cursor: full stop"], "a.B c"),
+        (["a", "b", "c", "home", "delete", "delete"], ["cursor: a", "cursor: b", "cursor: c"], "c"),
+        ([*"one two ", "\x17"], ["erased: two"], "one"),
+        ([*"one two", "\x17", "\x17", "\x17", "x"], ["erased: two", "erased: one",
+                                                     "erased: nothing"], "x"),
+        ([*"one two", "left", "\x15"], ["cursor: o", "erased: one tw"], "o"),
+        ([*"one", "\x15", "\x7f", "\t", "x"], ["erased: one", "text: nothing"], "x"),
+        (["a", "\x7f", "\x7f", "b", "f9", "\x0b"], [], "b"),
+    ],
+)  # fmt: skip
+def test_a_text_is_edited_as_in_a_shell_and_the_place_is_said(bench, keys, said, typed):
+    bench.press("/")
+    assert bench.press(keys) == said
+    assert bench.press("\n")[0] == f"text: {typed}"
+
+
+def test_what_was_typed_before_is_brought_again_each_kind_by_itself(bench):
+    for text in ("one", "two", "one"):
+        bench.press(["/", *text, "\n"])
+    bench.press("mhere\n")
+    bench.press("/x")
+    assert bench.press(["up", "up", "up", "down", "down"]) == [
+        "text: one",
+        "text: two",
+        "text: none before this",
+        "text: one",
+        "text: none after this",
+    ]
+    assert bench.press(["e", "\n"])[0] == "text: onee"
+    assert bench.press(["o", "\x10"])[1] == "name: here"

@@ -4,7 +4,7 @@ import io
 
 import pytest
 
-from tests.reading.chapters import BOOK, Chapters
+from tests.reading.chapters import BOOK, HEADING, Chapters
 from tests.reading.commands.test_moving import finger_at
 from tests.reading.commands.test_searching import Seeker
 from tests.reading.test_reader import Bench
@@ -16,6 +16,8 @@ from vbraille.reading.seeking.answering import Answering
 from vbraille.translate import Book, BrailleTable, Cells
 from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.braillefiles.pef import PefBook
+from vbraille.translate.documents.html import HtmlBook
+from vbraille.translate.documents.markdown import read_markdown
 from vbraille.translate.documents.parted import Passage
 from vbraille.translate.source import Mark, MarkKind
 
@@ -128,7 +130,7 @@ def test_a_link_of_the_same_line_is_said_and_comes_under_the_finger():
 def test_a_link_that_was_gone_to_is_followed_where_no_finger_is_known():
     bench = Bench(book=Book(Chapters([Passage("None here."), NEAR_LINKS]), TABLE), width=26)
     assert bench.reader.cell is None
-    assert bench.press("kk\n") == ["line: 2", "link: two", "link: a:2"]
+    assert bench.press("kk\n") == ["link: one, line 2", "link: two", "link: a:2"]
 
 
 def test_a_note_is_followed_and_left_again(bench):
@@ -241,3 +243,199 @@ def test_a_page_that_is_far_is_looked_for_while_reading_goes_on():
     seeker.answers = list(answering.answer(seeker.asked[-1]))[-1:]
     bench.run(0.05)
     assert bench.said[-1] == "page 500: there is no such page"
+
+
+LISTS = """# First part
+
+1. First item.
+
+   Inside the first item.
+
+2. Second item.
+
+   ### A heading in an item
+
+   > A quotation here.
+   >
+   > It goes on.
+
+   | a | b |
+   |---|---|
+   | c | d |
+
+3. Third item.
+
+Between the lists.
+
+- Apples.
+- Pears.
+
+> Another quotation.
+
+After the lists.
+"""
+
+
+def of_markdown(text, **options):
+    """A reader of a text in Markdown."""
+    source = read_markdown(io.BytesIO(text.encode()), "book.md")
+    return Bench(book=Book(source, TABLE), width=26, **options)
+
+
+@pytest.mark.parametrize(
+    ("keys", "there"),
+    [
+        ("ll", ["1. First item.", "• Apples."]),
+        ("lnl", ["1. First item.", "Inside the first item.", "• Apples."]),
+        ("l3l", ["1. First item.", "A heading in an item", "• Apples."]),
+        ("lrl", ["1. First item.", "a  b", "• Apples."]),
+        ("llL", ["1. First item.", "• Apples.", "1. First item."]),
+        ("llLL", ["1. First item.", "• Apples.", "1. First item.", "list: none before this"]),
+        ("l3L", ["1. First item.", "A heading in an item", "list: none before this"]),
+        (">L", ["After the lists.", "• Apples."]),
+        (">LL", ["After the lists.", "• Apples.", "1. First item."]),
+        (">RR", ["After the lists.", "a  b", "table: none before this"]),
+        ("II", ["1. First item.", "2. Second item."]),
+        ("lnI", ["1. First item.", "Inside the first item.", "2. Second item."]),
+        (["l", "n", "alt-i"], ["1. First item.", "Inside the first item.", "1. First item."]),
+        ("QQQ", ["A quotation here.", "Another quotation.", "quote: none after this"]),
+        ([">", "alt-q", "alt-q"], ["After the lists.", "Another quotation.",
+                                   "A quotation here."]),
+    ],
+)  # fmt: skip
+def test_a_list_is_one_whatever_its_items_hold(keys, there):
+    assert texts(of_markdown(LISTS, echo=Echo.TEXT).press(keys)) == there
+
+
+@pytest.mark.parametrize(
+    ("table", "keys", "said"),
+    [
+        ("| Name | Age |\n|---|---|\n| Ann | 7 |", "rH", "headers: in this row: Name; Age"),
+        ("| Name | Age |\n|---|---|\n| Ann | 7 |", "rnH", "headers: Name; Age"),
+        ("<table><tr><td>Ann<td>7<tr><th>Name<th>Age<tr><td>Bob<td>8</table>", "rH",
+         "headers: the table has none"),
+        ("<table><tr><td>Ann<td>7<tr><td>Bob<td>8</table>", "rH", "headers: the table has none"),
+    ],
+)  # fmt: skip
+def test_the_header_row_says_its_headers_too(table, keys, said):
+    assert of_markdown(f"Before.\n\n{table}\n\nAfter.").press(keys)[-1] == said
+
+
+NOTES = """<html><body><p>One<a epub:type="noteref" href="#n1" id="r1">1</a> stands here.</p>
+<p>Two<a epub:type="noteref" href="#n2" id="r2">2</a> stands here, and again<a epub:type="noteref"
+href="#n1">1</a>.</p><p>The end.</p>
+<aside epub:type="footnote" id="n1"><p>The first note.</p><p>It goes on.</p></aside>
+<aside epub:type="footnote" id="n2"><p>The second note. <a href="#r2">back</a></p></aside>
+<aside epub:type="footnote" id="n3"><p>A note that nothing refers to.</p></aside>
+</body></html>"""
+
+
+@pytest.mark.parametrize(
+    ("keys", "last"),
+    [
+        ("k\n", "line: 4"),
+        ("k\n\n", "note: 1, line 1"),  # it was followed from there, though another is nearer
+        (">ppp\n", "note: 1, line 2"),  # read to it: the reference before it
+        (">pp\n", "note: 1, line 2"),  # from a note's second paragraph
+        (">p\n", "note: 2, line 2"),  # whose link back leads no farther than to its paragraph
+        (">\n", "reference: none before this"),
+    ],
+)
+def test_enter_on_a_note_goes_back_to_its_reference(keys, last):
+    source = HtmlBook(io.BytesIO(NOTES.encode()), "book.html")
+    bench = Bench(book=Book(source, TABLE), width=60)
+    assert bench.press(keys)[-1] == last
+
+
+PICTURES = """# A part
+
+![A cat](cat.png) and ![a dog](dog.png) in one line.
+
+Between.
+
+![A map](map.svg)
+
+After.
+"""
+
+
+def test_pictures_are_gone_to_one_after_the_other():
+    bench = of_markdown(PICTURES)
+    assert bench.press(",,,,") == [
+        "picture: A cat, line 2",
+        "picture: a dog",
+        "figure: A map, line 5",
+        "figure: none after this",
+    ]
+    assert bench.press(";;") == ["picture: a dog, line 2", "picture: A cat"]
+
+
+def test_a_jump_says_the_heading_it_comes_to_and_a_step_does_not():
+    bench = of_markdown("# A part\n\nText.\n\n## A section\n\nMore.\n")
+    assert bench.press("e") == ["heading 2: A section, line 3"]
+    assert bench.press("1E") == [
+        "heading of level 1: none after this",
+        "heading 1: A part, line 1",
+    ]
+    assert bench.press("nn") == ["line: 2", "line: 3"]
+    assert bench.press("b") == ["heading 2: A section, line 3"]
+    assert bench.press("/part\n")[-1] == "not found after this: part"
+    assert bench.press("\\part\n")[-1] == "heading 1: A part, line 1"
+
+
+CONTENTS = "\n\n".join(
+    f"# Part {n}\n\nText.\n\n## Section {n} of winter\n\nMore text." for n in range(1, 4)
+)
+ASKED = "contents: type a number or words, Enter; up and down go through the headings"
+
+
+def test_the_contents_are_listed_and_a_heading_is_chosen_by_number_words_or_arrows():
+    bench = of_markdown(CONTENTS)
+    lines = [
+        line
+        for n in range(1, 4)
+        for line in (f"{2 * n - 1}: Part {n}, level 1", f"{2 * n}: Section {n} of winter, level 2")
+    ]
+    assert bench.press("O") == [*lines, ASKED]
+    assert bench.press("4\n") == ["heading: 4", "heading 2: Section 2 of winter, line 7"]
+    assert bench.press("nO")[1:] == [*lines, ASKED]
+    assert bench.press(["down", "up", "up", "\n"])[1:] == [  # from the heading here
+        "heading: 4: Section 2 of winter, level 2",
+        "heading: 3: Part 2, level 1",
+        "heading: 3: Part 2, level 1",
+        "heading 1: Part 2, line 5",
+    ]
+    said = bench.press("OPART 3\n")
+    assert said[-2:] == ["heading: PART 3", "heading 1: Part 3, line 9"]
+    said = bench.press("Owinter\n")
+    assert said[-5:] == ["heading: winter", lines[1], lines[3], lines[5], ASKED]
+    assert bench.press("2\n")[-1] == "heading 2: Section 1 of winter, line 3"
+    assert bench.press("Osummer\n")[-1] == "contents: no such heading"
+    assert bench.press("b") == ["heading 1: Part 3, line 9"]
+    assert Bench("Plain text.").press("O") == ["contents: the book has no headings"]
+
+
+def test_of_many_headings_those_of_the_upper_levels_are_said_and_words_find_the_others():
+    bench = of_markdown("\n\n".join(f"# Part {n}\n\n## Below {n}" for n in range(1, 61)))
+    said = bench.press("O")
+    assert said[:2] == ["1: Part 1, level 1", "3: Part 2, level 1"]
+    assert said[-2:] == ["contents: 120 headings; these are to level 1", ASKED]
+    assert len(said) == 62
+    assert bench.press("below 60\n")[-1].startswith("heading 2: Below 60, line ")
+
+
+def test_the_headings_of_a_long_book_come_when_they_are_found():
+    part = [Passage("A part", HEADING, 1), *[Passage("Text.")] * 5_000]
+    seeker = Seeker()
+    bench = Bench(book=Book(Chapters(part, part), TABLE), beside=Beside(seeker=seeker))
+    assert bench.press("O") == ["searching"]
+    assert bench.press("n") == ["line: 2"]
+    seeker.answers = list(Answering(bench.layout.book).answer(seeker.asked[-1]))[-1:]
+    bench.run(0.05)
+    assert bench.said[-3:] == ["1: A part, level 1", "2: A part, level 1", ASKED]
+    bench.press(["escape", "O"])
+    bench.press("/")
+    seeker.answers = list(Answering(bench.layout.book).answer(seeker.asked[-1]))[-1:]
+    bench.run(0.05)
+    assert bench.said[-1] == "contents: not now; answer first"
+    assert bench.press("x\n")[0] == "text: x"

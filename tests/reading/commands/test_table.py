@@ -48,7 +48,7 @@ def test_help_says_every_key_of_the_context():
 
 def test_a_key_that_calls_nothing_says_how_to_learn_the_keys():
     bench = Bench()
-    assert bench.press("é") == ["no command: 'é'; h says the keys"]
+    assert bench.press("é") == ["no command: é; h says the keys"]
     assert bench.press([PASTE]) == ["paste: text that is pasted is passed over; type the keys"]
     bench.press("q")
     assert bench.reader.done

@@ -63,7 +63,7 @@ def text_at(source, found):
         (FindKind("heading", 1, level=1), "Chapter 1"),
         (FindKind("heading", 10_000, backward=True), "Section"),
         (FindKind("row", 0), "Row 0"),
-        (FindKind("row", 50, group=1), "Row 0"),
+        (FindKind("row", 50), "Row 0"),
         (FindKind("row", 10_000, backward=True), "Row 0"),
         (FindKind("link", 0), "there."),
         (FindKind("page", 0), "11"),
@@ -84,7 +84,7 @@ def test_what_is_found(query, found):
     [
         FindKind("heading", 0, backward=True),
         FindKind("item", 0),
-        FindKind("row", 300, group=2),
+        FindKind("row", 300),
         FindPage("12"),
     ],
 )

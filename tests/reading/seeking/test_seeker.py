@@ -19,6 +19,8 @@ from vbraille.reading.queries import (
     FindText,
     Found,
     Indexed,
+    Listed,
+    ListHeadings,
     NotFound,
     Searched,
 )
@@ -46,7 +48,7 @@ def answers(seeker, *, until):
 def final(seeker, query):
     seeker.ask(query)
     assert seeker.busy or isinstance(query, CountLines)
-    *_, last = answers(seeker, until=Found | NotFound | Counted | Failed)
+    *_, last = answers(seeker, until=Found | Listed | NotFound | Counted | Failed)
     assert not seeker.busy
     return last
 
@@ -97,6 +99,16 @@ def test_a_text_that_has_no_name(book):
         assert isinstance(final(seeker, FindText("last", 0)), Found)
     assert str(document.block(51).text) == "Last words."
     assert Document.from_text("in memory").descriptor is None
+
+
+def test_the_headings_of_a_book(tmp_path):
+    path = tmp_path / "book.md"
+    path.write_text("# One\n\nText.\n\n## Two *and*\n\nMore.\n")
+    source = open_source(path)
+    with Seeker(BookOpening(str(path), form="markdown")) as seeker:
+        listed = final(seeker, ListHeadings())
+    assert [(one.level, one.title) for one in listed.headings] == [(1, "One"), (2, "Two and")]
+    assert [source.block_at(one.character) for one in listed.headings] == [0, 2]
 
 
 def test_lines_of_a_braille_file(tmp_path):

@@ -8,9 +8,9 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from vbraille.cli.terminal import say_line
-from vbraille.errors import InputError, VbrailleError
+from vbraille.errors import VbrailleError
+from vbraille.reading.places.resuming import numbered_book
 from vbraille.reading.places.shelf import KeptPlaces
-from vbraille.wording import count
 
 if TYPE_CHECKING:
     import argparse
@@ -25,10 +25,11 @@ def run(arguments: argparse.Namespace) -> int:
     with KeptPlaces.open() as places:
         if (note := places.note()) is not None:
             say_line(note, aside=True)
-        books = places.listed()
         if arguments.forget is not None:
-            _forget(places, books, arguments.forget)
-        elif arguments.json:
+            _forget(places, arguments.forget)
+            return 0
+        books = places.listed()
+        if arguments.json:
             print(json.dumps([_fields(n, book) for n, book in enumerate(books, 1)], indent=1))
         else:
             today = datetime.fromtimestamp(time.time()).astimezone()
@@ -76,11 +77,8 @@ def _fields(number: int, book: ListedBook) -> dict[str, object]:
     }
 
 
-def _forget(places: KeptPlaces, books: list[ListedBook], number: int) -> None:
-    if not 1 <= number <= len(books):
-        there = f"there {'is' if len(books) == 1 else 'are'} {count(len(books), 'book')}"
-        raise InputError(f"there is no book {number}; {there}, and vbraille books lists them")
-    book = books[number - 1]
+def _forget(places: KeptPlaces, number: int) -> None:
+    book = numbered_book(places, number)
     if not places.forget(book.number):
         why = places.fault or "another program is writing"
         raise VbrailleError(f"{book.title} could not be forgotten: {why}; try again")

@@ -18,6 +18,7 @@ from vbraille.engine.clock import RealClock
 from vbraille.engine.swinging import Swinging
 from vbraille.errors import DeviceError, InputError
 from vbraille.files import settings_path
+from vbraille.reading.bindings import spoken
 from vbraille.reading.calibrating import Round
 from vbraille.reading.keyboard import Keyboard
 
@@ -208,7 +209,7 @@ class _Guided:
             case "q":
                 self._left = True
             case _:
-                say_line(f"no command: {key!r}; h says the keys")
+                say_line(f"no command: {spoken(key)}; h says the keys")
 
     def _compare(self, turn: Round) -> None:
         """Have the last actuator that was well swing, and then the one in turn."""

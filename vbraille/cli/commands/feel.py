@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
-from vbraille.cli.atdevice import AtDevice, say_faults
+from vbraille.cli.atdevice import AtDevice, say_faults, seconds_of, ticks_of
 from vbraille.cli.options.live import check_live_options
 from vbraille.cli.stoppable import StoppableKeyboard
 from vbraille.cli.stopping import EAR
@@ -131,9 +131,7 @@ def run(arguments: argparse.Namespace) -> int:
             EAR.close()  # so that the array goes to rest
             device.close()
     say_faults(device)
-    tally = device.tally
-    seconds = (tally.ticks + tally.late) / rate_hz
-    say_line(f"summary: seconds {seconds:.1f}, ticks {tally.ticks}, late ticks {tally.late}")
+    say_line(f"summary: {', '.join((seconds_of(device, rate_hz), *ticks_of(device)))}")
     return 0
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print a line for each command: its name, its keys, and what it does."""
-    bound = bind_settings(load_settings(arguments.settings))
+    bound = bind_settings(load_settings(arguments.settings), arguments.keys)
     if arguments.json:
         print(json.dumps(_rows(bound), ensure_ascii=False, indent=2))
         return 0

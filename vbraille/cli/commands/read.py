@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
-from vbraille.cli.atdevice import AtDevice, say_faults
+from vbraille.cli.atdevice import AtDevice, say_faults, seconds_of, ticks_of
 from vbraille.cli.build import build_lengths, build_page, build_show, lay_out, note_unseen_dots
 from vbraille.cli.options.live import check_live_options
 from vbraille.cli.resuming import open_to_resume
@@ -41,7 +41,6 @@ if TYPE_CHECKING:
     from vbraille.cli.build import Page
     from vbraille.cli.live import LiveView
     from vbraille.devices.events import Event
-    from vbraille.engine.tally import Tally
     from vbraille.reading.alongside import Alongside
     from vbraille.reading.beside import FiguresLike
     from vbraille.reading.keyed import Keyed
@@ -59,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
     if arguments.cells is not None and arguments.cells < 1:
         raise InputError(f"--cells is {arguments.cells}; it must be 1 or more")
-    bound = bind_settings(settings)
+    bound = bind_settings(settings, arguments.keys)
     hand = HAND if arguments.hand is None else arguments.hand
     seed = 1 if arguments.seed is None else arguments.seed
     # An unknown hand is refused before anything is opened.
@@ -155,7 +154,7 @@ def run(arguments: argparse.Namespace) -> int:
             device.close()
     say_faults(device)
     page.say_unknown()
-    say_line(_summary(device.reader.lines, device.tally, rate_hz))
+    say_line(_summary(device, rate_hz))
     return 0
 
 
@@ -266,10 +265,7 @@ def _echo(chosen: str | None) -> Echo:
     return Echo.NONE if sys.stdout.isatty() else Echo.BOTH
 
 
-def _summary(lines: int, tally: Tally, rate_hz: float) -> str:
-    seconds = (tally.ticks + tally.late) / rate_hz
-    return (
-        f"summary: lines {lines}, seconds {seconds:.1f}, "
-        f"mean scanning speed {tally.scanning_mm_s:.1f} mm/s, "
-        f"ticks {tally.ticks}, late ticks {tally.late}"
-    )
+def _summary(device: OpenDevice, rate_hz: float) -> str:
+    speed = f"mean scanning speed {device.tally.scanning_mm_s:.1f} mm/s"
+    parts = (f"lines {device.reader.lines}", seconds_of(device, rate_hz), speed)
+    return f"summary: {', '.join((*parts, *ticks_of(device)))}"

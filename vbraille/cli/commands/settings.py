@@ -24,7 +24,7 @@ def run(arguments: argparse.Namespace) -> int:
         say_line(str(settings_path(arguments.settings)))
         return 0
     settings = load_settings(arguments.settings)
-    bind_settings(settings)  # which refuses what reading would
+    bind_settings(settings, None)  # which refuses what reading would
     there = "" if settings.path.exists() else " (not there)"
     say_line(f"settings file: {settings.path}{there}")
     profile = chosen_profile(arguments, settings)

@@ -18,6 +18,7 @@ from vbraille.errors import InputError
 from vbraille.files import write_file
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line, choose_table
+from vbraille.reading.bindings import spoken
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.opened import HAND, OpenDevice
 from vbraille.reading.practice import practice_text
@@ -175,7 +176,7 @@ class _Guided:
                 for name, does in _KEYS.items():
                     say_line(f"{name}: {does}")
             case _:
-                say_line(f"no command: {key!r}; h says the keys")
+                say_line(f"no command: {spoken(key)}; h says the keys")
 
     def _choose(self, device: OpenDevice, course: TuningCourse) -> None:
         """Take a choice, or take one back, and ask the next."""

@@ -31,7 +31,9 @@ SETTLED = (
     "verbose",
     "straying",
     "band",
+    "keys",
 )
+KEY_SETS = ("usual", "nvda")
 
 HANDS = (
     "sweep:SPEED goes along each line at so many mm/s, slow reads as people do on such displays "
@@ -123,6 +125,17 @@ def settings_file(parser: ArgumentParser) -> None:
         metavar="FILE.toml",
         help="Take what options do not say from this settings file (default: the one that "
         "vbraille settings --path names).",
+    )
+
+
+def keys(parser: ArgumentParser) -> None:
+    """Add the option that chooses a ready set of keys."""
+    parser.add_argument(
+        "--keys",
+        choices=KEY_SETS,
+        default="usual",
+        help="Choose a set of keys: the program's own, or the letters of NVDA's browse mode; keys "
+        "of the settings file come before both (default: usual).",
     )
 
 

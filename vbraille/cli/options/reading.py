@@ -23,6 +23,13 @@ def nothing(_parser: ArgumentParser) -> None:
 def read(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille read``."""
     groups.text(parser, optional=True)
+    parser.add_argument(
+        "--book",
+        type=whole,
+        metavar="N",
+        help="Read on in the book with this number in the list of vbraille books (default: FILE, "
+        "or the book that was read last).",
+    )
     _reading(parser)
     parser.add_argument(
         "--no-places",
@@ -94,6 +101,7 @@ def _reading(parser: ArgumentParser) -> None:
         help="Show each line on a conventional display beside, and obey its keys: brlapi for the "
         "one that BRLTTY drives, brlapi:HOST:N for BRLTTY at another address (default: none).",
     )
+    groups.keys(parser)
     parser.add_argument(
         "--cells",
         type=whole,
@@ -114,6 +122,14 @@ def _reading(parser: ArgumentParser) -> None:
 def books(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille books``."""
     parser.add_argument(
+        "number",
+        nargs="?",
+        type=whole,
+        metavar="N",
+        help="Read on in the book with this number in the list, as vbraille read --book N does "
+        "(default: list the books).",
+    )
+    parser.add_argument(
         "--forget",
         type=whole,
         metavar="N",
@@ -130,6 +146,8 @@ def keys(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--json", action="store_true", help="Print the commands as JSON, for other programs."
     )
+    groups.keys(parser)
+    parser.set_defaults(keys=None)
     groups.settings_file(parser)
 
 

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 from vbraille.braille.dots import dots_of
 from vbraille.reading.echo import Echo
-from vbraille.reading.whereabouts import whereabouts
+from vbraille.reading.nearby import within
+from vbraille.reading.whereabouts import block_of, whereabouts
+from vbraille.translate.documents.markup.tables import BETWEEN
 from vbraille.translate.source import BlockKind
 from vbraille.translate.undefined import describe
 
@@ -83,10 +85,27 @@ def say_headers(reader: Reader) -> None:
         return
     if line.block.kind is not BlockKind.ROW:
         reader.say("headers: this is no row of a table")
-    elif not any(line.block.headers):
-        reader.say("headers: the table has none")
-    else:
+    elif any(line.block.headers):
         reader.say(f"headers: {'; '.join(line.block.headers)}")
+    elif headers := _headers_below(reader, line):
+        reader.say(f"headers: in this row: {'; '.join(headers)}")
+    else:
+        reader.say("headers: the table has none")
+
+
+def _headers_below(reader: Reader, line: Line) -> tuple[str, ...]:
+    """Headers of the rows below, if those of a row are among them; none if it has no headers."""
+    cells = str(line.block.text).strip().split(BETWEEN)
+    source = reader.layout.book.source
+    for _, block in within(source, block_of(source, line)):
+        if block.kind is BlockKind.PAGE:
+            continue
+        if block.kind is not BlockKind.ROW or block.group != line.block.group:
+            break
+        if any(block.headers):
+            there = all(any(cell in header for header in block.headers) for cell in cells)
+            return block.headers if there else ()
+    return ()
 
 
 def _say_figure(reader: Reader) -> bool:

@@ -26,6 +26,11 @@ def contracted(reader: Reader) -> None:
     if info is None or not info.language:
         reader.say(f"table: {table.name} does not say its language; choose one by language")
         return
+    book, before = reader.layout.book, reader.book_before
+    if before is not None and before[0] is book:
+        # As it was, with whatever grade passages in other languages had.
+        _show(reader, before[1])
+        return
     grade = 1 if info.grade.isdecimal() and int(info.grade) >= _CONTRACTED else _CONTRACTED
     _change(reader, info.language, grade)
 
@@ -85,11 +90,26 @@ def _change(reader: Reader, language: str, grade: int | None = None) -> None:
     try:
         name = find_table(language, grade)
         if name == book.table.name:
-            reader.say(f"table: {name}, as before")
+            reader.say(f"table: {book.table.said}, as before")
             return
+        if name == find_table(language):
+            grade = None  # the usual one, with which passages have what is usual in theirs
         other = BrailleTable(name, book.table.how)
-        reader.lay_out_again(book=Book(book.source, other, language=language, grade=grade))
+        _show(reader, Book(book.source, other, language=language, grade=grade))
     except InputError as error:
         reader.say(f"table: {spelled(str(error))}")
-        return
-    reader.say(f"table: {name}")
+
+
+def _show(reader: Reader, book: Book) -> None:
+    """Show a book by another table, and say by which.
+
+    Raises
+    ------
+    InputError
+        If it cannot be laid out.
+    """
+    before = reader.layout.book
+    reader.lay_out_again(book=book)
+    reader.book_before = (book, before)
+    if book.table is not None:
+        reader.say(f"table: {book.table.said}")

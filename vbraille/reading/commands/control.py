@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from vbraille.reading.bindings import spoken
 from vbraille.reading.context import Context
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from vbraille.reading.keyed import Keyed
+    from vbraille.reading.prompt import Prompt
     from vbraille.reading.reader import Reader
 
 
@@ -30,7 +34,8 @@ def stop(reader: Reader) -> None:
 def learn(reader: Keyed) -> None:
     """Have keys say what they do, and do nothing."""
     reader.context = Context.LEARNING
-    reader.say("learn: a key says what it does; this key again or q ends it")
+    ends = reader.key("QUIT", "q")
+    reader.say(f"learn: a key says what it does; this key again or {ends} ends it")
 
 
 def end_learning(reader: Keyed) -> None:
@@ -49,6 +54,7 @@ def enter(reader: Keyed) -> None:
     if not typed:
         reader.say(f"{prompt.label}: nothing was typed")
         return
+    prompt.keep(typed)
     reader.say(f"{prompt.label}: {typed}")
     prompt.then(typed)
 
@@ -61,6 +67,65 @@ def give_up(reader: Keyed) -> None:
 
 
 def erase(reader: Keyed) -> None:
-    """Take back the character that was typed last."""
+    """Erase the character before the cursor, without a word."""
     if reader.prompt is not None:
-        reader.prompt.erase()
+        reader.prompt.erase(reader.prompt.cursor - 1)
+
+
+def erase_next(reader: Keyed) -> None:
+    """Erase the character at the cursor, and say the one that is there then."""
+    if reader.prompt is not None:
+        reader.prompt.erase(reader.prompt.cursor, reader.prompt.cursor + 1)
+        _say_here(reader, reader.prompt)
+
+
+def erase_word(reader: Keyed) -> None:
+    """Erase the word before the cursor, and say it."""
+    if reader.prompt is not None:
+        _say_erased(reader, reader.prompt.erase(reader.prompt.word_start))
+
+
+def erase_start(reader: Keyed) -> None:
+    """Erase all before the cursor, and say it."""
+    if reader.prompt is not None:
+        _say_erased(reader, reader.prompt.erase(0))
+
+
+def move(steps: int) -> Callable[[Keyed], None]:
+    """Make a command that moves the cursor, as far as there is text, and says what is there."""
+
+    def handler(reader: Keyed) -> None:
+        if reader.prompt is not None:
+            reader.prompt.move(steps)
+            _say_here(reader, reader.prompt)
+
+    return handler
+
+
+def bring(step: int) -> Callable[[Keyed], None]:
+    """Make a command that brings another text to be typed, and says it."""
+
+    def handler(reader: Keyed) -> None:
+        prompt = reader.prompt
+        if prompt is None:
+            return
+        if prompt.bring(step):
+            reader.say(f"{prompt.label}: {prompt.typed or 'nothing'}")
+        else:
+            reader.say(f"{prompt.label}: none {'before' if step < 0 else 'after'} this")
+
+    return handler
+
+
+def say_typed(reader: Keyed) -> None:
+    """Say what is typed so far."""
+    if reader.prompt is not None:
+        reader.say(f"{reader.prompt.label}: {reader.prompt.typed or 'nothing'}")
+
+
+def _say_here(reader: Keyed, prompt: Prompt) -> None:
+    reader.say(f"cursor: {spoken(prompt.here, typed=True) if prompt.here else 'end'}")
+
+
+def _say_erased(reader: Keyed, text: str) -> None:
+    reader.say(f"erased: {text.strip() or 'nothing'}")

@@ -62,7 +62,7 @@ def top(reader: Reader) -> None:
     else:
         gone = reader.jump(0)
     if gone:
-        reader.announce()
+        reader.announce_jump()
 
 
 def bottom(reader: Reader) -> None:
@@ -71,7 +71,7 @@ def bottom(reader: Reader) -> None:
     before = reader.character
     if last is not None and reader.go(last):
         reader.keep_way_back(before)
-        reader.announce()
+        reader.announce_jump()
         return
 
     def arrive(place: int | None) -> None:
@@ -84,7 +84,7 @@ def bottom(reader: Reader) -> None:
             number += 1
         reader.go(number)
         reader.keep_way_back(before)
-        reader.announce()
+        reader.announce_jump()
 
     reader.find(FindShare(1.0), arrive)
 
@@ -92,7 +92,7 @@ def bottom(reader: Reader) -> None:
 def back(reader: Reader) -> None:
     """Go back to where the reader was before the last jump."""
     if reader.jump_back():
-        reader.announce()
+        reader.announce_jump()
     else:
         reader.cue(Cue.LIMIT)
         reader.say("back: there was no jump")

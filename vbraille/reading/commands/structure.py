@@ -6,8 +6,9 @@ import re
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
+from vbraille.reading.nearby import within
 from vbraille.reading.queries import FindKind, FindLine, FindPage, FindShare
-from vbraille.reading.seeking.kinds import LINK, START, first_place, links_of
+from vbraille.reading.seeking.kinds import EACH_ITEM, IMAGE, LINK, START, first_place, marks_of
 from vbraille.reading.whereabouts import (
     LINES_PER_PAGE,
     block_of,
@@ -15,7 +16,7 @@ from vbraille.reading.whereabouts import (
     has_pages,
     is_counted,
 )
-from vbraille.translate.source import BlockKind
+from vbraille.translate.source import BlockKind, MarkKind
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Block, Mark, Source
 
 HEADING, LIST, TABLE = (kind.value for kind in (BlockKind.HEADING, BlockKind.ITEM, BlockKind.ROW))
-_NAMES = {LIST: "list", TABLE: "table"}
+_NAMES = {LIST: "list", TABLE: "table", EACH_ITEM: "item", IMAGE: "figure"}
+_TOGETHER = (LIST, TABLE, BlockKind.QUOTE.value)  # which are gone to as a whole
 _NEAR_LINES = 500  # that are laid out while somebody waits; farther ones are looked for meanwhile
 _PAGE_OR_SHARE = re.compile(r"(\d{1,3})(?:[.,](\d))? ?%")
 
@@ -36,7 +38,7 @@ def go_to(kind: str, *, backward: bool = False, level: int = 0) -> Callable[[Rea
     Parameters
     ----------
     kind
-        Value of a `BlockKind`.
+        Value of a `BlockKind`, or "each item".
     backward
         Whether the one before is wanted.
     level
@@ -51,18 +53,25 @@ def go_to(kind: str, *, backward: bool = False, level: int = 0) -> Callable[[Rea
         source = reader.layout.book.source
         number = block_of(source, line)
         here = source.block(number)
-        group = here.group if here is not None and here.kind.value == kind else 0
-        if backward and here is not None and not _begins_here(line, here):
-            # In the middle of a heading, the one before is that heading itself.
-            number, group = (number + 1, 0) if kind == HEADING else (number, group)
-        query = FindKind(kind, number, backward, level, group)
+        if backward and kind not in _TOGETHER and not _begins_here(line, here):
+            number += 1  # in the middle of a heading, the one before is that heading itself
+        query = FindKind(kind, number, backward, level)
         reader.find(query, lambda place: arrive(reader, place, name, backward=backward))
 
     return handler
 
 
-def go_to_link(*, backward: bool = False) -> Callable[[Reader], None]:
-    """Make a command that goes to the next link or reference to a note, or to the one before."""
+def go_to_mark(kind: str, *, backward: bool = False) -> Callable[[Reader], None]:
+    """Make a command that goes to the next link or reference to a note, or picture, or back.
+
+    Parameters
+    ----------
+    kind
+        "link", which references to notes are, too, or "image".
+    backward
+        Whether the one before is wanted.
+    """
+    name = _NAMES.get(kind, kind)
 
     def handler(reader: Reader) -> None:
         line = reader.line
@@ -72,20 +81,20 @@ def go_to_link(*, backward: bool = False) -> Callable[[Reader], None]:
         number = block_of(source, line)
         here = source.block(number)
         hit, first = reader.hit, first_character(line)
-        links = [] if here is None else links_of(here)
+        marks = [] if here is None else marks_of(here, kind)
         if backward:
-            near = [mark for mark in links if mark.start < (first if hit is None else hit)]
+            near = [mark for mark in marks if mark.start < (first if hit is None else hit)]
         else:
-            near = [mark for mark in links if mark.start >= (first if hit is None else hit + 1)]
+            near = [mark for mark in marks if mark.start >= (first if hit is None else hit + 1)]
         if near:
             mark = near[-1 if backward else 0]
             if reader.bring_under(mark.start):
-                reader.say(f"link: {_text_of(line.block, mark)}")
+                reader.say(_named(line.block, mark))
             else:
-                arrive(reader, mark.start, "link", backward=backward)
+                arrive(reader, mark.start, name, backward=backward, kind=kind)
             return
-        query = FindKind(LINK, number, backward)
-        reader.find(query, lambda place: arrive(reader, place, "link", backward=backward))
+        query = FindKind(kind, number, backward)
+        reader.find(query, lambda place: arrive(reader, place, name, backward=backward, kind=kind))
 
     return handler
 
@@ -116,19 +125,25 @@ def ask_place(reader: Reader) -> None:
 
 
 def follow(reader: Reader) -> None:
-    """Go to what the link or the reference to a note under the finger speaks of."""
-    mark = _link_here(reader)
-    if mark is None:
+    """Go to what the link under the finger speaks of; from a note, back to its reference."""
+    mark, source = _link_here(reader), reader.layout.book.source
+    leads_to = None
+    if mark is not None and mark.target.startswith("#"):
+        leads_to = source.anchor(mark.target[1:])
+    names = _names_of_note(reader)
+    if names and (mark is None or _refers(source, leads_to, names)):
+        _go_back_from_note(reader, names)
+    elif mark is None:
         reader.cue(Cue.NOT_FOUND)
         reader.say("link: none here")
     elif not mark.target.startswith("#"):
         reader.say(f"link: {mark.target}")
     else:
-        place = reader.layout.book.source.anchor(mark.target[1:])
-        arrive(reader, place, mark.kind.value, backward=False)
+        reader.followed = mark
+        arrive(reader, leads_to, mark.kind.value, backward=False)
 
 
-def arrive(reader: Reader, place: int | None, name: str, *, backward: bool) -> None:
+def arrive(reader: Reader, place: int | None, name: str, *, backward: bool, kind: str = "") -> None:
     """Go to a place that was looked for, and say so; or that it was not found.
 
     Parameters
@@ -139,15 +154,66 @@ def arrive(reader: Reader, place: int | None, name: str, *, backward: bool) -> N
         What was looked for.
     backward
         Whether it was looked for backward.
+    kind
+        "link" or "image" if the place is one's, whose words are said.
     """
-    if not reader.arrive(place):
+    if not reader.arrive(place, _mark_at(reader, place, kind) if kind else ""):
         reader.cue(Cue.NOT_FOUND)
         reader.say(f"{name}: none {'before' if backward else 'after'} this")
 
 
-def _text_of(block: Block, mark: Mark) -> str:
+def _mark_at(reader: Reader, place: int | None, kind: str) -> str:
+    """Words for the link or picture that begins at a place; empty for a figure, as it is said."""
+    source = reader.layout.book.source
+    number = None if place is None else source.block_at(place)
+    block = None if number is None else source.block(number)
+    marks = [] if block is None else [m for m in marks_of(block, kind) if m.start == place]
+    if block is None or not marks:
+        return ""
+    is_felt = kind == IMAGE and marks[0].target and reader.under.figured.all is not None
+    return "" if is_felt else _named(block, marks[0])
+
+
+def _names_of_note(reader: Reader) -> tuple[str, ...]:
+    """Targets of references to the note that the reader is in; none if it is no note."""
+    line, source = reader.line, reader.layout.book.source
+    number = 0 if line is None else block_of(source, line)
+    for _, block in within(source, number, backward=True):
+        if block.kind is not BlockKind.NOTE:
+            break
+        if block.anchors:  # of a note in several blocks the first has them
+            return tuple(f"#{name}" for name in block.anchors)
+    return ()
+
+
+def _refers(source: Source, place: int | None, names: tuple[str, ...]) -> bool:
+    """Whether the block at a place has a reference to a note with one of some names."""
+    number = None if place is None else source.block_at(place)
+    block = None if number is None else source.block(number)
+    return block is not None and any(
+        mark.kind is MarkKind.NOTE and mark.target in names for mark in block.marks
+    )
+
+
+def _go_back_from_note(reader: Reader, names: tuple[str, ...]) -> None:
+    """Go to where a note was followed from, or else to the last reference to it before it."""
+    source, line, followed = reader.layout.book.source, reader.line, reader.followed
+    if followed is not None and followed.target in names:
+        arrive(reader, followed.start, "reference", backward=True, kind=LINK)
+    elif line is not None:
+        query = FindKind(LINK, block_of(source, line), backward=True, targets=names)
+        reader.find(
+            query, lambda place: arrive(reader, place, "reference", backward=True, kind=LINK)
+        )
+
+
+def _named(block: Block, mark: Mark) -> str:
+    """Words for a link, a note or a picture: which of these it is, and its text."""
     text = block.text
-    return " ".join(str(text)[text.index(mark.start) : text.index(mark.end)].split())
+    words = " ".join(str(text)[text.index(mark.start) : text.index(mark.end)].split())
+    if mark.kind is MarkKind.IMAGE:
+        return words if mark.target else f"picture: {words}"
+    return f"{mark.kind.value}: {words}"
 
 
 def _begins_here(line: Line, block: Block | None) -> bool:
@@ -201,7 +267,7 @@ def _go_to_braille_page(reader: Reader, page: int, name: str) -> None:
         reader.find(query, lambda place: _arrive_at_page(reader, place, str(page)))
     elif page >= 1 and reader.go(number):
         reader.keep_way_back(before)
-        reader.announce()
+        reader.announce_jump()
     else:
         reader.cue(Cue.NOT_FOUND)
         reader.say(f"{name}: there is no such page")
@@ -241,7 +307,7 @@ def _link_here(reader: Reader) -> Mark | None:
     line, cell = reader.line, reader.cell
     if line is None:
         return None
-    links = links_of(line.block)
+    links = marks_of(line.block)
     span = None if cell is None else line.source(cell)
     if span is not None:
         under = [mark for mark in links if mark.start < span[1] and span[0] < mark.end]

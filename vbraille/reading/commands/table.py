@@ -11,11 +11,13 @@ from vbraille.reading.bindings import ANY, Bindings, Bound, Command, bind, spoke
 from vbraille.reading.commands.deferred import Deferred, made
 from vbraille.reading.context import Context
 from vbraille.reading.keys import PASTE, pasted
+from vbraille.reading.prompt import LONGEST
 
 if TYPE_CHECKING:
     from vbraille.reading.commands import (
         asking,
         choosing,
+        contents,
         control,
         figures,
         marking,
@@ -28,29 +30,39 @@ if TYPE_CHECKING:
     from vbraille.reading.keyed import Keyed
     from vbraille.reading.reader import Reader
 else:
-    asking, choosing, control, figures, marking = map(
-        Deferred, ("asking", "choosing", "control", "figures", "marking")
+    asking, choosing, contents, control, figures, marking = map(
+        Deferred, ("asking", "choosing", "contents", "control", "figures", "marking")
     )
     moving, paging, searching, structure, turning = map(
         Deferred, ("moving", "paging", "searching", "structure", "turning")
     )
 
-HEADING, LIST, TABLE = "heading", "item", "row"  # kinds of blocks
+# Kinds of blocks, and of what is in them.
+HEADING, LIST, TABLE, QUOTE = "heading", "item", "row", "quote"
+EACH_ITEM, LINK, IMAGE = "each item", "link", "image"
 
 _LEVELS = 6
 # Values of the tuning that a knob of the device may turn.
 TURNED = {"TEXTURE": "texture", "CONTRAST": "contrast"}
 
 
-def bound_by(bindings: Bindings) -> Bound:
+def bound_by(bindings: Bindings, keys: str = "usual") -> Bound:
     """Give the commands somebody's keys and buttons.
+
+    Parameters
+    ----------
+    bindings
+        Keys and buttons of the settings, which come before those of the set.
+    keys
+        Name of a ready set of keys, one of `KEY_SETS`.
 
     Raises
     ------
     InputError
         If a command is not known, a key would call two commands, or a button is none.
     """
-    return bind(COMMANDS, bindings, tuple(TURNED))
+    ready = bind(COMMANDS, Bindings(KEY_SETS[keys])).commands
+    return bind(ready, bindings, tuple(TURNED))
 
 
 def commands_of(context: Context) -> tuple[Command, ...]:
@@ -78,7 +90,7 @@ def press(reader: Keyed, key: str) -> None:
         elif reader.prompt is not None and reader.context is Context.PROMPT:
             reader.prompt.press(key)
         else:
-            reader.say(f"no command: {key!r}; {reader.key('HELP', 'h')} says the keys")
+            reader.say(f"no command: {spoken(key)}; {reader.key('HELP', 'h')} says the keys")
 
 
 def _paste(reader: Keyed, key: str, text: str) -> None:
@@ -171,6 +183,33 @@ def _levels(*, backward: bool) -> tuple[Command, ...]:
 
 
 _TYPING = (Context.PROMPT,)
+TYPING = (
+    Command("ENTER", ("\n",), "take the text that was typed", control.enter, _TYPING),
+    Command("GIVE_UP", ("escape",), "forget what was typed", control.give_up, _TYPING),
+    Command("ERASE", ("\x7f", "\b"), "erase the character before", control.erase, _TYPING),
+    Command("ERASE_NEXT", ("delete",), "erase the character here", control.erase_next, _TYPING),
+    Command("ERASE_WORD", ("\x17",), "erase the word before", control.erase_word, _TYPING),
+    Command("ERASE_START", ("\x15",), "erase all before", control.erase_start, _TYPING),
+    Command("TYPED_LEFT", ("left",), "one character back", made(control.move, -1), _TYPING),
+    Command("TYPED_RIGHT", ("right",), "one character on", made(control.move, 1), _TYPING),
+    Command("TYPED_START", ("home", "\x01"), "to the start", made(control.move, -LONGEST), _TYPING),
+    Command("TYPED_END", ("end", "\x05"), "to the end", made(control.move, LONGEST), _TYPING),
+    Command(
+        "TYPED_EARLIER",
+        ("up", "\x10"),
+        "the text before, of those typed earlier or listed",
+        made(control.bring, -1),
+        _TYPING,
+    ),
+    Command(
+        "TYPED_LATER",
+        ("down", "\x0e"),
+        "the text after, of those typed earlier or listed",
+        made(control.bring, 1),
+        _TYPING,
+    ),
+    Command("SAY_TYPED", ("\t",), "say what is typed so far", control.say_typed, _TYPING),
+)
 COMMANDS = (
     Command("LNDN", ("n", "down"), "next line", moving.next_line),
     Command("LNUP", ("p", "up"), "previous line", moving.previous_line),
@@ -190,16 +229,44 @@ COMMANDS = (
     *_levels(backward=True),
     Command("NXLIST", ("l",), "next list", made(structure.go_to, LIST)),
     Command("PRLIST", ("L",), "previous list", made(structure.go_to, LIST, backward=True)),
+    Command("NXITEM", ("I",), "next item of a list", made(structure.go_to, EACH_ITEM)),
+    Command(
+        "PRITEM",
+        ("alt-i",),
+        "previous item of a list",
+        made(structure.go_to, EACH_ITEM, backward=True),
+    ),
     Command("NXTABLE", ("r",), "next table", made(structure.go_to, TABLE)),
     Command("PRTABLE", ("R",), "previous table", made(structure.go_to, TABLE, backward=True)),
-    Command("NXLINK", ("k",), "next link or note", made(structure.go_to_link)),
-    Command("PRLINK", ("K",), "previous link or note", made(structure.go_to_link, backward=True)),
-    Command("FOLLOW", ("\n",), "follow the link or note under the finger", structure.follow),
+    Command("NXQUOTE", ("Q",), "next quotation", made(structure.go_to, QUOTE)),
+    Command(
+        "PRQUOTE", ("alt-q",), "previous quotation", made(structure.go_to, QUOTE, backward=True)
+    ),
+    Command("NXLINK", ("k",), "next link or note", made(structure.go_to_mark, LINK)),
+    Command(
+        "PRLINK", ("K",), "previous link or note", made(structure.go_to_mark, LINK, backward=True)
+    ),
+    Command("NXFIGURE", (",",), "next figure or picture", made(structure.go_to_mark, IMAGE)),
+    Command(
+        "PRFIGURE",
+        (";",),
+        "previous figure or picture",
+        made(structure.go_to_mark, IMAGE, backward=True),
+    ),
+    Command(
+        "FOLLOW",
+        ("\n",),
+        "follow the link or note under the finger; from a note, go back",
+        structure.follow,
+    ),
     Command("FEEL", ("G",), "feel the figure of this line, alone", figures.feel),
     Command("TOP", ("<", "ctrl-home"), "first line of the text", moving.top),
     Command("BOT", (">", "ctrl-end"), "last line of the text", moving.bottom),
-    Command("GOTOLINE", ("g",), "go to a page, or to percent of the text", structure.ask_place),
-    Command("BACK", ("b",), "back to the place before the last jump", moving.back),
+    Command(
+        "GOTOLINE", ("g", "\x07"), "go to a page, or to percent of the text", structure.ask_place
+    ),
+    Command("CONTENTS", ("O",), "list the headings, and go to one", contents.ask_heading),
+    Command("BACK", ("b", "alt-left"), "back to the place before the last jump", moving.back),
     Command("NXSEARCH", ("/", "f3"), "search forward for a text", searching.search_forward),
     Command("PRSEARCH", ("\\", "f4"), "search backward for a text", searching.search_backward),
     Command("SEARCH_AGAIN", (".",), "search again in the same direction", searching.search_again),
@@ -260,9 +327,7 @@ COMMANDS = (
         control.stop,
         (Context.READING, Context.PLACING, Context.LEARNING),
     ),
-    Command("ENTER", ("\n",), "take the text that was typed", control.enter, _TYPING),
-    Command("ERASE", ("\x7f", "\b"), "take the last character back", control.erase, _TYPING),
-    Command("GIVE_UP", ("escape",), "forget what was typed", control.give_up, _TYPING),
+    *TYPING,
     Command(
         "ZERO",
         (ANY,),
@@ -271,4 +336,40 @@ COMMANDS = (
         (Context.PLACING,),
     ),
 )
+# Ready sets of keys, each for what it does not leave as it is. NVDA's are those of its browse mode;
+# what its letters did moves to others that its users do not know as something else.
+KEY_SETS: dict[str, dict[str, tuple[str, ...]]] = {
+    "usual": {},
+    "nvda": {
+        **{
+            f"{way}{kind}": (shift(letter),)
+            for kind, letter in {
+                "HEADING": "h",
+                "LIST": "l",
+                "ITEM": "i",
+                "TABLE": "t",
+                "FIGURE": "g",
+                "QUOTE": "q",
+            }.items()
+            for way, shift in (("NX", str.lower), ("PR", str.upper))
+        },
+        "LNDN": ("down",),
+        "LNUP": ("up",),
+        "NXLINK": ("k", "tab"),
+        "PRLINK": ("K", "shift-tab"),
+        "NXPGRPH": ("p", "ctrl-down"),
+        "PRPGRPH": ("P", "ctrl-up"),
+        "CONTENTS": ("f7",),
+        "NXSEARCH": ("ctrl-f", "/"),
+        "SEARCH_AGAIN": ("f3", "."),
+        "FEEL": ("E",),
+        "INFO": ("delete",),
+        "DELMARK": ("X",),
+        "SAY_HEADERS": ("e",),
+        "PREFSAVE": ("ctrl-w",),
+        "TEXTURE_UP": ("r",),
+        "TEXTURE_DOWN": ("R",),
+        "QUIT": ("ctrl-x", "ctrl-d"),
+    },
+}
 BOUND = bound_by(Bindings())

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.reading.places.anchoring import anchored
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     from vbraille.reading.places.book import KeptBook
     from vbraille.reading.places.shelf import KeptPlaces
-    from vbraille.reading.places.values import BookOptions, KeptPlace
+    from vbraille.reading.places.values import BookOptions, KeptPlace, ListedBook
     from vbraille.translate.source import Source
 
 
@@ -57,6 +58,40 @@ def last_book(places: KeptPlaces) -> KeptBook:
             f"vbraille books lists them"
         )
     return places.book(path)
+
+
+def numbered_book(places: KeptPlaces, number: int) -> ListedBook:
+    """The book with a number in the list of all books.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    books = places.listed()
+    if not 1 <= number <= len(books):
+        there = f"there {'is' if len(books) == 1 else 'are'} {count(len(books), 'book')}"
+        raise InputError(f"there is no book {number}; {there}, and vbraille books lists them")
+    return books[number - 1]
+
+
+def book_to_open(places: KeptPlaces, number: int) -> KeptBook:
+    """The book with a number in the list of all books, to read on in it.
+
+    Raises
+    ------
+    InputError
+        If there is none, it has no file, or the file is not where it was.
+    """
+    book = numbered_book(places, number)
+    if not book.path:
+        raise InputError(f"book {number} was read from standard input; give it there again")
+    if book.missing:
+        raise InputError(
+            f"book {number}, {book.path}, is not there any more; give its file, or choose another: "
+            f"vbraille books lists them"
+        )
+    return places.book(book.path)
 
 
 def resume(source: Source, kept: KeptBook, options: BookOptions) -> ResumedBook:

@@ -10,6 +10,7 @@ from vbraille.reading.queries import (
     FindLine,
     Found,
     Indexed,
+    Listed,
     NotFound,
     Searched,
 )
@@ -85,6 +86,7 @@ def _find(source: Source, query: Place) -> Iterator[Answer]:
         if isinstance(step, float):
             yield Searched(step)
         else:
-            yield Found(step, source.index())
+            index = source.index()
+            yield Found(step, index) if isinstance(step, int) else Listed(step, index)
             return
     yield NotFound()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from vbraille.reading.queries import ListedHeading
 from vbraille.translate.documents.document import Document
 from vbraille.translate.source import BlockKind, MarkKind
 
@@ -14,11 +15,13 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Block, Mark, Source
 
 # Kinds that `FindKind` is asked for beside those of blocks.
-LINK = MarkKind.LINK.value
+LINK, IMAGE = MarkKind.LINK.value, MarkKind.IMAGE.value
 START = "start"
-_LINKS = (MarkKind.LINK, MarkKind.NOTE)
-_GROUPED = (BlockKind.ITEM.value, BlockKind.ROW.value)
-_NOT_PLAIN = frozenset(kind.value for kind in BlockKind) - {"paragraph", "line"} | {LINK}
+EACH_ITEM = "each item"
+_MARKS = {LINK: (MarkKind.LINK, MarkKind.NOTE), IMAGE: (MarkKind.IMAGE,)}
+_TOGETHER = (BlockKind.ITEM.value, BlockKind.ROW.value, BlockKind.QUOTE.value)
+_STRUCTURE = frozenset(kind.value for kind in BlockKind) - {"paragraph", "line"}
+_NOT_PLAIN = _STRUCTURE | {LINK, IMAGE, EACH_ITEM}
 
 
 def first_place(block: Block) -> int:
@@ -26,9 +29,9 @@ def first_place(block: Block) -> int:
     return int(block.text.places[0]) if len(block.text) else max(block.text.end - 1, 0)
 
 
-def links_of(block: Block) -> list[Mark]:
-    """Links and references to notes in a block, by where they begin."""
-    return sorted((m for m in block.marks if m.kind in _LINKS), key=lambda mark: mark.start)
+def marks_of(block: Block, kind: str = LINK) -> list[Mark]:
+    """Links and references to notes in a block, or its pictures, by where they begin."""
+    return sorted((m for m in block.marks if m.kind in _MARKS[kind]), key=lambda mark: mark.start)
 
 
 def blocks_from(
@@ -51,15 +54,17 @@ def find_kind(source: Source, query: FindKind) -> Iterator[int | float]:
     """
     if isinstance(source, Document) and query.kind in _NOT_PLAIN:
         return  # nobody waits for the end of a long text that has none
-    if query.kind in _GROUPED:
+    if query.kind in _TOGETHER:
         yield from _find_group(source, query)
         return
     step = -1 if query.backward else 1
     for number, block in blocks_from(source, query.block + step, backward=query.backward):
-        if query.kind == LINK:
-            links = links_of(block)
-            if links:
-                yield links[-1 if query.backward else 0].start
+        if query.kind in _MARKS:
+            marks = marks_of(block, query.kind)
+            if query.targets:
+                marks = [mark for mark in marks if mark.target in query.targets]
+            if marks:
+                yield marks[-1 if query.backward else 0].start
                 return
         elif query.kind == START:
             if _is_start(source, number, block):
@@ -83,9 +88,22 @@ def find_page(source: Source, label: str) -> Iterator[int | float]:
         yield source.progress(number)
 
 
+def list_headings(source: Source) -> Iterator[float | tuple[ListedHeading, ...]]:
+    """List the headings; yields as `find_kind` does, at the end all of them."""
+    found: list[ListedHeading] = []
+    if not isinstance(source, Document):
+        for number, block in blocks_from(source, 0):
+            if block.kind is BlockKind.HEADING and not block.continues:
+                title = " ".join(str(block.text).split())
+                found.append(ListedHeading(block.level, title, first_place(block)))
+            yield source.progress(number)
+    yield tuple(found)
+
+
 def _is_wanted(block: Block, query: FindKind) -> bool:
+    kind = BlockKind.ITEM.value if query.kind == EACH_ITEM else query.kind
     return (
-        block.kind.value == query.kind
+        block.kind.value == kind
         and not block.continues
         and (not query.level or block.level <= query.level)
     )
@@ -100,26 +118,41 @@ def _is_start(source: Source, number: int, block: Block) -> bool:
 
 
 def _find_group(source: Source, query: FindKind) -> Iterator[int | float]:
-    """Look for the beginning of a list or a table other than the one that the reader is in."""
+    """Look for the beginning of a list, a table or a quotation that the reader is not in.
+
+    Lists and tables are numbered as they begin, and whatever stands in an item has the number of
+    its list. Quotations have no numbers: neighbours are one, as are items of an unnumbered list.
+    """
     step = -1 if query.backward else 1
-    kind, here = query.kind, source.block(query.block)
+    kind, numbered = query.kind, query.kind != BlockKind.QUOTE.value
+    number = query.block
+    while (here := source.block(number)) is not None and here.kind is BlockKind.PAGE and number:
+        number -= 1  # a page may begin within a list
     inside = here is not None and here.kind.value == kind
-    group = query.group or (here.group if inside and here is not None else 0)
+    group = here.group if here is not None and numbered else 0
+    if kind == BlockKind.ROW.value and not inside and not query.backward:
+        group = max(group - 1, 0)  # the caption of a table has its number and stands before it
     found: Block | None = None
-    for number, block in blocks_from(source, query.block + step, backward=query.backward):
-        yield source.progress(number)
+    for at, block in blocks_from(source, query.block + step, backward=query.backward):
+        yield source.progress(at)
         if block.kind is BlockKind.PAGE:
             continue
-        its = block.kind.value == kind
+        its, its_group = block.kind.value == kind, block.group if numbered else 0
         if found is not None:  # on the way back to the beginning of what was found
-            if not its or block.group != found.group:
+            wanted = found.group if numbered else 0
+            if its_group < wanted or not (wanted or (its and not its_group)):
                 break
-            found = block
+            found = block if its and its_group == wanted else found
         elif not its:
             inside = False
-        elif not (block.group == group if group else inside):
+        elif _is_another(its_group, group, backward=query.backward) if group else not inside:
             found = block
             if not query.backward:
                 break
     if found is not None:
         yield first_place(found)
+
+
+def _is_another(group: int, here: int, *, backward: bool) -> bool:
+    """Whether a list or table is not the one that the reader is in, nor around that, going on."""
+    return group != here if backward or not group else group > here

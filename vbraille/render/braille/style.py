@@ -259,7 +259,7 @@ def _number(name: str, value: object) -> Any:
 def _check_field(name: str, value: object) -> None:
     """Raise InputError if a style has no such field, or it cannot have such a value."""
     if name not in _KINDS:
-        raise InputError(f"a style has no {name}; {nearest(name, (*_KINDS, *_TUNED, *_LENGTHS))}")
+        raise InputError(f"a style has no {name}{nearest(name, (*_KINDS, *_TUNED, *_LENGTHS))}")
     kinds, wanted = _KINDS[name]
     if not isinstance(value, kinds):
         raise InputError(f"{name} is {value!r}; it must be {wanted}")

@@ -57,7 +57,7 @@ _BUTTONS = frozenset(("submit", "reset", "button"))
 def begin_heading(writing: Writing, level: int) -> tuple[Undo, ...]:
     """Begin a heading of a level."""
     writing.lay_out_table()
-    place = replace(writing.place, kind=BlockKind.HEADING, level=max(level, 1), group=0)
+    place = replace(writing.place, kind=BlockKind.HEADING, level=max(level, 1))
     return (writing.enter(place),)
 
 
