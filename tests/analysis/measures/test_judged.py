@@ -126,6 +126,47 @@ def test_a_threshold_where_a_level_varies():
     assert row["low"] < row["threshold"] < row["high"]
 
 
+def test_blank_trials_tell_of_guesses_and_are_at_no_level():
+    """Whatever width their dots would have had: they have no contrast, or no dots."""
+    yes = {1.0: 4, 1.2: 8, 1.4: 13, 1.6: 18, 1.8: 19}
+    rows = [row | {"dot_width_mm": width} for width, of in yes.items()
+            for row in detected("P1", "seen", 0.5, of, 20 - of)]  # fmt: skip
+    rows += [row | {"dot_width_mm": 1.6} for row in detected("P1", "blank", 0.0, 4, 16)]
+    table, levels = thresholds(found(rows))
+    row = record(table, level="dot_width_mm")
+    assert (row["trials"], row["blanks"], row["note"]) == (120, 20, "")
+    fit = fit_psychometric(list(yes), list(yes.values()), [20] * 5, guess=None, blanks=(4, 20))
+    assert (row["threshold"], row["guesses"]) == pytest.approx((fit.threshold, fit.guess), rel=1e-4)
+    *seen, blank = [of for of in levels.records() if of["level"] == "dot_width_mm"]
+    assert [(of["value"], of["positive"]) for of in seen] == list(yes.items())
+    assert (blank["value"], blank["positive"], blank["trials"]) == (None, 4, 20)
+    assert blank["fitted"] == row["guesses"]
+    (figure,) = rises(table, levels)
+    assert [panel.levels for panel in figure.chart.rises if "width" in panel.name] == [tuple(yes)]
+
+
+def test_without_blank_trials_that_is_said_beside_the_threshold():
+    rows = [row for level, yes in {0.1: 6, 0.2: 12, 0.3: 18, 0.4: 20}.items()
+            for row in detected("P1", f"c{level}", level, yes, 20 - yes)]  # fmt: skip
+    row = record(thresholds(found(rows))[0], participant="P1")
+    assert row["blanks"] == 0
+    assert "no blank trials: the levels alone tell of guesses" in row["note"]
+
+
+def test_a_threshold_of_contrast_ends_where_contrast_does():
+    rows = detected("P1", "blank", 0.0, 0, 20)
+    rows += [row for level, yes in {0.4: 0, 0.7: 1, 1.0: 4}.items()
+             for row in detected("P1", f"c{level}", level, yes, 20 - yes)]  # fmt: skip
+    row = record(thresholds(found(rows))[0], participant="P1")
+    assert row["low"] < 1 == row["high"]
+    rows = detected("P1", "blank", 0.0, 0, 20)
+    rows += [row for level, yes in {0.1: 15, 0.4: 17, 0.7: 18}.items()
+             for row in detected("P1", f"c{level}", level, yes, 20 - yes)]  # fmt: skip
+    row = record(thresholds(found(rows))[0], participant="P1")
+    assert 0 <= row["low"] < 0.1
+    assert "begins below the lowest level presented, 0.1" in row["note"]
+
+
 def test_two_levels_make_no_threshold():
     rows = detected("P1", "blank", 0.0, 1, 9) + detected("P1", "full", 0.5, 9, 1)
     row = record(thresholds(found(rows))[0], participant="P1")
