@@ -266,6 +266,31 @@ def test_ratings_by_hand():
     assert (pair["second"], pair["higher"], pair["participants"]) == ("smooth", 1.0, 3)
 
 
+def test_intervals_of_ratings_end_where_the_scale_does():
+    """At both ends; without a scale that is known they are Student's as they are."""
+    lines = [f"P{n} {condition} c {rating} rating"
+             for n, low, high in ((1, 1, 7), (2, 1, 7), (3, 3, 4))
+             for condition, rating in (("smooth", low), ("rough", high))]  # fmt: skip
+    told = judgements(*lines, columns=RATED)
+    for scales, beyond in (({"": (1, 7)}, False), ({}, True)):
+        rows = rated.ratings(told, scales)[0].records()
+        assert (min(row["low"] for row in rows) < 1, max(row["high"] for row in rows) > 7) == (
+            beyond, beyond,
+        )  # fmt: skip
+    sure = [f"P{n} all 1 c yes detect hit {confidence}" for n, confidence in enumerate((1, 1, 3))]
+    row = record(rated.confidence(judgements(*sure), {"": (1, 4)}), outcome="hit")
+    assert row["low"] == 1 < row["mean"] < row["high"] <= 4
+
+
+def test_no_interval_of_d_prime_begins_below_nothing():
+    rows = detected("P1", "blank", 0.0, 3, 7) + detected("P1", "full", 0.5, 4, 6)
+    rows += detected("P2", "blank", 0.0, 8, 2) + detected("P2", "full", 0.5, 2, 8)
+    table = sensitivity.sensitivity(found(rows))
+    near, turned = (record(table, participant=name) for name in ("P1", "P2"))
+    assert near["d_low"] == 0 < near["d_prime"] < near["d_high"]
+    assert turned["d_low"] < turned["d_prime"] < 0  # yes and no were taken for each other
+
+
 def test_magnitudes_by_hand():
     # Numbers are of an own size; the strong one is 2, 3 and 4 times as much as the weak one.
     lines = [f"P{n} {condition} c {size * (n + 1 if condition == 'strong' else 1):g} magnitude"
