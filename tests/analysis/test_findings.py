@@ -169,6 +169,7 @@ def test_no_sentence_is_empty_or_ends_before_its_end(people):
     results = analyse_study(Study(None, parsed.comparisons, (), (), (), (), ()), Options())
     (said,) = [finding for finding in results.findings if "preferred" in finding]
     assert said.startswith("The preferred dot width is" if people > 2 else "The dot width that P0")
+    assert "how people differ is seen" not in said
     for finding in results.findings:
         assert not re.search(r"[;:,(]\s*[.;,)]|\(\)|\s\.", finding), finding
 

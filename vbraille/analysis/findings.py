@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.analysis.input.trials import UNREAD, times
 from vbraille.analysis.schemas import NOTE, Kind, to_print
-from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS
+from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, SEEN
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -276,8 +276,8 @@ def _by_measure(of: Mapping[str, ResultTable], name: str) -> Iterator[tuple[str,
 
 
 def _parts(row: Row) -> list[str]:
-    """Clauses of a row's note; none of an empty one."""
-    return [part for part in str(row.get(NOTE, "")).split("; ") if part]
+    """Clauses of a row's note that say something by themselves; none of an empty one."""
+    return [part for part in str(row.get(NOTE, "")).split("; ") if part not in ("", SEEN)]
 
 
 def _enough(row: Row) -> bool:

@@ -238,6 +238,13 @@ def test_groups_of_participants_have_no_empty_tests():
     assert effects["vision"]["f"] is not None
 
 
+def test_groups_alone_are_no_analysis_of_levels_within_people():
+    vision = {"vision": ["blind", "blind", "sighted", "sighted"]}
+    table, left_out = analyses([Scores("score", ["P1", "P2", "P3", "P4"], vision, [1.0, 2, 4, 5])])
+    assert (table.records(), left_out) == ([], [])
+    assert table.notes == ("score: vision: groups alone; nothing varies within people",)
+
+
 def test_differences_of_shares_are_within_1():
     who, texture = ["P1", "P2", "P3"] * 2, ["T0"] * 3 + ["T25"] * 3
     given = [0.0, 0.0, 0.1, 1.0, 1.0, 0.4]

@@ -212,6 +212,10 @@ def analyses(measures: Sequence[Scores]) -> tuple[ResultTable, list[LeftOut]]:
     notes: list[str] = []
     left_out: list[LeftOut] = []
     for scores in measures:
+        if all(_of_groups(_means(scores, factor)) for factor in scores.factors):
+            which = " and ".join(scores.factors)
+            notes.append(f"{scores.measure}: {which}: groups alone; nothing varies within people")
+            continue
         try:
             found = _variance(scores)
         except ValueError as reason:  # Unanswerable, or more factors than can be compared
