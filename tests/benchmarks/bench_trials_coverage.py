@@ -100,17 +100,13 @@ def wanted() -> dict[str, Wanted]:
         [(f"{d:g}, c {c:g}", (d, c)) for d in (0, 1, 2, 3) for c in (0, 0.5)],
         (STUDIES,),
     )
-    curves = [
-        (f"{shape}, {'which of two' if alarms is None else 'yes and no'}", (shape, alarms))
-        for shape in ("logistic", "normal", "weibull")
-        for alarms in (None, 0.03)
-    ]
+    shapes = [(shape, (shape, None)) for shape in ("logistic", "normal", "weibull")]
     for what in ("threshold", "spread"):
         found[f"psychometric {what}"] = Wanted(
-            f"{what.capitalize()} of a psychometric function, lapses 2 % ({SLOW:,} readers)",
+            f"{what.capitalize()} of which of two, lapses 2 % ({SLOW:,} readers)",
             readers.curve,
             [(f"7 levels of {n} trials", (n,)) for n in (10, 20, 40)],
-            curves,
+            shapes,
             (SLOW,),
             what,
         )
