@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.stats import norm
 
 from tests.tiers import examples
 from vbraille.adaptive.estimates import GridAxis, estimate
@@ -78,12 +79,34 @@ def test_what_was_asked_of_it_before_changes_nothing(history, other):
     assert (used.posterior(history) == quest().posterior(history)).all()
 
 
-def test_of_equally_good_questions_it_asks_the_first():
+@pytest.mark.parametrize("bit", [0.0, 1e-12, -1e-12])
+@pytest.mark.parametrize("about", ["", "it"])
+def test_of_equally_good_questions_it_asks_the_first(about, bit):
+    """Whichever of them is ahead by a last bit, in which machines differ."""
     table = np.full((2, 3, 2), 0.5)
     table[1, 1:, 1], table[0, 1:, 1] = 0.9, 0.1
-    table[:, 2] += [[0, 1e-12], [0, -1e-12]]  # a last bit, as machines differ in it
-    same = GridQuest([(1.0,), (2.0,), (3.0,)], [GridAxis("it", (0.0, 1.0))], table)
-    assert same.next([]) == (2.0,)
+    table[:, 2] += [[0, -bit], [0, bit]]
+    asks = GridQuest([(1.0,), (2.0,), (3.0,)], [GridAxis("it", (0.0, 1.0))], table, about)
+    ahead = asks.gains([])[2] - asks.gains([])[1]
+    assert np.sign(ahead) == np.sign(bit)
+    assert asks.next([]) == (2.0,)
+
+
+def test_of_two_pairs_that_mirror_each_other_it_asks_the_first():
+    """Gains of both are the same but for rounding, of which the last pair has the better."""
+    gains = quest("spread").gains([])
+    first, last = PAIRS.index((0.5, 0.75)), PAIRS.index((2.75, 3.0))
+    assert set(np.flatnonzero(gains >= gains.max() - 1e-9)) == {first, last}
+    assert {quest("spread").next([]) for _ in range(3)} == {PAIRS[first]}
+    assert {quest().next([]) for _ in range(3)} == {(0.5, 2.75)}  # and not (0.75, 3.0)
+
+
+def test_what_is_clearly_better_is_asked_wherever_it_stands():
+    table = np.full((2, 3, 2), 0.5)
+    table[1, 1:, 1], table[0, 1:, 1] = 0.9, 0.1
+    table[:, 2] += [[0, -1e-4], [0, 1e-4]]
+    asks = GridQuest([(1.0,), (2.0,), (3.0,)], [GridAxis("it", (0.0, 1.0))], table)
+    assert asks.next([]) == (3.0,)
 
 
 def test_three_outcomes():
@@ -110,6 +133,28 @@ def test_what_falls_is_the_mirror_image_of_what_grows():
     mirrored = [((-x[0],), yes) for x, yes in history]
     found = grows.estimate(history, "threshold").mean
     assert falls.estimate(mirrored, "threshold").mean == pytest.approx(-found)
+
+
+def test_false_alarms_do_not_move_thresholds_where_guesses_are_free():
+    """Readers of one threshold who say yes to a fifth of what they do not feel."""
+    values = steps(0.0, 1.0, 0.05)
+    axes = [GridAxis("threshold", values), GridAxis("spread", (0.05, 0.1, 0.2))]
+    free, lapse = GridAxis("guess", (0.01, 0.05, 0.1, 0.2, 0.3, 0.4)), GridAxis("lapse", (0.03,))
+    errors = {}
+    for guess in (free, GridAxis("guess", (0.0,))):
+        asks = detection_quest("normal", values, *axes, guess, lapse, about="threshold")
+        random = np.random.default_rng(3)
+        found = []
+        for _ in range(10):
+            history = []
+            for _ in range(50):
+                (x,) = asks.next(history)
+                yes = 0.2 + (1 - 0.2 - 0.02) * norm.cdf(x, 0.4, 0.1)
+                history.append(((x,), int(random.random() < yes)))
+            found.append(asks.estimate(history, "threshold").mean - 0.4)
+        errors[len(guess.values)] = np.mean(found)
+    assert abs(errors[6]) < 0.02
+    assert errors[1] < -0.03
 
 
 def test_an_estimate_is_of_the_posterior():

@@ -20,8 +20,11 @@ from vbraille.analysis.report.tojson import to_json
 from vbraille.analysis.report.written import write_report
 from vbraille.analysis.schemas import to_csv as frame_to_csv
 from vbraille.errors import InputError
+from vbraille.sessions.conditions import Conditions
+from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record.export import rows, to_csv
 from vbraille.sessions.record.folder import load
+from vbraille.sessions.session import Session as Sitting
 
 CONDITIONS = """
 [[conditions]]
@@ -94,6 +97,26 @@ def test_sessions_of_all_kinds_together(sessions):
     names = [figure.name for figure in results.figures()]
     assert len(names) == len(set(names)) == 8
     assert all(figure.table in found for figure in results.figures())
+
+
+def test_intervals_of_ratings_end_where_the_protocols_scale_does(tmp_path):
+    """Three people put all at an end, but for one of them: Student's interval would go beyond."""
+    rating = '[question]\nkind = "rating"\nscale = "r"\nleast = 1\nmost = 7\n'
+    toml = f"{MINI}{rating}confidence = {{ least = 1, most = 4 }}\n"
+    protocol, paths = parse_protocol(toml, "test"), []
+    for number, line in enumerate(("7; 1", "7; 1", "5; 2"), 1):
+        folder, answers = tmp_path / f"s{number}", tmp_path / f"answers{number}"
+        answers.write_text(f"{line}\n" * 4, encoding="utf-8")
+        conditions = Conditions(fast=True, hand="sweep:150")
+        Sitting.create(
+            protocol, f"P{number}", folder=folder, seed=number, conditions=conditions
+        ).run(str(answers))
+        paths.append(folder)
+    found = tables(analyse_study(load_study(paths), Options()))
+    (row,) = found["ratings"].records()
+    assert 1 < row["low"] < row["mean"] < row["high"] == 7
+    (row,) = found["confidence"].records()
+    assert row["low"] == 1 < row["mean"] < row["high"] < 4
 
 
 def test_durations_are_those_of_the_export(sessions):

@@ -11,6 +11,7 @@ from vbraille.analysis.chapters import Options, analyse_study, compare_scores
 from vbraille.analysis.findings import findings, interval_words
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.scoretable import Scores
+from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.input.study import Study
 from vbraille.analysis.schemas import Kind, to_print
 
@@ -131,12 +132,46 @@ def test_the_main_figure_has_the_participants_points(results):
         assert len(chart.panels[0][1][0].points) == 6
 
 
-def test_one_participant_has_no_interval_and_the_reason_is_told():
-    results = analyse_study(study(*lines(np.random.default_rng(1), people=1)), Options())
-    said = one(results, "^On average participants read right")
-    assert "1 participant, no interval" in said
-    assert not [finding for finding in results.findings if "d_z" in finding]
+@pytest.mark.parametrize("people", [1, 2, 3])
+def test_findings_about_people_are_of_three_or_more(people):
+    """Of fewer the first sentence says that, and no sentence has a test or an interval."""
+    results = analyse_study(study(*lines(np.random.default_rng(1), people=people)), Options())
+    who = {1: "P0", 2: "P0 and P1", 3: "On average participants"}[people]
+    said = one(results, rf"^{who} read right")
+    first = results.findings[0].startswith(f"What follows describes {who} alone")
+    tests = [finding for finding in results.findings if re.search(r"d_z|p [=<] ", finding)]
+    assert (first, bool(tests), "interval" in said) == (
+        (True, False, False) if people < 3 else (False, True, True)
+    )
     assert not any("nan" in finding or "None" in finding for finding in results.findings)
+
+
+def test_what_answers_carried_is_of_these_trials(results):
+    said = one(results, "bits of a character")
+    assert said.startswith("In these trials an answer carried ")
+    assert said.endswith(", for the people who answered, and no others).")
+
+
+def compared(people):
+    """Comparisons of three widths, the middle one liked."""
+    for who in range(people):
+        for one, two, chosen in ((1, 2, 2), (3, 2, 2), (1, 3, 3), (2, 3, 2), (3, 1, 1), (2, 1, 2)):
+            for _ in range(4):
+                yield {
+                    "participant": f"P{who}", "condition": "all", "parameter": "dot_width_mm",
+                    "presented": f"{one} {two}", "answered": f"{chosen}",
+                }  # fmt: skip
+
+
+@pytest.mark.parametrize("people", [1, 2, 4])
+def test_no_sentence_is_empty_or_ends_before_its_end(people):
+    parsed = parse([from_rows("made", [*compared(people)])])
+    results = analyse_study(Study(None, parsed.comparisons, (), (), (), (), ()), Options())
+    (said,) = [finding for finding in results.findings if "preferred" in finding]
+    assert said.startswith("The preferred dot width is" if people > 2 else "The dot width that P0")
+    assert "how people differ is seen" not in said
+    for finding in results.findings:
+        assert not re.search(r"[;:,(]\s*[.;,)]|\(\)|\s\.", finding), finding
 
 
 def test_reasons_stand_for_numbers_that_are_not_there():

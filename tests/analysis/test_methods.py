@@ -201,6 +201,15 @@ def test_a_number_follows_the_record(plain, tmp_path, change):
     assert said not in plain[1]
 
 
+def test_one_trial_is_not_all_of_them(tmp_path):
+    one = MINI.replace('["a", "c", "4", "0"]', '["a"]')
+    Session(tmp_path / "s", one).sit()
+    text = told(tmp_path / "s")
+    assert "A simulated reader gave the only answer. " in text
+    assert "A simulated hand moved the array in the only trial. " in text
+    assert "ll 1 " not in text
+
+
 def test_several_sessions_are_counted_together(plain, tmp_path):
     Session(tmp_path / "t", participant="P2", seed=2).sit()
     Session(tmp_path / "u", participant="P2", seed=3).sit()

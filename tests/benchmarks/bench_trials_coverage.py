@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 DOCUMENT = Path("docs/analysis.md")
 BEGIN, END = "<!-- coverage of trials: begin -->", "<!-- coverage of trials: end -->"
 STUDIES, FEWER, SLOW = 10_000, 2_000, 1_000
-LOW, HIGH, MOST_MISLED = 93.0, 98.0, 6.0
+LOW, HIGH, MOST_MISLED, MOST_BIASED = 93.0, 98.0, 6.0, 0.02
 PROCESSES = 2
 WITHIN, BETWEEN = (3, 5, 10, 20), (6, 10, 20)
 POPULATIONS = tuple(product((0.5, 0.8, 0.95), (0.5, 1.0, 1.5)))
@@ -100,17 +100,27 @@ def wanted() -> dict[str, Wanted]:
         [(f"{d:g}, c {c:g}", (d, c)) for d in (0, 1, 2, 3) for c in (0, 0.5)],
         (STUDIES,),
     )
-    curves = [
-        (f"{shape}, {'yes and no' if free else 'which of two'}", (shape, free))
-        for shape in ("logistic", "normal", "weibull")
-        for free in (False, True)
-    ]
+    shapes = [(shape, (shape, None)) for shape in ("logistic", "normal", "weibull")]
     for what in ("threshold", "spread"):
         found[f"psychometric {what}"] = Wanted(
-            f"{what.capitalize()} of a psychometric function, lapses 2 % ({SLOW:,} readers)",
+            f"{what.capitalize()} of which of two, lapses 2 % ({SLOW:,} readers)",
             readers.curve,
             [(f"7 levels of {n} trials", (n,)) for n in (10, 20, 40)],
-            curves,
+            shapes,
+            (SLOW,),
+            what,
+        )
+    alarms = [(f"{share:.0%}", ("logistic", share)) for share in (0.02, 0.05, 0.1, 0.2, 0.3)]
+    for what, name in (
+        ("threshold", "Threshold"),
+        ("spread", "Spread"),
+        ("bias", "Mean error of a threshold of 1"),
+    ):
+        found[f"{what}, yes and no"] = Wanted(
+            f"{name}, yes and no, by false alarms ({SLOW:,} readers)",
+            readers.curve,
+            [(f"7 levels of {n} trials, {n} blanks", (n,)) for n in (12, 24)],
+            alarms,
             (SLOW,),
             what,
         )
@@ -153,6 +163,9 @@ def result(name: str, table: Made) -> Result:
     if name.startswith("false positives"):
         most = max(cell.share for cell in table.cells if cell.given)
         return Result(name, f"≤ {MOST_MISLED:g} %", f"{most:.1f} % at most", most <= MOST_MISLED)
+    if name.startswith("bias"):
+        most = max(abs(cell.error) for cell in table.cells)
+        return Result(name, f"≤ {MOST_BIASED:g}", f"{most:.3f} at most", most <= MOST_BIASED)
     given = [cell.coverage for cell in table.cells if cell.given]
     held = sum(LOW <= coverage <= HIGH for coverage in given)
     return Result(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.special import ndtr
 
@@ -28,26 +30,44 @@ def sensitivity(trials: int, d: float, criterion: float, studies: int) -> Found:
     return Found(studies, held, studies)
 
 
-def curve(trials: int, shape: str, free: bool, studies: int) -> dict[str, Found]:
-    """Coverage of a psychometric function's threshold and spread; `free` of yes and no."""
-    random = np.random.default_rng([SEED, trials, len(shape), free])
-    guess = 0.03 if free else 0.5
+class Bias(NamedTuple):
+    """Mean error of estimates, of a truth of 1."""
+
+    error: float
+    given: int
+
+    def text(self) -> str:
+        return f"{self.error:+.3f}"
+
+
+def curve(trials: int, shape: str, alarms: float | None, studies: int) -> dict[str, Found | Bias]:
+    """Coverage of a psychometric function's threshold and spread, and its threshold's bias.
+
+    A study is one reader: seven levels of so many trials. Yes and no has as many blank trials as a
+    level has, and a share of false alarms; None is which of two.
+    """
+    random = np.random.default_rng([SEED, trials, len(shape), round(100 * (alarms or 0))])
+    guess = 0.5 if alarms is None else alarms
     rising = SHAPES[shape](LEVELS, np.array(THRESHOLD), np.array(SPREAD))
     shares = guess + (1 - guess - LAPSES) * rising
-    given = 0
+    given, error = 0, 0.0
     held = {"threshold": 0, "spread": 0}
     for _ in range(studies):
+        positive = random.binomial(trials, shares)
+        blanks = (0, 0) if alarms is None else (int(random.binomial(trials, alarms)), trials)
         try:
             found = fit_psychometric(
-                LEVELS, random.binomial(trials, shares), np.full(7, trials), shape=shape,
-                guess=None if free else guess,
+                LEVELS, positive, np.full(7, trials), shape=shape,
+                guess=0.5 if alarms is None else None, blanks=blanks, scale=(0.0, np.inf),
             )  # fmt: skip
         except Unanswerable:
             continue
         given += 1
+        error += found.threshold - THRESHOLD
         for what, ends, truth in (
             ("threshold", found.threshold_interval, THRESHOLD),
             ("spread", found.spread_interval, SPREAD),
         ):
             held[what] += ends.low <= truth <= ends.high
-    return {what: Found(given, of, studies) for what, of in held.items()}
+    covered = {what: Found(given, of, studies) for what, of in held.items()}
+    return {**covered, "bias": Bias(error / given, given)}

@@ -29,6 +29,7 @@ from vbraille.analysis.measures import (
 from vbraille.analysis.methods import methods
 from vbraille.analysis.results import Chapter, Results
 from vbraille.analysis.statistics.correction import METHODS
+from vbraille.sessions.planning.questions import RatingQuestion
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -106,7 +107,7 @@ def analyse_study(study: Study, options: Options) -> Results:
     if study.comparisons is not None:
         chapters.append(_of_comparisons(study, study.comparisons, options))
     if study.judgements is not None:
-        chapters += _of_judgements(study.judgements)
+        chapters += _of_judgements(study, study.judgements)
     if any(sitting.notes for sitting in study.sittings):
         table = remarks.notes(study.sittings)
         chapters.append(Chapter("Notes", "What the experimenter wrote down.", (table,)))
@@ -280,21 +281,32 @@ def _of_comparisons(study: Study, comparisons: pd.DataFrame, options: Options) -
     )
 
 
-def _of_judgements(judgements: pd.DataFrame) -> list[Chapter]:
+def _of_judgements(study: Study, judgements: pd.DataFrame) -> list[Chapter]:
     """Chapters of the questions that were asked, beside which cells and which of two."""
+    questions = {sitting.protocol.name: sitting.protocol.asks for sitting in study.sittings}
+    scales = {
+        name: (of.least, of.most)
+        for name, of in questions.items()
+        if isinstance(of, RatingQuestion)
+    }
+    sure = {
+        name: (of.confidence.least, of.confidence.most)
+        for name, of in questions.items()
+        if of.confidence is not None
+    }
     asked = {*judgements["question"]}
     told: list[Chapter] = []
     if asked & {"detect", "same-different"} or (judgements["outcome"] != "").any():
         told.append(_told_apart(judgements))
     if "rating" in asked:
         text = "Where on a scale things were put."
-        told.append(Chapter("Ratings", text, rated.ratings(judgements)))
+        told.append(Chapter("Ratings", text, rated.ratings(judgements, scales)))
     if "magnitude" in asked:
         text = "How strong things felt, in numbers of one's own."
         told.append(Chapter("Magnitudes", text, (rated.magnitudes(judgements),)))
     if judgements["confidence"].notna().any():
         text = "How sure somebody was of the answers."
-        told.append(Chapter("Confidence", text, (rated.confidence(judgements),)))
+        told.append(Chapter("Confidence", text, (rated.confidence(judgements, sure),)))
     if "free" in asked:
         told.append(Chapter("Words", "What was said in words.", (rated.words(judgements),)))
     return told

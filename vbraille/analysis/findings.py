@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.analysis.input.trials import UNREAD, times
 from vbraille.analysis.schemas import NOTE, Kind, to_print
+from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, SEEN
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -17,10 +18,17 @@ SURE = 0.05  # p below which two things are called different
 _TOLD = ("legibility of strings", "duration (s)", "score")  # measures told; the tables have all
 _MOST = 6  # sentences about pairs of levels, or conditions in one sentence; the tables have all
 _NO_INTERVAL = "no interval"
+# Tables with a row or more of each participant.
+_OWN = (
+    "legibility", "level_scores", "choices_participants", "sensitivity", "thresholds",
+)  # fmt: skip
 
 
 def findings(tables: Iterable[ResultTable]) -> tuple[str, ...]:
     """Sentences about the tables, in the order of the report.
+
+    Of fewer than `FEWEST_PARTICIPANTS` no test and no mean of people is told as a finding: the
+    sentences describe who was there, and the first of them says so.
 
     Parameters
     ----------
@@ -30,6 +38,7 @@ def findings(tables: Iterable[ResultTable]) -> tuple[str, ...]:
     of = {table.name: table for table in tables if len(table)}
     found = [
         *_averages(of),
+        *_thresholds(of),
         *_effects(of),
         *_differences(of),
         *_characters(of),
@@ -38,7 +47,20 @@ def findings(tables: Iterable[ResultTable]) -> tuple[str, ...]:
         *_over_time(of),
         *_preferred(of),
     ]
+    people = _people(of)
+    if found and 0 < len(people) < FEWEST_PARTICIPANTS:
+        found.insert(
+            0,
+            f"What follows describes {_and(people)} alone: of fewer than {FEWEST_PARTICIPANTS} "
+            f"participants nothing is known of how people differ, and no finding is about others.",
+        )
     return tuple(found)
+
+
+def _people(of: Mapping[str, ResultTable]) -> list[str]:
+    """Pseudonyms of all participants, in the order of the tables."""
+    rows = [row for table in of.values() if table.name in _OWN for row in table.records()]
+    return list(dict.fromkeys(str(row["participant"]) for row in rows))
 
 
 def interval_words(
@@ -62,13 +84,18 @@ def _averages(of: Mapping[str, ResultTable]) -> Iterator[str]:
     if "averages" not in of:
         return
     rows = [row for row in of["averages"].records() if row["legibility"] is not None]
-    told = [
-        f"{to_print(row['legibility'], Kind.PERCENT)} % of strings in {row['condition']} "
-        f"({count(row['participants'], 'participant')}, {interval_words(row, Kind.PERCENT, ' %')})"
-        for row in rows[:_MOST]
-    ]
+    many = max(row["participants"] for row in rows) >= FEWEST_PARTICIPANTS
+    told = []
+    for row in rows[:_MOST]:
+        which = interval_words(row, Kind.PERCENT, " %")
+        people = f" ({count(row['participants'], 'participant')}, {which})" if many else ""
+        share = to_print(row["legibility"], Kind.PERCENT)
+        told.append(f"{share} % of strings in {row['condition']}{people}")
     more = f"; {len(rows) - _MOST} more conditions are in the table" if len(rows) > _MOST else ""
-    yield f"On average participants read right {_and(told, ';')}{more}."
+    who = _people(of)
+    whose = "On average participants" if many else _and(who)
+    mean = ", on average," if not many and len(who) > 1 else ""
+    yield f"{whose} read right{mean} {_and(told, ';')}{more}."
     single = [row for row in of["legibility"].records() if row["trials"]]
     if len(single) > 1:
         least, most = (end(single, key=lambda row: row["legibility"]) for end in (min, max))
@@ -82,9 +109,21 @@ def _averages(of: Mapping[str, ResultTable]) -> Iterator[str]:
         yield f"On average a string took {_and(told)}."
 
 
+def _thresholds(of: Mapping[str, ResultTable]) -> Iterator[str]:
+    rows = of["thresholds"].records() if "thresholds" in of else []
+    for row in [row for row in rows if row["threshold"] is not None][:_MOST]:
+        name, unit = _parameter(row["level"])
+        what = "a difference of " if row["question"] == "which" else ""
+        yield (
+            f"{row['participant']} felt {what}{name} from "
+            f"{to_print(row['threshold'], Kind.NUMBER)}{unit} on in half of the trials, without "
+            f"guesses and lapses ({interval_words(row, Kind.NUMBER, unit)})."
+        )
+
+
 def _differences(of: Mapping[str, ResultTable]) -> Iterator[str]:
     for measure, rows in _by_measure(of, "t_tests"):
-        tested = [row for row in rows if row["p"] is not None]
+        tested = [row for row in rows if row["p"] is not None and _enough(row)]
         differ = [row for row in tested if row["p_corrected"] < SURE]
         for row in tested if len(tested) <= _MOST else differ[:_MOST]:
             yield _difference(measure, row)
@@ -125,7 +164,7 @@ def _difference(measure: str, row: Row) -> str:
 def _effects(of: Mapping[str, ResultTable]) -> Iterator[str]:
     for measure, rows in _by_measure(of, "anova"):
         for row in rows:
-            if row["f"] is None:
+            if row["f"] is None or not _enough(row):
                 continue
             sure = row["p_corrected"] < SURE
             said = "changed with" if sure else "is not shown to change with"
@@ -154,7 +193,8 @@ def _characters(of: Mapping[str, ResultTable]) -> Iterator[str]:
         who = _and(names) if len(names) <= _MOST else f"{len(names)} of them"
         ends.append(f"{who} ({to_print(end(shares), Kind.PERCENT)} %)")
     if min(shares) < max(shares):
-        yield f"Of {len(rows)} characters the most legible was {ends[0]}, the least {ends[1]}."
+        were = "was" if shares.count(max(shares)) == 1 else "were"
+        yield f"Of {len(rows)} characters the most legible {were} {ends[0]}, the least {ends[1]}."
 
 
 def _confusions(of: Mapping[str, ResultTable]) -> Iterator[str]:
@@ -185,9 +225,9 @@ def _information(of: Mapping[str, ResultTable]) -> Iterator[str]:
             yield f"How much information answers carried is not known: {reasons[0]}."
         else:
             yield (
-                f"An answer carried {to_print(row['corrected_bits'], Kind.NUMBER)} of the "
-                f"{to_print(row['presented_bits'], Kind.NUMBER)} bits of a character"
-                f" ({interval_words(row, Kind.NUMBER)})."
+                f"In these trials an answer carried {to_print(row['corrected_bits'], Kind.NUMBER)}"
+                f" of the {to_print(row['presented_bits'], Kind.NUMBER)} bits of a character "
+                f"({interval_words(row, Kind.NUMBER)}, for the people who answered, and no others)."
             )
 
 
@@ -208,9 +248,7 @@ def _over_time(of: Mapping[str, ResultTable]) -> Iterator[str]:
 
 def _preferred(of: Mapping[str, ResultTable]) -> Iterator[str]:
     for row in of["preferred"].records() if "preferred" in of else []:
-        name = row["parameter"]
-        unit = " mm" if name.endswith("_mm") else ""
-        words = name.removesuffix("_mm").replace("_", " ")
+        words, unit = _parameter(row["parameter"])
         who = (
             f"{count(row['comparisons'], 'comparison')} of "
             f"{count(row['participants'], 'participant')}"
@@ -220,8 +258,11 @@ def _preferred(of: Mapping[str, ResultTable]) -> Iterator[str]:
             continue
         more = [part for part in _parts(row) if not part.startswith((_NO_INTERVAL, "no p:"))]
         note = "".join(f"; {part}" for part in more)
+        whose = f"The preferred {words} is"
+        if not _enough(row):
+            whose = f"The {words} that {_and(_people(of)) or 'they'} preferred is"
         yield (
-            f"The preferred {words} is {to_print(row['preferred'], Kind.NUMBER)}{unit} "
+            f"{whose} {to_print(row['preferred'], Kind.NUMBER)}{unit} "
             f"({interval_words(row, Kind.NUMBER, unit)}; {who}){note}."
         )
 
@@ -235,8 +276,18 @@ def _by_measure(of: Mapping[str, ResultTable], name: str) -> Iterator[tuple[str,
 
 
 def _parts(row: Row) -> list[str]:
-    """Clauses of a row's note."""
-    return str(row.get(NOTE, "")).split("; ")
+    """Clauses of a row's note that say something by themselves; none of an empty one."""
+    return [part for part in str(row.get(NOTE, "")).split("; ") if part not in ("", SEEN)]
+
+
+def _enough(row: Row) -> bool:
+    """Whether a row is of so many people that it can be a finding about others."""
+    return row["participants"] >= FEWEST_PARTICIPANTS
+
+
+def _parameter(name: str) -> tuple[str, str]:
+    """Words for a parameter or a level, and its unit."""
+    return name.removesuffix("_mm").replace("_", " "), " mm" if name.endswith("_mm") else ""
 
 
 def _whose(row: Row) -> str:

@@ -128,13 +128,15 @@ def _by_whom(rows: Sequence[dict]) -> Iterable[str]:
     """Where the answers came from, and what moved the array, where that was no person."""
     kinds = Counter(row["answers_from"].partition(":")[0] for row in rows)
     if simulated := kinds.pop("simulated", 0):
-        yield f"A simulated reader gave {taskwords.of_all(simulated, rows)} of the answers"
+        yield f"A simulated reader gave {taskwords.of_all(simulated, rows, 'answer', 'of the ')}"
     kinds.pop("typed", None)
     if other := sum(kinds.values()):
-        yield f"{taskwords.of_all(other, rows)} of the answers came from a program or a file"
+        told = taskwords.of_all(other, rows, "answer", "of the ")
+        yield f"{told[0].upper()}{told[1:]} came from a program or a file"
     moved = sum(row["moved_by"].startswith("simulated") for row in rows)
     if moved:
-        yield f"A simulated hand moved the array in {taskwords.of_all(moved, rows)} of the trials"
+        told = taskwords.of_all(moved, rows, "trial", "of the ")
+        yield f"A simulated hand moved the array in {told}"
 
 
 def _display(sittings: Sequence[SessionTrials], rows: Sequence[dict]) -> str:

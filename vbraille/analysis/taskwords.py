@@ -33,13 +33,18 @@ if TYPE_CHECKING:
 _LOOKED_FOR = ("hit", "miss")
 
 
-def of_all(number: int, rows: Sequence[Any]) -> str:
-    """Words for a number out of all.
+def of_all(number: int, rows: Sequence[Any], noun: str, of_the: str = "") -> str:
+    """Words for a number of things out of all.
 
-    >>> of_all(2, [0, 0, 0]), of_all(3, [0, 0, 0])
-    ('2 of 3', 'all 3')
+    >>> of_all(2, [0, 0, 0], "trial"), of_all(3, [0, 0, 0], "trial", "of the ")
+    ('2 of 3 trials', 'all 3 of the trials')
+    >>> of_all(1, [0], "trial"), of_all(0, [0], "trial")
+    ('the only trial', '0 of 1 trial')
     """
-    return f"all {number}" if number == len(rows) else f"{number} of {len(rows)}"
+    if number == len(rows) == 1:
+        return f"the only {noun}"
+    part = f"all {number}" if number == len(rows) else f"{number} of {len(rows)}"
+    return f"{part} {of_the}{noun}{'s' * (len(rows) != 1)}"
 
 
 def asked(protocol: Protocol, rows: Sequence[dict[str, Any]]) -> Iterable[str]:
@@ -55,12 +60,12 @@ def asked(protocol: Protocol, rows: Sequence[dict[str, Any]]) -> Iterable[str]:
         case SameQuestion():
             yield (
                 "Of each pair it was said whether the two were the same or different; "
-                f"{of_all(looked_for, rows)} pairs differed"
+                f"{of_all(looked_for, rows, 'pair')} differed"
             )
         case DetectQuestion():
             yield (
                 "It was said whether there was anything; there was something in "
-                f"{of_all(looked_for, rows)} trials"
+                f"{of_all(looked_for, rows, 'trial')}"
             )
         case RatingQuestion():
             ends = f"from {_step(question, question.least)} to {_step(question, question.most)}"
@@ -80,7 +85,7 @@ def asked(protocol: Protocol, rows: Sequence[dict[str, Any]]) -> Iterable[str]:
     if question.confidence is not None and sure:
         scale = question.confidence
         yield (
-            f"After {of_all(sure, rows)} answers they said how sure they were, from "
+            f"After {of_all(sure, rows, 'answer')} they said how sure they were, from "
             f"{scale.least} to {scale.most}"
         )
 
@@ -112,7 +117,9 @@ def caught(rows: Sequence[dict[str, Any]]) -> Iterable[str]:
     )
     right = sum(row["correct"] == 1 for row in rows)
     scored = any(row["correct"] != "" for row in rows)
-    how = f"; {of_all(right, rows)} were answered right" if scored else ""
+    part = f"all {right}" if right == len(rows) else f"{right} of {len(rows)}"
+    were = f"{part} were" if len(rows) > 1 else "it was" if right else "it was not"
+    how = f"; {were} answered right" if scored else ""
     yield f"Beside these there were {told}{how}"
 
 
@@ -123,10 +130,10 @@ def ended(rows: Sequence[dict[str, Any]]) -> Iterable[str]:
         return
     answered = keys.pop("answer", 0)
     told = [
-        f"{name.replace(':', ' ')} in {of_all(number, rows)} trials"
+        f"{name.replace(':', ' ')} in {of_all(number, rows, 'trial')}"
         for name, number in sorted(keys.items())
     ]
-    told += [f"their answer in {of_all(answered, rows)} trials"] if answered else []
+    told += [f"their answer in {of_all(answered, rows, 'trial')}"] if answered else []
     yield f"Reading was ended by {', by '.join(told)}; response times are to there"
 
 

@@ -126,6 +126,47 @@ def test_a_threshold_where_a_level_varies():
     assert row["low"] < row["threshold"] < row["high"]
 
 
+def test_blank_trials_tell_of_guesses_and_are_at_no_level():
+    """Whatever width their dots would have had: they have no contrast, or no dots."""
+    yes = {1.0: 4, 1.2: 8, 1.4: 13, 1.6: 18, 1.8: 19}
+    rows = [row | {"dot_width_mm": width} for width, of in yes.items()
+            for row in detected("P1", "seen", 0.5, of, 20 - of)]  # fmt: skip
+    rows += [row | {"dot_width_mm": 1.6} for row in detected("P1", "blank", 0.0, 4, 16)]
+    table, levels = thresholds(found(rows))
+    row = record(table, level="dot_width_mm")
+    assert (row["trials"], row["blanks"], row["note"]) == (120, 20, "")
+    fit = fit_psychometric(list(yes), list(yes.values()), [20] * 5, guess=None, blanks=(4, 20))
+    assert (row["threshold"], row["guesses"]) == pytest.approx((fit.threshold, fit.guess), rel=1e-4)
+    *seen, blank = [of for of in levels.records() if of["level"] == "dot_width_mm"]
+    assert [(of["value"], of["positive"]) for of in seen] == list(yes.items())
+    assert (blank["value"], blank["positive"], blank["trials"]) == (None, 4, 20)
+    assert blank["fitted"] == row["guesses"]
+    (figure,) = rises(table, levels)
+    assert [panel.levels for panel in figure.chart.rises if "width" in panel.name] == [tuple(yes)]
+
+
+def test_without_blank_trials_that_is_said_beside_the_threshold():
+    rows = [row for level, yes in {0.1: 6, 0.2: 12, 0.3: 18, 0.4: 20}.items()
+            for row in detected("P1", f"c{level}", level, yes, 20 - yes)]  # fmt: skip
+    row = record(thresholds(found(rows))[0], participant="P1")
+    assert row["blanks"] == 0
+    assert "no blank trials: the levels alone tell of guesses" in row["note"]
+
+
+def test_a_threshold_of_contrast_ends_where_contrast_does():
+    rows = detected("P1", "blank", 0.0, 0, 20)
+    rows += [row for level, yes in {0.4: 0, 0.7: 1, 1.0: 4}.items()
+             for row in detected("P1", f"c{level}", level, yes, 20 - yes)]  # fmt: skip
+    row = record(thresholds(found(rows))[0], participant="P1")
+    assert row["low"] < 1 == row["high"]
+    rows = detected("P1", "blank", 0.0, 0, 20)
+    rows += [row for level, yes in {0.1: 15, 0.4: 17, 0.7: 18}.items()
+             for row in detected("P1", f"c{level}", level, yes, 20 - yes)]  # fmt: skip
+    row = record(thresholds(found(rows))[0], participant="P1")
+    assert 0 <= row["low"] < 0.1
+    assert "begins below the lowest level presented, 0.1" in row["note"]
+
+
 def test_two_levels_make_no_threshold():
     rows = detected("P1", "blank", 0.0, 1, 9) + detected("P1", "full", 0.5, 9, 1)
     row = record(thresholds(found(rows))[0], participant="P1")
@@ -223,6 +264,31 @@ def test_ratings_by_hand():
     assert (row["mean"], row["low"]) == pytest.approx((mean, mean - half))
     pair = record(pairs, first="rough")
     assert (pair["second"], pair["higher"], pair["participants"]) == ("smooth", 1.0, 3)
+
+
+def test_intervals_of_ratings_end_where_the_scale_does():
+    """At both ends; without a scale that is known they are Student's as they are."""
+    lines = [f"P{n} {condition} c {rating} rating"
+             for n, low, high in ((1, 1, 7), (2, 1, 7), (3, 3, 4))
+             for condition, rating in (("smooth", low), ("rough", high))]  # fmt: skip
+    told = judgements(*lines, columns=RATED)
+    for scales, beyond in (({"": (1, 7)}, False), ({}, True)):
+        rows = rated.ratings(told, scales)[0].records()
+        assert (min(row["low"] for row in rows) < 1, max(row["high"] for row in rows) > 7) == (
+            beyond, beyond,
+        )  # fmt: skip
+    sure = [f"P{n} all 1 c yes detect hit {confidence}" for n, confidence in enumerate((1, 1, 3))]
+    row = record(rated.confidence(judgements(*sure), {"": (1, 4)}), outcome="hit")
+    assert row["low"] == 1 < row["mean"] < row["high"] <= 4
+
+
+def test_no_interval_of_d_prime_begins_below_nothing():
+    rows = detected("P1", "blank", 0.0, 3, 7) + detected("P1", "full", 0.5, 4, 6)
+    rows += detected("P2", "blank", 0.0, 8, 2) + detected("P2", "full", 0.5, 2, 8)
+    table = sensitivity.sensitivity(found(rows))
+    near, turned = (record(table, participant=name) for name in ("P1", "P2"))
+    assert near["d_low"] == 0 < near["d_prime"] < near["d_high"]
+    assert turned["d_low"] < turned["d_prime"] < 0  # yes and no were taken for each other
 
 
 def test_magnitudes_by_hand():

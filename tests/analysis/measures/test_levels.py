@@ -221,6 +221,39 @@ def test_repeated_scores_are_averaged_within_the_participant_first():
         )
 
 
+def test_groups_of_participants_have_no_empty_tests():
+    """Nobody is in two of them: no row without a test, but a note, and means without one."""
+    who, hand = ["P1", "P2", "P3", "P4"] * 2, ["left"] * 4 + ["right"] * 4
+    vision = ["blind", "blind", "sighted", "sighted"] * 2
+    scores = Scores("score", who, {"vision": vision, "hand": hand}, [1.0, 2, 4, 5, 3, 3, 7, 9])
+    table = t_tests([scores], "holm")
+    (row,) = table.records()
+    assert (row["factor"], row["participants"]) == ("hand", 4)
+    (note,) = table.notes
+    assert note.startswith("score: vision has groups of participants, and nobody is in two")
+    means = [row for row in level_means([scores]).records() if row["factor"] == "vision"]
+    assert [row["participants"] for row in means] == [2, 2]
+    assert not any("a score is missing" in row["note"] for row in means)
+    effects = {row["effect"]: row for row in analyses([scores])[0].records()}
+    assert effects["vision"]["f"] is not None
+
+
+def test_groups_alone_are_no_analysis_of_levels_within_people():
+    vision = {"vision": ["blind", "blind", "sighted", "sighted"]}
+    table, left_out = analyses([Scores("score", ["P1", "P2", "P3", "P4"], vision, [1.0, 2, 4, 5])])
+    assert (table.records(), left_out) == ([], [])
+    assert table.notes == ("score: vision: groups alone; nothing varies within people",)
+
+
+def test_differences_of_shares_are_within_1():
+    who, texture = ["P1", "P2", "P3"] * 2, ["T0"] * 3 + ["T25"] * 3
+    given = [0.0, 0.0, 0.1, 1.0, 1.0, 0.4]
+    for trials, ends in (([10] * 6, (True, True)), (None, (False, True))):
+        scores = Scores("legibility", who, {"texture": texture}, given, trials=trials)
+        (row,) = t_tests([scores], "holm").records()
+        assert (row["low"] >= -1, row["high"] <= 1) == ends
+
+
 def test_a_level_without_scores_is_a_level_all_the_same():
     lone = long_form(T0=[1.0, 2, 4], T25=[math.nan] * 3)
     row = record(level_means([lone]), level="T25")

@@ -75,8 +75,16 @@ def test_partial_eta2_is_that_of_noncentral_f(rng):
 def test_partial_eta2s_interval_begins_at_0_where_p_is_large():
     assert partial_eta2_interval(f.isf(0.026, 2, 10), 2, 10).low == 0
     assert partial_eta2_interval(f.isf(0.024, 2, 10), 2, 10).low > 0
-    nothing = partial_eta2_interval(0.001, 2, 10)
-    assert (nothing.low, nothing.high) == (0, 0)
+
+
+@pytest.mark.parametrize("people", [2, 3, 6, 20])
+@pytest.mark.parametrize("df1", [1, 2, 4])
+def test_partial_eta2s_interval_has_its_estimate_in_it(df1, people):
+    """However small F is, where the noncentral distribution leaves nothing above 0."""
+    df2 = df1 * (people - 1)
+    for ratio in (0.0, 0.001, 0.01, 0.05, 0.2, 1.0, 4.0, 100.0):
+        found = partial_eta2_interval(ratio, df1, df2)
+        assert 0 <= found.low <= df1 * ratio / (df1 * ratio + df2) <= found.high < 1
 
 
 def test_what_is_beyond_all_effects_has_no_interval():

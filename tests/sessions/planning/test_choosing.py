@@ -143,6 +143,8 @@ BAD = [
     (f"{STRINGS}{STAIRS}target = 0.75", "[procedure] target is of staircases with right = 1…"),
     (f"{TWO}{STRINGS}{STEP}{OF_CONTRAST}".replace("contrast", "texture"),
      "[procedure] parameter is 'texture', which the condition smooth sets itself…"),
+    (f'{PAIRS}{STEP}{OF_CONTRAST}[question]\nkind = "detect"',
+     "[procedure] guess is 0, and…0.4]"),
 ]  # fmt: skip
 
 
@@ -154,6 +156,12 @@ def test_what_cannot_be_used_is_said(text, says):
     said = str(refused.value).split(": ", 1)[1]
     assert said.startswith(beginning)
     assert all(part in said for part in end.split("…"))
+
+
+def test_what_is_detected_may_be_guessed():
+    text = f"{VBD_HEAD}{PAIRS}{STEP}{OF_CONTRAST}guess = [0.01, 0.2]\n"
+    protocol = parse(f'{text}[question]\nkind = "detect"\n')
+    assert protocol.procedure.quest(protocol.design).axes[2].values == (0.01, 0.2)
 
 
 def test_what_the_procedure_chooses_is_no_option():

@@ -63,6 +63,7 @@ def rises(table: ResultTable, levels: ResultTable) -> Iterator[ReportFigure]:
 
 
 def _panel(row: Row, answers: list[Row]) -> Rise:
+    answers = [answer for answer in answers if answer["value"] is not None]
     levels = tuple(answer["value"] for answer in answers)
     curve: tuple[tuple[float, float], ...] = ()
     threshold = None

@@ -65,7 +65,8 @@ T_TESTS = Schema(
     "First less second, over participants; scores are averaged over other factors, and repeated "
     "ones within the participant. d_z is the mean difference by the standard deviation of the "
     "differences, and its interval is by noncentral t; g_z is d_z with Hedges's correction for "
-    "few participants. Corrected p takes account of all pairs of a measure and factor.",
+    "few participants. Corrected p takes account of all pairs of a measure and factor. The "
+    "interval of a difference of shares ends at -1 and 1.",
     (
         Column("measure", "measure", "what is compared, with its unit; legibility from 0 to 1"),
         Column("factor", "factor", "by what"),
@@ -130,6 +131,7 @@ def level_means(measures: Sequence[Scores]) -> ResultTable:
     for scores in measures:
         for factor in scores.factors:
             means = _means(scores, factor)
+            groups = _of_groups(means)
             for level in sorted(means, key=natural):
                 own = list(means[level].values())
                 trials = _trials(scores, factor, level)
@@ -140,7 +142,7 @@ def level_means(measures: Sequence[Scores]) -> ResultTable:
                     "participants": len(own),
                     "mean": mean_or_none(own),
                 }
-                notes = _without(scores.participants, means[level])
+                notes = [] if groups else _without(scores.participants, means[level])
                 try:
                     interval = _interval(scores, means[level], trials)
                     row |= {"low": interval.low, "high": interval.high}
@@ -187,6 +189,12 @@ def t_tests(measures: Sequence[Scores], correction: str) -> ResultTable:
             levels = sorted(means, key=natural)
             if len(levels) < 2:
                 notes.append(f"{scores.measure}: {factor} is {levels[0]} alone; nothing to compare")
+            elif _of_groups(means):
+                notes.append(
+                    f"{scores.measure}: {factor} has groups of participants, and nobody is in two; "
+                    f"no paired test. The analysis of variance compares groups beside a factor "
+                    f"within participants, the model of trials legibility in any"
+                )
             elif len(levels) > MOST_LEVELS:
                 notes.append(
                     f"{scores.measure}: {factor} has {len(levels)} levels; the pairs of more than "
@@ -203,6 +211,10 @@ def analyses(measures: Sequence[Scores]) -> tuple[ResultTable, list[LeftOut]]:
     notes: list[str] = []
     left_out: list[LeftOut] = []
     for scores in measures:
+        if all(_of_groups(_means(scores, factor)) for factor in scores.factors):
+            which = " and ".join(scores.factors)
+            notes.append(f"{scores.measure}: {which}: groups alone; nothing varies within people")
+            continue
         try:
             found = _variance(scores)
         except ValueError as reason:  # Unanswerable, or more factors than can be compared
@@ -285,6 +297,12 @@ def _means(scores: Scores, factor: str) -> dict[str, dict[str, float]]:
     }
 
 
+def _of_groups(means: dict[str, dict[str, float]]) -> bool:
+    """Whether each participant has one level, and not all the same."""
+    own = [who for of in means.values() for who in of]
+    return len(own) == len(set(own)) and sum(map(bool, means.values())) > 1
+
+
 def _trials(scores: Scores, factor: str, level: str) -> dict[str, int] | None:
     """Number of answers that each participant gave at a level; None if scores are no shares."""
     if scores.trials is None:
@@ -338,6 +356,8 @@ def _pairs(
                 )
         else:
             row |= _tested(test)
+            if scores.trials is not None:  # shares differ by 1 at most
+                row |= {"low": max(test.low, -1.0), "high": min(test.high, 1.0)}
             tested.append(row)
             if test.d_low is None:
                 notes.append("no interval of d_z: t is too large for one")

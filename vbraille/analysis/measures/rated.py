@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import combinations
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,10 +15,15 @@ from vbraille.analysis.statistics.ratings import compare_ratings, summarise_rati
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import pandas as pd
     from numpy.typing import NDArray
 
     from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.statistics.intervals import Interval
+
+    Scale = tuple[float, float]
 
 _PROTOCOL = Column("protocol", "protocol", "name of the protocol")
 _CONDITION = Column("condition", "condition", "name, as in the protocol")
@@ -26,7 +32,8 @@ RATINGS = Schema(
     "ratings",
     "Ratings",
     "The mean is over participants of their own means, with Student's interval of the population's "
-    "mean. In the quartiles each participant weighs the same.",
+    "mean, as far as the scale goes where a session tells its ends. In the quartiles each "
+    "participant weighs the same.",
     (
         _PROTOCOL,
         _CONDITION,
@@ -78,7 +85,7 @@ CONFIDENCE = Schema(
     "confidence",
     "How sure the answers were",
     "The mean is over participants of their own means, with Student's interval of the population's "
-    "mean.",
+    "mean, as far as the scale goes where a session tells its ends.",
     (
         _PROTOCOL,
         Column("question", "question", "what was asked"),
@@ -108,8 +115,16 @@ WORDS = Schema(
 _UNSCORED = "-"
 
 
-def ratings(judgements: pd.DataFrame) -> tuple[ResultTable, ResultTable]:
-    """Ratings of each condition, and each two conditions compared."""
+def ratings(
+    judgements: pd.DataFrame, scales: Mapping[str, Scale] = MappingProxyType({})
+) -> tuple[ResultTable, ResultTable]:
+    """Ratings of each condition, and each two conditions compared.
+
+    Parameters
+    ----------
+    scales
+        Ends of the scale of each protocol, as far as they are known; no interval is beyond them.
+    """
     rated = judgements[judgements["question"] == "rating"]
     rows: list[Row] = []
     pairs: list[Row] = []
@@ -122,7 +137,7 @@ def ratings(judgements: pd.DataFrame) -> tuple[ResultTable, ResultTable]:
             row |= {"mean": found.mean, "median": found.median}
             row |= {"low_quartile": found.low_quartile, "high_quartile": found.high_quartile}
             if found.interval is not None:
-                row |= {"low": found.interval.low, "high": found.interval.high}
+                row |= _kept(found.interval, scales.get(protocol))
             rows.append(row)
         for (first, one), (second, two) in combinations(parts.items(), 2):
             pairs.append({"protocol": protocol, "first": first, "second": second} | _pair(one, two))
@@ -150,8 +165,10 @@ def magnitudes(judgements: pd.DataFrame) -> ResultTable:
     return MAGNITUDES.fill(rows, () if rows else ("no magnitude was asked",))
 
 
-def confidence(judgements: pd.DataFrame) -> ResultTable:
-    """Mean confidence of each condition and outcome."""
+def confidence(
+    judgements: pd.DataFrame, scales: Mapping[str, Scale] = MappingProxyType({})
+) -> ResultTable:
+    """Mean confidence of each condition and outcome; `ratings` describes the arguments."""
     rows: list[Row] = []
     asked = judgements[judgements["confidence"].notna()]
     asked = asked.assign(outcome=asked["outcome"].mask(asked["outcome"] == "", _UNSCORED))
@@ -160,7 +177,7 @@ def confidence(judgements: pd.DataFrame) -> ResultTable:
         own = part.groupby("participant", observed=True)["confidence"].mean().to_numpy(np.float64)
         row: Row = dict(zip(names, whose, strict=True))
         row |= {"participants": own.size, "answers": len(part), "mean": float(own.mean())}
-        rows.append(row | _ends(own))
+        rows.append(row | _ends(own, scales.get(str(row["protocol"]))))
     return CONFIDENCE.fill(rows, () if rows else ("no confidence was asked",))
 
 
@@ -187,13 +204,18 @@ def _pair(one: pd.DataFrame, two: pd.DataFrame) -> Row:
     return row
 
 
-def _ends(own: NDArray[np.float64], *, logarithms: bool = False) -> Row:
+def _ends(own: NDArray[np.float64], scale: Scale | None = None, *, logarithms: bool = False) -> Row:
     """Ends of the interval of a mean over participants, or why there is none."""
     try:
         found = mean_interval(own)
     except Unanswerable as reason:
         return {"note": f"no interval: {reason}"}
-    low, high = found.low, found.high
     if logarithms:
-        low, high = float(np.exp(low)), float(np.exp(high))
-    return {"low": low, "high": high}
+        return {"low": float(np.exp(found.low)), "high": float(np.exp(found.high))}
+    return _kept(found, scale)
+
+
+def _kept(interval: Interval, scale: Scale | None) -> Row:
+    """Ends of an interval, as far as the scale goes."""
+    least, most = scale or (-np.inf, np.inf)
+    return {"low": max(interval.low, least), "high": min(interval.high, most)}

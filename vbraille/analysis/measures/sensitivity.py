@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from vbraille.analysis.input.trials import groups
@@ -19,10 +20,11 @@ SENSITIVITY = Schema(
     "sensitivity",
     "How well things were told apart",
     "d′ and criterion with the log-linear correction, and Gourevitch and Galanter's intervals of "
-    "this participant. A signal is a trial with something, with two that differ, or where the "
-    "first of two is the right one; the other trials are noises. Noises of a participant's detect "
-    "and same-different count for every condition, whichever condition they are of. Same or "
-    "different is taken to be judged by the difference felt; d′ of two is divided by √2.",
+    "this participant; that of a d′ of 0 or more begins at 0 at the least. A signal is a trial "
+    "with something, with two that differ, or where the first of two is the right one; the other "
+    "trials are noises. Noises of a participant's detect and same-different count for every "
+    "condition, whichever condition they are of. Same or different is taken to be judged by the "
+    "difference felt; d′ of two is divided by √2.",
     (
         Column("question", "question", "detect, same-different or which"),
         Column("participant", "participant", "pseudonym"),
@@ -98,9 +100,11 @@ def _detection(question: str, hits: int, signals: int, alarms: int, noises: int)
 
 
 def _told(found: Detection) -> Row:
+    # Nothing is told apart worse than not at all; a d′ below 0 is of answers turned round.
+    least = 0.0 if found.d_prime >= 0 else -math.inf
     return {
         "d_prime": found.d_prime,
-        "d_low": found.d_interval.low,
+        "d_low": max(found.d_interval.low, least),
         "d_high": found.d_interval.high,
         "criterion": found.criterion,
         "criterion_low": found.criterion_interval.low,

@@ -30,13 +30,15 @@ THRESHOLDS = Schema(
     "thresholds",
     "Thresholds",
     "Of detect, the level at which half of what is neither guessed nor lapsed is answered yes, by "
-    "a logistic function with free guesses and lapses. Of which, where one of two is right by "
+    "a logistic function with free lapses and free guesses, of which a participant's blank trials "
+    "tell most. Of which, where one of two is right by "
     "being more or by being less, the difference at which half of what is neither guessed nor "
     "lapsed is right, by a Weibull function with half of the answers guessed, and free lapses. A "
     "participant has a row for each level that varies.",
     (
         *_WHOSE,
         Column("trials", "trials", "how many", Kind.COUNT),
+        Column("blanks", "blank trials", "of these, without anything to be felt", Kind.COUNT),
         Column("threshold", "threshold", "in the unit of the level", Kind.NUMBER),
         Column("low", "from", "lower end of its 95 % credible interval", Kind.NUMBER),
         Column("high", "to", "upper end", Kind.NUMBER),
@@ -54,7 +56,8 @@ THRESHOLDS = Schema(
 THRESHOLD_LEVELS = Schema(
     "threshold_levels",
     "Answers by level",
-    "What the thresholds are fitted to: answers yes of detect, right ones of which.",
+    "What the thresholds are fitted to: answers yes of detect, right ones of which. Blank trials "
+    "of detect are a row of their own, without a value but for contrast, of which they have none.",
     (
         *_WHOSE,
         Column("value", "value", "of the level, in its unit", Kind.VALUE),
@@ -65,7 +68,8 @@ THRESHOLD_LEVELS = Schema(
         NOTE_COLUMN,
     ),
 )
-_YES = ("hit", "false alarm")
+_BLANK = ("false alarm", "correct rejection")
+_TO_ONE = ("contrast", "texture")  # levels from 0 to 1; the others are lengths
 _SHAPES = {"detect": "logistic", "which": "weibull"}
 _GUESSES = {"detect": None, "which": 0.5}
 
@@ -77,6 +81,7 @@ class LevelAnswers(NamedTuple):
     levels: NDArray[np.float64]
     positive: NDArray[np.int64]
     trials: NDArray[np.int64]
+    blanks: tuple[int, int] = (0, 0)  # answers yes, and all
 
 
 def thresholds(judgements: pd.DataFrame) -> tuple[ResultTable, ResultTable]:
@@ -98,6 +103,12 @@ def thresholds(judgements: pd.DataFrame) -> tuple[ResultTable, ResultTable]:
             if fitted is not None:
                 counts["fitted"] = float(fitted[at])
             shares.append(asked.whose | counts)
+        if asked.blanks[1]:
+            yes, trials = asked.blanks
+            value = 0.0 if asked.whose["level"] == "contrast" else None
+            counts = {"value": value, "positive": yes, "trials": trials, "share": yes / trials}
+            counts |= {"fitted": row.get("guesses"), "note": "blank trials, at no level"}
+            shares.append(asked.whose | counts)
     none = () if rows else ("no level of what was detected or told apart varies",)
     return THRESHOLDS.fill(rows, none), THRESHOLD_LEVELS.fill(
         shares, () if shares else ("no level of what was detected or told apart varies",)
@@ -105,15 +116,22 @@ def thresholds(judgements: pd.DataFrame) -> tuple[ResultTable, ResultTable]:
 
 
 def _detected(judgements: pd.DataFrame) -> Iterator[LevelAnswers]:
-    """Answers yes by level, for each level that varies in what was detected."""
+    """Answers yes by level and at nothing, for each level that varies in what was detected.
+
+    Blank trials are at no level, whatever their dots or their contrast would have been.
+    """
     asked = judgements[(judgements["question"] == "detect") & (judgements["outcome"] != "")]
     for (participant, protocol), own in groups(asked, "participant", "protocol"):
+        blank = own["outcome"].isin(_BLANK)
+        blanks = int((own["outcome"] == "false alarm").sum()), int(blank.sum())
         for level in LEVELS:
-            part = own[own[level].notna()]
-            if part[level].nunique() < 2:
+            known = own[level].notna()
+            part = own[known & ~blank]
+            if own[known][level].nunique() < 2 or part.empty:
                 continue
             whose: Row = {"question": "detect", "participant": participant, "protocol": protocol}
-            yield _counted(whose | {"level": level}, part[level], part["outcome"].isin(_YES))
+            counted = _counted(whose | {"level": level}, part[level], part["outcome"] == "hit")
+            yield counted._replace(blanks=blanks)
 
 
 def _told_apart(judgements: pd.DataFrame) -> Iterator[LevelAnswers | Row]:
@@ -152,8 +170,10 @@ def _counted(whose: Row, levels: pd.Series, positive: pd.Series) -> LevelAnswers
 
 def _fitted(asked: LevelAnswers) -> tuple[Row, NDArray[np.float64] | None]:
     """Threshold and what belongs to it, and the fitted share at each level."""
-    question = asked.whose["question"]
-    row: Row = {"trials": int(asked.trials.sum())}
+    question, level = asked.whose["question"], asked.whose["level"]
+    blanks = asked.blanks[1]
+    row: Row = {"trials": int(asked.trials.sum()) + blanks, "blanks": blanks}
+    most = max(1.0, asked.levels.max()) if level in _TO_ONE else np.inf
     try:
         fit = fit_psychometric(
             asked.levels,
@@ -161,10 +181,14 @@ def _fitted(asked: LevelAnswers) -> tuple[Row, NDArray[np.float64] | None]:
             asked.trials,
             shape=_SHAPES[question],
             guess=_GUESSES[question],
+            blanks=asked.blanks,
+            scale=(0.0, most),
         )
     except Unanswerable as reason:
         return row | {"note": f"no threshold: {reason}"}, None
     ends, spread = fit.threshold_interval, fit.spread_interval
+    untold = question == "detect" and not blanks
+    notes = [fit.note, "no blank trials: the levels alone tell of guesses" if untold else ""]
     return row | {
         "threshold": fit.threshold,
         "low": ends.low,
@@ -174,5 +198,5 @@ def _fitted(asked: LevelAnswers) -> tuple[Row, NDArray[np.float64] | None]:
         "spread_high": spread.high,
         "guesses": fit.guess,
         "lapses": fit.lapse,
-        "note": fit.note,
+        "note": "; ".join(filter(None, notes)),
     }, fit.shares(asked.levels)

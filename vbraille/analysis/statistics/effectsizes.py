@@ -63,7 +63,9 @@ def partial_eta2_interval(ratio: float, df1: int, df2: int, level: float = LEVEL
     """Interval of partial eta squared, λ / (λ + df1 + df2 + 1) (Steiger 2004).
 
     F is noncentral with λ if sphericity holds and differences are normal; an end is 0 where F
-    is smaller than chance alone would have it.
+    is smaller than chance alone would have it. For such an F the upper end would be below the
+    estimate, df1 F / (df1 F + df2), to which it is raised then: the interval has its estimate in
+    it, and holds the truth no less often.
 
     Parameters
     ----------
@@ -90,7 +92,8 @@ def partial_eta2_interval(ratio: float, df1: int, df2: int, level: float = LEVEL
             continue
         found = _root(lambda nc, p=p: float(ncf.cdf(ratio, df1, df2, nc)) - p, 0.0, df1 * ratio + 1)
         ends.append(found / (found + df1 + df2 + 1))
-    return Interval(ends[0], ends[1], level)
+    estimate = df1 * ratio / (df1 * ratio + df2)
+    return Interval(min(ends[0], estimate), max(ends[1], estimate), level)
 
 
 def noncentral_t_cdf(t: float, df: int, delta: float) -> float:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 LEVEL = 0.95
 FEWEST_PARTICIPANTS = 3
+SEEN = "how people differ is seen of three or more"
 ROUNDING = 1e-12  # values whose relative difference is smaller are the same
 
 
@@ -149,4 +150,4 @@ def mean_duration(values: ArrayLike, level: float = LEVEL) -> Interval:
 def too_few(participants: int) -> str:
     """Reason why there is no interval for so few participants."""
     few = ("no participants", "one participant", "two participants")[participants]
-    return f"{few}; how people differ is seen of three or more"
+    return f"{few}; {SEEN}"

@@ -2,10 +2,12 @@
 
 A share is γ + (1 - γ - λ) F(x): γ is the share of guesses, λ that of lapses, and F rises from 0 to
 1. The threshold m is where F is a half, in the unit of x. The lapses have a prior, beta with 1
-and 20, and 0.1 at most, since few trials tell of them (Wichmann and Hill 2001); threshold and
-logarithm of the spread are even over what the levels could show. The estimate is the most likely
-of all (MAP); intervals are between quantiles of the threshold's and the spread's own posterior,
-worked out on a grid (Schütt et al. 2016). docs/analysis.md has how often they hold the truth.
+and 20, and 0.1 at most, since few trials tell of them (Wichmann and Hill 2001). Guesses are fixed,
+or free: even from 0 to 0.9, and blank trials, whose share of yes is γ, join their likelihood to
+that of the levels. Threshold and logarithm of the spread are even over what the levels could show,
+half their range below and above them, as far as the scale goes. The estimate is the most likely of
+all (MAP); intervals are between quantiles of the threshold's and the spread's own posterior, worked
+out on a grid (Schütt et al. 2016). docs/analysis.md has how often they hold the truth.
 """
 
 from __future__ import annotations
@@ -23,20 +25,21 @@ from scipy.stats import chi2
 from vbraille.analysis.statistics.intervals import LEVEL, Interval
 from vbraille.analysis.statistics.scores import check_level, finite_scores
 from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.wording import count
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from numpy.typing import ArrayLike, NDArray
 
     Curve = Callable[..., NDArray[np.float64]]  # of levels, threshold and spread
 
 MOST_LAPSES = 0.1
+MOST_GUESSES = 0.9
 FEWEST_LEVELS = 3
 _FEW = 20.0  # second parameter of the lapses' prior; the first is 1
-_SIZE = (64, 40, 7)  # points of the grid along threshold, spread and lapses
-_GUESSES = 7  # and along guesses, where they are free
-_PASSES = 3  # each after the first is over what the one before left likely, the last on all points
+_SIZE = (48, 32, 5, 12)  # cells of the grid along threshold, spread, lapses, and guesses if free
+_COARSE = (40, 24, 3, 6)  # and of the two before it, each grid over what the last left likely
 _UNLIKELY = 12.0  # in log likelihood below the best
 _EDGE = 1e-9  # a share is at least so far from 0 and 1
 
@@ -60,7 +63,8 @@ class PsychometricFit:
     shape
         A key of `SHAPES`.
     threshold, threshold_interval
-        Level at which F is a half, in the unit of the levels.
+        Level at which F is a half, in the unit of the levels; the interval has it in it, even
+        where the quantiles of the posterior leave it outside.
     spread, spread_interval
         The larger, the flatter; in the unit of the levels, but for the Weibull, which has none.
     slope
@@ -69,8 +73,9 @@ class PsychometricFit:
         Shares γ and λ.
     deviance, df, p
         Twice what the log likelihood lacks to that of each level's own share; levels less two,
-        since lapses and guesses hardly follow the answers; p of such a deviance by chi-square,
-        which is meant for levels of ten trials or more.
+        since lapses hardly follow the answers, blanks being one more level and free guesses one
+        more parameter; p of such a deviance by chi-square, which is meant for levels of ten trials
+        or more, NaN where there is no degree of freedom.
     note
         What else to know; may be empty.
     """
@@ -103,6 +108,7 @@ class LevelCounts(NamedTuple):
     trials: NDArray[np.float64]
     curve: Curve
     guess: float | None
+    blanks: tuple[int, int]
 
 
 def fit_psychometric(
@@ -112,6 +118,8 @@ def fit_psychometric(
     *,
     shape: str = "logistic",
     guess: float | None = 0.5,
+    blanks: tuple[int, int] = (0, 0),
+    scale: tuple[float, float] = (-math.inf, math.inf),
     level: float = LEVEL,
 ) -> PsychometricFit:
     """Fit a psychometric function to the answers of one participant.
@@ -126,7 +134,12 @@ def fit_psychometric(
         A key of `SHAPES`.
     guess
         Share of positive answers where nothing can be felt: 0.5 for which of two, 0 where nobody
-        guesses; None where it is free, as for yes and no, with the prior that lapses have.
+        guesses; None where it is free, as for yes and no.
+    blanks
+        Positive answers to trials without anything to be felt, and all answers to them; they tell
+        of free guesses.
+    scale
+        Ends of what the levels are measured by, such as 0 and 1; no threshold is beyond them.
     level
         Level of confidence.
 
@@ -136,26 +149,28 @@ def fit_psychometric(
         If there are fewer than three levels, all answers or none are positive, or their share
         does not rise.
     ValueError
-        If there is no such shape, or the counts are none.
+        If there is no such shape, the counts are none, or there are blanks of fixed guesses.
     """
     check_level(level)
-    asked = _answers(levels, positive, trials, shape, guess)
-    axes = _first_axes(asked, shape)
-    for _ in range(_PASSES - 1):
-        axes = _nearer(axes, _log_posterior(asked, [*axes[:2], *(of[::3] for of in axes[2:])]))
-    log_posterior = _log_posterior(asked, axes)
+    asked = _answers(levels, positive, trials, shape, guess, blanks)
+    edges = _first_edges(asked, shape, scale)
+    within = [(float(axis[0]), float(axis[-1])) for axis in edges]
+    for sizes in (_COARSE, _SIZE):
+        edges = _nearer(edges, _log_posterior(asked, edges), sizes)
+    log_posterior = _log_posterior(asked, edges)
     at = np.unravel_index(np.argmax(log_posterior), log_posterior.shape)
-    best = _best(asked, [float(axis[i]) for axis, i in zip(axes, at, strict=True)])
+    start = [float(_middles(axis)[i]) for axis, i in zip(edges, at, strict=True)]
+    best = _best(asked, start, within)
     mass = np.exp(log_posterior - log_posterior.max())
     ends = []
     for axis in (0, 1):
         own = mass.sum(axis=tuple(i for i in range(mass.ndim) if i != axis))
-        ends.append(_between(axes[axis], own, level))
+        ends.append(_between(edges[axis], own, level))
     threshold, spread, lapse = best[0], math.exp(best[1]), best[2]
     floor = best[3] if asked.guess is None else asked.guess
-    deviance = _deviance(asked, _shares(asked, best))
-    df = len(asked.levels) - 2
-    inside = asked.levels[0] <= threshold <= asked.levels[-1]
+    interval = Interval(min(ends[0][0], threshold), max(ends[0][1], threshold), level)
+    deviance = _deviance(asked, best)
+    df = len(asked.levels) + (asked.blanks[1] > 0) - len(best) + 1
     step = 1e-5 * spread * (threshold if shape == "weibull" else 1.0)
     rise = np.diff(
         asked.curve(threshold + np.array([-step, step]), *map(np.array, best[:1]), spread)
@@ -163,7 +178,7 @@ def fit_psychometric(
     return PsychometricFit(
         shape,
         threshold,
-        Interval(min(ends[0][0], threshold), max(ends[0][1], threshold), level),
+        interval,
         spread,
         Interval(min(math.exp(ends[1][0]), spread), max(math.exp(ends[1][1]), spread), level),
         (1 - floor - lapse) * float(rise[0]) / (2 * step),
@@ -171,19 +186,28 @@ def fit_psychometric(
         lapse,
         deviance,
         df,
-        float(chi2.sf(deviance, df)),
-        "" if inside else "the threshold is beyond the levels that were presented",
+        float(chi2.sf(deviance, df)) if df > 0 else math.nan,
+        "; ".join(_beyond(asked, threshold, interval)),
     )
 
 
 def _answers(
-    levels: ArrayLike, positive: ArrayLike, trials: ArrayLike, shape: str, guess: float | None
+    levels: ArrayLike,
+    positive: ArrayLike,
+    trials: ArrayLike,
+    shape: str,
+    guess: float | None,
+    blanks: tuple[int, int],
 ) -> LevelCounts:
     """Counts with equal levels put together, in their order, after checks."""
     if shape not in SHAPES:
         raise ValueError(f"no shape {shape!r}; there are {', '.join(SHAPES)}")
     if guess is not None and not 0 <= guess < 1:
         raise ValueError(f"guess {guess} is not in 0…1")
+    if not 0 <= blanks[0] <= blanks[1]:
+        raise ValueError(f"{blanks[0]} positive answers to {blanks[1]} blanks")
+    if guess is not None and blanks[1]:
+        raise ValueError("blanks tell of free guesses, and guess is fixed")
     x = finite_scores("levels", levels)
     y, n = (np.asarray(of, np.float64) for of in (positive, trials))
     if not (x.shape == y.shape == n.shape) or not ((y >= 0) & (y <= n) & (n < np.inf)).all():
@@ -194,30 +218,40 @@ def _answers(
     found, at = np.unique(x, return_inverse=True)
     y, n = (np.asarray(np.bincount(at, of, found.size), np.float64) for of in (y, n))
     if found.size < FEWEST_LEVELS:
-        raise Unanswerable(f"{found.size} levels; a curve needs {FEWEST_LEVELS}")
+        raise Unanswerable(f"{count(found.size, 'level')}; a curve needs {FEWEST_LEVELS}")
     if y.sum() in (0, n.sum()):
         raise Unanswerable("all answers are the same; they show no threshold")
     if (n * (found - np.average(found, weights=n)) * (y / n)).sum() <= 0:
         raise Unanswerable("the share of answers does not rise with the level")
-    return LevelCounts(found, y, n, SHAPES[shape], guess)
+    return LevelCounts(found, y, n, SHAPES[shape], guess, blanks)
 
 
-def _first_axes(asked: LevelCounts, shape: str) -> list[NDArray[np.float64]]:
-    """Grid over all that the levels could show: threshold, logarithm of the spread, lapses, …."""
+def _first_edges(
+    asked: LevelCounts, shape: str, scale: tuple[float, float]
+) -> list[NDArray[np.float64]]:
+    """Edges of cells over all that the levels could show: threshold, logarithm of the spread, …."""
     low, high = float(asked.levels[0]), float(asked.levels[-1])
     reach, gap = high - low, float(np.diff(asked.levels).min())
     if shape == "weibull":
-        thresholds = np.geomspace(low**1.5 / high**0.5, high**1.5 / low**0.5, _SIZE[0])
-        spreads = np.linspace(math.log(0.05), math.log(2.0), _SIZE[1])
+        least, most = max(low**1.5 / high**0.5, scale[0]), min(high**1.5 / low**0.5, scale[1])
+        thresholds = np.geomspace(least, most, _COARSE[0] + 1)
+        spreads = math.log(0.05), math.log(2.0)
     else:
-        thresholds = np.linspace(low - reach / 2, high + reach / 2, _SIZE[0])
-        spreads = np.linspace(math.log(gap / 10), math.log(2 * reach), _SIZE[1])
-    rare = (np.arange(_SIZE[2]) + 0.5) / _SIZE[2] * MOST_LAPSES
-    return [thresholds, spreads, rare] + ([rare.copy()] if asked.guess is None else [])
+        least, most = max(low - reach / 2, scale[0]), min(high + reach / 2, scale[1])
+        thresholds = np.linspace(least, most, _COARSE[0] + 1)
+        spreads = math.log(gap / 10), math.log(2 * reach)
+    others = [spreads, (0.0, MOST_LAPSES), (0.0, MOST_GUESSES)][: 3 if asked.guess is None else 2]
+    cells = zip(others, _COARSE[1:], strict=False)
+    return [thresholds, *(np.linspace(*ends, size + 1) for ends, size in cells)]
 
 
-def _log_posterior(asked: LevelCounts, axes: list[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Logarithm of the posterior on a grid, up to a constant."""
+def _middles(edges: NDArray[np.float64]) -> NDArray[np.float64]:
+    return (edges[1:] + edges[:-1]) / 2
+
+
+def _log_posterior(asked: LevelCounts, edges: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Logarithm of the posterior in the middle of each cell, up to a constant."""
+    axes = [_middles(axis) for axis in edges]
     m, s = axes[0][:, None, None], np.exp(axes[1])[None, :, None]
     rising = asked.curve(asked.levels, m, s)
     lapse = axes[2][:, None]
@@ -230,22 +264,26 @@ def _log_posterior(asked: LevelCounts, axes: list[NDArray[np.float64]]) -> NDArr
             share = np.clip(share, _EDGE, 1 - _EDGE)
             yes, no = asked.positive[at], asked.trials[at] - asked.positive[at]
             of += yes * np.log(share) + no * np.log1p(-share)
-        of += (_FEW - 1) * np.log1p(-lapse[:, 0])
-        if asked.guess is None:
-            of += (_FEW - 1) * math.log1p(-guess)
+        of += (_FEW - 1) * np.log1p(-lapse[:, 0]) + _of_blanks(asked, guess)
     return total
 
 
+def _of_blanks(asked: LevelCounts, guess: float) -> float:
+    """Log likelihood of the answers to blank trials."""
+    yes, trials = asked.blanks
+    return float(xlogy(yes, max(guess, _EDGE)) + xlog1py(trials - yes, -guess))
+
+
 def _nearer(
-    axes: list[NDArray[np.float64]], log_posterior: NDArray[np.float64]
+    edges: list[NDArray[np.float64]], log_posterior: NDArray[np.float64], sizes: tuple[int, ...]
 ) -> list[NDArray[np.float64]]:
-    """Grid over what is not unlikely of another; lapses and guesses keep theirs."""
+    """Cells over those of others that are not unlikely."""
     likely = log_posterior > log_posterior.max() - _UNLIKELY
-    found = list(axes)
-    for axis in (0, 1):
+    found = []
+    for axis, (own, size) in enumerate(zip(edges, sizes, strict=False)):
         at = np.flatnonzero(likely.any(axis=tuple(i for i in range(likely.ndim) if i != axis)))
-        first, last = max(at[0] - 1, 0), min(at[-1] + 1, axes[axis].size - 1)
-        found[axis] = np.linspace(axes[axis][first], axes[axis][last], axes[axis].size)
+        first, last = max(at[0] - 1, 0), min(at[-1] + 2, own.size - 1)
+        found.append(np.linspace(own[first], own[last], size + 1))
     return found
 
 
@@ -255,38 +293,52 @@ def _shares(asked: LevelCounts, at: list[float]) -> NDArray[np.float64]:
     return np.clip(floor + (1 - floor - at[2]) * rising, _EDGE, 1 - _EDGE)
 
 
-def _best(asked: LevelCounts, start: list[float]) -> list[float]:
+def _best(asked: LevelCounts, start: list[float], within: list[tuple[float, float]]) -> list[float]:
     """Most likely parameters, from a start near them; to 1e-6 of their size."""
 
     def lost(at: NDArray[np.float64]) -> float:
-        share = _shares(asked, at.tolist())
-        right = asked.positive * np.log(share) + (asked.trials - asked.positive) * np.log1p(-share)
-        return -float(right.sum() + (_FEW - 1) * np.log1p(-at[2:]).sum())
+        found = at.tolist()
+        guess = found[3] if asked.guess is None else 0.0
+        prior = (_FEW - 1) * math.log1p(-found[2])
+        return -_likelihood(asked, _shares(asked, found)) - prior - _of_blanks(asked, guess)
 
-    free = [(None, None), (start[1] - 2, start[1] + 2)] + [(0.0, MOST_LAPSES)] * (len(start) - 2)
-    if asked.curve is SHAPES["weibull"]:
-        free[0] = (start[0] / 2, start[0] * 2)
     found = minimize(
-        lost, start, method="L-BFGS-B", bounds=free, options={"ftol": 1e-14, "gtol": 1e-8}
+        lost, start, method="L-BFGS-B", bounds=within, options={"ftol": 1e-14, "gtol": 1e-8}
     )
     return [float(value) for value in found.x]
 
 
-def _deviance(asked: LevelCounts, share: NDArray[np.float64]) -> float:
-    own = asked.positive / asked.trials
-    best = xlogy(asked.positive, own) + xlog1py(asked.trials - asked.positive, -own)
-    found = asked.positive * np.log(share) + (asked.trials - asked.positive) * np.log1p(-share)
-    return max(2 * float((best - found).sum()), 0.0)
+def _likelihood(asked: LevelCounts, share: NDArray[np.float64]) -> float:
+    """Log likelihood of the answers at the levels."""
+    no = asked.trials - asked.positive
+    return float((xlogy(asked.positive, share) + xlog1py(no, -share)).sum())
+
+
+def _deviance(asked: LevelCounts, best: list[float]) -> float:
+    found = _likelihood(asked, _shares(asked, best))
+    own = _likelihood(asked, asked.positive / asked.trials)
+    if asked.blanks[1]:
+        found += _of_blanks(asked, best[3])
+        own += _of_blanks(asked, asked.blanks[0] / asked.blanks[1])
+    return max(2 * (own - found), 0.0)
+
+
+def _beyond(asked: LevelCounts, threshold: float, interval: Interval) -> Iterator[str]:
+    """Clauses of what is beyond the levels that were presented."""
+    low, high = asked.levels[0], asked.levels[-1]
+    if not low <= threshold <= high:
+        yield "the threshold is beyond the levels that were presented"
+    if interval.low < low:
+        yield f"the interval begins below the lowest level presented, {low:g}"
+    if interval.high > high:
+        yield f"the interval ends above the highest level presented, {high:g}"
 
 
 def _between(
-    axis: NDArray[np.float64], mass: NDArray[np.float64], level: float
+    edges: NDArray[np.float64], mass: NDArray[np.float64], level: float
 ) -> tuple[float, float]:
-    """Ends between which the level's share of the mass on an axis of even steps lies."""
-    widths = np.gradient(axis)
-    sums = np.cumsum(mass * widths)
-    sums = np.concatenate([[0.0], sums / sums[-1]])
-    ends = np.concatenate([axis - widths / 2, [axis[-1] + widths[-1] / 2]])
+    """Ends between which the level's share of the mass in equal cells lies."""
+    sums = np.concatenate([[0.0], np.cumsum(mass / mass.sum())])
     tail = (1 - level) / 2
-    low, high = np.interp([tail, 1 - tail], sums, ends).tolist()
+    low, high = np.interp([tail, 1 - tail], sums, edges).tolist()
     return low, high

@@ -213,6 +213,12 @@ def _check_procedure(protocol: Protocol) -> None:
         raise ValueError(f"[procedure] {said}")
     if not protocol.adaptive:
         return
+    if protocol.asks.name == "detect" and getattr(protocol.procedure, "guess", None) == (0.0,):
+        # With a fifth of false alarms the threshold would be told far too low.
+        raise ValueError(
+            "[procedure] guess is 0, and people say yes at nothing too; give the shares that may "
+            "be, such as guess = [0.01, 0.05, 0.1, 0.2, 0.3, 0.4]"
+        )
     if protocol.medium == "paper":
         raise ValueError(
             "[procedure] varies what a device shows; with medium = 'paper' leave it out"
