@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from vbraille.devices.wire.messages import Frame
+
 
 class ControllerOf20261121(Controller):
     """Built from the protocol's page as it was on 2026-11-21.
@@ -19,8 +21,9 @@ class ControllerOf20261121(Controller):
     repeat that the watchdog tripped.
     """
 
-    def _takes(self, _sequence: int, _levels: NDArray[np.uint16]) -> bool:
-        return True
+    def _follow(self, frame: Frame, levels: NDArray[np.uint16]) -> bytes:
+        self.levels, self._behind = levels, 0
+        return self._hold(frame.sequence, levels)
 
     def _flags(self) -> int:
         return super()._flags() & ~TRIPPED

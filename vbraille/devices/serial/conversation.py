@@ -199,4 +199,7 @@ class Conversation(Listening):
         Any other message is due again when something comes in the next time.
         """
         self._frame_due = False
-        return self._offer is _Wish.FRAME
+        lost = self._offer is _Wish.FRAME
+        if lost:  # its sequence counts: the device is to know how far the next one goes on
+            self.frames.sequence = (self.frames.sequence + 1) & _U16
+        return lost

@@ -70,13 +70,15 @@ class States:
         Time at which the last STATE came.
     sequence
         Sequence of the last STATE; None before the first of a conversation.
-    missed
-        Number of STATEs that never came.
+    missed, old
+        Number of STATEs that never came, and of those that were dropped because they came twice, or
+        after a newer one.
     """
 
     heard_ns: int
     sequence: int | None = None
     missed: int = 0
+    old: int = 0
 
 
 @dataclass(slots=True)
@@ -232,6 +234,13 @@ class Listening:
 
     def _take_state(self, state: State, now_ns: int) -> Pose | None:
         states = self.states
+        if states.sequence is not None:
+            step = unwrap(state.sequence, states.sequence, 16) - states.sequence
+            if step <= 0:
+                states.old += 1
+                return None
+            states.missed += step - 1
+        states.sequence = state.sequence
         states.heard_ns = now_ns
         if self.stage is Stage.SILENT:
             self._go(Cause.HEARD)
@@ -242,10 +251,6 @@ class Listening:
         if state.faulty:  # the ERROR that says why was lost
             self._fail(Fault(self._name), now_ns)
             return None
-        if states.sequence is not None:
-            gap = unwrap(state.sequence, states.sequence, 16) - states.sequence - 1
-            states.missed += max(gap, 0)
-        states.sequence = state.sequence
         for event in self.panel.take(state, now_ns):
             self._tell(event, now_ns)
         self.trips.take_state(tripped=state.tripped)

@@ -117,6 +117,7 @@ class SerialDevice(Device):
         return {
             "frames not sent": self._unsent + self.port.lost,
             "states missed": conversation.states.missed,
+            "old states dropped": conversation.states.old,
             "watchdog trips": conversation.trips.count,
             "watchdog reports not believed": conversation.trips.disbelieved,
             "reconnections": conversation.reconnections,
