@@ -126,7 +126,7 @@ def _fall_behind(state, gap_ns):
     now = state[0]
     if now["behind_ns"] == 0:
         left_ns = max(now["fading_ns"] - now["faded_ns"], 0)
-        now["behind_ns"] = max(left_ns, gap_ns)
+        now["behind_ns"] = max(int(CATCH_UP * left_ns), gap_ns)  # so that a fade goes no faster
         now["faded_ns"] = now["fading_ns"]
     else:
         now["behind_ns"] += gap_ns

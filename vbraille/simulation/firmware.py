@@ -106,7 +106,7 @@ class Controller:
         self._wanted = self._rest  # levels of the FRAME taken last
         self._behind = 0  # by how many FRAMEs the actuators are behind that one
         self._gone = 0  # how many FRAMEs have moved them at once since the last tick: 1 at most
-        self._stepped = False  # whether the last tick has moved them
+        self._recently = 0  # how many have in the period before that tick, and at it
         self._waiting: Frame | None = None  # the last FRAME that came at rest since the last tick
         self.at_rest = True
         self._ramp_us: int | None = None  # when the ramp began
@@ -237,7 +237,7 @@ class Controller:
             return b""
         self._behind += steps
         said = self._hold(frame.sequence, levels)
-        if self._behind == 1 and not (self._gone or self._stepped):
+        if self._behind == 1 and not self._gone and self._recently < PACE:
             self.levels, self._behind, self._gone = levels, 0, 1
         return said
 
@@ -268,14 +268,16 @@ class Controller:
 
     def _step(self) -> None:
         """Go on towards the last FRAME, as far as `PACE` FRAMEs go in a period."""
-        pace, self._gone = PACE - self._gone, 0
-        self._stepped = self._behind > 0
-        if self._behind > pace:
+        if np.array_equal(self.levels, self._wanted):
+            self._behind = 0
+        steps = min(self._behind, PACE - self._gone)
+        self._recently, self._gone = self._gone + steps, 0
+        if 0 < steps < self._behind:
             way = self._wanted - self.levels.astype(np.float64)
-            self.levels = np.rint(self.levels + way * pace / self._behind).astype(np.uint16)
-            self._behind -= pace
-        elif self._stepped:
-            self.levels, self._behind = self._wanted, 0
+            self.levels = np.rint(self.levels + way * steps / self._behind).astype(np.uint16)
+        elif steps:
+            self.levels = self._wanted
+        self._behind -= steps
 
     def _go_to_rest(self) -> None:
         self._armed = self._tripped = False
