@@ -159,7 +159,7 @@ class Wired:
         self._made: dict[int, tuple[float, int]] = {}  # by sequence: place, since when awake
         self._sent = Decoder()
         self._shown: int | None = None  # sequence of the FRAME that is shown; None at rest
-        self._levels = self.controller.levels.astype(float)
+        self._levels = np.asarray(self.controller.levels, float)
         self._rest = self._levels
         self._at = 0, self.controller.levels
         # Levels in the last millisecond, each with the time since when and whether by the ramp.

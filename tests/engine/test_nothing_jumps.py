@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.controllers import ControllerOf20261121
+from tests.controllers import Alone, ControllerOf20261121
 from tests.tiers import by_tier
 from tests.wired import reading
 from vbraille.devices.serial.conversation import Conversation
@@ -21,9 +21,15 @@ def breaches(seeds, kind, *made):
 @pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("kind", "controller"),
-    [("host", Controller), ("host", ControllerOf20261121), ("line", Controller)],
+    [
+        ("host", Controller),
+        ("host", Alone),
+        ("host", ControllerOf20261121),
+        ("line", Controller),
+        ("line", Alone),
+    ],
 )
-def test_no_actuator_moves_faster_than_fade_slew_and_hand_ask_for(block, kind, controller):
+def test_in_no_millisecond_do_actuators_move_faster_than_is_asked_for(block, kind, controller):
     assert list(breaches(range(block * BLOCK, (block + 1) * BLOCK), kind, controller)) == []
 
 
