@@ -59,7 +59,8 @@ class LateroConversation(LateroHearing):
         self.acknowledged_ns = None
         self._frame = -1
         if self.stage is LateroStage.LIVE:
-            self.blades.show(frame)
+            self.blades.show(frame, heard=self._heard)
+            self._heard = False
         else:
             self.blades.ramp(now_ns)
         self._full_due = True
