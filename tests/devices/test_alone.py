@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.devices.bench import HALF, NO_FRAME, Bench
+from tests.devices.bench import HALF, LINE_LATE, Bench
 from tests.devices.secondversion import (
     Make,
     Pose,
@@ -176,7 +176,7 @@ def test_its_watchdog_trips_and_vbraille_begins_again():
     made.deaf = False
     made.run(device, 60)
     made.settle(device, HALF)
-    assert told(device.take_events()) == [NO_FRAME]
+    assert told(device.take_events()) == [LINE_LATE]
     assert made.controller.trips == 1
     device.close()
 

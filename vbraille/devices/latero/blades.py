@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 ROWS: Final = 8
 RAMP_NS: Final = 20_000_000
-# How many frames far blades go at most until the Latero answers again: as docs/wire-protocol.md has it
-# of a device, for a Latero shows what it gets at once.
+# How many frames far blades go at most until the Latero answers again: as docs/wire-protocol.md
+# has it of a device, for a Latero shows what it gets at once.
 _PACE: Final = 2
 # The ramp goes on by no more than this in one step, so that a late step is no jump.
 _MOST_STEP_NS: Final = 2_000_000
@@ -62,8 +62,8 @@ class Blades:
         frame : float64[8, 8]
             Deflections, in [0, 1].
         heard
-            Whether the Latero has answered since the last call. If not, it may not have got what was
-            sent: levels go on by two frames at most, and what comes after is caught up with.
+            Whether the Latero has answered what was sent a frame ago. If not, it may not have got
+            that: levels go on by two frames at most, and what comes after is caught up with.
         """
         self._behind += 1
         if heard:

@@ -167,7 +167,8 @@ class LateroHearing:
         self._frame = -1  # number of the request that had the last frame
         self._resting: int | None = None  # number of the first that had all blades at rest
         self._full_due = False
-        self._heard = False  # whether an answer has counted since the last frame
+        # Whether an answer has counted since the last frame, and between that and the one before.
+        self._heard = self._heard_before = False
         self._offer: bytearray | None = None
         self._raw: bytearray | None = None
         # Power is switched on only by whoever switched it off: at the start, and after a rest.

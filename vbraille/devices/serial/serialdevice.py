@@ -182,6 +182,7 @@ class SerialDevice(Device):
         else:
             self.conversation.decoder.feed(left_over)
         self._unsent += unsent
+        self.conversation.no_room = unsent > 0
         if torn:
             self.port.keep(torn)
         self._copy()
