@@ -284,10 +284,10 @@ def test_a_hand_that_goes_on_in_a_gap_is_caught_up_with(gap):
             device.read = read
         run(loop, 0.2)
     assert asked > 0.02
-    assert biggest_step(device.sent) <= 3 * asked
+    assert biggest_step(device.sent) <= 3 * asked + 1e-9
     # All was caught up with: what is felt is what lies there.
     still = biggest_step(device.sent[-50:])
-    assert gap == "slow" or still <= asked
+    assert gap == "slow" or still <= asked + 1e-9
 
 
 def test_while_frames_are_not_taken_the_array_rests_and_fades_in_then(clock, device):

@@ -224,6 +224,7 @@ def _decide(state, now_ns, passed_ns, y_mm, rested, taking, numbers, output, hel
         output[:] = 0.0
         now["shown"] = 0
         now["faded_ns"] = now["fading_ns"]
+        now["behind_ns"] = 0
     is_wanted = now["shown"] != 0 and now["shown"] == now["serial"]
     if is_wanted and now["shown_ns"] >= numbers[work.EXPOSURE] * NS_PER_S:
         now["exhausted"] = now["serial"]

@@ -19,6 +19,8 @@ SPEED_MM_S = 250.0
 # What hand and fade ask for in a millisecond, in levels; both ends are rounded.
 ASKED = (SPEED_MM_S * math.pi / DOT_MM + 1 / FADE_S) / 1000 * REST
 ALLOWED = CATCH_UP * ASKED + 1
+# Where datagrams are lost at random, one that says what blades did is not known from one before it.
+ALLOWED_AT_RANDOM = (CATCH_UP + 1) * ASKED + 1
 
 
 class OnLatero(Device):
@@ -94,5 +96,6 @@ def read(gap, **faults):
 )
 def test_a_hand_that_goes_on_in_a_gap_is_caught_up_with(gap, faults):
     levels = read(gap, **faults)
-    assert np.abs(np.diff(levels, axis=0)).max() <= ALLOWED
+    allowed = ALLOWED_AT_RANDOM if "drop" in faults else ALLOWED
+    assert np.abs(np.diff(levels, axis=0)).max() <= allowed
     assert np.ptp(levels, axis=0).max() > 100

@@ -55,6 +55,7 @@ def test_a_device_that_stood_still_is_told_from_a_line_that_did():
         made.us += 1000
         device.read()
         device.write(HALF)
+    made.say(made.controller.tick(made.us, 5.0))
     made.settle(device)
     assert told(device.take_events()) == [DEVICE_LATE]
     device.close()
