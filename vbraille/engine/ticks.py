@@ -323,9 +323,10 @@ def advance(
         now["faded_ns"] += passed_ns
         if now["shown"] != 0:
             now["shown_ns"] += passed_ns
+        if now["done_ns"] - now["ticked_ns"] > now["period_ns"]:
+            # A frame that went out late has only just moved the actuators.
+            passed_ns = max(min(passed_ns, now_ns - now["done_ns"]), 0)
         now["ticked_ns"] = now_ns
-        # A frame that went out late has only just moved the actuators.
-        passed_ns = max(min(passed_ns, now_ns - now["done_ns"]), 0)
         if poses[n, POSED] != 0.0:
             possible = _take_pose(
                 state,
