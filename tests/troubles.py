@@ -24,9 +24,9 @@ class Troubles:
         When the line to the device, and to the host, carries nothing: (from, to).
     down_held
         When it carries nothing to the device, and delivers all of it afterwards.
-    lost_down, lost_up, doubled, garbled_up, split
+    lost_down, lost_up, doubled, doubled_up, garbled_up, split
         Chances of a message to the device ("down") or to the host ("up") to be lost, to come
-        twice, to have a bit turned over, and to come in two pieces.
+        twice (to the host up to 30 ms later), to have a bit turned over, and to come in two pieces.
     replayed
         Chance of a message to the device to come again, up to 100 ms later.
     jitter_us
@@ -41,6 +41,7 @@ class Troubles:
     lost_down: float = 0.0
     lost_up: float = 0.0
     doubled: float = 0.0
+    doubled_up: float = 0.0
     garbled_up: float = 0.0
     split: float = 0.0
     replayed: float = 0.0
@@ -60,6 +61,7 @@ def troubles_of_host(chance: random.Random, run_us: int) -> Troubles:
         lost_down=chance.choice((0.0, 0.01, 0.05)),
         lost_up=chance.choice((0.0, 0.05, 0.5, 0.95)),
         doubled=chance.choice((0.0, 0.1)),
+        doubled_up=chance.choice((0.0, 0.1)),
         garbled_up=chance.choice((0.0, 0.1)),
         split=chance.choice((0.0, 0.3)),
         jitter_us=(chance.choice((0, 500, 3000)), chance.choice((0, 2000, 30_000))),

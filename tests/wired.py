@@ -1,17 +1,17 @@
-"""A host's loop and a simulated controller on a line in memory, with all that can go wrong there.
+"""A host's loop and a controller on a line in memory, with all that can go wrong there.
 
 Nobody waits: the clock goes on when the host sleeps, and when it is stopped. What the actuators do
-is held against the law that nothing jumps, at every FRAME and at every tick of the controller:
+is held against the law that nothing jumps, whatever was lost, late, doubled or stopped:
 
-- On the ramp to rest an actuator moves by a twentieth of its swing in a millisecond.
-- From one FRAME that is shown to the next it moves by no more than the fade goes in the ticks of
-  the loop between the two (those of FRAMEs that were lost on the way count, time in which the
-  host was stopped does not), and what the hand's own motion asks for: the way between the places
-  that the two were made for, times the steepest slope of the picture. Where the device has a slew
-  limit, it is what that goes in these ticks instead, for the device may lag behind.
-- The first FRAME that is shown after a rest leaves it by nothing, or, where the line itself was
-  late or dead and the controller is of today's build, by a twentieth of the swing.
-- What is shown then is of a place that the carriage was at when the host was awake again.
+- In any millisecond an actuator moves by no more than three times what is asked for in one: the
+  speed of the hand times the steepest slope of the picture, and what a fade goes. Three times,
+  because what was missed must be caught up with.
+- The ramp to rest adds a twentieth of the swing to that.
+- What is felt after the host was stopped is of a place that the carriage was at from then on.
+
+A controller of 2026-11-21 shows each FRAME at once, so that it jumps where the line loses FRAMEs or
+holds them up. The same is asked of what it is told: from one FRAME to the next, however late they
+are, and after a rest by nothing.
 
 Everything is rounded to levels, which is one level more, or two where both ends are rounded.
 """
@@ -21,11 +21,13 @@ from __future__ import annotations
 import heapq
 import math
 import random
+from collections import deque
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tests.controllers import ControllerOf20261121
 from tests.troubles import Troubles, troubles_of_host, troubles_of_line
 from vbraille.braille.geometry import Geometry
 from vbraille.devices.serial.conversation import Conversation
@@ -34,7 +36,6 @@ from vbraille.devices.serial.ports import Address
 from vbraille.devices.serial.serialdevice import SerialDevice
 from vbraille.devices.wire.codec import Decoder
 from vbraille.devices.wire.messages import (
-    FIRST_STEP,
     RAMP_MS,
     VERSION,
     WATCHDOG_MS,
@@ -59,6 +60,8 @@ TOP = 1000
 FADE_S = 0.1
 PERIOD_US = 1000
 COUNT_MM = 0.005
+# How much quicker than is asked for what was missed may be caught up with.
+CATCH_UP = 3
 # What a line gives at a read, and what it holds of what nobody reads.
 READ_BYTES, HELD_BYTES = 4096, 60_000
 INFO = Display(
@@ -136,7 +139,6 @@ class Wired:
         self.now_us = 0
         self.breaches: list[str] = []
         self.rests = self.shown = 0  # how often the device went to rest, and FRAMEs shown
-        self.gate = 0.0  # furthest that the first FRAME after a rest may leave it
         self.controller = controller(
             replace(
                 describe(INFO, Encoder.ABSOLUTE, version),
@@ -154,17 +156,19 @@ class Wired:
         self._down_last = self._up_last = 0
         self._count = 0
         self._device_us = 0
-        self._made: dict[
-            int, tuple[int, float, int]
-        ] = {}  # by sequence: tick, place, since when awake
+        self._made: dict[int, tuple[float, int]] = {}  # by sequence: place, since when awake
         self._sent = Decoder()
-        self._ticks = 0
         self._shown: int | None = None  # sequence of the FRAME that is shown; None at rest
-        self._levels = self.controller.levels.astype(float)
+        self._levels = np.asarray(self.controller.levels, float)
         self._rest = self._levels
         self._at = 0, self.controller.levels
+        # Levels in the last millisecond, each with the time since when and whether by the ramp.
+        self._past = deque([(0, self._levels, False)])
         # The steepest slope of sin(πu/W).
-        self.slope_per_mm = swing * math.pi / DOT_MM
+        slope_per_mm = swing * math.pi / DOT_MM
+        asked = slope_per_mm * speed_mm_s * PERIOD_US / 1e6 + PERIOD_US / 1e6 / FADE_S
+        self.allowed = CATCH_UP * asked * TOP + 2  # in a millisecond, in levels
+        self._at_once = isinstance(self.controller, ControllerOf20261121)
         self.picture = waves(swing).render(np.full(CELLS, 0b001001, np.uint8), INFO)
         self.port = _Port(self)
         begun = conversation(self.now_ns())
@@ -186,7 +190,6 @@ class Wired:
 
     def sleep_until_ns(self, deadline_ns: int) -> None:
         self._go_on(max(self.now_us, -(-deadline_ns // 1000)))
-        self._ticks += 1
 
     def pause(self, seconds: float) -> None:
         self._go_on(self.now_us + round(seconds * 1e6))
@@ -209,7 +212,7 @@ class Wired:
         for event in self._sent.feed(message):
             if isinstance(event, Frame):
                 x_mm = float(self._records.columns[1][self._records.slot, X])
-                self._made[event.sequence] = self._ticks, x_mm, self._made_awake_us
+                self._made[event.sequence] = x_mm, self._made_awake_us
         trouble, chance = self._troubles, self._chance
         if self._begun_us is None:  # the handshake is not on trial
             trouble = Troubles()
@@ -255,6 +258,8 @@ class Wired:
         due_us = self.now_us + 200 + chance.randint(0, trouble.jitter_us[1])
         due_us = self._up_last = max(due_us, self._up_last)
         self._push(self._up, due_us, message)
+        if chance.random() < trouble.doubled_up:
+            self._push(self._up, due_us + chance.randint(0, 30_000), b"\0" + message)
 
     def _push(self, queue: list[tuple[int, int, bytes]], due_us: int, piece: bytes) -> None:
         self._count += 1
@@ -300,48 +305,58 @@ class Wired:
         controller = self.controller
         at = controller.frames, controller.levels
         if at[0] == self._at[0] and at[1] is self._at[1]:
-            return  # neither a FRAME nor the ramp has moved anything
+            return  # neither a FRAME nor time has moved anything
         self._at = at
-        levels = controller.levels.astype(float)
-        step = float(np.abs(levels - self._levels).max())
-        sequence = controller._frame_sequence
+        levels = np.asarray(controller.levels, float)
         framed = not controller.resting
         self.shown += framed
-        if not framed:
-            if self._shown is not None:
-                self.rests += 1
-                self._shown = None
-            allowed = TOP / RAMP_MS + 1
-            kind = "ramp"
-        elif self._shown is None:
-            begun = not np.array_equal(self._levels, self._rest)
-            allowed = TOP / RAMP_MS + 1 if begun else self.gate * TOP
-            kind = "frame out of rest"
+        sequence = controller._frame_sequence
+        if framed:
+            if self._at_once:
+                self._mind_frames(sequence, levels)
             self._shown = sequence
-            self._mind_age(sequence, levels)
-        else:
-            allowed, kind = self._between(self._shown, sequence), "frame"
-            self._shown = sequence
-            self._mind_age(sequence, levels)
-        if step > allowed:
-            self.breaches.append(
-                f"{self.now_us / 1000:.1f} ms, {kind}: {step / TOP:.3f} of a swing, "
-                f"where {allowed / TOP:.3f} are allowed"
-            )
+            if not np.array_equal(levels, self._levels):
+                self._mind_age(sequence, levels)
+        elif self._shown is not None:
+            self.rests += 1
+            self._shown = None
+        self._mind_millisecond(levels, ramp=not framed)
         self._levels = levels
 
-    def _between(self, before: int, after: int) -> float:
-        """Furthest from one FRAME to another, in levels."""
-        (tick, x_mm, _), (later, later_mm, _) = self._made[before], self._made[after]
-        passed_s = abs(later - tick) * PERIOD_US / 1e6
-        hand = self.slope_per_mm * abs(later_mm - x_mm)
-        # A device that is slower than what is asked for lags behind, and makes up for it as it can.
-        allowed = passed_s * self._slew_per_s if self._slew_per_s else passed_s / FADE_S + hand
-        return allowed * TOP + 2
+    def _mind_millisecond(self, levels: NDArray[np.float64], *, ramp: bool) -> None:
+        """Hold what has moved in the last millisecond against the law."""
+        past = self._past
+        past.append((self.now_us, levels, ramp))
+        while len(past) > 1 and past[1][0] <= self.now_us - PERIOD_US:
+            past.popleft()
+        step = max(float(np.abs(levels - before).max()) for _, before, _ in past)
+        allowed = self.allowed
+        if any(by_ramp for _, _, by_ramp in list(past)[1:]):
+            allowed += TOP / RAMP_MS + 1
+        if step > allowed and (ramp or not self._at_once):
+            self._breach("within a millisecond", step, allowed)
+
+    def _mind_frames(self, sequence: int, levels: NDArray[np.float64]) -> None:
+        """Hold what a FRAME moves against the law, where it is shown at once."""
+        step = float(np.abs(levels - self._levels).max())
+        if self._shown is None:
+            ramps = not np.array_equal(self._levels, self._rest)
+            allowed, kind = TOP / RAMP_MS + 1 if ramps else 0.0, "frame out of rest"
+        else:
+            frames = min((sequence - self._shown) % 2**16, (self._shown - sequence) % 2**16)
+            allowed, kind = self.allowed * frames + 2, "frame"
+        if step > allowed:
+            self._breach(kind, step, allowed)
+
+    def _breach(self, kind: str, step: float, allowed: float) -> None:
+        self.breaches.append(
+            f"{self.now_us / 1000:.1f} ms, {kind}: {step / TOP:.3f} of a swing, "
+            f"where {allowed / TOP:.3f} are allowed"
+        )
 
     def _mind_age(self, sequence: int, levels: NDArray[np.float64]) -> None:
         """What is felt after the host was stopped is of a place after that."""
-        _, x_mm, awake_us = self._made[sequence]
+        x_mm, awake_us = self._made[sequence]
         way_mm = x_mm + 2 * INFO.column_pitch_mm
         if not np.array_equal(levels, self._rest) and way_mm < self.way_mm(awake_us) - COUNT_MM:
             self.breaches.append(f"{self.now_us / 1000:.1f} ms: a place from before the host woke")
@@ -404,12 +419,11 @@ def reading(
         controller,
         conversation,
         slew_per_s=chance.choice((0, 0, 8, 40)),
-        swing=chance.choice((0.0, 0.0, 0.5)),
+        swing=chance.choice((0.0, 0.5, 1.0)),
         speed_mm_s=chance.choice((0.0, 60.0, 300.0)),
         # What was built in 2026 speaks version 1.
         version=1 + seed % 2 if controller is Controller else 1,
     )
-    wired.gate = 0.0 if kind == "host" else 1 / FIRST_STEP
     wired.run(0.5)
     wired.leave()
     if not wired.controller.at_rest:

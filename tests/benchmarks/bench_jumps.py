@@ -7,7 +7,7 @@ from itertools import repeat
 from typing import TYPE_CHECKING
 
 from tests.benchmarks.timing import Result
-from tests.controllers import ControllerOf20261121
+from tests.controllers import Alone, ControllerOf20261121
 from tests.wired import Wired, reading
 from vbraille.simulation.firmware import Controller
 
@@ -19,6 +19,7 @@ CASES = (
     ("the host stopped, what the device says lost or late", "host", Controller),
     ("the same, with a controller of 2026-11-21", "host", ControllerOf20261121),
     ("the line dead, held up and repeating too", "line", Controller),
+    ("the same, with a controller written from the protocol's page", "line", Alone),
 )
 
 
@@ -31,8 +32,8 @@ def run() -> Iterator[Result]:
             shown, rests = (sum(column) for column in list(zip(*read, strict=True))[:2])
             jumps = [f"seed {seed}: {said[0]}" for seed, (*_, said) in enumerate(read) if said]
             yield Result(
-                f"{SEEDS} readings with troubles at random ({what}): actuators that moved faster "
-                f"than fade, slew and hand ask for",
+                f"{SEEDS} readings with troubles at random ({what}): actuators that moved within a "
+                f"millisecond more than three times as far as hand and fade ask for",
                 "0",
                 f"{len(jumps)} in {shown} frames and {rests} rests{''.join(jumps[:1])}",
                 not jumps,

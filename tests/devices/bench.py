@@ -25,7 +25,10 @@ if TYPE_CHECKING:
 HOME_MM = -5.4  # of the centre of the array, which is 10.8 mm long, at the left stop
 HALF = np.full((6, 10), 0.5)
 REST = np.zeros((6, 10))
-NO_FRAME = "device: no frame reached it in time, so it went to rest; reading goes on"
+NO_FRAME = "no frame reached it in time, so it went to rest; reading goes on"
+HOST_LATE = f"device: this computer was late, and {NO_FRAME}"
+LINE_LATE = f"device: the line was late, and {NO_FRAME}"
+DEVICE_LATE = f"device: it was late itself, and {NO_FRAME}"
 AWAY = "device: unplugged; plug it in again and reading goes on"
 # What a pseudo-terminal holds of what nobody reads, to the device and to the host.
 DOWN_BYTES, UP_BYTES = 20_000, 4000

@@ -240,6 +240,7 @@ class SecondVersion:
         self.levels = self._from = self.make.rest
         self._greeted = self._armed = self._tripped = False
         self._resting, self._ramp_us = True, None
+        self._goal, self._behind, self._waiting = self.make.rest, 0, b""
         self._held = b""
         self._sequence = self._frame = self._last_us = 0
         self._told = Pose(0.0, 0.0)
@@ -264,6 +265,10 @@ class SecondVersion:
             self.levels = tuple(round(start + (rest - start) * gone) for start, rest in ends)
             if gone == 1:
                 self._ramp_us = None
+        if self._waiting:
+            said += self._leave_rest(self._waiting, now_us)
+            self._waiting = b""
+        self._follow()
         self._sequence = (self._sequence + 1) % 2**16
         counts = self.make.counts(Pose(way_mm - self.make.before_mm, y_mm, theta))
         self._told = self.make.pose(*counts)
@@ -295,22 +300,45 @@ class SecondVersion:
         if not wanted or max(wanted) > self.make.top_level:
             self.dropped += 1
             return b""
-        furthest = max(abs(a - b) for a, b in zip(wanted, self.make.rest, strict=True))
-        if self._ramp_us is not None or (self._resting and 20 * furthest > self.make.top_level):
+        if self._ramp_us is not None:
             return b""
-        sequence = int.from_bytes(body[1:3], "little")
-        if not self._resting and not 1 <= (sequence - self._frame) % 2**16 <= 32767:
+        if self._resting:
+            self._waiting = body
+            return b""
+        steps = (int.from_bytes(body[1:3], "little") - self._frame) % 2**16
+        if not 1 <= steps <= 32767:
             self.dropped += 1
             return b""
+        self._behind += steps
+        return self._take(body, now_us)
+
+    def _leave_rest(self, body: bytes, now_us: int) -> bytes:
+        pairs = zip(self.make.levels(body[3:]), self.make.rest, strict=True)
+        if 20 * max(abs(level - rest) for level, rest in pairs) > self.make.top_level:
+            return b""
+        self._behind = 5
+        return self._take(body, now_us)
+
+    def _take(self, body: bytes, now_us: int) -> bytes:
         told, self._tripped = self._tripped, False
-        self.levels, self._frame, self._last_us = wanted, sequence, now_us
+        self._frame, self._last_us = int.from_bytes(body[1:3], "little"), now_us
+        self._goal = self.make.levels(body[3:])
         self._resting, self._armed = False, True
-        self.taken.append(Taken(now_us, self._told, wanted))
+        self.taken.append(Taken(now_us, self._told, self._goal))
         return self._watchdog() if told else b""
+
+    def _follow(self) -> None:
+        if self._behind > 2:
+            ends = zip(self.levels, self._goal, strict=True)
+            way = 2 / self._behind
+            self.levels = tuple(start + round((goal - start) * way) for start, goal in ends)
+            self._behind -= 2
+        elif self._behind:
+            self.levels, self._behind = self._goal, 0
 
     def _rest(self, now_us: int) -> None:
         self._armed = self._tripped = False
-        self._resting = True
+        self._resting, self._waiting, self._behind = True, b"", 0
         if self._ramp_us is None and self.levels != self.make.rest:
             self._ramp_us, self._from = now_us, self.levels
 

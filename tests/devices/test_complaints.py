@@ -103,5 +103,5 @@ def test_events_have_the_numbers():
     made.us += 70_000
     made.controller.tick(made.us, 5.0)
     made.run(device, 5)
-    assert list(device.take_events()) == [WatchdogTripped(0)]
+    assert list(device.take_events()) == [WatchdogTripped(0, "host")]
     device.close()

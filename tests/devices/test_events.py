@@ -67,6 +67,11 @@ SAID = [
         WatchdogTripped(4),
         "device: no frame reached it in time, so it went to rest; reading goes on",
     ),
+    (
+        WatchdogTripped(4, "host"),
+        "device: this computer was late, and no frame reached it in time, so it went to rest; "
+        "reading goes on",
+    ),
     (Notice(200, "Warm."), "device: Warm."),
     (Notice(200, ""), "device: notice 200"),
     (Fault("A", 3, "Too hot."), "A: Too hot."),

@@ -90,6 +90,26 @@ def test_the_newest_of_several_states_wins_and_gaps_are_counted():
     device.close()
 
 
+def test_a_state_that_is_old_or_comes_twice_is_dropped_and_counted():
+    made = Bench()
+    device = made.open()
+    made.run(device, 5)
+    made.way_mm = 6.0
+    made.pause(0.001)
+    old = bytes(made.up)
+    made.way_mm = 7.0
+    made.pause(0.001)
+    assert device.read().x_mm == pytest.approx(7.0 + HOME_MM)
+    made.put(old)
+    assert device.read() is None
+    made.put(old)
+    made.pause(0.001)
+    assert device.read().x_mm == pytest.approx(7.0 + HOME_MM)
+    assert device.counts()["old states dropped"] == 2
+    assert device.counts()["states missed"] == 0
+    device.close()
+
+
 def test_times_do_not_go_back_when_the_device_starts_anew():
     made = Bench()
     made.us = 5_000_000

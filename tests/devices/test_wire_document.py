@@ -40,6 +40,8 @@ from vbraille.devices.wire.messages import (
     KNOB_STEP,
     KNOB_TOP,
     MESSAGES,
+    OUT_OF_REST,
+    PACE,
     PLACED,
     RAMP_MS,
     RESTING,
@@ -55,6 +57,7 @@ from vbraille.devices.wire.messages import (
     Watchdog,
 )
 from vbraille.engine.checking import _PLACE_SLACK_MM
+from vbraille.engine.constants import CATCH_UP, GAP_PERIODS
 
 PAGE = (Path(__file__).parents[2] / "docs/wire-protocol.md").read_text()
 SECTIONS = dict(re.findall(r"^#{2,3} (.+?)\n(.*?)(?=^#{2,3} |\Z)", PAGE, re.M | re.S))
@@ -302,10 +305,23 @@ def test_memory():
     text = SECTIONS["Memory"]
     packed = Levels(60, 1023).packed_bytes
     assert f"{line_bytes(3 + packed) - 1} bytes for what is received" in text
-    assert f"{3 * 60 * 2} for `levels`, `from` and `wanted`" in text
+    assert f"{4 * 60 * 2} for `levels`, `from`, `goal` and `wanted`" in text
     sizes = {kind: len(encode(example_of(kind)[0])) for kind in (State2, Watchdog)}
     assert f"STATE2 ({sizes[State2]}), WATCHDOG" in SECTIONS["A minimal firmware"]
     assert f"\n({sizes[Watchdog]})" in SECTIONS["A minimal firmware"]
+
+
+def test_from_frame_to_frame():
+    text = " ".join(SECTIONS["From FRAME to FRAME"].split())
+    assert f"every actuator goes {PACE} / n of the way" in text
+    assert f"n falls by {PACE}. Where n is {PACE} or less" in text
+    assert f"The FRAME that ends a rest makes it {OUT_OF_REST}." in text
+    assert (GAP_PERIODS, CATCH_UP) == (2, 1.5)
+    assert "for more than two periods** goes on" in text
+    assert "catches up with the hand half as fast again as the hand goes" in text
+    firmware = SECTIONS["A minimal firmware"]
+    assert f"take(now); behind = {OUT_OF_REST}\n" in firmware
+    assert f"(goal - levels) * {PACE} / behind; behind = behind - {PACE}\n" in firmware
 
 
 def test_rest():

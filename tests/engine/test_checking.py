@@ -51,7 +51,8 @@ def test_what_is_as_it_should_be_is_fit_and_measured(checked):
     code, said = checked()
     assert (code, said[-1]) == (0, "verdict: fit to be read on")
     kinds = [line.partition(":")[0] for line in said]
-    assert kinds[:6] == ["actuator", "actuator", "rate", "work", "clock", "place"]
+    assert kinds[:7] == ["actuator", "actuator", "rate", "work", "late", "clock", "place"]
+    assert "late: this computer by 0.0 ms at most, the line by 0.0 ms" in said
     assert "clock: 1.000 s pass on it in a second, 0.98 to 1.02 s are allowed" in said
     assert (
         "place: 5.0 to 5.0 mm from the left stop, of 300 mm; 2 mm beyond either end are allowed"

@@ -135,6 +135,37 @@ def test_a_late_tick_is_counted_and_never_chased(clock, device):
     assert loop.tally.late == 2
 
 
+class Waiting(ManualClock):
+    """A clock by which a thread can wait for a processor, or for a line, without being busy."""
+
+    waited_ns = 0
+
+    def wait_ns(self, step_ns):
+        self.waited_ns += step_ns
+        self.advance_ns(step_ns)
+
+    def busy_ns(self):
+        return self.now_ns() - self.waited_ns
+
+
+@pytest.mark.parametrize("does", ["works", "waits"])
+def test_only_a_tick_that_works_for_too_long_is_an_overrun(does):
+    clock = Waiting()
+    device = Recording(clock)
+    loop = Loop(device, clock)
+    run(loop, 0.01)
+    send = device._send
+
+    def take_long(frame):
+        send(frame)
+        (clock.advance_ns if does == "works" else clock.wait_ns)(3 * MS)
+
+    device._send = take_long
+    run(loop, 0.005)
+    assert loop.overruns == (5 if does == "works" else 0)
+    assert loop.late == 5 * 2  # late is late, whatever it did
+
+
 def test_frames_follow_the_hand(clock, device):
     line = picture()
     loop = Loop(device, clock)
@@ -222,6 +253,43 @@ def test_a_machine_that_stalls_makes_no_fade_faster(clock, device, change):
         assert loop.resting == loop.paused
     step = 1 / 20 if change == "pause" else 1 / 100
     assert 0 < biggest_step(device.sent) <= step + 1e-9
+
+
+@pytest.mark.parametrize("gap", ["stopped", "mute", "late", "slow"])
+def test_a_hand_that_goes_on_in_a_gap_is_caught_up_with(gap):
+    """In a driver that is called, and has no controller behind it."""
+    clock = ManualClock()
+    device = Recording(clock)
+    device.move(straight((0, 3.0), (3.0, 3.0 + 3.0 * 60.0)))
+    loop = Loop(device, clock)
+    loop.show(picture())
+    run(loop, 0.3)
+    device.sent.clear()
+    run(loop, 0.5)
+    asked = biggest_step(device.sent)
+    device.sent.clear()
+    if gap == "slow":  # a place each 5 ms, of then
+        read = device.read
+        device.read = lambda: read() if len(device.sent) % 5 == 0 else None
+    for gap_ms in (11, 23, 37):
+        if gap == "stopped":
+            clock.advance_ns(gap_ms * MS)
+        elif gap == "mute":
+            device.silent = True
+            run(loop, gap_ms / 1000)
+            device.silent = False
+        elif gap == "late":  # each tick has a place, but an old one
+            read = device.read
+            old = read()
+            device.read = lambda old=old: old
+            run(loop, gap_ms / 1000)
+            device.read = read
+        run(loop, 0.2)
+    assert asked > 0.02
+    assert biggest_step(device.sent) <= 3 * asked + 1e-9
+    # All was caught up with: what is felt is what lies there.
+    still = biggest_step(device.sent[-50:])
+    assert gap == "slow" or still <= asked + 1e-9
 
 
 def test_while_frames_are_not_taken_the_array_rests_and_fades_in_then(clock, device):

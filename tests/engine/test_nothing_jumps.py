@@ -1,10 +1,13 @@
 """Nothing jumps, over the wire: the law of `tests.wired`, and that it finds what it is for."""
 
+import random
+
 import pytest
 
-from tests.controllers import ControllerOf20261121
+from tests.controllers import Alone, ControllerOf20261121
 from tests.tiers import by_tier
-from tests.wired import reading
+from tests.troubles import Troubles
+from tests.wired import Wired, reading
 from vbraille.devices.serial.conversation import Conversation
 from vbraille.simulation.firmware import Controller
 
@@ -21,10 +24,42 @@ def breaches(seeds, kind, *made):
 @pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("kind", "controller"),
-    [("host", Controller), ("host", ControllerOf20261121), ("line", Controller)],
+    [
+        ("host", Controller),
+        ("host", Alone),
+        ("host", ControllerOf20261121),
+        ("line", Controller),
+        ("line", Alone),
+    ],
 )
-def test_no_actuator_moves_faster_than_fade_slew_and_hand_ask_for(block, kind, controller):
+def test_in_no_millisecond_do_actuators_move_faster_than_is_asked_for(block, kind, controller):
     assert list(breaches(range(block * BLOCK, (block + 1) * BLOCK), kind, controller)) == []
+
+
+GAPS = {
+    "host stopped": Troubles(stalls=((200_000, 11_000), (300_000, 23_000), (400_000, 37_000))),
+    "stopped writing": Troubles(
+        stalls=((200_000, 11_000), (350_000, 37_000)), stopped_writing=True
+    ),
+    "states muted": Troubles(up_dead=((200_000, 12_000), (300_000, 37_000), (400_000, 80_000))),
+    "states lost": Troubles(lost_up=0.95),
+    "states late": Troubles(jitter_us=(0, 30_000)),
+    "states late and twice": Troubles(jitter_us=(0, 3000), doubled_up=0.2),
+    "frames lost": Troubles(lost_down=0.9),
+    "frames muted": Troubles(down_dead=((200_000, 12_000), (300_000, 37_000))),
+    "frames held up": Troubles(down_held=((200_000, 12_000), (300_000, 37_000))),
+    "frames late": Troubles(jitter_us=(30_000, 0)),
+}
+
+
+@pytest.mark.parametrize("controller", [Controller, Alone])
+@pytest.mark.parametrize("gap", GAPS)
+def test_a_hand_that_goes_on_in_a_gap_is_caught_up_with(gap, controller):
+    wired = Wired(random.Random(gap), GAPS[gap], controller, swing=1.0, speed_mm_s=300.0)
+    wired.run(0.5)
+    wired.leave()
+    assert wired.breaches == []
+    assert wired.shown > 100
 
 
 @pytest.mark.no_cover

@@ -89,7 +89,10 @@ class Bench:
 
     def show(self, levels=SWING):
         """Show levels, from rest if it is there; its answers."""
-        return [*(self.frame(REST) if self.controller.at_rest else ()), *self.frame(levels)]
+        heard = []
+        if self.controller.at_rest:  # which it leaves at a tick
+            heard = [*self.frame(REST), *without_states(self.tick())]
+        return [*heard, *self.frame(levels)]
 
     def tick(self, milliseconds=1):
         """Let time pass; what it says meanwhile."""

@@ -73,6 +73,7 @@ def test_a_frame_is_where_the_actuators_stand(greeted):
 def test_of_several_frames_the_last_is_shown(greeted):
     greeted.show()
     greeted.send(*(Frame(n, packed([n] * 6)) for n in (7, 8, 9)))
+    greeted.tick(4)
     assert greeted.levels == [9] * 6
     assert greeted.controller.frames == 5
     assert greeted.state().frame_sequence == 9

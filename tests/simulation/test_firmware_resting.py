@@ -47,6 +47,7 @@ def test_the_watchdog_trips_after_50_ms_and_ramps_for_20(greeted):
 
 @pytest.mark.parametrize("after_us", [0, 1, 499, 500, 999])
 def test_it_rests_within_71_ms_wherever_between_ticks_the_last_frame_came(greeted, after_us):
+    greeted.show(REST)
     greeted.tick()
     greeted.now_us += after_us
     greeted.show()
@@ -140,9 +141,9 @@ def test_a_frame_does_not_cut_the_ramp_after_a_trip_and_the_first_taken_has_it_r
     greeted.tick()
     assert (greeted.levels, greeted.controller.at_rest) == (REST, True)
     assert greeted.controller.rest_after_us == 70_000
-    assert greeted.frame(REST) == [Watchdog(trips=1, dropped=0)]
     assert greeted.frame(REST) == []
-    state = greeted.state()
+    watchdog, state = greeted.tick()
+    assert watchdog == Watchdog(trips=1, dropped=0)
     assert (state.resting, state.tripped) == (False, False)
     assert greeted.controller.dropped == 0  # none was, for all were valid
 
@@ -177,13 +178,59 @@ def test_rest_is_left_by_a_twentieth_of_the_swing_at_most(greeted, to_rest):
         greeted.send(greeted.hello)
     greeted.tick(100)
     frames = greeted.controller.frames
-    greeted.frame(SWING)
-    greeted.frame(next_to_rest(TOP // 20 + 1))
-    assert (greeted.levels, greeted.controller.frames) == (REST, frames)
+    for levels in (SWING, next_to_rest(TOP // 20 + 1)):
+        greeted.frame(levels)
+        greeted.tick()
+        assert (greeted.levels, greeted.controller.frames) == (REST, frames)
     greeted.frame(next_to_rest(TOP // 20))
+    greeted.tick()
+    assert greeted.levels == next_to_rest(20)  # two fifths of 51
+    greeted.tick(2)
     assert greeted.levels == next_to_rest(TOP // 20)
+    greeted.tick()
     greeted.frame(SWING)  # from then on the host says how fast
     assert greeted.levels == SWING
+
+
+def test_at_rest_only_the_last_frame_that_waits_is_looked_at(greeted):
+    """A backlog of what the hand felt long ago, with a frame near rest in it."""
+    near, far = next_to_rest(TOP // 20), SWING
+    greeted.send(*(Frame(n, packed(levels)) for n, levels in enumerate((near, near, far, far))))
+    assert greeted.state().resting
+    assert (greeted.levels, greeted.controller.frames) == (REST, 0)
+    greeted.frame(near)
+    greeted.send(in_its_version(greeted, Rest()))
+    assert greeted.state().resting
+
+
+def steps(greeted, ticks):
+    """How far the first actuator goes in each tick."""
+    levels = [greeted.levels[0]]
+    for _ in range(ticks):
+        greeted.tick()
+        levels.append(greeted.levels[0])
+    return np.diff(levels).tolist()
+
+
+def test_frames_that_were_lost_are_caught_up_with_at_two_in_a_period(greeted):
+    greeted.show(REST)
+    greeted.tick()
+    greeted.sequence += 29
+    greeted.frame([300, 0, 0, TOP, TOP, TOP])
+    assert greeted.levels[0] == 0
+    assert steps(greeted, 16) == [20] * 15 + [0]
+    assert greeted.state().frame_sequence == greeted.sequence
+
+
+def test_frames_that_were_held_up_do_not_move_it_all_together(greeted):
+    greeted.show(REST)
+    greeted.tick()
+    for level in range(10, 310, 10):
+        greeted.frame([level, 0, 0, TOP, TOP, TOP])
+    assert greeted.levels[0] == 10  # the first goes at once
+    assert steps(greeted, 17) == [10, *[20] * 14, 0, 0]
+    greeted.frame([310, 0, 0, TOP, TOP, TOP])
+    assert greeted.levels[0] == 310
 
 
 def test_a_device_of_two_levels_leaves_rest_by_a_frame_of_rest():
@@ -192,7 +239,9 @@ def test_a_device_of_two_levels_leaves_rest_by_a_frame_of_rest():
     rest, swing = (Levels(6, 1).pack(np.array(levels)) for levels in ([0, 0, 0, 1, 1, 1], [1] * 6))
     bench.send(Frame(1, swing))
     assert bench.controller.frames == 0
-    bench.send(Frame(2, rest), Frame(3, swing))
+    bench.send(Frame(2, rest))
+    bench.tick()
+    bench.send(Frame(3, swing))
     assert bench.levels == [1] * 6
 
 
@@ -201,6 +250,7 @@ def test_frames_that_come_twice_or_late_are_dropped_and_do_not_feed_the_watchdog
     greeted.show([0, 0, 0, TOP, TOP, TOP])
     for level in range(10):  # over the wrap
         greeted.frame([level] * 6)
+        greeted.tick(level < 9)
     assert greeted.levels == [9] * 6
     for late in (0, 1, 5, 30_000):
         greeted.send(Frame((greeted.sequence - late) & 0xFFFF, packed(SWING)))

@@ -49,9 +49,8 @@ class Host:
     def frame(self):
         """Show something, from rest if it is there."""
         resting = not self.states or self.states[-1].resting
-        for levels in (REST, SWING) if resting else (SWING,):
-            self.sequence += 1
-            self.say(Frame(self.sequence, packed(levels)))
+        self.sequence += 1
+        self.say(Frame(self.sequence, packed(REST if resting else SWING)))
 
     @property
     def states(self):
@@ -92,6 +91,12 @@ class Bench:
     def greet(self):
         self.host.say(Hello(1))
         self.run(lambda: self.host.states)
+
+    def feel(self):
+        """Have the device leave rest, and something shown."""
+        self.host.frame()
+        self.run(lambda: not self.host.states[-1].resting)
+        self.host.frame()
 
     def show(self):
         """Send a FRAME; a step that never comes."""
@@ -165,7 +170,7 @@ def test_the_hand_sets_out_with_the_first_frame(bench):
 
 def test_a_watchdog_s_trip_is_said_once_it_has_come_to_rest(bench):
     bench.greet()
-    bench.host.frame()
+    bench.feel()
     bench.run(lambda: bench.controller.trips, ticks(2))
     assert bench.said == ["greeted by a host"]
     bench.run(lambda: bench.controller.at_rest, ticks(20))
@@ -384,7 +389,7 @@ def test_it_is_built_wrong_in_what_it_is_told_to_be(make, defect):
     bench = make(faults=Faults(defect=defect))
     bench.greet()
     begun_ns, begun = time.monotonic_ns(), bench.host.states[-1]
-    bench.host.frame()
+    bench.feel()
     bench.run(ticks(75))  # of 2 ms: the watchdog has tripped, unless it is late or not there
     state = bench.host.states[-1]
     passed_us = (time.monotonic_ns() - begun_ns) / 1000

@@ -153,9 +153,12 @@ class WatchdogTripped(Event):
     ----------
     trips
         Number of trips of its watchdog that the device has reported so far.
+    late
+        Part that was late: "host", "line" or "device"; empty if that is not known.
     """
 
     trips: int
+    late: str = ""
 
 
 @dataclass(frozen=True, slots=True)

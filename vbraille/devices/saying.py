@@ -212,9 +212,17 @@ def _slew(speed: float | str) -> str:
     return f"{speed} swings a second" if speed else "without a limit"
 
 
+_LATE: Final = {
+    "host": "this computer was late, and ",
+    "line": "the line was late, and ",
+    "device": "it was late itself, and ",
+}
+
+
 @_say.register
-def _(_event: WatchdogTripped) -> str:
-    return "device: no frame reached it in time, so it went to rest; reading goes on"
+def _(event: WatchdogTripped) -> str:
+    late = _LATE.get(event.late, "")
+    return f"device: {late}no frame reached it in time, so it went to rest; reading goes on"
 
 
 @_say.register

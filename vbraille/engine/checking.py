@@ -79,10 +79,12 @@ class _Check:
         self._wait_for_place()
         for row, column in swing_each(device, self._clock):
             self._say(f"actuator: row {row + 1}, column {column + 1}")
+        missed = device.counts().get("states missed", 0)
         rate = hold_rate(device, self._clock, _RATE_S)
+        missed = device.counts().get("states missed", 0) - missed
         wrong = [
             *self._actuators(),
-            *self._rate(rate),
+            *self._rate(rate, missed),
             *self._time(rate),
             *self._place(rate),
             *self._round_trips(),
@@ -145,12 +147,19 @@ class _Check:
                 raise DeviceError(f"{device.display.name} gives no place; look at its encoder")
             clock.sleep_until_ns(clock.now_ns() + 1_000_000)
 
-    def _rate(self, rate: Rate) -> list[str]:
+    def _rate(self, rate: Rate, missed: int) -> list[str]:
         due = rate.ticks + rate.late
         share = rate.late / due
         self._say(f"rate: {self._device.display.rate_hz:g} Hz, {rate.late} of {due} ticks late")
         self._say(f"work: median {rate.work_us[0]:.0f} µs, 99 % under {rate.work_us[1]:.0f} µs")
-        return [f"{share:.1%} of the ticks come late"] if share > _MOST_LATE else []
+        part = f"the device, or a line that lost {missed} places," if missed else "the line"
+        self._say(
+            f"late: this computer by {rate.host_ms:.1f} ms at most, {part} by "
+            f"{max(rate.place_ms - 1000 / self._device.display.rate_hz, 0.0):.1f} ms"
+        )
+        return (
+            [f"{share:.1%} of the ticks come late on this computer"] if share > _MOST_LATE else []
+        )
 
     def _time(self, rate: Rate) -> list[str]:
         self._say(

@@ -53,6 +53,8 @@ class Rate:
         Seconds that the device's clock goes on in one second of the computer's.
     x_mm
         Leftmost and rightmost place of the array's centre.
+    host_ms, place_ms
+        Greatest lateness of a tick, and longest time from one place to the next, in ms.
     """
 
     ticks: int
@@ -60,6 +62,8 @@ class Rate:
     work_us: tuple[float, float]
     clock_s: float
     x_mm: tuple[float, float]
+    host_ms: float
+    place_ms: float
 
 
 class Watch:
@@ -249,7 +253,15 @@ def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
         work_us=(float(median), float(most)),
         clock_s=_clock_s(known),
         x_mm=x_mm,
+        host_ms=float(ticks["lateness_ns"].max()) / 1e6,
+        place_ms=_longest_ms(known),
     )
+
+
+def _longest_ms(ticks: NDArray[np.void]) -> float:
+    """Longest time from a tick with a new place to the next such tick, in ms."""
+    new = ticks["time_ns"][np.diff(ticks["device_ns"], prepend=-1) > 0]
+    return float(np.diff(new).max(initial=0)) / 1e6
 
 
 def _clock_s(ticks: NDArray[np.void]) -> float:

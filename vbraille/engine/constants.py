@@ -17,3 +17,6 @@ REACH_MM: Final = 10.0
 DIFFERENCE: Final = 10
 MEAN: Final = 50
 GAP_NS: Final = NS_PER_S // 2  # poses so far apart are no one movement
+# A gap between poses of more ticks is caught up with, and this many times as fast as the hand goes.
+GAP_PERIODS: Final = 2
+CATCH_UP: Final = 1.5

@@ -216,6 +216,7 @@ class Loop:
     def _finish(self, slot: int, now_ns: int, lateness_ns: int, done_ns: int) -> None:
         """Record when a tick was done, and set when the next one is due."""
         # Deadlines stand where the start put them; one that has passed is counted, never chased.
+        self.state.now["done_ns"] = done_ns
         self._deadline_ns += self._period_ns
         behind_ns = done_ns - self._deadline_ns
         if behind_ns >= self._period_ns:

@@ -221,12 +221,14 @@ def run(
         if written > 0:
             steady.sent(now, talk, actuators)
         elif written == _EAGAIN:
+            steady.unsent(talk)
             told[UNSENT] += 1
         else:
             return UNMADE  # Python writes it, and sees what is wrong with the line
         # The next STATE is a period from this one; without one, ticks keep to their deadlines.
         told[DEADLINE] = (now if states > 0 and told[GUARD] > 0 else deadline) + told[PERIOD]
         after = libc.clock_ns(libc.CLOCK_MONOTONIC)
+        state[0]["done_ns"] = after
         behind = after - told[DEADLINE]
         if behind >= told[PERIOD]:
             missed = behind // told[PERIOD]

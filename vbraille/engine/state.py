@@ -44,8 +44,9 @@ _STATE = np.dtype(
             "line",  # what records call it
             "paused",
             "tick",  # number of the next one
-            "ticked_ns",  # when the last one woke
+            "ticked_ns", "done_ns",  # when the last one woke, and when its frame had gone out
             "faded_ns", "fading_ns",  # how far a fade has come, and how long it takes
+            "behind_ns",  # how much of the hand's way is to be caught up with, by the time it took
             "placed",  # whether it is known where the array is
             "device_ns", "sampled_ns",  # of the last pose, by the device's clock and by ours
             "moved_ns",  # when the hand last moved

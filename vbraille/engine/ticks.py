@@ -8,6 +8,10 @@ Whatever changes without the hand's doing - a new line, a tuning, a jump, the st
 rest, a page's next line - fades from the frame last sent. A fade goes by ticks: a loop that was
 held up would jump if it took the time that it lost for time in which it faded. So does the time
 of a picture that moves by itself.
+
+The hand goes on while the loop is held up, or while no pose comes. What it moved in such a gap is
+caught up with from the frame last sent, at half as much again as the hand's own pace: in as long
+as the gap was where the hand stands by then, and in twice as long where it goes on.
 """
 
 import numpy as np
@@ -15,8 +19,10 @@ from numba import njit
 
 from vbraille.caching import keep_compiled
 from vbraille.engine.constants import (
+    CATCH_UP,
     DIFFERENCE,
     GAP_NS,
+    GAP_PERIODS,
     JUMP_MM_S,
     MEAN,
     NS_PER_S,
@@ -107,6 +113,36 @@ def _change(state, fade_ns, output, held):
     now["flags"] |= _CHANGED
     now["fading_ns"] = fade_ns
     now["faded_ns"] = 0
+    now["behind_ns"] = 0
+
+
+@_compiled
+def _fall_behind(state, gap_ns):
+    """Note a gap between two poses: the hand is to be caught up with.
+
+    The actuators are no further from where they belong than the hand goes in so long, and a fade
+    in what was left of it. That is made up for together.
+    """
+    now = state[0]
+    if now["behind_ns"] == 0:
+        left_ns = max(now["fading_ns"] - now["faded_ns"], 0)
+        now["behind_ns"] = max(int(CATCH_UP * left_ns), gap_ns)  # so that a fade goes no faster
+        now["faded_ns"] = now["fading_ns"]
+    else:
+        now["behind_ns"] += gap_ns
+
+
+@_compiled
+def _catch_up(state, passed_ns, output, held):
+    """Go so far from the frame last sent that the hand is caught up with at `CATCH_UP`."""
+    now = state[0]
+    copy(output, held)
+    now["flags"] |= _CHANGED
+    step_ns = int(CATCH_UP * passed_ns)
+    now["share"] = 1.0
+    if now["behind_ns"] > step_ns:
+        now["share"] = step_ns / now["behind_ns"]
+    now["behind_ns"] = max(now["behind_ns"] - step_ns, 0)
 
 
 @_compiled
@@ -128,15 +164,21 @@ def _take_pose(state, window_ns, window_mm, velocities, now_ns, device_ns, pose,
         now["moved_ns"] = now_ns
     else:
         step = x - now["x_mm"]
-        elapsed_s = max(now_ns - now["sampled_ns"], now["period_ns"]) / NS_PER_S
+        elapsed_ns = max(now_ns - now["sampled_ns"], now["period_ns"])
+        # Poses that were late come with the next one: only the device's clock tells of such a gap.
+        gap_ns = max(elapsed_ns, min(device_ns - now["device_ns"], now["silence_ns"]))
         turn_mm = REACH_MM * abs(theta - now["theta_rad"])
-        if max(abs(step), abs(y - now["y_mm"]), turn_mm) > JUMP_MM_S * elapsed_s:
+        if max(abs(step), abs(y - now["y_mm"]), turn_mm) > JUMP_MM_S * gap_ns / NS_PER_S:
             # No hand is so fast: the carriage was lost and found again.
             forget_velocity(state, velocities)
             _change(state, now["fade_ns"], output, held)
-        elif step > 0:
-            now["forward_mm"] += step
-            now["forward_s"] += elapsed_s
+        else:
+            gap = gap_ns > GAP_PERIODS * now["period_ns"]
+            if now["shown"] != 0 and (gap or now["behind_ns"] != 0):
+                _fall_behind(state, gap_ns)
+            if step > 0:
+                now["forward_mm"] += step
+                now["forward_s"] += elapsed_ns / NS_PER_S
     add_velocity(state, window_ns, window_mm, velocities, device_ns, x, y)
     now["device_ns"] = device_ns
     now["x_mm"], now["y_mm"], now["theta_rad"] = x, y, theta
@@ -170,7 +212,7 @@ def _wanted(state, now_ns, taking, numbers):
 
 
 @_compiled
-def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
+def _decide(state, now_ns, passed_ns, y_mm, rested, taking, numbers, output, held):
     """Decide what is shown in this tick, and how far it has faded in."""
     now = state[0]
     if rested != now["rested"]:
@@ -182,6 +224,7 @@ def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
         output[:] = 0.0
         now["shown"] = 0
         now["faded_ns"] = now["fading_ns"]
+        now["behind_ns"] = 0
     is_wanted = now["shown"] != 0 and now["shown"] == now["serial"]
     if is_wanted and now["shown_ns"] >= numbers[work.EXPOSURE] * NS_PER_S:
         now["exhausted"] = now["serial"]
@@ -203,6 +246,8 @@ def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
     now["part"] = part
     fading = now["faded_ns"] < now["fading_ns"]
     now["share"] = now["faded_ns"] / now["fading_ns"] if fading else 1.0
+    if now["behind_ns"] != 0:
+        _catch_up(state, passed_ns, output, held)
 
 
 @_compiled
@@ -278,6 +323,9 @@ def advance(
         now["faded_ns"] += passed_ns
         if now["shown"] != 0:
             now["shown_ns"] += passed_ns
+        if now["done_ns"] - now["ticked_ns"] > now["period_ns"]:
+            # A frame that went out late has only just moved the actuators.
+            passed_ns = max(min(passed_ns, now_ns - now["done_ns"]), 0)
         now["ticked_ns"] = now_ns
         if poses[n, POSED] != 0.0:
             possible = _take_pose(
@@ -294,7 +342,7 @@ def advance(
             if not possible:
                 return n
         y_mm = now["y_mm"] if now["free_y"] != 0 else numbers[work.OWN_Y]
-        _decide(state, now_ns, y_mm, rested, taking, numbers, output, held)
+        _decide(state, now_ns, passed_ns, y_mm, rested, taking, numbers, output, held)
         if now["shown"] == 0:
             now["flags"] |= _RESTING
         shown_s = now["shown_ns"] / NS_PER_S

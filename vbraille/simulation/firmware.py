@@ -17,6 +17,8 @@ from vbraille.devices.wire.messages import (
     FIRST_STEP,
     KNOB_TOP,
     NOTICES,
+    OUT_OF_REST,
+    PACE,
     PLACED,
     RAMP_MS,
     RESTING,
@@ -101,6 +103,11 @@ class Controller:
         self._packing = Levels(info.rows * info.columns, info.top_level)
         self._rest = np.frombuffer(info.inverted, np.uint8).astype(np.uint16) * info.top_level
         self.levels: NDArray[np.uint16] = self._rest
+        self._wanted = self._rest  # levels of the FRAME taken last
+        self._behind = 0  # by how many FRAMEs the actuators are behind that one
+        self._gone = 0  # how many FRAMEs have moved them at once since the last tick: 1 at most
+        self._recently = 0  # how many have in the period before that tick, and at it
+        self._waiting: Frame | None = None  # the last FRAME that came at rest since the last tick
         self.at_rest = True
         self._ramp_us: int | None = None  # when the ramp began
         self._ramp_from = self.levels
@@ -154,6 +161,8 @@ class Controller:
         said = self._watch() if self._armed else b""
         if self._ramp_us is not None:
             self._step_ramp(self._ramp_us)
+        said += self._leave_rest()
+        self._step()
         self._sequence = (self._sequence + 1) & _U16
         count = self._count(way_mm)
         return said + self._state(count, y_mm, theta_rad) if self.greeted else b""
@@ -209,13 +218,36 @@ class Controller:
         except ValueError:
             self._misfits += 1
             return b""
-        if not self._takes(frame.sequence, levels):
+        return self._follow(frame, levels)
+
+    def _follow(self, frame: Frame, levels: NDArray[np.uint16]) -> bytes:
+        """Have the actuators follow a FRAME, unless it is an old one that came late.
+
+        The host may not know that they went to rest. If nothing was lost or held up, they go at
+        once; otherwise FRAMEs would move them all together.
+        """
+        if self._ramp_us is not None:
             return b""
-        self.levels = levels
+        if self.at_rest:
+            self._waiting = frame
+            return b""
+        steps = (frame.sequence - self._frame_sequence) & _U16
+        if not 0 < steps <= _U16 // 2:
+            self._misfits += 1
+            return b""
+        self._behind += steps
+        said = self._hold(frame.sequence, levels)
+        if self._behind == 1 and not self._gone and self._recently < PACE:
+            self.levels, self._behind, self._gone = levels, 0, 1
+        return said
+
+    def _hold(self, sequence: int, levels: NDArray[np.uint16]) -> bytes:
+        """Take a FRAME: it is what the actuators go to, and it feeds the watchdog."""
+        self._wanted = levels
         self._ramp_us = None
         self.at_rest = False
         self.frames += 1
-        self._frame_sequence = frame.sequence
+        self._frame_sequence = sequence
         self.last_frame_us = self._now_us
         self._armed = True
         if not self._tripped:
@@ -223,19 +255,29 @@ class Controller:
         self._tripped = False
         return self._watchdog()
 
-    def _takes(self, sequence: int, levels: NDArray[np.uint16]) -> bool:
-        """Whether a FRAME may move the actuators now.
+    def _leave_rest(self) -> bytes:
+        """Take the last FRAME that waits at rest, if it is near rest."""
+        frame, self._waiting = self._waiting, None
+        if frame is None:
+            return b""
+        levels = self._packing.unpack(frame.packed)
+        if np.abs(levels.astype(np.int64) - self._rest).max() * FIRST_STEP > self.info.top_level:
+            return b""
+        self._behind = OUT_OF_REST
+        return self._hold(frame.sequence, levels)
 
-        The host may not know that they went to rest, or the FRAME may be an old one that came late.
-        """
-        if self._ramp_us is not None:
-            return False
-        if self.at_rest:
-            away = np.abs(levels.astype(np.int64) - self._rest).max()
-            return bool(away * FIRST_STEP <= self.info.top_level)
-        newer = 0 < (sequence - self._frame_sequence) & _U16 < _U16 // 2
-        self._misfits += not newer
-        return newer
+    def _step(self) -> None:
+        """Go on towards the last FRAME, as far as `PACE` FRAMEs go in a period."""
+        if np.array_equal(self.levels, self._wanted):
+            self._behind = 0
+        steps = min(self._behind, PACE - self._gone)
+        self._recently, self._gone = self._gone + steps, 0
+        if 0 < steps < self._behind:
+            way = self._wanted - self.levels.astype(np.float64)
+            self.levels = np.rint(self.levels + way * steps / self._behind).astype(np.uint16)
+        elif steps:
+            self.levels = self._wanted
+        self._behind -= steps
 
     def _go_to_rest(self) -> None:
         self._armed = self._tripped = False
@@ -252,6 +294,7 @@ class Controller:
         return self._watchdog()
 
     def _start_ramp(self, begun_us: int) -> None:
+        self._behind, self._waiting = 0, None
         # A ramp on its way goes on: begun anew it would take longer than the watchdog promises.
         if not self.at_rest and self._ramp_us is None:
             self._ramp_us = begun_us

@@ -258,8 +258,12 @@ class Simulator:
                 self._carriage.go_back(now_us)
             elif not controller.placed:
                 self._carriage.cross(controller.mark_mm, now_us)
-        elif controller.frames != self._frames:
-            self._frames = controller.frames
+        self._follow_frames()
+
+    def _follow_frames(self) -> None:
+        """Have the hand set out once a FRAME has been taken."""
+        if self.controller.frames != self._frames:
+            self._frames = self.controller.frames
             self._carriage.set_out()
 
     def _tick(self) -> None:
@@ -269,6 +273,7 @@ class Simulator:
             at = at._replace(way_mm=at.way_mm + _OFF_PLACE_MM)
         self._move_controls(now_us)
         *messages, _ = split(controller.tick(now_us, *at))
+        self._follow_frames()
         if messages:  # the last message is STATE
             sent = [self._send(message) for message in messages][-1]
             self.states_sent += sent

@@ -63,16 +63,19 @@ class Talk:
 
     def tick(self):
         conversation, now_ns = self.conversation, self.now_ns
-        while self._coming and self._coming[0][0] <= now_ns:
-            answer = heapq.heappop(self._coming)[2]
-            self.hear(answer)
-        conversation.tend(now_ns)
-        self.exchange()
-        self.poses.append(conversation.take_pose())
+        self.poses.append(self.take())
         if self.frame is not None:
             conversation.show(self.frame, now_ns)
             self.exchange()
         self.events += conversation.take_events(now_ns)
+
+    def take(self):
+        """Hear what has come, and say what is due; give the newest place."""
+        while self._coming and self._coming[0][0] <= self.now_ns:
+            self.hear(heapq.heappop(self._coming)[2])
+        self.conversation.tend(self.now_ns)
+        self.exchange()
+        return self.conversation.take_pose()
 
     def hear(self, answer):
         found = parse_answer(answer)

@@ -215,7 +215,7 @@ def test_a_stall_goes_to_rest_from_where_the_guardian_left_the_blades():
     ramp = np.array(talk.levels[begun : begun + 8]).astype(int)
     assert ramp[0].min() >= 100
     assert np.diff(ramp, axis=0).max() <= 9
-    assert talk.of(WatchdogTripped) == [WatchdogTripped(1)]
+    assert talk.of(WatchdogTripped) == [WatchdogTripped(1, "host")]
     assert talk.board.powered
     assert talk.conversation.taking
     assert talk.conversation.rested == 2

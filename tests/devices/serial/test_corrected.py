@@ -65,14 +65,15 @@ def test_an_inverted_actuator_goes_over_without_a_jump_and_so_it_rests():
     made = Bench()
     device = made.open()
     device.correct(FOUND)
-    # 1/20 is the ramp's step, which the controller makes by itself when it rests.
-    assert largest_step(made, device, 300, np.full(SHAPE, 0.001)) <= 12
+    # 1/20 is the ramp's step, which the controller makes by itself when it rests. When it leaves
+    # rest, it makes up for some FRAMEs, two in a period.
+    assert largest_step(made, device, 300, np.full(SHAPE, 0.001)) <= 2 * 12
     assert levels(made)[2, 3] > 1000
     device.rest()
     made.pause(0.03)
     device.read()
     assert not levels(made).any()
-    assert largest_step(made, device, 300, np.full(SHAPE, 0.001)) <= 12
+    assert largest_step(made, device, 300, np.full(SHAPE, 0.001)) <= 2 * 12
     assert levels(made)[2, 3] > 1000
     device.close()
     made.pause(0.03)

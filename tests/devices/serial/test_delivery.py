@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.controllers import ControllerOf20261121
-from tests.devices.bench import HALF, HOME_MM, NO_FRAME, REST, Bench
+from tests.devices.bench import DEVICE_LATE, HALF, HOME_MM, HOST_LATE, LINE_LATE, REST, Bench
 from vbraille.devices.saying import told
 from vbraille.devices.wire.codec import Levels, encode
 from vbraille.devices.wire.messages import Frame, Rest, State, Watchdog
@@ -41,9 +41,23 @@ def test_a_peer_that_does_not_read_stops_nobody_and_gets_nothing_late():
     assert made.controller.dropped <= 1  # the frame sent in part was ended
     # The watchdog tripped meanwhile, and it is said; all fades in once frames arrive.
     assert device.counts()["watchdog trips"] == 1
-    assert told(device.take_events()) == [NO_FRAME]
+    assert told(device.take_events()) == [LINE_LATE]
     assert device.taking
     assert device.rested == 1
+    device.close()
+
+
+def test_a_device_that_stood_still_is_told_from_a_line_that_did():
+    made = Bench()
+    device = made.open()
+    made.settle(device)
+    for _ in range(55):  # its timer stands still, and what is sent to it waits
+        made.us += 1000
+        device.read()
+        device.write(HALF)
+    made.say(made.controller.tick(made.us, 5.0))
+    made.settle(device)
+    assert told(device.take_events()) == [DEVICE_LATE]
     device.close()
 
 
@@ -70,7 +84,7 @@ def test_a_host_that_was_stopped_lets_the_ramp_end_and_begins_from_rest(made_as,
         assert np.abs(np.diff(np.array(levels, int))).max() <= 512 / 20 + 1
         assert device.rested == time
         # The second comes within a second of the first, and is said later with its count.
-        assert told(device.take_events()) == ([NO_FRAME] if time == 1 or stall_ms > 1000 else [])
+        assert told(device.take_events()) == ([HOST_LATE] if time == 1 or stall_ms > 1000 else [])
     assert device.counts()["watchdog trips"] == 2  # its own, and not the host's REST
     assert Rest not in made.kinds()
     device.close()
@@ -158,7 +172,7 @@ def test_a_trip_whose_report_is_lost_is_counted_by_the_states_and_once():
     made.deaf = False
     made.settle(device)
     assert device.counts()["watchdog trips"] == 1
-    assert told(device.take_events()) == [NO_FRAME]
+    assert told(device.take_events()) == [LINE_LATE]
     device.close()
 
 

@@ -256,10 +256,16 @@ def test_the_newest_of_some_states_is_the_sample():
     assert (talk.acknowledged_ns, talk.sent_ns) == (500_000, steady.NEVER)
 
 
-def test_a_state_that_comes_again_misses_none_and_turns_no_clock_back():
+def test_a_clock_is_not_turned_back():
     talk = conversation(device_ns=5_000_000)
-    assert taken(state(10, time_us=4_000), talk) == (len(state()), 1)
+    assert taken(state(11, time_us=4_000), talk) == (len(state()), 1)
     assert (talk.missed, talk.device_us, talk.device_ns) == (0, 4_000, 5_000_000)
+
+
+@pytest.mark.parametrize("sequence", [10, 9, 10 - 32_768])
+def test_a_state_that_is_old_or_comes_twice_is_left_to_python(sequence):
+    talk = conversation()
+    assert taken(state(sequence % 2**16), talk)[0] == steady.SOMETHING_ELSE
 
 
 def test_silence_and_a_stall_are_left_to_python():

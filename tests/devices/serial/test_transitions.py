@@ -59,7 +59,8 @@ def watched(made):
 
 def say_state(made, *, flags, frame_sequence):
     """Have this STATE come, and none of the controller's."""
-    made.put(encode(State2(1, made.us, 0, frame_sequence, flags, 0, None, 0, 0, 0)))
+    sequence = made.controller._sequence + 1
+    made.put(encode(State2(sequence, made.us, 0, frame_sequence, flags, 0, None, 0, 0, 0)))
 
 
 def in_silence(made, device, frame=HALF):

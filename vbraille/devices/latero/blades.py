@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
 ROWS: Final = 8
 RAMP_NS: Final = 20_000_000
+# How many frames far blades go at most until the Latero answers again: as docs/wire-protocol.md
+# has it of a device, for a Latero shows what it gets at once.
+_PACE: Final = 2
 # The ramp goes on by no more than this in one step, so that a late step is no jump.
 _MOST_STEP_NS: Final = 2_000_000
 
@@ -40,20 +43,43 @@ class Blades:
         self.view = memoryview(self.request)[BLADES_AT : BLADES_AT + BLADES]
         self._grid = self.levels.reshape(ROWS, ROWS)
         self._room = np.empty((ROWS, ROWS))
-        self._at = np.full(BLADES, float(REST))  # on the ramp
+        self._at = np.full(BLADES, float(REST))  # before they are rounded
+        self._grid_at = self._at.reshape(ROWS, ROWS)
         self._stepped_ns = 0
+        self._behind = 0  # by how many frames the levels are behind
+        self._may_go = _PACE  # how many frames far they may go as yet
 
     @property
     def rests(self) -> bool:
         """Whether all levels are those of rest."""
         return bool(self.levels.min() == REST)
 
-    def show(self, frame: NDArray[np.float64]) -> None:
-        """Take deflections, float64[8, 8] in [0, 1], for levels; this allocates nothing."""
+    def show(self, frame: NDArray[np.float64], *, heard: bool = True) -> None:
+        """Go towards deflections; this allocates nothing.
+
+        Parameters
+        ----------
+        frame : float64[8, 8]
+            Deflections, in [0, 1].
+        heard
+            Whether the Latero has answered what was sent a frame ago. If not, it may not have got
+            that: levels go on by two frames at most, and what comes after is caught up with.
+        """
+        self._behind += 1
+        if heard:
+            self._may_go = _PACE
+        steps = min(self._behind, self._may_go)
+        self._may_go -= steps
         room = self._room
         np.multiply(frame, -float(REST), out=room)
-        np.rint(room, out=room)
         np.add(room, float(REST), out=room)
+        if steps < self._behind:
+            np.subtract(room, self._grid_at, out=room)
+            np.multiply(room, steps / self._behind, out=room)
+            np.add(self._grid_at, room, out=room)
+        np.copyto(self._grid_at, room)
+        self._behind -= steps
+        np.rint(room, out=room)
         np.minimum(room, float(REST), out=room)
         np.maximum(room, 0.0, out=room)
         np.copyto(self._grid, room, casting="unsafe")
@@ -61,12 +87,14 @@ class Blades:
 
     def stand_at(self, levels: bytes | memoryview, now_ns: int) -> None:
         """Begin the ramp to rest at levels."""
+        self._behind = 0
         self._at[:] = np.frombuffer(levels, np.uint8)
         np.minimum(self._at, float(REST), out=self._at)
         self._stepped_ns = now_ns
 
     def begin_ramp(self, now_ns: int) -> None:
         """Begin the ramp to rest at the levels that were sent last."""
+        self._behind = 0
         self._at[:] = self.levels
         self._stepped_ns = now_ns
 

@@ -56,10 +56,13 @@ class LateroConversation(LateroHearing):
     def show(self, frame: NDArray[np.float64], now_ns: int) -> None:
         """Have deflections shown, float64[8, 8] in [0, 1], if the blades are ready for them."""
         self._now_ns = self._shown_ns = now_ns
+        # An answer to what was asked since says that the last frame is there, but perhaps only now.
+        heard = self.acknowledged_ns is not None or self._heard_before
+        self._heard_before, self._heard = self._heard, False
         self.acknowledged_ns = None
         self._frame = -1
         if self.stage is LateroStage.LIVE:
-            self.blades.show(frame)
+            self.blades.show(frame, heard=heard)
         else:
             self.blades.ramp(now_ns)
         self._full_due = True
@@ -106,7 +109,7 @@ class LateroConversation(LateroHearing):
         self._begun_ns = self._heard_ns = now_ns  # what came meanwhile is judged by its own time
         if self.stage is LateroStage.LIVE:
             self._stop()
-            self._tell(WatchdogTripped(trips))
+            self._tell(WatchdogTripped(trips, "host"))
         self._may_power = True  # the guardian may have switched it off
         self._resting = None
         self.blades.stand_at(levels, now_ns)

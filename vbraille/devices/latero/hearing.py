@@ -167,6 +167,8 @@ class LateroHearing:
         self._frame = -1  # number of the request that had the last frame
         self._resting: int | None = None  # number of the first that had all blades at rest
         self._full_due = False
+        # Whether an answer has counted since the last frame, and between that and the one before.
+        self._heard = self._heard_before = False
         self._offer: bytearray | None = None
         self._raw: bytearray | None = None
         # Power is switched on only by whoever switched it off: at the start, and after a rest.
@@ -189,7 +191,7 @@ class LateroHearing:
         late_ns = self._late_ns if matters else SILENCE_NS
         if self.numbering.judge(answer.sequence, now_ns, late_ns) is not Fate.NEW:
             return
-        self._heard_ns = now_ns
+        self._heard_ns, self._heard = now_ns, True
         if isinstance(answer, RawAnswer):
             self._take_register(answer)
         else:

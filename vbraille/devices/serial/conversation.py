@@ -179,7 +179,7 @@ class Conversation(Listening):
         """Note that the message given last goes out now."""
         now_ns, frames = self._now_ns, self.frames
         if self._offer is _Wish.FRAME:
-            self._frame_due = False
+            self._frame_due = self.no_room = False
             frames.sequence = (frames.sequence + 1) & _U16
             frames.sent_ns = now_ns
             self.drive.sent(now_ns)
@@ -199,4 +199,8 @@ class Conversation(Listening):
         Any other message is due again when something comes in the next time.
         """
         self._frame_due = False
-        return self._offer is _Wish.FRAME
+        lost = self._offer is _Wish.FRAME
+        self.no_room = self.no_room or lost
+        if lost:  # its sequence counts: the device is to know how far the next one goes on
+            self.frames.sequence = (self.frames.sequence + 1) & _U16
+        return lost

@@ -58,6 +58,8 @@ _log = logging.getLogger(__name__)
 _NS_PER_MS: Final = 1_000_000
 _SILENCE_NS: Final = SILENCE_MS * _NS_PER_MS
 _LOST_NS: Final = LOST_MS * _NS_PER_MS
+# Time in which a device whose timer goes makes several STATEs.
+_PAUSE_US: Final = 10_000
 
 
 @dataclass(slots=True)
@@ -70,13 +72,15 @@ class States:
         Time at which the last STATE came.
     sequence
         Sequence of the last STATE; None before the first of a conversation.
-    missed
-        Number of STATEs that never came.
+    missed, old
+        Number of STATEs that never came, and of those that were dropped because they came twice, or
+        after a newer one.
     """
 
     heard_ns: int
     sequence: int | None = None
     missed: int = 0
+    old: int = 0
 
 
 @dataclass(slots=True)
@@ -126,6 +130,8 @@ class Listening:
         Whether any bytes have come since the start, and any message from a device.
     drop_unsent : bool
         Whether bytes that wait to be sent must be dropped now; whoever drops them sets it to False.
+    no_room : bool
+        Whether there was no room for the last FRAME.
     taking : bool
         Whether FRAMEs hold the actuators, or would if there were anything to feel. It is True for
         a device that is away: that the device is silent says enough.
@@ -165,6 +171,9 @@ class Listening:
         self._notices = Notices()
         self._placing = Placing.DONE
         self._away = False  # from an event that says so to one that it is back
+        self.no_room = False  # whether the last FRAME found no room on the line
+        self._fell = False  # whether it is to be told that no frame reached it in time
+        self._paused = (now_ns, "line")  # when STATEs came again after a pause, and what was late
         self._begun_ns = self._now_ns = self._hello_ns = now_ns
 
     def hear(self, chunk: bytes, now_ns: int) -> Pose | None:
@@ -183,6 +192,11 @@ class Listening:
             if self.decoder.bad_info:
                 self._turn_away(Stranger(self._name, fault=self.decoder.bad_info), now_ns)
                 self.decoder.bad_info = ""
+        if self._fell:  # only the STATE that comes with its report tells what was late
+            self._fell = False
+            since_ns, late = self._paused
+            late = late if now_ns - since_ns < _SILENCE_NS else "line"
+            self._tell(WatchdogTripped(self.trips.count, late), now_ns)
         self._pass(now_ns)
         return pose
 
@@ -232,6 +246,14 @@ class Listening:
 
     def _take_state(self, state: State, now_ns: int) -> Pose | None:
         states = self.states
+        if states.sequence is not None:
+            step = unwrap(state.sequence, states.sequence, 16) - states.sequence
+            if step <= 0:
+                states.old += 1
+                return None
+            states.missed += step - 1
+            self._mind_pause(state, step, now_ns)
+        states.sequence = state.sequence
         states.heard_ns = now_ns
         if self.stage is Stage.SILENT:
             self._go(Cause.HEARD)
@@ -242,10 +264,6 @@ class Listening:
         if state.faulty:  # the ERROR that says why was lost
             self._fail(Fault(self._name), now_ns)
             return None
-        if states.sequence is not None:
-            gap = unwrap(state.sequence, states.sequence, 16) - states.sequence - 1
-            states.missed += max(gap, 0)
-        states.sequence = state.sequence
         for event in self.panel.take(state, now_ns):
             self._tell(event, now_ns)
         self.trips.take_state(tripped=state.tripped)
@@ -266,6 +284,18 @@ class Listening:
             self._mind_placing(now_ns)
         time_ns = self.time.ns(state.time_us, now_ns)
         return None if where is None else Pose(time_ns, *where)
+
+    def _mind_pause(self, state: State, step: int, now_ns: int) -> None:
+        """Note what was late if STATEs come again; a device counts those that it cannot send."""
+        assert self.info is not None
+        if self.time.us is None:
+            return
+        passed_us = unwrap(state.time_us, self.time.us, 32) - self.time.us
+        if passed_us >= _PAUSE_US:
+            made_us = step * 1_000_000 // self.info.rate_hz
+            self._paused = now_ns, "device" if 2 * made_us < passed_us else ""
+        elif now_ns - self.states.heard_ns >= _PAUSE_US * 1000:
+            self._paused = now_ns, "line"
 
     def _let_go(self, now_ns: int) -> None:
         """Take the buttons for let go: nobody holds those of a device that is not there."""
@@ -369,7 +399,11 @@ class Listening:
         self._stop(tell=False)
         self.frames.felt_ns = now_ns
         self.rested += 1
-        self._tell(WatchdogTripped(self.trips.count), now_ns)
+        if cause is Cause.STALLED:
+            late = "line" if self.no_room else "host"
+            self._tell(WatchdogTripped(self.trips.count, late), now_ns)
+        else:
+            self._fell = True
 
     def _stop(self, *, tell: bool) -> None:
         """Send no FRAME until the device is at rest, and drop what waits to be sent."""

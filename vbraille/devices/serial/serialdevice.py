@@ -117,6 +117,7 @@ class SerialDevice(Device):
         return {
             "frames not sent": self._unsent,
             "states missed": conversation.states.missed,
+            "old states dropped": conversation.states.old,
             "watchdog trips": conversation.trips.count,
             "watchdog reports not believed": conversation.trips.disbelieved,
             "reconnections": conversation.reconnections,
@@ -181,6 +182,7 @@ class SerialDevice(Device):
         else:
             self.conversation.decoder.feed(left_over)
         self._unsent += unsent
+        self.conversation.no_room = unsent > 0
         if torn:
             self.port.keep(torn)
         self._copy()

@@ -204,6 +204,8 @@ def take(received, size, now_ns, talk, work):
             y_count = _unwrap(number(work, *_Y_COUNT), y_count, talk.count_bits)
             theta_count = number(work, *_THETA_COUNT)
         sequence = _unwrap(number(work, *_SEQUENCE), state_sequence, _SEQUENCE_BITS)
+        if sequence <= state_sequence:  # an old one, or one that came twice
+            return SOMETHING_ELSE, 0
         missed += max(sequence - state_sequence - 1, 0)
         state_sequence = number(work, *_SEQUENCE)
         if number(work, *_FRAME_SEQUENCE) == talk.sequence:
@@ -290,6 +292,12 @@ def make(deflections, now_ns, talk, actuators, out):
         talk.felt_ns = now_ns
     talk.sent_ns = talk.acknowledged_ns = NEVER
     return size
+
+
+@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+def unsent(talk):
+    """Note that there was no room for the FRAME made last: its sequence counts all the same."""
+    talk.sequence = (talk.sequence + 1) & _FRAME_MASK
 
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)

@@ -42,6 +42,9 @@ FAULTY: Final = 0x04
 TRIPPED: Final = 0x08
 # A device that is at rest leaves it by no more than this part of the swing at once.
 FIRST_STEP: Final = 20
+# It goes so many FRAMEs far in a period, and is so many behind with the one that ends a rest.
+PACE: Final = 2
+OUT_OF_REST: Final = 5
 
 U8: Final = Number("B", 0, 0xFF)
 U16: Final = Number("H", 0, 0xFFFF)
