@@ -11,6 +11,8 @@ from vbraille.feeling.costs import batches_of, time_frames
 from vbraille.render.scene.stripping import WordKind, emptied, kinds_in, stripped
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from vbraille.feeling.paths import PosedPath
@@ -60,7 +62,11 @@ class KindCosts:
 
 
 def costs_of_kinds(
-    program: Program, path: PosedPath, most: int, repeats: int = _REPEATS
+    program: Program,
+    path: PosedPath,
+    most: int,
+    repeats: int = _REPEATS,
+    timer: Callable[..., NDArray[np.float64]] = time_frames,
 ) -> tuple[KindCosts, KindCosts]:
     """Time frames with and without the words of each kind of pattern.
 
@@ -78,6 +84,8 @@ def costs_of_kinds(
         Number of the batch of frames that costs most.
     repeats
         How often each batch of frames is timed; the least time counts.
+    timer
+        Takes and gives what `time_frames` does.
 
     Returns
     -------
@@ -96,8 +104,8 @@ def costs_of_kinds(
         stripped(program, set(WordKind)),
         emptied(program),
     ]
-    everywhere = time_frames(programs, at, repeats).min(axis=1)
-    closer = time_frames(programs, at[most : most + 1], _CLOSER * repeats).min(axis=1)
+    everywhere = timer(programs, at, repeats).min(axis=1)
+    closer = timer(programs, at[most : most + 1], _CLOSER * repeats).min(axis=1)
     return _told_apart(everywhere, found), _told_apart(closer, found)
 
 
