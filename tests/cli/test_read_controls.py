@@ -35,8 +35,8 @@ SETTINGS = '[buttons]\n"knob 1" = "CONTRAST"\n"button 2" = "LEARN"\n'
 def kept_device(script):
     """A controller whose hand goes into the line and stays there; its spec and its frames.
 
-    Each entry of the frames is how many there were, the levels of the last of them, where the knob
-    stood, and how often the device had gone to rest by itself because none came.
+    Each entry of the frames is the levels of the last of some that came at once, when that was in
+    µs, where the knob stood, and whether the device was at rest or on its own way there before.
     """
     stay_s = np.arange(0, 60, 0.4)
     hand = Recorded(stay_s, np.minimum(20.0 * stay_s, 20.0))
@@ -48,10 +48,11 @@ def kept_device(script):
     controller, receive = simulator.controller, simulator.controller.receive
 
     def seen(chunk, now_us):
-        before, answer = controller.frames, receive(chunk, now_us)
+        before, resting = controller.frames, controller.resting
+        answer = receive(chunk, now_us)
         if controller.frames > before:
-            levels, knob = controller.levels.astype(int), controller.knobs[0]
-            frames.append((controller.frames, levels, knob, controller.trips))
+            levels = controller.levels.astype(int)
+            frames.append((levels, now_us, controller.knobs[0], resting))
         return answer
 
     controller.receive = seen
@@ -90,14 +91,16 @@ def test_a_knob_turns_contrast_while_the_hand_stays_and_is_said_once(tmp_path, t
                 process.terminate()
                 process.communicate()
     assert [line for line in lines if line.startswith("contrast: ")] == ["contrast: 0.2"]
-    numbers, levels, knob, trips = map(np.array, zip(*frames, strict=True))
+    levels, at_us, knob, resting = map(np.array, zip(*frames, strict=True))
     highest = levels.max(axis=1)
     settled = highest[turned - 1]
     assert 0.1 * TOP < settled <= 0.2 * TOP + 2  # as it was turned
     assert highest.max() > 2 * settled  # as it was before
     assert highest[-1] == 0
-    # Faded: no more from frame to frame than a fade goes in a tick. The hand stays since long
-    # before the knob was turned; a device that goes to rest by itself does so in its own time.
-    steps = np.abs(np.diff(levels, axis=0)).max(axis=1)
-    fades = np.diff(numbers) * TOP / (FADE_S * 1000) + 2
-    assert (steps <= fades)[(knob[:-1] < 0.5) & (np.diff(trips) == 0)].all()
+    # Faded: by no more than a fade goes meanwhile. Where the machine was busy, what comes at once
+    # has waited since the time before, and what is next found the line full. The hand stays since
+    # long before the knob was turned.
+    steps = np.abs(np.diff(levels, axis=0)).max(axis=1)[1:]
+    fades = (at_us[2:] - at_us[:-2]) / 1e6 * TOP / FADE_S + 2
+    assert (steps <= fades)[(knob[1:-1] < 0.5) & ~resting[2:]].all()
+    assert np.median(fades) < TOP / 10  # so that a jump would be seen
