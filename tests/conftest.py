@@ -2,6 +2,7 @@
 
 import gc
 import os
+import signal
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -14,8 +15,37 @@ from tests.tiers import TIER, by_tier
 SEED = 20090618
 TEXTS = Path(__file__).parent.parent / "texts"
 
-# Nobody's own settings change what tests see; there is no such file.
-os.environ["VBRAILLE_SETTINGS"] = "/nonexistent/settings.toml"
+
+# What changes what the program does, says or finds, or how Python does.
+_OWN = ("VBRAILLE_", "SPEECHD_", "SSH_", "LC_", "PYTHON")
+_OWN_NAMES = {"LANG", "LANGUAGE", "COLUMNS", "LINES", "DISPLAY", "WAYLAND_DISPLAY", "NO_COLOR"}
+
+
+def start_alike() -> None:
+    """Have tests and what they start see the same, whoever started the tests.
+
+    A signal that is ignored here (by nohup, in the background of a shell) would be ignored by every
+    process from here on. One that is handled is not: a new program has its default again.
+    """
+    for name in [*os.environ]:
+        if name in _OWN_NAMES or (name.startswith(_OWN) and name != "PYTHONPATH"):
+            del os.environ[name]
+    # Nobody's own settings; there is no such file.
+    os.environ |= {
+        "VBRAILLE_SETTINGS": "/nonexistent/settings.toml",
+        "LANG": "C.UTF-8",
+        "TERM": "xterm",
+    }
+    os.umask(0o022)
+    signal.pthread_sigmask(signal.SIG_SETMASK, ())
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    python_ignores = {signal.SIGPIPE, signal.SIGXFSZ}  # and gives back to those whom it starts
+    for number in signal.valid_signals() - python_ignores:
+        if signal.getsignal(number) is signal.SIG_IGN:
+            signal.signal(number, lambda *_: None)
+
+
+start_alike()
 
 _FOLDER = pytest.StashKey[TemporaryDirectory]()
 _places: list[str] = []  # tests that have had places so far

@@ -20,8 +20,8 @@ from vbraille.sessions.planning.conduct import Tone
 from vbraille.sounds import Tones
 tones = Tones()
 begun = time.monotonic()
-tones.play(Tone(880.0, 2000.0))
-print(time.monotonic() - begun < 1.0)
+tones.play(Tone(880.0, 60_000.0))
+print(time.monotonic() - begun < 30.0)
 """
 
 

@@ -35,7 +35,8 @@ SETTINGS = '[buttons]\n"knob 1" = "CONTRAST"\n"button 2" = "LEARN"\n'
 def kept_device(script):
     """A controller whose hand goes into the line and stays there; its spec and its frames.
 
-    Each entry of the frames is how many there were, and the highest level in the last of them.
+    Each entry of the frames is the levels of the last of some that came at once, when that was in
+    µs, where the knob stood, and whether the device was at rest or on its own way there before.
     """
     stay_s = np.arange(0, 60, 0.4)
     hand = Recorded(stay_s, np.minimum(20.0 * stay_s, 20.0))
@@ -47,9 +48,11 @@ def kept_device(script):
     controller, receive = simulator.controller, simulator.controller.receive
 
     def seen(chunk, now_us):
-        before, answer = controller.frames, receive(chunk, now_us)
+        before, resting = controller.frames, controller.resting
+        answer = receive(chunk, now_us)
         if controller.frames > before:
-            frames.append((controller.frames, controller.levels.astype(int)))
+            levels = controller.levels.astype(int)
+            frames.append((levels, now_us, controller.knobs[0], resting))
         return answer
 
     controller.receive = seen
@@ -83,17 +86,21 @@ def test_a_knob_turns_contrast_while_the_hand_stays_and_is_said_once(tmp_path, t
         with program.start(*arguments, env=environment, encoding="utf-8", bufsize=1) as process:
             try:
                 lines = said_until(process, lambda line: line.startswith("learn: "))
+                turned = len(frames)
             finally:
                 process.terminate()
                 process.communicate()
     assert [line for line in lines if line.startswith("contrast: ")] == ["contrast: 0.2"]
-    numbers = np.array([number for number, _ in frames])
-    levels = np.array([level for _, level in frames])
+    levels, at_us, knob, resting = map(np.array, zip(*frames, strict=True))
     highest = levels.max(axis=1)
-    settled = highest[-1]
-    assert settled <= 0.2 * TOP + 2  # as it was turned
+    settled = highest[turned - 1]
+    assert 0.1 * TOP < settled <= 0.2 * TOP + 2  # as it was turned
     assert highest.max() > 2 * settled  # as it was before
-    # Faded: no more from frame to frame than a fade goes in a tick, the hand's own way apart.
-    still = np.flatnonzero(numbers > numbers[-1] - 3000)
-    steps = np.abs(np.diff(levels[still], axis=0)).max(axis=1)
-    assert (steps <= np.diff(numbers[still]) * TOP / (FADE_S * 1000) + 2).all()
+    assert highest[-1] == 0
+    # Faded: by no more than a fade goes meanwhile. Where the machine was busy, what comes at once
+    # has waited since the time before, and what is next found the line full. The hand stays since
+    # long before the knob was turned.
+    steps = np.abs(np.diff(levels, axis=0)).max(axis=1)[1:]
+    fades = (at_us[2:] - at_us[:-2]) / 1e6 * TOP / FADE_S + 2
+    assert (steps <= fades)[(knob[1:-1] < 0.5) & ~resting[2:]].all()
+    assert np.median(fades) < TOP / 10  # so that a jump would be seen

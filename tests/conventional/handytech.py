@@ -147,8 +147,9 @@ class Brltty:
         try:
             self.process.wait(5)
         except subprocess.TimeoutExpired:
-            self.process.kill()
+            self.process.kill()  # it may wait for a thread of its own for ever
             self.process.wait()
+        self.display.forget()
 
     def __enter__(self):
         return self

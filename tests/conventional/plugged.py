@@ -3,6 +3,7 @@
 import os
 import pty
 import select
+import termios
 import threading
 import tty
 
@@ -19,6 +20,7 @@ class PluggedDisplay:
     def __init__(self, link):
         self.link = link
         self._changed = threading.Condition()
+        self._forgotten = threading.Event()
         self._end = self._thread = None
 
     def plug(self):
@@ -28,9 +30,24 @@ class PluggedDisplay:
         tty.setraw(self._port)
         self.link.unlink(missing_ok=True)
         self.link.symlink_to(os.ttyname(self._port))
+        self._usual = termios.tcgetattr(self._port)
         stop, self._end = os.pipe()
         self._thread = threading.Thread(target=self._serve, args=(stop,))
         self._thread.start()
+
+    def forget(self):
+        """Have the port be as if it had never been opened, and forget a message begun.
+
+        A real port is so after its last user's end. A pseudo-terminal that this end holds open
+        keeps the settings of a user who was killed; and where they ask for parity, as it has none,
+        it refuses the same settings a second time.
+        """
+        if self._end is None:
+            return
+        self._forgotten.clear()
+        os.write(self._end, b"f")
+        self._forgotten.wait()
+        termios.tcsetattr(self._port, termios.TCSAFLUSH, self._usual)
 
     def unplug(self):
         """Take it away."""
@@ -47,10 +64,14 @@ class PluggedDisplay:
         begun = b""
         while True:
             ready = select.select([self._master, stop], [], [])[0]
-            if stop in ready:
+            if self._master in ready:
+                begun = self._answer(begun + os.read(self._master, 4096))
+            elif os.read(stop, 1) == b"f":
+                begun = b""
+                self._forgotten.set()
+            else:
                 os.close(stop)
                 return
-            begun = self._answer(begun + os.read(self._master, 4096))
 
     def _answer(self, told):
         """Answer what the display was told, and give what of it is not complete."""

@@ -2,6 +2,7 @@
 
 import signal
 import socket
+import time
 
 import pytest
 
@@ -54,10 +55,11 @@ def heard(display, kind):
 @needs_brltty
 def test_cells_come_to_the_display_and_keys_from_it(brltty, display):
     assert heard(display, DisplayStands) == DisplayStands("HandyTech", "mdlr", 40, 1)
+    shown_ns = time.monotonic_ns()
     number = display.show(SHOWN)
-    came_ns = brltty.display.wait(SHOWN)
+    brltty.display.wait(SHOWN)
     taken = until(lambda: [m for m in display.poll() if m == CellsTaken(number, m.at_ns)])[0]
-    assert abs(came_ns - taken.at_ns) < 1e9
+    assert shown_ns < taken.at_ns < time.monotonic_ns()
     for key, name, argument in (
         (ROUTE_0 + 15, "ROUTE", 15),
         (FWINRT, "FWINRT", 0),
@@ -83,6 +85,7 @@ def test_it_is_there_again_after_brltty_the_display_and_its_own_process_were_gon
     display.show(SHOWN)
     brltty.display.wait(SHOWN)
 
+    brltty.process.kill()
     brltty.stop()
     assert heard(display, DisplayAway).why == (
         f"no BRLTTY answers at {brltty.host}; start it, or give its address"

@@ -6,7 +6,6 @@ import select
 import signal
 import subprocess
 import sys
-import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -253,8 +252,8 @@ def test_a_host_is_closed_while_a_child_of_its_driver_holds_the_pipe(driver, chi
     driver(_FORKS)
     with Host("other:", info(), ROOM) as host:
         until(host, lasting(30))
-        begun_s, busy_s = time.monotonic(), spent_s()
-    assert time.monotonic() - begun_s < 4.0  # it did not have to be killed
+        process, busy_s = host._process, spent_s()
+    assert process.returncode == 0  # it did not have to be killed
     assert spent_s() - busy_s < 1.0
     os.kill(child(), 0)  # which is still there
 

@@ -139,7 +139,10 @@ def test_over_traffic_with_faults_it_comes_to_what_python_alone_comes_to(rigs, s
     for loop in (rig.loop, twin.loop):
         loop.show(PICTURES[0], 0)
     compiled = left = 0
-    for tick in range(600):
+    # On a machine that stalls more ticks are left to Python: then it goes on.
+    for tick in range(6000):
+        if tick >= 600 and compiled > 100:
+            break
         rig.way_mm = 60.0 + 40.0 * np.sin(tick / 100)
         rig.y_mm, rig.theta_rad = 50.0 + 40.0 * np.sin(tick / 70), 0.3 * np.sin(tick / 90)
         chunk = wrong.next()
@@ -220,36 +223,44 @@ def test_beside_a_controller_of_its_own_pace_frames_are_those_of_the_records(rig
             if select.select([rig.theirs], [], [], 0.001)[0]:
                 say(rig.controller.receive(hear(), rig.us))
 
-    def unsent():
-        return rig.device.counts()["frames not sent"]
+    def kept():
+        """Ticks of runs in which each sent one FRAME that was heard; each with its FRAME."""
+        heard = {said.sequence: said for said in [*sent]}
+        pairs = [
+            (first + n, heard[sequence + n & 0xFFFF])
+            for first, sequence, ticks, frames in runs
+            if frames == ticks
+            for n in range(ticks)
+            if sequence + n & 0xFFFF in heard
+        ]
+        return [pair for pair in pairs if not records["flags"][pair[0]] & Flag.HELD]
 
     controller = threading.Thread(target=answer)
-    began, count = rig.loop.tally.ticks, 0
+    frames = rig.device.conversation.frames
+    records = np.concatenate(rig.records)
+    runs = []  # first tick and first sequence, and how many of each there were
+    ticks = []
     end_s = time.monotonic() + PATIENCE_S
     controller.start()
     try:
         # On a machine that stalls too few ticks may have kept pace, or the line may be full.
-        while count <= 50 or rig.port.bare_descriptor is None:
+        while len(ticks) <= 50 or not np.ptp(records["x_mm"][ticks]) > 0:
             assert time.monotonic() < end_s, "too few ticks have kept pace"
-            before, till = unsent(), rig.loop.tally.ticks + 400
-            while rig.loop.tally.ticks < till:
+            till = rig.loop.tally.ticks + 400
+            while (first := rig.loop.tally.ticks) < till:
                 rig.asked.clear()
+                before = frames.sequence
                 rig.loop.run()
+                gone = frames.sequence - before & 0xFFFF
+                runs.append((first, before + 1, rig.loop.tally.ticks - first, gone))
             rig.drain()
             records = np.concatenate(rig.records)
-            if unsent() > before:
-                began = records.size
-            held = np.flatnonzero(records["flags"] & Flag.HELD)
-            count = records.size - max(held[-1] + 1, began)  # since the host was last stopped
-            if not np.ptp(records["x_mm"][-count:]) > 0:  # the controller was stopped all the while
-                count = 0
+            ticks = [tick for tick, _ in kept()]
     finally:
         ended.set()
         controller.join()
-    # A terminal carries over in its own time.
-    while sent[-1].sequence != rig.device.conversation.frames.sequence:
-        assert select.select([rig.theirs], [], [], 1.0)[0]
-        hear()
-    frames = Replay(dict(enumerate(PICTURES)).__getitem__, rig.device.display).frames(records)
-    levels = np.rint(frames * TOP).reshape(records.size, -1)
-    np.testing.assert_array_equal(levels_of(sent[-count:]), levels[-count:])
+    np.testing.assert_array_equal(records["tick"], np.arange(records.size))
+    ticks, said = zip(*kept(), strict=True)
+    shown = Replay(dict(enumerate(PICTURES)).__getitem__, rig.device.display).frames(records)
+    levels = np.rint(shown * TOP).reshape(records.size, -1)
+    np.testing.assert_array_equal(levels_of(said), levels[[*ticks]])

@@ -268,11 +268,9 @@ def test_elsewhere_there_are_two_addresses_and_closing_is_quick():
         assert "token" in opened.hear()["why"]
     with page(watching) as opened:
         opened.frame()
-        process = process_of(closing)
-        begun_s = time.monotonic()
+        process = closing._process
         closing.close()
-        assert time.monotonic() - begun_s < 3.0
-        assert not lives(process)
+        assert process.returncode == 0  # it did not have to be killed
     closing.close()
     assert closing.notes() == []
 

@@ -21,7 +21,7 @@ from vbraille.reading.seeking.steps import Found, steps
 from vbraille.translate.text import to_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from vbraille.translate.source import Block, Source
 
@@ -44,10 +44,9 @@ class Reach:
     seconds: float = 0.010
     least: int = 100
 
-    def ends(self, seen: int, since_s: float) -> bool:
-        """Whether so much was seen, since a time of `time.perf_counter`, that it is enough."""
-        late = seen >= self.least and time.perf_counter() > since_s + self.seconds
-        return late or seen >= self.most
+    def ends(self, seen: int, taken_s: float) -> bool:
+        """Whether so much was seen, in such a time, that it is enough."""
+        return seen >= self.most or (seen >= self.least and taken_s > self.seconds)
 
 
 # A step of a search for a text is a page or two of it, and of one for a share what is read at once.
@@ -60,8 +59,10 @@ _REACHES = {
 }
 
 
-def look(source: Source, query: Query) -> Found | Query | None:
-    """Look for something for as long as a hand does not notice.
+def look(
+    source: Source, query: Query, clock: Callable[[], float] = time.perf_counter
+) -> Found | Query | None:
+    """Look for something for as long as a hand does not notice, by a clock in seconds.
 
     Returns
     -------
@@ -71,11 +72,11 @@ def look(source: Source, query: Query) -> Found | Query | None:
     """
     if isinstance(query, CountLines | FindLine):
         return query
-    reach, since_s = _REACHES[type(query)], time.perf_counter()
+    reach, since_s = _REACHES[type(query)], clock()
     for seen, step in enumerate(steps(source, query, near=True), 1):
         if not isinstance(step, float):
             return step
-        if reach.ends(seen, since_s):
+        if reach.ends(seen, clock() - since_s):
             return query
     return None
 
@@ -100,7 +101,7 @@ def within(
     """Blocks from one on, with their numbers, until the end or as far as the reach goes."""
     reach, since_s = Reach() if reach is None else reach, time.perf_counter()
     for seen, found in enumerate(blocks_from(source, number, backward=backward)):
-        if reach.ends(seen, since_s):
+        if reach.ends(seen, time.perf_counter() - since_s):
             return
         yield found
 

@@ -249,9 +249,9 @@ def test_participants_who_all_respond_alike(rng):
 
 def test_two_hundred_participants_and_an_alphabet_are_quick(rng):
     table = long_form(random_cube(rng, 200, 26))
-    began = time.perf_counter()
+    began = time.process_time()
     anova(*table)
-    assert time.perf_counter() - began < 2
+    assert time.process_time() - began < 2
 
 
 @pytest.mark.parametrize("levels", range(2, 9))

@@ -23,16 +23,22 @@ Opens = Callable[..., tuple[Page, Served]]
 
 @pytest.fixture
 def opens(browser: Browser) -> Iterator[Opens]:
-    """Open the page of a source in a context with the given options."""
+    """Open the page of a source in a context with the given options, after a script."""
     faults: list[str] = []
     with ExitStack() as stack:
 
         def open_page(
-            source: LiveSource, *, steers: bool = True, drawn: bool = True, **options
+            source: LiveSource,
+            *,
+            steers: bool = True,
+            drawn: bool = True,
+            script: str = "",
+            **options,
         ) -> tuple[Page, Served]:
             served = stack.enter_context(Served(source))
             context = browser.new_context(**{"viewport": {"width": 1280, "height": 900}, **options})
             stack.callback(context.close)
+            context.add_init_script(script)
             page = context.new_page()
             page.on("pageerror", lambda error: faults.append(str(error)))
             page.goto(served.steering if steers else served.watching)

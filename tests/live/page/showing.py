@@ -84,6 +84,6 @@ def comes(page: Page, so: Callable[[], bool]) -> None:
 
 
 def settled(page: Page) -> None:
-    """Wait until whatever is on its way is drawn."""
+    """Wait until whatever is on its way is drawn, and told in words and numbers."""
     drawn = page.evaluate("vbraille.drawn")
-    until(page, f"vbraille.drawn > {drawn} + 3")
+    until(page, f"vbraille.told > {drawn} + 3")

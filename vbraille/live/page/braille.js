@@ -176,10 +176,10 @@ export function wordAround(text, [from, to]) {
 /**
  * Words for where the finger is.
  * @param {State} state
- * @param {Frame} frame
+ * @param {Frame | null} frame
  */
 export function sayWhere(state, frame) {
-  if (!Number.isFinite(frame.x_mm)) return "The place of the array is not known.";
+  if (!frame || !Number.isFinite(frame.x_mm)) return "The place of the array is not known.";
   const words = [`x ${frame.x_mm.toFixed(1)} mm`];
   if (state.array && state.array.height_mm > 0) words.push(`y ${frame.y_mm.toFixed(1)} mm`);
   if (state.array?.turns) words.push(`turned ${degrees(frame.theta_rad)}°`);

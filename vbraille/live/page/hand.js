@@ -27,7 +27,7 @@ export class Hand {
   #target = null; // where the hand is or is going
   /** @type {{dx: number, dy: number} | null} */
   #grip = null;
-  #named = 0;
+  #named = -Infinity;
   steers = false;
   /** When the hand was moved here last. */
   moved = -Infinity;
@@ -113,12 +113,13 @@ export class Hand {
   #name(now) {
     const time = performance.now();
     const own = time - this.moved < 400;
-    if (!this.can || !this.#state || !this.#frame || !Number.isFinite(this.#frame.x_mm)) return;
+    if (!this.can || !this.#state) return;
     const focused = document.activeElement === this.sheet.array;
     if (!now && time - this.#named < (own ? 150 : CALM_MS)) return;
     if (!now && focused && !own && this.#named > this.moved + 400) return;
-    this.#named = time;
-    put(this.sheet.array, "aria-valuenow", this.#frame.x_mm.toFixed(1));
+    const x = Number(this.#frame?.x_mm ?? NaN);
+    this.#named = Number.isFinite(x) ? time : -Infinity; // a place is named as soon as it is known
+    put(this.sheet.array, "aria-valuenow", (x || 0).toFixed(1));
     put(this.sheet.array, "aria-valuetext", sayWhere(this.#state, this.#frame));
   }
 

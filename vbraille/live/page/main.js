@@ -38,6 +38,8 @@ let queue = [];
 let drawn = 0;
 let drawnAt = -Infinity;
 let reading = 0; // until the numbers are read anew
+let readAt = -Infinity;
+let told = 0; // pictures drawn before the numbers were read last
 let frozen = false;
 let woken = false;
 let noticed = 0;
@@ -204,10 +206,11 @@ function draw(now) {
   if (!state.blind) skin.move(state, frame);
   hand.see(frame);
   if (playback.on) playback.show();
-  if (still.matches || (playback.on && !playback.playing)) read();
-  else if (!reading) reading = window.setTimeout(read, READ_MS);
   drawn += 1;
   drawnAt = now;
+  const left = readAt + READ_MS - performance.now();
+  if (left <= 0 || still.matches || (playback.on && !playback.playing)) read();
+  else if (!reading) reading = window.setTimeout(read, left);
 }
 
 /** Tells what is drawn in words and numbers. */
@@ -215,6 +218,8 @@ function read() {
   clearTimeout(reading);
   reading = 0;
   if (!state || !frame) return;
+  readAt = performance.now();
+  told = drawn;
   telling.read(state, frame);
   traces.draw();
   if (!state.blind) skin.tell();
@@ -246,10 +251,14 @@ still.addEventListener("change", () => (tellMotion(), wake()));
 tellMotion();
 connection.begin();
 
-/** For tests: what was drawn last. */
+/** For tests: what was drawn and told last. */
 const shown = {
   get drawn() {
     return drawn;
+  },
+  /** Pictures drawn before the newest that words and numbers tell. */
+  get told() {
+    return told;
   },
   get last() {
     if (!frame) return null;
