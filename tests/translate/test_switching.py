@@ -47,7 +47,6 @@ class TestEmphasis:
             ("en-ueb-g2.ctb", MarkKind.ITALIC, "two three four", "\"O .7TWO ?REE F|R.' FIVE"),
             ("fr-bfu-comp6.utb", MarkKind.BOLD, "two", "ONE _TWO THREE FOUR FIVE"),
             ("it.tbl", MarkKind.ITALIC, "two", "ONE TWO THREE FOUR FIVE"),
-            ("en-ueb-g2.ctb", MarkKind.SUPERSCRIPT, "two", '"O TWO ?REE F|R FIVE'),
             ("en-ueb-g2.ctb", MarkKind.LINK, "two", '"O TWO ?REE F|R FIVE'),
         ],
     )

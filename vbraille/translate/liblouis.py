@@ -18,7 +18,8 @@ import numpy as np
 
 from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.errors import InputError, VbrailleError
-from vbraille.translate.emphasis import typeforms
+from vbraille.translate.emphasis import CLASSES, typeforms
+from vbraille.translate.levels import Levels
 from vbraille.translate.scripts import all_letters, native_letters
 from vbraille.translate.substitutes import Substitutes
 from vbraille.translate.text import SPACE, to_codes, to_text
@@ -208,6 +209,11 @@ class BrailleTable:
         self._substitutes = Substitutes(self._writes, undefined)
         self.undefined = self._substitutes.undefined
         self._forms: dict[str, int] = {}  # bits of classes of emphasis, 0 for those it has not
+        self._levels = Levels(
+            lambda text: self._call(to_codes(text), _MODE)[0].tobytes(),
+            self._writes,
+            lambda kind: bool(self._form(CLASSES[kind])),
+        )
         self._in_length, self._out_length = ctypes.c_int(), ctypes.c_int()
         self._grow(1024)
         if not any(self._writes_some(letters()) for letters in (lambda: _SMALL, all_letters)):
@@ -257,8 +263,10 @@ class BrailleTable:
 
         The replacement of a character that the table does not know is written by the rules of the
         table, so that it reads back like any other text. Emphasis among the marks is written as
-        the table does it; the cells that say so stand for the character next to them.
+        the table does it; the cells that say so stand for the character next to them. Superscripts
+        and subscripts are set apart, those among the characters of Unicode, too.
         """
+        text, marks = self._levels.put_into(text, marks)
         codes, places = self._substitutes.put_into(text)
         forms = typeforms(marks, places, self._form) if marks else None
         masks, inputs = self._call(codes, _MODE, forms)

@@ -78,14 +78,14 @@ def test_what_a_run_of_docx_says():
     assert source.language == "en-GB"
     assert [str(block.text) for block in blocks] == [
         "Most of it is in English, and le reste is not",
-        "H2O",
-        "x2",
+        "H₂O",
+        "x²",
         "so lined plain",
     ]
     assert [marks(block) for block in blocks] == [
         [(MarkKind.LANGUAGE, "le reste", "fr-FR")],
-        [(MarkKind.SUBSCRIPT, "2", "")],
-        [(MarkKind.SUPERSCRIPT, "2", "")],
+        [(MarkKind.SUBSCRIPT, "₂", "")],
+        [(MarkKind.SUPERSCRIPT, "²", "")],
         [(MarkKind.UNDERLINE, "lined", "")],
     ]
 
@@ -125,11 +125,11 @@ def test_what_a_span_of_odt_says():
     )
     source, blocks = opened(odt_of(body), "odt")
     texts = [str(block.text) for block in blocks if block.kind is not BlockKind.PAGE]
-    assert texts == ["one deux x3", "H2O"]
+    assert texts == ["one deux x³", "H₂O"]
     assert source.language == ""
     assert (MarkKind.LANGUAGE, "deux", "fr-FR") in marks(blocks[0])
-    assert (MarkKind.SUPERSCRIPT, "3", "") in marks(blocks[0])
-    assert (MarkKind.SUBSCRIPT, "2", "") in marks(blocks[-1])
+    assert (MarkKind.SUPERSCRIPT, "³", "") in marks(blocks[0])
+    assert (MarkKind.SUBSCRIPT, "₂", "") in marks(blocks[-1])
     assert blocks[1].kind is BlockKind.PAGE
 
 

@@ -53,6 +53,8 @@ def read_markdown(stream: BinaryIO, name: str, encoding: str | None = None) -> H
     from mdit_py_plugins.dollarmath import dollarmath_plugin
     from mdit_py_plugins.footnote import footnote_plugin
     from mdit_py_plugins.front_matter import front_matter_plugin
+    from mdit_py_plugins.subscript import sub_plugin
+    from mdit_py_plugins.superscript import superscript_plugin
 
     try:
         with stream:
@@ -66,6 +68,7 @@ def read_markdown(stream: BinaryIO, name: str, encoding: str | None = None) -> H
     parser.block.ruler.before("table", "deepest", _deepest)
     for plugin in (front_matter_plugin, footnote_plugin, deflist_plugin, dollarmath_plugin):
         parser.use(plugin)
+    parser.use(sub_plugin).use(superscript_plugin)
     parser.use(attrs_plugin, spans=True).use(anchors_plugin, max_level=6)
     tokens = parser.parse(text)
     _name_headings(tokens)

@@ -216,7 +216,7 @@ class PartedSource(ABC):
         """Let go of the file, where one is open; further calls do nothing."""
 
     def _fits(self) -> tuple[str, tuple[str | int, ...]]:
-        return f"{type(self).__name__} 3", (self._digest, self.parts)
+        return f"{type(self).__name__} 4", (self._digest, self.parts)
 
     def _read(self, part: int) -> list[Block]:
         """Blocks of a part; where the next part begins is known after that."""
