@@ -22,7 +22,7 @@ from vbraille.translate.emphasis import CLASSES, typeforms
 from vbraille.translate.levels import Levels
 from vbraille.translate.scripts import all_letters, native_letters
 from vbraille.translate.substitutes import Substitutes
-from vbraille.translate.text import SPACE, to_codes, to_text
+from vbraille.translate.text import SPACE, Text, to_codes, to_text
 from vbraille.translate.undefined import Undefined
 from vbraille.wording import nearest
 
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 
     from vbraille.translate.scripts import Script
     from vbraille.translate.source import Mark
-    from vbraille.translate.text import Text
 
 # In bytes; liblouis puts a name, with a folder before it, into 2 kB without checking that it fits.
 _LONGEST_NAME = 1_000
@@ -248,6 +247,23 @@ class BrailleTable:
             return self._high(_SMALL + _SMALL.upper() + _DIGITS) or self._high(native_letters())
         has_digits = self._call(to_codes(_DIGITS), _MODE | louis.noUndefined)[0].any()
         return self._high(_DIGITS if has_digits else _SMALL)
+
+    @cached_property
+    def is_ueb(self) -> bool:
+        """Whether this is a table of Unified English Braille."""
+        with _lock:
+            return _get_info(self._list, b"system") == b"ueb"
+
+    def spelled(self, text: str) -> NDArray[np.uint8]:
+        """Dot masks of a short text of ASCII, without contractions where the table can do so."""
+        codes = self._substitutes.put_into(Text.of(text))[0]
+        masks, _ = self._call(codes, _MODE | louis.noContractions)
+        return masks if self.eight_dots else masks & np.uint8(0x3F)
+
+    @cached_property
+    def brackets(self) -> str:
+        """Opening and closing bracket that the table can write; full cells if it has none."""
+        return next(pair for pair in ("[]", "()", "⠿⠿") if all(map(self._writes, map(ord, pair))))
 
     @property
     def marker(self) -> str:

@@ -88,7 +88,9 @@ def _change(reader: Reader, language: str, grade: int | None = None) -> None:
             reader.say(f"table: {name}, as before")
             return
         other = BrailleTable(name, book.table.how)
-        reader.lay_out_again(book=Book(book.source, other, language=language, grade=grade))
+        reader.lay_out_again(
+            book=Book(book.source, other, language=language, grade=grade, switch=book.switch)
+        )
     except InputError as error:
         reader.say(f"table: {spelled(str(error))}")
         return

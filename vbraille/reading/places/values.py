@@ -86,6 +86,7 @@ class BookOptions(msgspec.Struct, frozen=True):
     language: str | None = None
     grade: int | None = None
     table: str | None = None
+    foreign: str = "switch"
     undefined: str = "mark"
     encoding: str | None = None
     form: str | None = None
