@@ -148,6 +148,11 @@ class PartedSource(ABC):
         """Whether all parts have been read once."""
         return len(self._starts) > self.parts
 
+    @property
+    def end(self) -> int:
+        """One past the last character of the parts that have been read."""
+        return self._starts[-1].character
+
     def block(self, number: int) -> Block | None:
         """Block of a number, from 0; None past the end."""
         if number < 0:
