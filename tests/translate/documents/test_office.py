@@ -2,6 +2,7 @@
 
 import hashlib
 import io
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -191,10 +192,13 @@ def test_the_sentence_where_the_reader_is_not_installed():
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert said.returncode == 2
     assert said.stdout == ""
-    assert said.stderr.endswith(
-        "is in ODT, and what reads that is not installed; "
-        "pip install firecrawl-anydoc installs it\n"
-    )
+    begun = "is in ODT, and what reads that is not installed; "
+    command = said.stderr.partition(begun)[2].removesuffix(" installs it\n")
+    pip, *arguments = shlex.split(command)
+    assert arguments == ["install", "firecrawl-anydoc"]
+    # Debian's own pip refuses to install anything: it must be that of the project's environment.
+    whose = subprocess.run([pip, "--version"], capture_output=True, text=True, check=True)
+    assert sys.prefix in whose.stdout
 
 
 @pytest.mark.parametrize("form", ["docx", "odt", "rtf"])

@@ -6,7 +6,10 @@ import hashlib
 import io
 import locale
 import re
+import sys
 from collections import Counter
+from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, BinaryIO, cast
 
 from vbraille.errors import InputError
@@ -78,7 +81,7 @@ def _document(content: bytes, name: str, form: str) -> Document:
     except ImportError:
         raise InputError(
             f"{name} is in {form.upper()}, and what reads that is not installed; "
-            f"pip install firecrawl-anydoc installs it"
+            f"{_installing()} installs it"
         ) from None
     try:
         return anydoc.to_document(content, cast("Format", form))
@@ -95,6 +98,12 @@ def _document(content: bytes, name: str, form: str) -> Document:
             f"{name} is damaged or no {form.upper()} file; get it again, or open it in a word "
             f"processor and save it anew"
         ) from None
+
+
+def _installing() -> str:
+    """Command that installs what reads such files, into the Python that runs this one."""
+    pip = Path(sys.prefix) / "bin" / "pip"
+    return f"{quote(str(pip))} install firecrawl-anydoc"
 
 
 def _rtf_level(found: re.Match[bytes]) -> bytes:
