@@ -88,7 +88,7 @@ def test_ebraille_of_a_text(call, texts, tmp_path):
 def test_unknown_characters_are_counted_on_pages_too(call, text):
     text.write_text("hi \U0001f600\n\nthere \U0001f600\n")
     said = call("page", text, "--layout", "bana", "--format", "brf")
-    assert "does not know 2 characters (2 of U+1F600 grinning face), marked" in said.err
+    assert "does not know 2 characters (2 of U+1F600 grinning face), emoji by" in said.err
 
 
 @pytest.mark.parametrize(

@@ -98,8 +98,8 @@ class _Indicator:
         return before + opening, part, closing + self.after
 
 
-class Levels:
-    """How a table writes what stands above or below the line.
+class Superscripts:
+    """How a table writes superscripts and subscripts.
 
     A table with classes of emphasis for these is given those. Otherwise, a table that has signs of
     its own for ² and ³ says by them which indicator it has; what it says nothing of is written as

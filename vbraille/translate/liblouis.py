@@ -19,7 +19,7 @@ import numpy as np
 from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.errors import InputError, VbrailleError
 from vbraille.translate.emphasis import CLASSES, typeforms
-from vbraille.translate.levels import Levels
+from vbraille.translate.levels import Superscripts
 from vbraille.translate.scripts import all_letters, native_letters
 from vbraille.translate.substitutes import Substitutes
 from vbraille.translate.text import SPACE, Text, to_codes, to_text
@@ -208,7 +208,7 @@ class BrailleTable:
         self._substitutes = Substitutes(self._writes, undefined)
         self.undefined = self._substitutes.undefined
         self._forms: dict[str, int] = {}  # bits of classes of emphasis, 0 for those it has not
-        self._levels = Levels(
+        self._superscripts = Superscripts(
             lambda text: self._call(to_codes(text), _MODE)[0].tobytes(),
             self._writes,
             lambda kind: bool(self._form(CLASSES[kind])),
@@ -282,7 +282,7 @@ class BrailleTable:
         the table does it; the cells that say so stand for the character next to them. Superscripts
         and subscripts are set apart, those among the characters of Unicode, too.
         """
-        text, marks = self._levels.put_into(text, marks)
+        text, marks = self._superscripts.put_into(text, marks)
         codes, places = self._substitutes.put_into(text)
         forms = typeforms(marks, places, self._form) if marks else None
         masks, inputs = self._call(codes, _MODE, forms)
