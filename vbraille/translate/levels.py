@@ -49,6 +49,15 @@ for _forms in _FORMS.values():
 _OF_NUMBERS = frozenset("0123456789+-\u2212=()ni")
 
 
+# Small numbers and what a reader types who looks for them.
+TYPED = {
+    ord(form): base
+    for forms in _FORMS.values()
+    for base, form in forms.items()
+    if base in _OF_NUMBERS
+}
+
+
 def small_number(text: str, kind: MarkKind) -> str:
     """Text of a superscript or subscript in Unicode's small characters, if it is a number.
 

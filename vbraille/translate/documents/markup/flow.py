@@ -80,7 +80,7 @@ class Flow:
         small = [kind for kind in _SMALL if kind in self._held]
         if self._bracket == "[":
             before = self._between or (self._parts[-1] if self._parts else "")
-            self._bracket = "" if before.endswith(("[", "(")) or not text[0].isalnum() else "]"
+            self._bracket = "" if before.endswith(("[", "(")) or not text[:1].isalnum() else "]"
             text = f"[{text}" if self._bracket else text
         elif len(small) == 1 and MarkKind.NOTE not in self._held:
             text = small_number(text, small[0])
