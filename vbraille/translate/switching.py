@@ -123,7 +123,7 @@ class Translator:
         if table is self.table or not words.size:
             return cells
         at = [int(words[0]), int(np.flatnonzero(cells.masks)[-1]) + 1]
-        language = tag.replace("_", "-").partition("-")[0].lower()
+        language = tag.replace("_", "-").partition("-")[0].strip().lower()
         own = self.table
         if not own.is_ueb:
             opening, closing = own.brackets

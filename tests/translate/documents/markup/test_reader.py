@@ -117,6 +117,8 @@ def test_roles(markup):
         ("a<a href='javascript:x()'>d</a>", "ad", []),
         ("a<sup><a epub:type=noteref href=#n>1</a></sup>", "a[1]", None),
         ("a<sup class=footnote-ref><a href=#n>1</a></sup>", "a[1]", None),
+        ("9<span class='calibre3 super'>2</span>", "9²", [("superscript", "²", "")]),
+        ("<p class=sub>12", "12", []),
         ("a[<a role=doc-noteref href=#n>1</a>]", "a[1]", [("note", "1", "#n")]),
         ("a<a role=doc-noteref href=#n>*</a>", "a*", [("note", "*", "#n")]),
         ("a <a role=doc-noteref href=#n>1 </a> b", "a [1] b", [("note", "[1]", "#n")]),
