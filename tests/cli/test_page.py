@@ -117,7 +117,7 @@ def test_a_table_of_eight_dots_has_no_brf(call, text, choice, instead):
 @pytest.mark.parametrize(
     ("options", "line", "said_of_it"),
     [
-        ((), '  HI .<;8.> "!', "marked [?]"),
+        ((), '  HI .<GR9N+ FACE.> "!', "emoji by their names;"),
         (("--undefined", "name"), '  HI .<GR9N+ FACE.> "!', "names in brackets"),
         (("--undefined", "code"), '  HI .<,U"6#A,F#FJJ.> "!', "numbers in brackets"),
         (("--undefined", "drop"), '  HI  "!', "left out"),
@@ -131,6 +131,20 @@ def test_what_the_table_does_not_know_is_written_in_six_dots(call, text, options
     assert width == program.line_width(26)[:-1]
     assert "does not know 1 character (1 of U+1F600 grinning face)" in counted
     assert said_of_it in counted
+
+
+@pytest.mark.parametrize(
+    ("options", "written"),
+    [
+        ((), "  ! ^(=T=^)1 ="),
+        (("--foreign", "own"), "  ! ^/ET^/E1 ="),
+    ],
+)
+def test_a_passage_in_another_language(call, tmp_path, options, written):
+    book = tmp_path / "book.html"
+    book.write_text('<html lang="en"><p>the <span lang="fr">été</span>, for</p></html>')
+    said = call("page", book, "--format", "brf", *options)
+    assert (said.code, said.out) == (0, f"{written}\n")
 
 
 def test_only_what_was_printed_is_counted(call, text):

@@ -43,6 +43,7 @@ def test_each_setting_is_said_with_where_it_comes_from(call, settings):
         "language: fr (option)",
         "grade: 1 (mine.toml line 3)",
         "advance: return (default)",
+        "foreign: switch (default)",
         "undefined: mark (default)",
     ):
         assert line in lines

@@ -61,7 +61,6 @@ def test_a_page_of_no_number_is_no_line_and_an_empty_line_is_one():
     layout = Layout(Book(BlockList(*blocks), FRENCH), 12)
     assert [line.printed.to_brf() for line in layout.lines()] == ["  UN", "", "  DEUX"]
     assert [line.number for line in layout.lines()] == [1, 2, 3]
-    assert layout.progress(layout.line(3)) == 0.75
 
 
 @pytest.mark.parametrize(

@@ -32,6 +32,10 @@ class BlockList:
         ends = (n for n, block in enumerate(self._blocks) if character < block.text.end)
         return next(ends, None)
 
+    @property
+    def end(self) -> int:
+        return max((block.text.end for block in self._blocks), default=0)
+
     def progress(self, number: int) -> float:
         return number / len(self._blocks)
 

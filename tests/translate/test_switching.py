@@ -47,7 +47,6 @@ class TestEmphasis:
             ("en-ueb-g2.ctb", MarkKind.ITALIC, "two three four", "\"O .7TWO ?REE F|R.' FIVE"),
             ("fr-bfu-comp6.utb", MarkKind.BOLD, "two", "ONE _TWO THREE FOUR FIVE"),
             ("it.tbl", MarkKind.ITALIC, "two", "ONE TWO THREE FOUR FIVE"),
-            ("en-ueb-g2.ctb", MarkKind.SUPERSCRIPT, "two", '"O TWO ?REE F|R FIVE'),
             ("en-ueb-g2.ctb", MarkKind.LINK, "two", '"O TWO ?REE F|R FIVE'),
         ],
     )
@@ -86,8 +85,8 @@ class TestEmphasis:
 class TestLanguages:
     def test_a_block_in_another_language_has_its_table(self):
         block = replace(block_of("\xe9t\xe9 mondial"), language="fr")
-        assert brf(block) == "=T= MONDIAL"
-        assert brf(block, switch=False) != "=T= MONDIAL"
+        assert brf(block) == "^(=T= ^(MONDIAL"
+        assert brf(block, switch=False) == brf(replace(block, language="")) != "=T= MONDIAL"
         assert brf(replace(block, language="tlh")) == brf(block, switch=False)
 
     @pytest.mark.parametrize("language", ["en", "EN", "en-GB", "en-US", ""])
@@ -103,18 +102,18 @@ class TestLanguages:
 
     def test_a_passage_in_another_language_has_its_table(self):
         block = marked("the mondial for", (MarkKind.LANGUAGE, "mondial", "fr"))
-        assert brf(block) == "! MONDIAL ="
+        assert brf(block) == "! ^(MONDIAL ="
         inner = marked(
             "the for mondial for the",
             (MarkKind.LANGUAGE, "for mondial for the", "fr"),
             (MarkKind.LANGUAGE, "the", "en"),
         )
         inner = replace(inner, marks=(inner.marks[0], Mark(MarkKind.LANGUAGE, 20, 23, "en")))
-        assert brf(inner) == "! FOR MONDIAL FOR !"
+        assert brf(inner) == '! "(FR\'FOR MONDIAL FOR,") !'
 
     def test_a_grade_holds_for_other_languages_where_they_have_it(self):
         german = replace(block_of("und nicht"), language="de")
-        assert brf(german) != brf(german, grade=1) == "UND NI?T"
+        assert brf(german) != brf(german, grade=1) == "^(UND ^(NI?T"
         assert brf(german) == brf(german, grade=2)
         italian = replace(block_of("con tutti"), language="it")
         assert brf(italian, grade=2) == brf(italian)
@@ -133,6 +132,35 @@ class TestLanguages:
             book.block(n)
         names = [table.name for table in book.translator.tables]
         assert names == ["en-ueb-g2.ctb", "fr-bfu-comp6.utb"]
+
+    @pytest.mark.parametrize(
+        ("table", "part", "written"),
+        [
+            # Rules of Unified English Braille, 14.3: each word of two, a passage of three.
+            ("en-ueb-g2.ctb", "bon", "⠘⠷⠃⠕⠝"),
+            ("en-ueb-g2.ctb", "bon chat", "⠘⠷⠃⠕⠝⠀⠘⠷⠉⠓⠁⠞⠘⠾⠂"),
+            ("en-ueb-g2.ctb", "un bon chat", "⠐⠷⠋⠗⠄⠥⠝⠀⠃⠕⠝⠀⠉⠓⠁⠞⠠⠐⠾⠂"),
+            ("en-ueb-g2.ctb", " un bon ", "⠀⠘⠷⠥⠝⠀⠘⠷⠃⠕⠝⠀"),
+            ("es.tbl", "bon", "⠷⠋⠗⠒⠃⠕⠝⠾"),
+            ("de-g2.ctb", "bon", "⠠⠶⠋⠗⠒⠃⠕⠝⠠⠶"),
+            ("he-IL.utb", "bon", "⠶⠋⠗⠒⠃⠕⠝⠾"),
+            ("ur-pk-g1.utb", "bon", "⠿⠃⠕⠝⠿"),
+        ],
+    )
+    def test_where_another_table_begins_and_ends_is_marked(self, table, part, written):
+        block = marked("x un bon chat, x", (MarkKind.LANGUAGE, part, "fr-CA"))
+        found = cells_of(block, table).to_unicode()
+        if table.startswith("ur"):
+            assert found.count("⠿") > cells_of(block, table, switch=False).to_unicode().count("⠿")
+        else:
+            assert written in found
+        assert written not in cells_of(block, table, switch=False).to_unicode()
+
+    def test_what_is_written_by_the_book_s_table_is_not_marked(self):
+        block = marked("x bon x", (MarkKind.LANGUAGE, "bon", "tlh"))
+        assert brf(block) == brf(replace(block, marks=()))
+        empty = marked("x  x", (MarkKind.LANGUAGE, "  ", "fr"))
+        assert brf(empty) == brf(replace(empty, marks=()))
 
     def test_a_note_is_given_for_each_table(self):
         block = replace(block_of("\u0434\u0430 \u043d\u0435\u0442"), language="fr")
@@ -217,4 +245,8 @@ class TestPlaces:
             return
         alone = [table.translate(block_of(part).text).masks.tolist() for table, part in pieces]
         if all(part == str(block_of(part).text) for _, part in pieces):
-            assert whole.masks.tolist() == [*alone[0], *alone[1], *alone[2]]
+            found = whole.masks.tolist()
+            end = len(found) - len(alone[2])
+            assert (found[: len(alone[0])], found[end:]) == (alone[0], alone[2])
+            within = iter(found[len(alone[0]) : end])
+            assert all(cell in within for cell in alone[1])  # marks stand between them

@@ -24,7 +24,7 @@ class TestSpelling:
     @pytest.mark.parametrize(
         ("how", "instead"),
         [
-            (Undefined.MARK, "hi [?] there"),
+            (Undefined.MARK, "hi [grinning face] there"),
             (Undefined.NAME, "hi [grinning face] there"),
             (Undefined.CODE, "hi [U+1F600] there"),
         ],
@@ -41,9 +41,20 @@ class TestSpelling:
 
     def test_one_marker_stands_for_a_run(self):
         table = BrailleTable("en-ueb-g2.ctb")
-        run = translate(table, "a \u0434\u0430\U0001f600 b")
+        run = translate(table, "a \u0434\u0430\u4e2d b")
         assert run.to_brf() == translate(table, "a [?] b").to_brf()
         assert run.source(2) == (2, 5)
+
+    @pytest.mark.parametrize("text", ["\U0001f44d", "\u2764\ufe0f", "\u2b50", "\u23f0"])
+    def test_emoji_are_named_unless_something_else_is_wanted(self, text):
+        usual = translate(BrailleTable("en-ueb-g2.ctb"), text).to_brf()
+        assert usual == translate(BrailleTable("en-ueb-g2.ctb", Undefined.NAME), text).to_brf()
+        assert usual != translate(BrailleTable("en-ueb-g2.ctb", Undefined.CODE), text).to_brf()
+
+    def test_a_fraction_is_no_digit_of_the_number_before_it(self):
+        table = BrailleTable("el.ctb")
+        assert translate(table, "10\u2155").to_brf() == translate(table, "10 1/5").to_brf()
+        assert translate(table, "a \u2155 b").to_brf() == translate(table, "a 1/5 b").to_brf()
 
     def test_what_has_no_name_is_numbered(self):
         table = BrailleTable("en-ueb-g2.ctb", Undefined.NAME)
@@ -109,6 +120,15 @@ class TestEightDots:
 
 
 class TestForeign:
+    @pytest.mark.parametrize(
+        ("text", "noted"),
+        [("ab\u0434\u0430", False), ("a\u0434\u0430", True), ("abc\u0434\u0430", False)],
+    )
+    def test_it_is_most_of_a_passage_and_not_the_half(self, text, noted):
+        table = BrailleTable("en-ueb-g2.ctb")
+        translate(table, text)
+        assert (foreign_note(table) is not None) is noted
+
     @pytest.mark.parametrize(
         ("text", "script", "language"),
         [

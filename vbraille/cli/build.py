@@ -242,7 +242,8 @@ def book_of(source: Source, arguments: argparse.Namespace, *, six_dots: bool = F
     if six_dots and table.eight_dots:
         raise InputError(_eight_dots(table))
     chosen, grade, _ = _translation(arguments, source.language)
-    return Book(source, table, language=chosen or "", grade=grade)
+    switch = arguments.foreign == "switch"
+    return Book(source, table, language=chosen or "", grade=grade, switch=switch)
 
 
 def _open(arguments: argparse.Namespace) -> Source:

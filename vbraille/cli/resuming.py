@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from vbraille.translate import Book
 
 # What a book that is opened again without a name is opened with, beside its translation.
-_TAKEN = ("undefined", "encoding", "form", "brf_table", "keep_lines")
+_TAKEN = ("foreign", "undefined", "encoding", "form", "brf_table", "keep_lines")
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +77,7 @@ class BookToRead:
                 table=None if table is None else table.name,
                 language=arguments.language,
                 grade=arguments.grade,
+                switch=self.book.switch,
                 undefined=arguments.undefined,
                 index=source.index(),
             )
@@ -150,6 +151,7 @@ def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToR
     }
     options = BookOptions(
         **given,
+        foreign=arguments.foreign,
         undefined=arguments.undefined,
         keep_lines=bool(arguments.keep_lines),
         turned=turned,
@@ -178,7 +180,9 @@ def _take_last(arguments: argparse.Namespace, places: KeptPlaces, said: frozense
         _take_translation(arguments, options, said)
     for name in _TAKEN:
         value = getattr(options, name)
-        unsaid = getattr(arguments, name) in (None, False, "mark") or name in arguments.settled
+        unsaid = (
+            getattr(arguments, name) in (None, False, "mark", "switch") or name in arguments.settled
+        )
         if value is not None and unsaid:
             setattr(arguments, name, value)
             arguments.settled -= {name}

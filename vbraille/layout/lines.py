@@ -44,6 +44,14 @@ class Line:
     after: int
 
     @property
+    def place(self) -> int:
+        """Place of the source at which the line begins."""
+        if len(self.cells):
+            return int(self.cells.starts[0])
+        places = self.block.text.places
+        return int(places[self.first]) if self.first < places.size else max(self.cells.end - 1, 0)
+
+    @property
     def masks(self) -> NDArray[np.uint8]:
         """Dot masks of the line from its first cell on, uint8[indent + cells]."""
         masks = np.zeros(len(self), np.uint8)

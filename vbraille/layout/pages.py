@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.layout.lines import Line, locate, place_of
 from vbraille.layout.runs import LaidRun
+from vbraille.translate.source import share_before
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -184,8 +185,8 @@ class Layout:
         return run.before(run.block_of(number)) if run.counted else None
 
     def progress(self, line: Line) -> float:
-        """About how much of the book stands before a line, 0 to 1."""
-        return self.book.source.progress(self.block_of(line))
+        """How much of the book stands before a line, 0 to 1; see `share_before`."""
+        return share_before(self.book.source, line.place)
 
     def _of_number(self, number: int) -> tuple[LaidRun, int] | None:
         """Find the run that a line's number leads to, and the number that it has there now."""

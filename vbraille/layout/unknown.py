@@ -6,7 +6,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from vbraille.translate import Undefined
-from vbraille.translate.undefined import describe
+from vbraille.translate.undefined import describe, is_emoji
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -59,7 +59,10 @@ class Unknown:
     def _written(self) -> str:
         match self._how:
             case Undefined.MARK:
-                return f"marked {self._table.marker}"
+                if not any(map(is_emoji, self._counts)):
+                    return f"marked {self._table.marker}"
+                others = not all(map(is_emoji, self._counts))
+                return "emoji by their names" + (f", others {self._table.marker}" if others else "")
             case Undefined.NAME:
                 return "written as names in brackets"
             case Undefined.CODE:

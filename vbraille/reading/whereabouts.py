@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.nearby import Reach, within, words_in
-from vbraille.translate.source import BlockKind
+from vbraille.translate.source import BlockKind, share_before
 from vbraille.translate.text import to_text
 
 if TYPE_CHECKING:
@@ -26,10 +26,7 @@ def is_counted(layout: Layout) -> bool:
 
 def first_character(line: Line) -> int:
     """Place of the source at which a line begins."""
-    if len(line.cells):
-        return int(line.cells.starts[0])
-    places = line.block.text.places
-    return int(places[line.first]) if line.first < places.size else max(line.cells.end - 1, 0)
+    return line.place
 
 
 def block_of(source: Source, line: Line) -> int:
@@ -61,9 +58,11 @@ def page_label(source: Source, line: Line) -> str:
     return "" if page is None else page.page_number
 
 
-def percent(layout: Layout, line: Line) -> int:
-    """About how many hundredths of the book stand before a line."""
-    return int(100 * layout.progress(line))
+def percent(layout: Layout, line: Line) -> str:
+    """How many hundredths of the book stand before a line: "40", or "about 40" if not counted."""
+    share = layout.progress(line)
+    about = "" if layout.book.source.complete or not share else "about "
+    return f"{about}{100 * share:.0f}"
 
 
 def line_name(layout: Layout, line: Line) -> str:
@@ -119,19 +118,21 @@ def whereabouts(layout: Layout, line: Line) -> Iterator[str]:
 def words_left(source: Source, line: Line) -> tuple[int, bool]:
     """Number of words from a line to the end of the book, and whether they were counted.
 
-    Where the end is far, the number is that of the words near by, multiplied.
+    Where the end is far, the number is that of the words near by, multiplied by the share of the
+    book that is left.
     """
     number = block_of(source, line)
     words = 0
-    last = number
+    last, after = number, line.place
     for last, block in within(source, number):  # noqa: B007 - how far it came
         words += words_in(block)
+        after = block.text.end
     here = source.block(number)
     if here is not None:  # what stands in the block before the line
         words -= len(to_text(here.text.codes[: here.text.index(first_character(line))]).split())
     if source.block(last + 1) is None:
         return max(words, 0), True
-    before_it, after_it = source.progress(number), source.progress(last + 1)
+    before_it, after_it = (share_before(source, place) for place in (line.place, after))
     share = max(after_it - before_it, _LEAST_SHARE)
     estimate = int(words / share * (1 - before_it))
     return round(estimate, 2 - max(len(str(estimate)), 2)), False

@@ -22,6 +22,7 @@ USUAL = {
     "grade": "what is usual in the language",
     "table": "by language",
     "encoding": "what the bytes of a file say",
+    "foreign": "switch",
     "undefined": "mark",
     "keep_lines": "no",
     "advance": "return",

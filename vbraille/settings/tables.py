@@ -17,7 +17,7 @@ class ReadTable(Table, frozen=True):
     ----------
     profile
         Name of the profile in use.
-    device, language, grade, table, encoding, undefined, keep_lines, advance, echo, verbose
+    device, language, grade, table, encoding, foreign, undefined, keep_lines, advance, echo, verbose
         Options of the same names.
     speech
         Whether what is said is spoken too.
@@ -38,6 +38,7 @@ class ReadTable(Table, frozen=True):
     grade: int | None = None
     table: str | None = None
     encoding: str | None = None
+    foreign: Literal["switch", "own"] | None = None
     undefined: Literal["mark", "name", "code", "drop"] | None = None
     keep_lines: bool | None = None
     advance: Literal["return", "key"] | None = None

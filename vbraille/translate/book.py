@@ -34,7 +34,7 @@ class Book:
 
     Attributes
     ----------
-    language, grade
+    language, grade, switch
         As given.
     """
 
@@ -53,6 +53,7 @@ class Book:
         self.table = table
         self.language = language
         self.grade = grade
+        self.switch = switch
         self.translator = None
         if table is not None:
             own = (language, source.language)

@@ -43,8 +43,11 @@ _BY_SUFFIX = {
     ".pef": Form.PEF,
 }
 _BY_ROOT = {"html": Form.HTML, "dtbook": Form.DTBOOK, "pef": Form.PEF}
-# Roots of files that people take for a book in XML.
+# Roots of files that people take for a book in XML, some with the prefixes that their writers set.
 _OTHER_ROOTS = {
+    "office:document": "a flat OpenDocument file (FODT); save it as ODT",
+    "w:wordDocument": "a Word document as XML; save it as DOCX",
+    "pkg:package": "a Word document as XML; save it as DOCX",
     "FictionBook": "a FictionBook (FB2); save it as EPUB",
     "fulfillmentToken": "a ticket for a book that Adobe locks, not the book; "
     "get the book as EPUB without a lock",
@@ -85,7 +88,7 @@ _OTHER_BEGINS = (
 _OLE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _OLE_SEARCHED_BYTES = 64 << 20
 _BEFORE_ROOT = re.compile(r"[ \t\r\n\f]+|<\?.*?\?>|<!--.*?-->", re.DOTALL)
-_ROOT = re.compile(r"<(?:!doctype[ \t\r\n]+)?(?:[\w.-]+:)?([\w.-]+)(?=[\s/>\[])", re.IGNORECASE)
+_ROOT = re.compile(r"<(?:!doctype[ \t\r\n]+)?([\w.-]+:)?([\w.-]+)(?=[\s/>\[])", re.IGNORECASE)
 _BRAILLE_SAMPLE = 4096  # characters
 
 
@@ -234,11 +237,12 @@ def _marked_up(text: str, name: str) -> Form | None:
     root = _ROOT.match(text, at)
     if root is None:
         return None
-    found = root[1]
+    found = root[2]
     if found.lower() in _PICTURE_ROOTS:
         raise InputError(f"{name} is {_PICTURE}")
-    if found in _OTHER_ROOTS:
-        raise InputError(f"{name} is {_OTHER_ROOTS[found]}")
+    for other in (f"{root[1] or ''}{found}", found):
+        if other in _OTHER_ROOTS:
+            raise InputError(f"{name} is {_OTHER_ROOTS[other]}")
     if found.lower() in _HTML_BEGINS:
         return Form.HTML
     return _BY_ROOT.get(found.lower())

@@ -18,10 +18,11 @@ import numpy as np
 
 from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.errors import InputError, VbrailleError
-from vbraille.translate.emphasis import typeforms
+from vbraille.translate.emphasis import CLASSES, typeforms
+from vbraille.translate.levels import Superscripts
 from vbraille.translate.scripts import all_letters, native_letters
 from vbraille.translate.substitutes import Substitutes
-from vbraille.translate.text import SPACE, to_codes, to_text
+from vbraille.translate.text import SPACE, Text, to_codes, to_text
 from vbraille.translate.undefined import Undefined
 from vbraille.wording import nearest
 
@@ -38,7 +39,6 @@ if TYPE_CHECKING:
 
     from vbraille.translate.scripts import Script
     from vbraille.translate.source import Mark
-    from vbraille.translate.text import Text
 
 # In bytes; liblouis puts a name, with a folder before it, into 2 kB without checking that it fits.
 _LONGEST_NAME = 1_000
@@ -207,6 +207,11 @@ class BrailleTable:
         self._substitutes = Substitutes(self._writes, undefined)
         self.undefined = self._substitutes.undefined
         self._forms: dict[str, int] = {}  # bits of classes of emphasis, 0 for those it has not
+        self._superscripts = Superscripts(
+            lambda text: self._call(to_codes(text), _MODE)[0].tobytes(),
+            self._writes,
+            lambda kind: bool(self._form(CLASSES[kind])),
+        )
         self._in_length, self._out_length = ctypes.c_int(), ctypes.c_int()
         self._grow(1024)
         if not any(self._writes_some(letters()) for letters in (lambda: _SMALL, all_letters)):
@@ -258,6 +263,23 @@ class BrailleTable:
         has_digits = self._call(to_codes(_DIGITS), _MODE | louis.noUndefined)[0].any()
         return self._high(_DIGITS if has_digits else _SMALL)
 
+    @cached_property
+    def is_ueb(self) -> bool:
+        """Whether this is a table of Unified English Braille."""
+        with _lock:
+            return _get_info(self._list, b"system") == b"ueb"
+
+    def spelled(self, text: str) -> NDArray[np.uint8]:
+        """Dot masks of a short text of ASCII, without contractions where the table can do so."""
+        codes = self._substitutes.put_into(Text.of(text))[0]
+        masks, _ = self._call(codes, _MODE | louis.noContractions)
+        return masks if self.eight_dots else masks & np.uint8(0x3F)
+
+    @cached_property
+    def brackets(self) -> str:
+        """Opening and closing bracket that the table can write; full cells if it has none."""
+        return next(pair for pair in ("[]", "()", "⠿⠿") if all(map(self._writes, map(ord, pair))))
+
     @property
     def marker(self) -> str:
         """Text that marks characters that the table does not know."""
@@ -272,8 +294,10 @@ class BrailleTable:
 
         The replacement of a character that the table does not know is written by the rules of the
         table, so that it reads back like any other text. Emphasis among the marks is written as
-        the table does it; the cells that say so stand for the character next to them.
+        the table does it; the cells that say so stand for the character next to them. Superscripts
+        and subscripts are set apart, those among the characters of Unicode, too.
         """
+        text, marks = self._superscripts.put_into(text, marks)
         codes, places = self._substitutes.put_into(text)
         forms = typeforms(marks, places, self._form) if marks else None
         masks, inputs = self._call(codes, _MODE, forms)

@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from vbraille.translate.source import BlockKind, MarkKind
+from vbraille.translate.source import BlockKind, MarkKind, share_before
 from vbraille.translate.text import to_text
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ class OutlineHeading:
     page
         Number of the print page that it is on; empty if the source does not say.
     percent
-        About how much of the book stands before it, 0 to 100.
+        How much of the book's text stands before it, 0 to 100.
     """
 
     level: int
@@ -77,7 +77,7 @@ def outline(source: Source) -> Outline:
     languages: Counter[str] = Counter()
     unshown: Counter[str] = Counter()
     groups: dict[BlockKind, int] = {BlockKind.ITEM: 0, BlockKind.ROW: 0}
-    headings: list[OutlineHeading] = []
+    headings: list[tuple[int, str, str, int]] = []  # with the place of its first character
     page, number, before = "", 0, None
     while (block := source.block(number)) is not None:
         words = to_text(block.text.codes).strip()
@@ -87,8 +87,8 @@ def outline(source: Source) -> Outline:
         elif not block.continues:
             _count_groups(block, before, counts, groups)
             if block.kind is BlockKind.HEADING:
-                percent = round(100 * source.progress(number), 1)
-                headings.append(OutlineHeading(block.level, " ".join(words.split()), page, percent))
+                place = int(block.text.places[0]) if len(block.text) else block.text.end
+                headings.append((block.level, " ".join(words.split()), page, place))
             counts["notes"] += block.kind is BlockKind.NOTE
         if block.language and not block.continues:
             languages[block.language] += 1
@@ -107,7 +107,10 @@ def outline(source: Source) -> Outline:
     return Outline(
         source.title,
         source.language,
-        tuple(headings),
+        tuple(
+            OutlineHeading(level, title, page, round(100 * share_before(source, place), 3))
+            for level, title, page, place in headings
+        ),
         {word: counts[word] for word in _WORDS},
         dict(languages.most_common()),
         dict(unshown.most_common()),

@@ -219,6 +219,11 @@ class Source(Protocol):
         """Whether all blocks are known, so that the source's end is."""
         ...
 
+    @property
+    def end(self) -> int:
+        """One past the last character that is known; of a complete source, past its last."""
+        ...
+
     def progress(self, number: int) -> float:
         """About how much of the source stands before a block that was read, 0 to 1."""
         ...
@@ -234,3 +239,15 @@ class Source(Protocol):
     def close(self) -> None:
         """Let go of the file, after which no block can be read; further calls do nothing."""
         ...
+
+
+def share_before(source: Source, character: int) -> float:
+    """How much of a source stands before a character, 0 to 1: the measure of all places in a book.
+
+    It is counted in characters of the text, which are the same in whatever form the book is; about,
+    by the size of what was read, as long as the source is not complete.
+    """
+    if source.complete:
+        return min(character / max(source.end, 1), 1.0)
+    number = source.block_at(character)
+    return 1.0 if number is None else source.progress(number)

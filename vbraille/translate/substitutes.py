@@ -89,6 +89,8 @@ class Substitutes:
         marked = False
         for code, place in zip(own, text.places.tolist(), strict=True):
             instead = self._instead.get(code, (code,))
+            if instead[:1] == (SPACE,) and written[-1:] in ([], [SPACE]):
+                instead = instead[1:] or instead
             marked, before = instead == mark and code in self.undefined, marked
             if marked and before:
                 continue  # one marker stands for all neighbours

@@ -42,6 +42,12 @@ class Text:
         """A run of no characters, at a place of the source."""
         return cls(np.empty(0, np.uint32), np.empty(0, np.int64), end, frozenset())
 
+    @classmethod
+    def of(cls, text: str) -> Text:
+        """A string that stands for itself: character i is at place i."""
+        codes = to_codes(text)
+        return cls(codes, np.arange(codes.size), codes.size, frozenset(codes.tolist()))
+
     def __str__(self) -> str:
         return to_text(self.codes)
 

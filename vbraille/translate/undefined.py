@@ -23,11 +23,15 @@ _PLAIN = str.maketrans(
 )  # fmt: skip
 
 
+# Blocks of Unicode: clocks and keys, symbols and dingbats, arrows and stars, pictures.
+_EMOJI = ((0x231A, 0x23FF), (0x2600, 0x27BF), (0x2B00, 0x2BFF), (0x1F000, 0x1FAFF))
+
+
 class Undefined(StrEnum):
     """What is written for a character that the table does not know."""
 
     MARK = "mark"
-    """The same short marker, such as ``[?]``, for each run of them."""
+    """The same short marker, such as ``[?]``, for each run of them; but an emoji's name."""
     NAME = "name"
     """The character's name in Unicode, such as ``[grinning face]``."""
     CODE = "code"
@@ -40,7 +44,8 @@ def spellings(character: str, how: Undefined) -> Iterator[str]:
     """Texts that may stand for a character, best first; a table takes the first it can write."""
     if how is Undefined.DROP:
         yield ""
-    if how is Undefined.NAME and (name := unicodedata.name(character, "")):
+    named = how is Undefined.NAME or (how is Undefined.MARK and is_emoji(character))
+    if named and (name := unicodedata.name(character, "")):
         yield from (f"{opening}{name.lower()}{closing}" for opening, closing in _BRACKETS)
     if how is Undefined.NAME or how is Undefined.CODE:
         number = number_of(character)
@@ -49,10 +54,19 @@ def spellings(character: str, how: Undefined) -> Iterator[str]:
     yield from MARKERS
 
 
+def is_emoji(character: str) -> bool:
+    """Whether a character is a little picture that people write between words."""
+    code = ord(character)
+    pictures = any(first <= code <= last for first, last in _EMOJI)
+    return pictures and unicodedata.category(character) in ("So", "Sk")
+
+
 def likenesses(character: str) -> Iterator[str]:
     """Other spellings of the same text: a ligature's letters, plain quotes, a small letter."""
     seen = {character}
     plain = unicodedata.normalize("NFKC", character)
+    if plain[:1].isdigit() and not character.isdecimal():
+        plain = f" {plain}"  # ½ after a number is not the number's next digit
     for text in (plain, plain.translate(_PLAIN), plain.lower()):
         if text not in seen:
             seen.add(text)

@@ -103,7 +103,7 @@ def test_what_is_far_is_looked_for_while_reading_goes_on():
     assert bench.press("n") == ["line: 2"]
     seeker.answers = [Searched(0.5), Found(text.index("needle"), document.index())]
     bench.run(0.05)
-    assert bench.said[-1] == "place: 99 %"  # nobody has counted the lines before
+    assert bench.said[-1] == "place: 100 %"  # nobody has counted the lines before
     count = seeker.asked[-1]
     assert count == CountLines(20, 5_000)
     seeker.answers = [Counted(5_000, document.index(), count.width, count.block)]
@@ -149,7 +149,7 @@ def test_escape_gives_a_search_up_and_a_failure_is_said():
 
 def test_without_such_a_process_the_reader_looks_to_the_end_itself():
     bench, *_ = far(None)
-    assert bench.press("/needle\n")[-1] == "place: 99 %"
+    assert bench.press("/needle\n")[-1] == "place: 100 %"
     assert bench.press("/nowhere\n")[-1] == "not found after this: nowhere"
 
 

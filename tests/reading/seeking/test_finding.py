@@ -220,3 +220,11 @@ def test_nothing_is_found_for_nothing():
 def test_bad_bytes_are_searched_as_they_are_read():
     document = Document(io.BytesIO(b"caf\xe9 ol\xe9 \xe2\x82 caf\xc3\xa9"), "a", "utf-8")
     assert all_hits(document, "café", False) == hits(document, "café", False) != []
+
+
+@pytest.mark.parametrize("accents", [False, True])
+@pytest.mark.parametrize("opened", [Document.from_text, Chapters])
+def test_small_numbers_are_found_as_they_are_typed(opened, accents):
+    source = opened("Of H₂O there are 10⁶ m³, or 10⁻³.")
+    for needle, place in (("h2o", 3), ("106 M3", 17), ("10-3", 28), ("H₂O", 3)):
+        assert ask(source, needle, 0, fold_accents=accents) == place

@@ -224,7 +224,7 @@ def test_a_page_by_pandoc(file):
     assert [(b.kind.value, b.level, str(b.text)) for b in found] == [
         ("heading", 1, "A small book"),
         ("heading", 1, "One"),
-        ("paragraph", 0, "Hello world,1 go to the next."),
+        ("paragraph", 0, "Hello world,[1] go to the next."),
         ("item", 1, "1. first"),
         ("item", 1, "2. second"),
         ("item", 2, "• inner"),
@@ -234,7 +234,7 @@ def test_a_page_by_pandoc(file):
         ("row", 0, "thing  weight"),
         ("row", 0, "salt  2 g"),
         ("paragraph", 0, "A cat"),
-        ("paragraph", 0, "Bonjour, H2O."),
+        ("paragraph", 0, "Bonjour, H₂O."),
         ("note", 0, "1. Not the other one."),
     ]
     targets = {mark.kind: mark.target[1:] for mark in found[2].marks if mark.target}

@@ -11,6 +11,7 @@ from tests.tiers import by_tier
 from tests.translate.documents.epubs import blocks, texts
 from vbraille.errors import InputError
 from vbraille.translate.documents.markdown import read_markdown
+from vbraille.translate.outline import outline
 
 FILES = Path(__file__).parent / "files" / "small"
 
@@ -38,7 +39,7 @@ def test_a_book():
         ("row", "thing  weight"),
         ("row", "salt  2 g"),
         ("paragraph", "A cat"),
-        ("paragraph", "Bonjour, H~2~O."),
+        ("paragraph", "Bonjour, H₂O."),
         ("note", "1. Not the other one."),
     ]
     marks = {(mark.kind.value, mark.target) for block in found for mark in block.marks}
@@ -52,6 +53,15 @@ def test_a_book():
 def test_definitions_formulas_and_html():
     book = read("term\n:   meaning $x^2$\n\n$$\ny = 1\n$$\n\n<div hidden>no</div>\n\nyes ~~so~~")
     assert texts(book) == ["term", "meaning x^2", "y = 1", "yes so"]
+
+
+def test_a_picture_without_words_is_marked_and_one_with_words_says_them():
+    book = read(
+        "a ![](x.png) b\n\n![](y.png \"title\")\n\n![A *cat*](z.png)\n\n<img alt='' src=d.png>e"
+    )
+    assert texts(book) == ["a [picture] b", "title", "A cat", "e"]
+    assert outline(read("![](x.png) ![](y.png)")).unshown == {"picture": 2}
+    assert texts(read("![](plan.svg)")) == ["figure: plan"]
 
 
 def test_encodings_and_nothing():
@@ -79,7 +89,9 @@ def test_lists_that_are_nested_too_deep_lose_no_item():
     assert found.endswith("after")
 
 
-@pytest.mark.parametrize("sign", [">", "[", "*a ", "x`", "[a](", "![", "- ", "<b>", "$", "[^1]"])
+@pytest.mark.parametrize(
+    "sign", [">", "^", "~a", "[", "*a ", "x`", "[a](", "![", "- ", "<b>", "$", "[^1]"]
+)
 def test_many_signs_end_in_time(sign):
     begun = time.process_time()
     assert texts(read(sign * by_tier(1_000, 4_000, 10_000) + "end"))[-1].endswith("end")

@@ -44,7 +44,8 @@ def describe(book: ListedBook, now: datetime) -> str:
     """What is said of a book in the list, as seen from a time in the reader's zone."""
     parts = [book.title]
     if book.place is not None:
-        parts.append(f"{book.place.share:.0%}".replace("%", " %"))
+        about = "about " if book.place.about else ""
+        parts.append(f"{about}{100 * book.place.share:.0f} %")
         if book.place.page:
             parts.append(f"page {book.place.page}")
     parts.append(_when(datetime.fromtimestamp(book.read_s, now.tzinfo), now))

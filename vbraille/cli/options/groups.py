@@ -21,6 +21,7 @@ SETTLED = (
     "grade",
     "table",
     "encoding",
+    "foreign",
     "undefined",
     "keep_lines",
     "advance",
@@ -50,12 +51,20 @@ def text(parser: ArgumentParser, *, optional: bool = False, file: bool = True) -
         source(parser, optional=optional)
     translation(parser)
     parser.add_argument(
+        "--foreign",
+        choices=("switch", "own"),
+        default="switch",
+        help="Choose how passages in another language are written: switch to that language's "
+        "table, with marks where it begins and ends, or stay with the book's own (default: "
+        "switch).",
+    )
+    parser.add_argument(
         "--undefined",
         choices=("mark", "name", "code", "drop"),
         default="mark",
         help="Choose what is written for a character that the table does not know: a marker such "
-        "as [?], its name in Unicode, its number, or nothing; they are counted at the end "
-        "(default: mark).",
+        "as [?], but an emoji's name; any character's name in Unicode, its number, or nothing; "
+        "they are counted at the end (default: mark).",
     )
     parser.add_argument(
         "--keep-lines",

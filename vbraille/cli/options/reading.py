@@ -183,6 +183,7 @@ def structure(parser: ArgumentParser) -> None:
     groups.source(parser)
     parser.add_argument("--json", action="store_true", help="Print the same as JSON.")
     parser.set_defaults(table=None, language=None, grade=None, undefined="mark", keep_lines=False)
+    parser.set_defaults(foreign="switch")
     parser.set_defaults(settled=frozenset())
 
 

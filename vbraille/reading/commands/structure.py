@@ -284,7 +284,7 @@ def _go_to_typed(reader: Reader, typed: str) -> None:
             reader.say(f"go to: {typed} is more than the book; type 0% to 100%")
             return
         query = FindShare(percent / 100)
-        reader.find(query, lambda place: arrive(reader, place, typed, backward=False))
+        reader.find(query, lambda place: _arrive_at_share(reader, place, typed))
     elif has_pages(reader.layout.book.source, line):
         query = FindPage(typed)
         reader.find(query, lambda place: _arrive_at_page(reader, place, typed))
@@ -294,6 +294,17 @@ def _go_to_typed(reader: Reader, typed: str) -> None:
         reader.say("go to: pages of this book are not counted yet; type percent as in 40%")
     else:
         _go_to_braille_page(reader, int(typed), typed)
+
+
+def _arrive_at_share(reader: Reader, place: int | None, typed: str) -> None:
+    """Go to the line that begins nearest to a place."""
+    found = None if place is None else reader.layout.place(place)
+    if place is not None and found is not None:
+        line, after = found[0], reader.layout.line(found[0].number + 1)
+        if after is not None and after.place - place < place - line.place:
+            line = after
+        place = line.place
+    arrive(reader, place, typed, backward=False)
 
 
 def _arrive_at_page(reader: Reader, place: int | None, typed: str) -> None:

@@ -9,6 +9,7 @@ import msgspec
 from vbraille.reading.places.values import KeptPlace, storable
 from vbraille.reading.queries import FindShare, FindText, Found
 from vbraille.reading.seeking.answering import answer
+from vbraille.translate.source import share_before
 
 if TYPE_CHECKING:
     from vbraille.reading.queries import Query
@@ -40,10 +41,11 @@ def place_in(source: Source, character: int) -> KeptPlace:
     return KeptPlace(
         character,
         number,
-        source.progress(number),
+        share_before(source, character),
         storable(before[-AROUND:]),
         storable(after[:AROUND]),
         max(0, character - begins),
+        about=not source.complete,
     )
 
 

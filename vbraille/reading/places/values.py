@@ -20,7 +20,7 @@ class KeptPlace(msgspec.Struct, frozen=True):
     block
         Number of the block that the character is in.
     share
-        About how much of the book stands before it, 0 to 1.
+        How much of the book stands before it, 0 to 1.
     before, after
         Text before the place and from it on, as it is read; a changed book is searched for it.
     reach
@@ -33,6 +33,8 @@ class KeptPlace(msgspec.Struct, frozen=True):
         Width in cells and name of the table for which these numbers hold.
     page
         Number of the page as the book writes or counts it; empty if it has none.
+    about
+        Whether the share is about right, since the book was not read to its end.
     """
 
     character: int
@@ -46,6 +48,7 @@ class KeptPlace(msgspec.Struct, frozen=True):
     width: int = 0
     table: str = ""
     page: str = ""
+    about: bool = False
 
     def lines_before_for(self, width: int, table: str) -> int | None:
         """Number of such lines before the block; None if it is not known for them."""
@@ -86,6 +89,7 @@ class BookOptions(msgspec.Struct, frozen=True):
     language: str | None = None
     grade: int | None = None
     table: str | None = None
+    foreign: str = "switch"
     undefined: str = "mark"
     encoding: str | None = None
     form: str | None = None

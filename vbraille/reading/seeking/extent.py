@@ -33,13 +33,10 @@ def extend(source: Source) -> bool:
     return True
 
 
-def extended(source: Source, share: float = 1.0) -> Iterator[float]:
-    """Read a source till so much of it is known, and tell after each step how much is, 0 to 1."""
-    while True:
-        known = share_known(source)
-        if known >= share or not extend(source):
-            return
-        yield known
+def extended(source: Source) -> Iterator[float]:
+    """Read a source till all of it is known, and tell after each step how much is, 0 to 1."""
+    while extend(source):
+        yield share_known(source)
 
 
 def share_known(source: Source) -> float:
@@ -53,22 +50,19 @@ def find_share(source: Source, share: float) -> Iterator[int | float]:
     Yields
     ------
     int or float
-        How much of the source is known, 0 to 1, as floats; then the place of the last block, not
-        an empty one, that begins no later, if any.
+        How much of the source is known, 0 to 1, as floats; then the place of the first character,
+        or of the last if there is none after.
     """
-    yield from extended(source, share)
-    low, high = 0, max(known_blocks(source) - 1, 0)
-    while low < high:
-        middle = (low + high + 1) // 2
-        if source.progress(middle) <= share:
-            low = middle
-        else:
-            high = middle - 1
-    for numbers in (range(low, -1, -1), count(low + 1)):
+    yield from extended(source)
+    character = round(share * source.end)
+    at = source.block_at(character)
+    at = known_blocks(source) if at is None else at
+    for numbers in (count(at), range(at - 1, -1, -1)):
         for number in numbers:
             block = source.block(number)
             if block is None:
-                return
+                break
             if len(block.text):
-                yield int(block.text.places[0])
+                index = min(block.text.index(character), len(block.text) - 1)
+                yield int(block.text.places[index])
                 return

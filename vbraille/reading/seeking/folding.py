@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.translate.levels import TYPED
 from vbraille.translate.text import to_codes, to_text
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ COMBINING = "\u0300-\u036f\u0653-\u0655\u3099\u309a"
 _ACCENT = re.compile(f"[{_ACCENTS}]+")
 _COMBINED = re.compile(f"[{COMBINING}]")
 _BLANKS = re.compile(r"\s+")
+_SMALL = re.compile(f"[{''.join(map(chr, TYPED))}]")
 _TABLED = 0x3100  # all letters with accents, and none of the many signs of East Asia
 _NOTHING, _SEVERAL = 0xFFFF_FFFF, 0xFFFF_FFFE
 # What is folded before an ASCII letter that follows another has nothing to do with what is after.
@@ -54,7 +56,13 @@ def fold_letters(text: str, *, accents: bool) -> str:
         return text.lower()
     if _COMBINED.search(text):
         text = unicodedata.normalize("NFC", text)
-    return _without_accents(text) if accents else text.casefold()
+    return _without_accents(text) if accents else _caseless(text)
+
+
+def _caseless(text: str) -> str:
+    """Text without differences of case, and with the numbers of H₂O and 10⁶ as they are typed."""
+    folded = text.casefold()
+    return folded.translate(TYPED) if _SMALL.search(folded) else folded
 
 
 def _without_accents(text: str) -> str:
@@ -64,7 +72,7 @@ def _without_accents(text: str) -> str:
         letters = _letters()[codes]
         if not (letters == _SEVERAL).any():
             return to_text(letters[letters != _NOTHING])
-    return _ACCENT.sub("", unicodedata.normalize("NFD", text.casefold()))
+    return _ACCENT.sub("", unicodedata.normalize("NFD", _caseless(text)))
 
 
 @cache
@@ -72,7 +80,7 @@ def _letters() -> NDArray[np.uint32]:
     """For each code point that has a place in the table: what remains of it."""
     table = np.empty(_TABLED, np.uint32)
     for code in range(_TABLED):
-        left = _ACCENT.sub("", unicodedata.normalize("NFD", chr(code).casefold()))
+        left = _ACCENT.sub("", unicodedata.normalize("NFD", _caseless(chr(code))))
         table[code] = _NOTHING if not left else _SEVERAL if len(left) > 1 else ord(left)
     return table
 
@@ -127,7 +135,7 @@ def _cases() -> dict[str, str]:
     if not _FOLDED:
         for code in (*range(0x80, 0xD800), *range(0xF900, 0x1_0000), *range(0x1_0400, 0x1_F000)):
             character = chr(code)
-            folded = character.casefold()
+            folded = _caseless(character)
             if folded == character:
                 continue
             if len(folded) > 1 or folded.isascii():

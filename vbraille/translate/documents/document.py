@@ -109,6 +109,11 @@ class Document:
         """Whether all blocks are known, so that the end of the text is."""
         return self._complete
 
+    @property
+    def end(self) -> int:
+        """One past the last character of the chunks that are known."""
+        return self._marks[-1].character
+
     def anchor(self, name: str) -> int | None:  # noqa: ARG002
         """Tell that plain text has no anchors."""
         return None

@@ -14,8 +14,12 @@ from vbraille.translate.documents.html import HtmlBook
 from vbraille.translate.documents.markup.pieces import markup_encoding
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from markdown_it.renderer import RendererHTML
     from markdown_it.rules_block import StateBlock
     from markdown_it.token import Token
+    from markdown_it.utils import EnvType, OptionsDict
 
 # Quotations and lists within others that are read as such. The parser drops what is nested deeper
 # than its own limit, which is not reached.
@@ -53,6 +57,8 @@ def read_markdown(stream: BinaryIO, name: str, encoding: str | None = None) -> H
     from mdit_py_plugins.dollarmath import dollarmath_plugin
     from mdit_py_plugins.footnote import footnote_plugin
     from mdit_py_plugins.front_matter import front_matter_plugin
+    from mdit_py_plugins.subscript import sub_plugin
+    from mdit_py_plugins.superscript import superscript_plugin
 
     try:
         with stream:
@@ -64,8 +70,10 @@ def read_markdown(stream: BinaryIO, name: str, encoding: str | None = None) -> H
     text = TextDecoder(found.name).decode(content[found.skip :], found.skip, final=True)
     parser = MarkdownIt("commonmark", {"maxNesting": _LIMIT}).enable(["table", "strikethrough"])
     parser.block.ruler.before("table", "deepest", _deepest)
+    parser.add_render_rule("image", _image)
     for plugin in (front_matter_plugin, footnote_plugin, deflist_plugin, dollarmath_plugin):
         parser.use(plugin)
+    parser.use(sub_plugin).use(superscript_plugin)
     parser.use(attrs_plugin, spans=True).use(anchors_plugin, max_level=6)
     tokens = parser.parse(text)
     _name_headings(tokens)
@@ -96,6 +104,18 @@ def _deepest(state: StateBlock, first: int, after: int, silent: bool) -> bool:
     state.push("paragraph_close", "p", -1)
     state.line = after
     return True
+
+
+def _image(
+    renderer: RendererHTML, tokens: Sequence[Token], index: int, options: OptionsDict, env: EnvType
+) -> str:
+    """HTML of a picture; without words it has no `alt`, which if empty says it is a decoration."""
+    token = tokens[index]
+    words = renderer.renderInlineAsText(token.children, options, env)
+    token.attrs.pop("alt", None)
+    if words.strip():
+        token.attrSet("alt", words)
+    return renderer.renderToken(tokens, index, options, env)
 
 
 def _name_headings(tokens: list[Token]) -> None:

@@ -148,6 +148,11 @@ class PartedSource(ABC):
         """Whether all parts have been read once."""
         return len(self._starts) > self.parts
 
+    @property
+    def end(self) -> int:
+        """One past the last character of the parts that have been read."""
+        return self._starts[-1].character
+
     def block(self, number: int) -> Block | None:
         """Block of a number, from 0; None past the end."""
         if number < 0:
@@ -216,7 +221,7 @@ class PartedSource(ABC):
         """Let go of the file, where one is open; further calls do nothing."""
 
     def _fits(self) -> tuple[str, tuple[str | int, ...]]:
-        return f"{type(self).__name__} 3", (self._digest, self.parts)
+        return f"{type(self).__name__} 4", (self._digest, self.parts)
 
     def _read(self, part: int) -> list[Block]:
         """Blocks of a part; where the next part begins is known after that."""

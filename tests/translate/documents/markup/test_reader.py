@@ -109,14 +109,24 @@ def test_roles(markup):
         ("<b>a<u>b</u></b>c", "abc", [("bold", "ab", ""), ("underline", "b", "")]),
         (
             "H<sub>2</sub>O<sup>x</sup><code>y</code>",
-            "H2Oxy",
-            [("subscript", "2", ""), ("superscript", "x", ""), ("code", "y", "")],
+            "H₂Oxy",
+            [("subscript", "₂", ""), ("superscript", "x", ""), ("code", "y", "")],
         ),
         ("<span style='font-style: italic'>a</span>b", "ab", [("italic", "a", "")]),
         ("a<a href='#b%20c'> d </a>e", "a d e", [("link", "d", "#b%20c")]),
         ("a<a href='javascript:x()'>d</a>", "ad", []),
-        ("a<sup><a epub:type=noteref href=#n>1</a></sup>", "a1", None),
-        ("a<sup class=footnote-ref><a href=#n>1</a></sup>", "a1", None),
+        ("a<sup><a epub:type=noteref href=#n>1</a></sup>", "a[1]", None),
+        ("a<sup class=footnote-ref><a href=#n>1</a></sup>", "a[1]", None),
+        ("9<span class='calibre3 super'>2</span>", "9²", [("superscript", "²", "")]),
+        ("<p class=sub>12", "12", []),
+        ("a[<a role=doc-noteref href=#n>1</a>]", "a[1]", [("note", "1", "#n")]),
+        ("a<a role=doc-noteref href=#n>*</a>", "a*", [("note", "*", "#n")]),
+        ("a <a role=doc-noteref href=#n>1 </a> b", "a [1] b", [("note", "[1]", "#n")]),
+        (
+            "9<sup>2<a role=doc-noteref href=#n>1</a>, <a role=doc-noteref href=#m>2</a></sup>",
+            "9²[1], [2]",
+            [("superscript", "²", ""), ("note", "[1]", "#n"), ("note", "[2]", "#m")],
+        ),
         ("a <img alt='b'> c", "a b c", [("image", "b", "")]),
         ("a<img src=x>", "a [picture]", [("unshown", "[picture]", "picture")]),
         ("a<img alt=''>", "a", []),
@@ -225,7 +235,7 @@ def test_pages_begin_at_the_next_word(mark):
 )
 def test_notes(notes):
     text, note = passages(f"<p>a<a epub:type=noteref href=#n>1</a>{notes}")
-    assert marked(text) == [("note", "1", "#n")]
+    assert marked(text) == [("note", "[1]", "#n")]
     assert (note.kind, note.text, note.anchors) == (BlockKind.NOTE, "b", ("n",))
 
 

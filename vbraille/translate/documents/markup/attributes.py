@@ -48,6 +48,8 @@ _CLASSES = {
     **dict.fromkeys(("sdfootnote", "sdendnote"), "note"),
     **dict.fromkeys(("sdfootnotesym", "sdendnotesym"), "number"),
     **dict.fromkeys(("MsoFootnoteText", "MsoEndnoteText"), "note"),  # Word's
+    **dict.fromkeys(("sup", "super", "superscript"), "superscript"),  # what a style sheet says
+    **dict.fromkeys(("sub", "subscript"), "subscript"),
     "pagebreak": "page?",  # only of an element without text: some books call any break so
 }
 # Word's links between a note and what refers to it: "#_ftn1" there, and "#_ftnref1" back.

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from vbraille.translate.levels import small_number
 from vbraille.translate.source import Mark, MarkKind
 
 LONGEST = 65_536  # characters; a longer block is passed on in passages that continue each other
@@ -11,6 +12,7 @@ LONGEST = 65_536  # characters; a longer block is passed on in passages that con
 _BLANKS = "\n\t\r\f"
 # Hints to a typesetter, which would split contractions.
 _DROPPED = str.maketrans("", "", "\u00ad\u200b\ufeff")
+_SMALL = (MarkKind.SUPERSCRIPT, MarkKind.SUBSCRIPT)
 
 
 @dataclass(slots=True)
@@ -49,6 +51,7 @@ class Flow:
         self._between = ""  # what stands before the next text if any stands before that
         self._held: dict[MarkKind, _Held] = {}
         self._unstarted = False
+        self._bracket = ""  # that is still to be set around a reference to a note
         self._marks: list[Mark] = []
         self._runs: list[tuple[int, str]] = []  # where each language begins
         self._most = LONGEST
@@ -73,7 +76,14 @@ class Flow:
         self._between = between
 
     def write(self, text: str) -> None:
-        """Add text as it is."""
+        """Add text as it is, but for small numbers and for the number of a note."""
+        small = [kind for kind in _SMALL if kind in self._held]
+        if self._bracket == "[":
+            before = self._between or (self._parts[-1] if self._parts else "")
+            self._bracket = "" if before.endswith(("[", "(")) or not text[:1].isalnum() else "]"
+            text = f"[{text}" if self._bracket else text
+        elif len(small) == 1 and MarkKind.NOTE not in self._held:
+            text = small_number(text, small[0])
         if self._between:
             if self.length:
                 self._parts.append(self._between)
@@ -94,19 +104,29 @@ class Flow:
         self._marks.append(Mark(kind, self.length - len(text), self.length, target))
 
     def open(self, kind: MarkKind, target: str = "") -> None:
-        """Begin a part with a mark; one of the same kind inside of it is a part of it."""
+        """Begin a part with a mark; one of the same kind inside of it is a part of it.
+
+        A reference to a note is set apart by square brackets, unless it has others or is a sign.
+        """
         held = self._held.get(kind)
         if held is not None:
             held.depth += 1
         else:
             self._held[kind] = _Held(1, -1, target)
             self._unstarted = True
+            if kind is MarkKind.NOTE:
+                self._bracket = "["
 
     def close(self, kind: MarkKind) -> None:
         """End the part that was begun last with a mark of a kind."""
         held = self._held[kind]
         held.depth -= 1
         if not held.depth:
+            if kind is MarkKind.NOTE:
+                between, self._between = self._between, ""
+                if self._bracket == "]":
+                    self.write("]")
+                self._between, self._bracket = between, ""
             del self._held[kind]
             if held.start >= 0:
                 self._marks.append(Mark(kind, held.start, self.length, held.target))
@@ -160,6 +180,9 @@ class Flow:
             Tag of the block's language.
         """
         self._between = ""
+        if self._bracket == "]":
+            self.write("]")
+        self._bracket = ""
         text = "".join(self._parts)
         return self._take(text, len(text), language)
 
@@ -180,7 +203,7 @@ class Flow:
             for start, end, tag in runs
             if tag and tag != language
         ]
-        shown = _clipped(marks + foreign, 0, stop)
+        shown = _clipped(_besides_notes(marks, text) + foreign, 0, stop)
         shown.sort(key=lambda mark: (mark.start, -mark.end))
         self._marks = _clipped(self._marks, stop, self.length)
         for held in self._held.values():
@@ -200,6 +223,23 @@ def _folded(text: str) -> str:
     while "  " in text:
         text = text.replace("  ", " ")
     return text if text.isascii() else text.translate(_DROPPED)
+
+
+def _besides_notes(marks: list[Mark], text: str) -> list[Mark]:
+    """Marks of which none says that a reference to a note is raised: brackets tell it apart."""
+    notes = [mark for mark in marks if mark.kind is MarkKind.NOTE]
+    if not notes:
+        return marks
+    found: list[Mark] = []
+    for mark in marks:
+        parts = [mark]
+        for note in notes if mark.kind in _SMALL else ():
+            before = [replace(part, end=min(part.end, note.start)) for part in parts]
+            after = [replace(part, start=max(part.start, note.end)) for part in parts]
+            parts = [part for part in before + after if part.start < part.end]
+        whole = parts == [mark]
+        found += [p for p in parts if whole or any(map(str.isalnum, text[p.start : p.end]))]
+    return found
 
 
 def _clipped(marks: list[Mark], start: int, stop: int) -> list[Mark]:

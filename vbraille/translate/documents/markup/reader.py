@@ -35,6 +35,7 @@ _STYLES = {
     "vertical-align:super": MarkKind.SUPERSCRIPT,
     "vertical-align:sub": MarkKind.SUBSCRIPT,
 }
+_SMALL = {kind.value: kind for kind in (MarkKind.SUPERSCRIPT, MarkKind.SUBSCRIPT)}
 _NOTHING: dict[str, str] = {}
 
 
@@ -224,6 +225,8 @@ class MarkupReader:
             undos.append(self._referring())
         undos += self._reference(name, found, roles)
         undos += self._styled(found)
+        if name == "span":  # a paragraph's class of these names is a title's
+            undos += (self._emphasis(kind) for role, kind in _SMALL.items() if role in roles)
         return tuple(undos)
 
     def _reference(

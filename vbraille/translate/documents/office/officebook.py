@@ -6,10 +6,14 @@ import hashlib
 import io
 import locale
 import re
+import sys
 from collections import Counter
+from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, BinaryIO, cast
 
 from vbraille.errors import InputError
+from vbraille.translate.documents.office.annotations import annotation
 from vbraille.translate.documents.office.officehtml import written
 
 if TYPE_CHECKING:
@@ -22,6 +26,11 @@ _RTF_USUAL = re.compile(rb"\\deflang(\d{1,5})\b")
 _RTF_LANGUAGE = re.compile(rb"\\lang(\d{1,5})\b")
 _RTF_TITLE = re.compile(rb"\{\\title ([^{}\\]*)\}")  # of no other letters than ASCII
 _RTF_HEADER_BYTES = 65_536
+# A group of nothing but a text and how it looks, which is what all writers make of a small number.
+_RTF_TEXT = re.compile(
+    rb"\{((?>\\(?!u-?\d)[a-z]++-?+\d*+[ \r\n]?+)++)((?>[^{}\\]|\\u-?\d++ ?+|\\'[0-9a-f]{2})++)\}"
+)
+_RTF_SMALL = re.compile(rb"\\(super|sub)(?![a-z0-9])")
 
 
 def open_office(stream: BinaryIO, name: str, form: str) -> Source:
@@ -53,6 +62,7 @@ def open_office(stream: BinaryIO, name: str, form: str) -> Source:
     title = language = ""
     if form == "rtf":
         title, language = _rtf_title(content), _rtf_language(content)
+        content = _RTF_TEXT.sub(_rtf_level, content)
     else:
         from vbraille.translate.documents.office.officexml import annotated
 
@@ -71,7 +81,7 @@ def _document(content: bytes, name: str, form: str) -> Document:
     except ImportError:
         raise InputError(
             f"{name} is in {form.upper()}, and what reads that is not installed; "
-            f"pip install firecrawl-anydoc installs it"
+            f"{_installing()} installs it"
         ) from None
     try:
         return anydoc.to_document(content, cast("Format", form))
@@ -88,6 +98,22 @@ def _document(content: bytes, name: str, form: str) -> Document:
             f"{name} is damaged or no {form.upper()} file; get it again, or open it in a word "
             f"processor and save it anew"
         ) from None
+
+
+def _installing() -> str:
+    """Command that installs what reads such files, into the Python that runs this one."""
+    pip = Path(sys.prefix) / "bin" / "pip"
+    return f"{quote(str(pip))} install firecrawl-anydoc"
+
+
+def _rtf_level(found: re.Match[bytes]) -> bytes:
+    """A group of RTF, with an annotation if its text is a superscript or subscript."""
+    small = _RTF_SMALL.search(found[1])
+    if small is None:
+        return found[0]
+    word = b"sup" if small[1] == b"super" else b"sub"
+    begin, about, end = (b"\\u%d?" % (ord(mark) - 0x10000) for mark in annotation([]))
+    return b"{%s%s%s%s%s%s}" % (found[1], begin, word, about, found[2], end)
 
 
 def _rtf_title(content: bytes) -> str:

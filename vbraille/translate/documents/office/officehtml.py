@@ -170,7 +170,7 @@ def _inlines(content: list[Inline], numbers: Mapping[str, str], *, styled: bool 
             parts += [_inline(inline, numbers) for inline in run]
             continue
         tags = [tag for tag in style if tag not in common]
-        inner = "".join(_text(inline.text or "") for inline in run)
+        inner = _text("".join(inline.text or "" for inline in run))
         opened = "".join(f"<{tag}>" for tag in tags)
         closed = "".join(f"</{tag}>" for tag in reversed(tags))
         parts.append(f"{opened}{inner}{closed}")
