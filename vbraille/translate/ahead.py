@@ -168,7 +168,7 @@ class BookAhead(Book):
             free = (other for other in self._batches if other.process is other.cells is None)
             mine = None if under.cells is not None else next(free, None)
             if mine is not None:
-                mine.cells = [self._cells_of(block) for block in mine.blocks]
+                mine.cells = self._cells_of(mine.blocks)
             elif under.cells is None:
                 self._hear(None)
             self._go_on()
@@ -179,9 +179,6 @@ class BookAhead(Book):
             del self._waiting[self._next]
             self._ready[self._next] = block, cells
             self._next += 1
-
-    def _cells_of(self, block: Block) -> Cells:
-        return self._translate(block) if block.cells is None else block.cells
 
     def _given(self, process: Popen[bytes]) -> list[_Under]:
         """Batches that a process has been given and has not answered, in order."""

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.translate.languages import foreign_note
+from vbraille.errors import VbrailleError
+from vbraille.translate.languages import table_note
+from vbraille.translate.library import EndlessError, call, limit_s
 from vbraille.translate.switching import Translator
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from vbraille.braille.cells import Cells
     from vbraille.translate.liblouis import BrailleTable
@@ -39,6 +41,8 @@ class Book:
     """
 
     _REMEMBERED = 16
+    # What is translated at once for who reads on: blocks, and characters.
+    _AHEAD, _AHEAD_CHARACTERS = 8, 4_096
 
     def __init__(
         self,
@@ -58,6 +62,7 @@ class Book:
             own = (language, source.language)
             self.translator = Translator(table, own, grade, switch=switch)
         self._recent: dict[int, tuple[Block, Cells]] = {}
+        self._after = -1  # number of the block after those that were translated last
 
     def block(self, number: int) -> tuple[Block, Cells] | None:
         """Block of a number, from 0, with its cells; None past the end.
@@ -67,16 +72,14 @@ class Book:
         ValueError
             If the block has to be translated and there is no table.
         """
-        found = self._recent.get(number)
-        if found is None:
-            block = self.source.block(number)
-            if block is None:
-                return None
-            found = block, block.cells if block.cells is not None else self._translate(block)
-            if len(self._recent) >= self._REMEMBERED:
-                del self._recent[next(iter(self._recent))]
-            self._recent[number] = found
-        return found
+        if number not in self._recent:
+            blocks = self._gather_from(number)
+            pairs = zip(blocks, self._cells_of(blocks), strict=True)
+            self._recent |= enumerate(pairs, number)
+            self._after = number + len(blocks)
+            for old in list(self._recent)[: -self._REMEMBERED]:
+                del self._recent[old]
+        return self._recent.get(number)
 
     def continues(self, number: int) -> bool:
         """Whether a block goes on where the one before broke off; False past the end."""
@@ -86,9 +89,39 @@ class Book:
     def notes(self) -> Iterator[str]:
         """Notes on the source and the table that are due now; each is given once."""
         tables = () if self.translator is None else self.translator.tables
-        for note in (self.source.note(), *map(foreign_note, tables)):
+        for note in (self.source.note(), *map(table_note, tables)):
             if note is not None:
                 yield note
+
+    def _gather_from(self, number: int) -> list[Block]:
+        """The block of a number, and some more if the one before it was read last."""
+        blocks: list[Block] = []
+        characters = 0
+        most = self._AHEAD if number == self._after else 1
+        while len(blocks) < most and characters < self._AHEAD_CHARACTERS:
+            try:
+                block = self.source.block(number + len(blocks))
+            except VbrailleError:
+                if blocks:  # who reads so far is told
+                    break
+                raise
+            if block is None:
+                break
+            blocks.append(block)
+            characters += len(block.text)
+        return blocks
+
+    def _cells_of(self, blocks: Sequence[Block]) -> list[Cells]:
+        if all(block.cells is not None for block in blocks):
+            return [self._cells(block) for block in blocks]
+        try:
+            limit = sum(limit_s(len(block.text)) for block in blocks)
+            return call(lambda: [self._cells(block) for block in blocks], limit)
+        except EndlessError:
+            return [self._cells(block) for block in blocks]
+
+    def _cells(self, block: Block) -> Cells:
+        return self._translate(block) if block.cells is None else block.cells
 
     def _translate(self, block: Block) -> Cells:
         if self.translator is None:
