@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections import Counter
 from typing import TYPE_CHECKING
 
@@ -42,7 +43,8 @@ class Unknown:
     def see_text(self, text: str) -> None:
         """Count the unknown characters of a text that was translated."""
         if self._table.undefined:
-            self._counts.update(c for c in text if ord(c) in self._table.undefined)
+            composed = unicodedata.normalize("NFC", text)
+            self._counts.update(c for c in composed if ord(c) in self._table.undefined)
 
     @property
     def sentence(self) -> str | None:

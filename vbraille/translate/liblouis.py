@@ -375,7 +375,10 @@ class BrailleTable:
         """Whether the table has dots of its own for a character, and only dots that it may use."""
         if code in (0, SPACE):
             return code == SPACE
-        masks, _ = self._call(np.array([code], np.uint32), _MODE | _NO_UNDEFINED)
+        try:
+            masks, _ = self._call(np.array([code], np.uint32), _MODE | _NO_UNDEFINED)
+        except EndlessError:
+            return False
         if not masks.any():
             return masks.size > 0 and code == UNICODE_BLANK
         return masks.max() <= 0x3F or self.eight_dots

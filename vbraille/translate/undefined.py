@@ -50,10 +50,11 @@ def spellings(character: str, how: Undefined) -> Iterator[str]:
 
 
 def likenesses(character: str) -> Iterator[str]:
-    """Other spellings of the same text: a ligature's letters, plain quotes, a small letter."""
+    """Other spellings of the same: a ligature's letters, plain quotes, a small letter, accents."""
     seen = {character}
     plain = unicodedata.normalize("NFKC", character)
-    for text in (plain, plain.translate(_PLAIN), plain.lower()):
+    apart = unicodedata.normalize("NFD", plain)
+    for text in (plain, plain.translate(_PLAIN), plain.lower(), apart):
         if text not in seen:
             seen.add(text)
             yield text
