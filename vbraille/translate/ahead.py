@@ -56,7 +56,7 @@ class BookAhead(Book):
     """
 
     def __init__(self, book: Book, processes: int, batch: int = BATCH_CHARACTERS) -> None:
-        super().__init__(book.source, book.table)
+        super().__init__(book.source, book.table, unnamed=book.unnamed)
         self.translator = book.translator
         self._wanted = processes if book.translator is not None else 1
         self._size = batch

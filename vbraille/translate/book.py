@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.errors import VbrailleError
-from vbraille.translate.languages import table_note
+from vbraille.translate.guessing import guess_language
+from vbraille.translate.languages import has_tables, table_note
 from vbraille.translate.library import EndlessError, call, limit_s
 from vbraille.translate.switching import Translator
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -33,6 +35,9 @@ class Book:
         Grade that the reader chose, which holds for passages in other languages too.
     switch
         Whether passages in other languages are translated by the tables of those languages.
+    unnamed
+        Whether neither the reader nor the source named a language or a table, so that a text
+        that looks like another than the table's is worth a note.
 
     Attributes
     ----------
@@ -52,11 +57,13 @@ class Book:
         language: str = "",
         grade: int | None = None,
         switch: bool = True,
+        unnamed: bool = False,
     ) -> None:
         self.source = source
         self.table = table
         self.language = language
         self.grade = grade
+        self.unnamed = unnamed
         self.translator = None
         if table is not None:
             own = (language, source.language)
@@ -89,9 +96,30 @@ class Book:
     def notes(self) -> Iterator[str]:
         """Notes on the source and the table that are due now; each is given once."""
         tables = () if self.translator is None else self.translator.tables
-        for note in (self.source.note(), *map(table_note, tables)):
+        hint = None
+        if self.unnamed:
+            self.unnamed = False
+            hint = self._language_hint()
+        for note in (self.source.note(), hint, *map(table_note, tables)):
             if note is not None:
                 yield note
+
+    def _language_hint(self) -> str | None:
+        """Note on a beginning that looks like another language than the table's."""
+        texts: list[str] = []
+        while sum(map(len, texts)) < self._AHEAD_CHARACTERS and len(texts) < self._REMEMBERED:
+            block = self.source.block(len(texts))
+            if block is None:
+                break
+            texts.append(str(block.text))
+        tag, name = guess_language(" ".join(texts))
+        info = None if self.table is None else self.table.info
+        if not tag or info is None or info.speaks(tag) or not has_tables(tag):
+            return None
+        return (
+            f"this text looks like {name}, and is translated by the table {info.name}; "
+            f"{setting('language')} {tag} has it translated as {name}"
+        )
 
     def _gather_from(self, number: int) -> list[Block]:
         """The block of a number, and some more if the one before it was read last."""
