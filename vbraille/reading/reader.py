@@ -80,7 +80,7 @@ class Reader(LineReader):
         self.styles_before: list[BrailleStyle] = []  # before each turn that was not taken back
         self.context = Context.READING
         self.prompt: Prompt | None = None
-        self.fold_accents = self.backward = False
+        self.fold_accents, self.backward = True, False
         self.sought = ""
         # Whether lines are as wide as somebody says, and not as wide as the hand can go.
         self._fixed = layout.width != self.under.width
