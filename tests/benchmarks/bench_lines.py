@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 RANDOM_TEXTS = 10_000
 WIDTHS = (8, 26, 28, 40)
-# None of German: liblouis 3.24 never returns from some lines of dashes and addresses with those.
 TABLES = (
     "en-ueb-g2.ctb",
     "en-ueb-g1.ctb",
+    "de-g2.ctb",
     "fr-bfu-comp6.utb",
     "fr-bfu-g2.ctb",
     "ru-litbrl.ctb",

@@ -46,7 +46,7 @@ def run() -> Iterator[Result]:
             "where the blocks of 50 MB are, found out once and kept", "measured",
             f"{_SIZE / 1e6 / took:.0f} MB/s, {kept // 1000} kB", True,
         )  # fmt: skip
-        for accents, bar in ((False, 50), (True, 10)):
+        for accents, bar in ((False, 50), (True, 50)):
             rates = sorted(_rate(fresh, accents=accents) for _ in range(3))
             how = ", accents folded" if accents else ""
             yield Result(

@@ -53,32 +53,6 @@ def test_lines_without_pages(call, text, tmp_path):
     assert call("page", flat, "--format", "brf", "--cells", "3").out == "A\n\n  B\n"
 
 
-<<<<<<< HEAD:tests/cli/test_page_files.py
-=======
-def test_ebraille_of_a_text(call, texts, tmp_path):
-    out = tmp_path / "livre.ebrl"
-    said = call(
-        "page", texts / "francais.txt", "--language", "fr", "--format", "ebrl", "--out", out
-    )
-    assert said.code == 0
-    assert said.err.startswith('eBraille: creator "unknown", copyright date 20')
-    with zipfile.ZipFile(out) as archive:
-        package = etree.fromstring(archive.read("package.opf"))
-        found = [element.text for element in package.iter("{*}language", "{*}title")]
-        assert found == ["francais", "fr-Brai"]
-        text = etree.fromstring(archive.read("part0001.html"))
-    paragraphs = ["".join(p.itertext()) for p in text.iter("{*}p")]
-    lines = call("page", texts / "francais.txt", "--language", "fr").out
-    assert "".join(paragraphs).replace(" ", "") == "".join(lines.replace("⠀", "").split())
-
-
-def test_unknown_characters_are_counted_on_pages_too(call, text):
-    text.write_text("hi \U0001f600\n\nthere \U0001f600\n")
-    said = call("page", text, "--layout", "bana", "--format", "brf")
-    assert "does not know 2 characters (2 of U+1F600 grinning face), emoji by" in said.err
-
-
->>>>>>> h-text:tests/cli/test_emboss.py
 @pytest.mark.parametrize(
     ("options", "wanted"),
     [

@@ -227,6 +227,7 @@ def test_a_book_is_found_one_s_way_in_by_keys_at_a_terminal(text):
             assert len(new.encode()) - sum(len(line.encode()) for line in said) <= 40
 
         terminal.until("h says the keys\r\n")
+        press("'", "accents: matter")
         press("/", "search: type the text, Enter")
         press("cafex\x7f\n", "text: cafe", "not found after this: cafe")
         press("'", "accents: do not matter")

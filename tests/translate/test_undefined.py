@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from tests.tiers import examples, heavy
 from tests.translate.test_liblouis import sample_of_unicode
 from vbraille.translate import BrailleTable, Cells, Document, Undefined, find_table, list_tables
-from vbraille.translate.languages import foreign_note
+from vbraille.translate.languages import table_note
 from vbraille.translate.scripts import script_of
 from vbraille.translate.undefined import describe, likenesses
 
@@ -127,7 +127,7 @@ class TestForeign:
     def test_it_is_most_of_a_passage_and_not_the_half(self, text, noted):
         table = BrailleTable("en-ueb-g2.ctb")
         translate(table, text)
-        assert (foreign_note(table) is not None) is noted
+        assert (table_note(table) is not None) is noted
 
     @pytest.mark.parametrize(
         ("text", "script", "language"),
@@ -143,28 +143,28 @@ class TestForeign:
     def test_it_is_said_once_with_its_languages(self, text, script, language):
         table = BrailleTable("en-ueb-g2.ctb")
         translate(table, text)
-        note = foreign_note(table)
+        note = table_note(table)
         assert script in note
         assert "en-ueb-g2.ctb does not know" in note
         assert f"‹language› {language}" in note
         translate(table, text)
-        assert foreign_note(table) is None
+        assert table_note(table) is None
 
     def test_latin_in_a_table_of_another_script(self):
         table = BrailleTable("bh.tbl")
         translate(table, "English words")
-        assert "‹language› en (English, en-ueb-g2.ctb)" in foreign_note(table)
+        assert "‹language› en (English, en-ueb-g2.ctb)" in table_note(table)
 
     def test_a_script_without_a_table(self):
         table = BrailleTable("en-ueb-g2.ctb")
         translate(table, "สวัสดี")
-        assert foreign_note(table).endswith("liblouis has no table for Thai letters")
+        assert table_note(table).endswith("liblouis has no table for Thai letters")
 
     @pytest.mark.parametrize("text", ["a word in да Russian", "\U0001f600 \U0001f600", "1 + 1"])
     def test_nothing_is_said_of_a_few(self, text):
         table = BrailleTable("en-ueb-g2.ctb")
         translate(table, text)
-        assert foreign_note(table) is None
+        assert table_note(table) is None
 
     @pytest.mark.no_cover
     @pytest.mark.parametrize(

@@ -241,9 +241,10 @@ def book_of(source: Source, arguments: argparse.Namespace, *, six_dots: bool = F
     table = build_table(arguments, source.language)
     if six_dots and table.eight_dots:
         raise InputError(_eight_dots(table))
-    chosen, grade, _ = _translation(arguments, source.language)
+    chosen, grade, named = _translation(arguments, source.language)
+    unnamed = chosen is None and named is None and not source.language
     switch = arguments.foreign == "switch"
-    return Book(source, table, language=chosen or "", grade=grade, switch=switch)
+    return Book(source, table, language=chosen or "", grade=grade, switch=switch, unnamed=unnamed)
 
 
 def _open(arguments: argparse.Namespace) -> Source:

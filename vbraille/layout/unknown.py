@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections import Counter
 from typing import TYPE_CHECKING
 
 from vbraille.translate import Undefined
 from vbraille.translate.undefined import describe, is_emoji
-from vbraille.wording import setting
+from vbraille.wording import count, setting
 
 if TYPE_CHECKING:
     from vbraille.layout.pages import Line
@@ -38,14 +39,30 @@ class Unknown:
         if line.number > self._last:
             self._last = line.number
             if self._table.undefined:
-                self._counts.update(c for c in line.text if ord(c) in self._table.undefined)
+                composed = unicodedata.normalize("NFC", line.text)
+                self._counts.update(c for c in composed if ord(c) in self._table.undefined)
 
     @property
     def sentence(self) -> str | None:
-        """Sentence on how many there were and what was written instead; None if there were none."""
+        """Sentence on how many there were and what stands for them; None if there were none."""
+        sentences = [self._of_unknown(), self._of_endless()]
+        return "; ".join(filter(None, sentences)) or None
+
+    def _of_endless(self) -> str:
+        words = sorted(self._table.endless)
+        if not words:
+            return ""
+        named = ", ".join(map(repr, words[:_NAMED]))
+        others = "" if len(words) <= _NAMED else ", and others"
+        return (
+            f"liblouis does not come to an end with {count(len(words), 'word')} ({named}{others}), "
+            f"marked {self._table.marker}"
+        )
+
+    def _of_unknown(self) -> str:
         total = self._counts.total()
         if not total:
-            return None
+            return ""
         named = [f"{n} of {describe(c)}" for c, n in self._counts.most_common(_NAMED)]
         others = total - sum(n for _, n in self._counts.most_common(_NAMED))
         if others:

@@ -16,7 +16,7 @@ class FindText(msgspec.Struct, frozen=True, tag="text"):
     Parameters
     ----------
     text
-        What is looked for; case and the length of blanks do not matter.
+        What is looked for; case and kinds of quotes, dashes and blanks do not matter.
     start
         Place of the source from which on it is looked for, or before which.
     backward
@@ -28,7 +28,7 @@ class FindText(msgspec.Struct, frozen=True, tag="text"):
     text: str
     start: int
     backward: bool = False
-    fold_accents: bool = False
+    fold_accents: bool = True
 
 
 class FindKind(msgspec.Struct, frozen=True, tag="kind"):

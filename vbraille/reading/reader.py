@@ -84,7 +84,7 @@ class Reader(LineReader):
         self.prompt: Prompt | None = None
         # The book as it is read, and as it was before its table was changed last.
         self.book_before: tuple[Book, Book] | None = None
-        self.fold_accents = self.backward = False
+        self.fold_accents, self.backward = True, False
         self.sought = ""
         self.followed: Mark | None = None  # link or reference that was followed last
         # Whether lines are as wide as somebody says, and not as wide as the hand can go.

@@ -56,7 +56,7 @@ class BookAhead(Book):
     """
 
     def __init__(self, book: Book, processes: int, batch: int = BATCH_CHARACTERS) -> None:
-        super().__init__(book.source, book.table)
+        super().__init__(book.source, book.table, unnamed=book.unnamed)
         self.translator = book.translator
         self._wanted = processes if book.translator is not None else 1
         self._size = batch
@@ -168,7 +168,7 @@ class BookAhead(Book):
             free = (other for other in self._batches if other.process is other.cells is None)
             mine = None if under.cells is not None else next(free, None)
             if mine is not None:
-                mine.cells = [self._cells_of(block) for block in mine.blocks]
+                mine.cells = self._cells_of(mine.blocks)
             elif under.cells is None:
                 self._hear(None)
             self._go_on()
@@ -179,9 +179,6 @@ class BookAhead(Book):
             del self._waiting[self._next]
             self._ready[self._next] = block, cells
             self._next += 1
-
-    def _cells_of(self, block: Block) -> Cells:
-        return self._translate(block) if block.cells is None else block.cells
 
     def _given(self, process: Popen[bytes]) -> list[_Under]:
         """Batches that a process has been given and has not answered, in order."""

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.braille.cells import Cells
-from vbraille.translate.languages import foreign_note
+from vbraille.translate.languages import table_note
+from vbraille.translate.library import EndlessError, call, limit_s
 from vbraille.translate.source import Block
 from vbraille.translate.text import Text
 
@@ -108,10 +109,15 @@ class Translated:
 
 def translated(batch: Batch, translator: Translator) -> Translated:
     """Translate a batch."""
-    cells = [translator.translate(block) for block in batch.blocks()]
+    blocks = list(batch.blocks())
+    try:
+        limit = sum(limit_s(len(block.text)) for block in blocks)
+        cells = call(lambda: list(map(translator.translate, blocks)), limit)
+    except EndlessError:
+        cells = list(map(translator.translate, blocks))
     indices = np.concatenate([part.starts for part in cells])
     small = max(part.end for part in cells) <= 0x10000
-    notes = [note for table in translator.tables if (note := foreign_note(table)) is not None]
+    notes = [note for table in translator.tables if (note := table_note(table)) is not None]
     return Translated(
         np.concatenate([part.masks for part in cells]),
         indices.astype(np.uint16 if small else np.int32),

@@ -195,8 +195,13 @@ def six_dot_table(language: str) -> str | None:
     return next((name for name in names if not BrailleTable(name).eight_dots), None)
 
 
-def foreign_note(table: BrailleTable) -> str | None:
-    """Note on scripts of passages that a table does not know, each script once."""
+def table_note(table: BrailleTable) -> str | None:
+    """Note on what a table cannot translate that is due: endless texts, a script; each once."""
+    if table.take_endless():
+        return (
+            f"liblouis does not come to an end with this passage by the table {table.name}; such "
+            f"passages are translated word by word, and words of that kind marked {table.marker}"
+        )
     script = table.take_foreign()
     if script is None:
         return None

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+import re
+import unicodedata
+from functools import cache, cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.translate.library import EndlessError, call, limit_s
 from vbraille.translate.scripts import script_of
-from vbraille.translate.text import SPACE
+from vbraille.translate.text import SPACE, Text
 from vbraille.translate.undefined import MARKERS, Undefined, likenesses, spellings
 
 if TYPE_CHECKING:
@@ -17,7 +21,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.translate.scripts import Script
-    from vbraille.translate.text import Text
 
 # Invisible characters that carry no text unless a table knows them (joiners, variation selectors,
 # directions); and the byte-order mark, which liblouis 3.24 turns into a wrong "zero".
@@ -27,6 +30,7 @@ _IGNORABLE = (
     | {*range(0x180B, 0x1810), *range(0xE0000, 0xE0200)}
 )
 _BYTE_ORDER_MARK = 0xFEFF
+_TRIED = 100  # characters that are translated to learn of one, at most about
 
 
 class Substitutes:
@@ -49,8 +53,10 @@ class Substitutes:
         self.undefined: set[int] = set()
         self._writes = writes
         self._how = how
-        # Characters that the table is known to have; what stands for those it does not have.
+        # Characters that the table is known to have; those of them that other characters leave
+        # as they are; what stands for those that it does not have.
         self._known = {SPACE}
+        self._plain = {SPACE}
         self._instead: dict[int, tuple[int, ...]] = {}
         self._foreign: dict[str, Script] = {}  # scripts of whole unknown passages, by name
         self._noted = 0
@@ -70,15 +76,26 @@ class Substitutes:
     def put_into(self, text: Text) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
         """Replace characters that the table cannot write by others that it can.
 
+        Texts that are canonically equal become the same.
+
         Returns
         -------
         uint32[characters], int64[characters]
             Code points, and the place in the source of each.
         """
-        if text.alphabet <= self._known:
+        if text.alphabet <= self._plain:
             return text.codes, text.places
-        for code in text.alphabet - self._known - self._instead.keys():
-            self._probe(code)
+        alphabet = text.alphabet
+        if any(map(_joins, alphabet - self._plain)):
+            text = self._composed(text)
+            alphabet = frozenset(text.codes.tolist())
+        new = alphabet - self._known - self._instead.keys()
+        if new:
+            try:
+                call(lambda: [self._probe(code) for code in new], limit_s(_TRIED * len(new)))
+            except EndlessError:
+                for code in new:
+                    self._probe(code)
         own = text.codes.tolist()
         if self._instead.keys().isdisjoint(own):
             return text.codes, text.places
@@ -98,6 +115,34 @@ class Substitutes:
             places += (place,) * len(instead)
         return np.array(written, np.uint32), np.array(places, np.int64)
 
+    def _composed(self, text: Text) -> Text:
+        """The text in the one form of all that are canonically equal to it.
+
+        Letters are composed as in NFC, and those that NFC leaves apart, such as क़, where the table
+        has them. Characters that become others take the place of the first of them.
+        """
+        characters = str(text)
+        apart = _apart().search(unicodedata.normalize("NFC", characters)) is not None
+        if not apart and unicodedata.is_normalized("NFC", characters):
+            return text
+        codes: list[int] = []
+        places: list[int] = []
+        own = text.places.tolist()
+        begins = [n for n, code in enumerate(text.codes.tolist()) if not n or not _follows(code)]
+        for start, stop in pairwise((*begins, len(own))):
+            before = characters[start:stop]
+            after = unicodedata.normalize("NFC", before)
+            if apart:
+                after = _apart().sub(self._whole, after)
+            codes += map(ord, after)
+            places += own[start:stop] if after == before else (own[start],) * len(after)
+        return Text(np.array(codes, np.uint32), np.array(places, np.int64), text.end, text.alphabet)
+
+    def _whole(self, parts: re.Match[str]) -> str:
+        """The letter of these parts, or the parts where the table has no such letter."""
+        letter = _excluded()[parts[0]]
+        return letter if self._writes(ord(letter)) else parts[0]
+
     def _look_for_foreign(self, codes: list[int]) -> None:
         """Remember the script of a passage if the table does not know most of its letters."""
         if self.undefined.isdisjoint(codes):
@@ -114,6 +159,8 @@ class Substitutes:
         instead = self._find_instead(code)
         if instead == (code,):
             self._known.add(code)
+            if not _joins(code):
+                self._plain.add(code)
         else:
             self._instead[code] = instead
 
@@ -136,6 +183,33 @@ class Substitutes:
     def _first_written(self, texts: Iterable[str]) -> tuple[int, ...]:
         """First of the texts that the table can write in full; empty if there is none."""
         return next((c for c in map(_codes, texts) if all(map(self._writes, c))), ())
+
+
+@cache
+def _follows(code: int) -> bool:
+    """Whether a character may become another together with one before it."""
+    # The numbers are vowels and ends of syllables of Hangul.
+    return unicodedata.category(chr(code))[0] == "M" or 0x1160 <= code < 0x1200
+
+
+@cache
+def _joins(code: int) -> bool:
+    """Whether a character may become another, alone or with one before it."""
+    return _follows(code) or not unicodedata.is_normalized("NFC", chr(code))
+
+
+@cache
+def _excluded() -> dict[str, str]:
+    """Letters that NFC leaves apart, by their parts."""
+    letters = map(chr, (*range(0x958, 0x1000), 0x2ADC, *range(0xFB1D, 0xFB4F)))
+    parts = {unicodedata.normalize("NFC", letter): letter for letter in letters}
+    return {several: letter for several, letter in parts.items() if len(several) > 1}
+
+
+@cache
+def _apart() -> re.Pattern[str]:
+    """Pattern of the parts of such letters, the longest first."""
+    return re.compile("|".join(sorted(_excluded(), key=len, reverse=True)))
 
 
 def _codes(text: str) -> tuple[int, ...]:

@@ -62,12 +62,13 @@ def is_emoji(character: str) -> bool:
 
 
 def likenesses(character: str) -> Iterator[str]:
-    """Other spellings of the same text: a ligature's letters, plain quotes, a small letter."""
+    """Other spellings of the same: a ligature's letters, plain quotes, a small letter, accents."""
     seen = {character}
     plain = unicodedata.normalize("NFKC", character)
     if plain[:1].isdigit() and not character.isdecimal():
         plain = f" {plain}"  # ½ after a number is not the number's next digit
-    for text in (plain, plain.translate(_PLAIN), plain.lower()):
+    apart = unicodedata.normalize("NFD", plain)
+    for text in (plain, plain.translate(_PLAIN), plain.lower(), apart):
         if text not in seen:
             seen.add(text)
             yield text

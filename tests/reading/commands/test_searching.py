@@ -49,15 +49,14 @@ def bench():
 def test_a_text_is_typed_in_silence_and_found_at_once(bench):
     assert bench.press("/") == ["search: type the text, Enter"]
     assert bench.reader.context is Context.PROMPT
-    assert bench.press("cafq\x7fe") == []
-    assert bench.press("\n") == ["text: cafe", "line: 3", "text: A cafe, two cafés, and THE"]
+    assert bench.press("twq\x7fo") == []
+    assert bench.press("\n") == ["text: two", "line: 3", "text: A cafe, two cafés, and THE"]
     assert bench.reader.context is Context.READING
 
 
 def test_case_and_blanks_do_not_matter_and_accents_only_if_asked(bench):
     assert bench.press("/the  STREET\n")[2] == "line: 3"
     assert bench.press("</strasse\n")[-2:] == ["line: 4", "text: street Straße."]
-    assert bench.press("'") == ["accents: do not matter"]
     assert bench.press("</cafe\n")[-1] == "line: 1"  # which was under the hand, and has it
     assert bench.press("..") == ["line: 3", "text: A cafe, two cafés, and THE", "line: 3"]
     assert bench.press("'") == ["accents: matter"]

@@ -13,13 +13,16 @@ from vbraille.reading.queries import FindText, Found, NotFound, Searched
 from vbraille.reading.seeking.answering import answer
 from vbraille.reading.seeking.folding import fold, needle_of, unfolded
 from vbraille.reading.seeking.sieve import Sieve, ahead
+from vbraille.reading.seeking.steps import steps
 from vbraille.translate import Document
 from vbraille.translate.documents.encodings import Encoding
 from vbraille.translate.documents.parted import PartedSource, Passage
+from vbraille.translate.opening import open_source
 
 PIECES = (
     "one two", "well-", "known", "Straße", "STRASSE", "ﬁne", "fine", "café", "cafe\u0301", "CAFÉ",
     " ", " ", " ", "\n", "\n", "\n\n", "\r\n", "\xad\n", "\xad", "\xa0", "\t  ", "\f", "\u2028",
+    "’", '"', "«", "–", "-", "\u2009", "\u202f", "ï",
     "\ufeff", "_\bx", "e\bé", "x", "s", "ſ", "Σς", "  " * 40, "\n   \n", "1. ", "- ", "e", "́", "и́",
 )  # fmt: skip
 texts = st.lists(st.sampled_from(PIECES), min_size=1, max_size=30).map("".join)
@@ -40,8 +43,13 @@ def blocks(source):
     return takewhile(lambda block: block is not None, map(source.block, count()))
 
 
+QUOTES = "\"'`´‘’‚‛“”„‟′″‹›«»ʼ"
+DASHES = "-‐‑‒–—―−"
+
+
 def folded(character, accents):
     """A character as it is compared; this is the plain twin of what is done at once for many."""
+    character = "'" if character in QUOTES else "-" if character in DASHES else character
     character = character.casefold()
     if accents:
         decomposed = unicodedata.normalize("NFD", character)
@@ -105,7 +113,21 @@ def all_hits_back(source, text, accents):
 NEEDLES = st.one_of(
     texts.filter(lambda text: len(text) < 60),
     st.sampled_from(
-        ("one two", "well-known", "strasse", "fine", "cafe", "café", "s", "x", "xs", "e")
+        (
+            "one two",
+            "well-known",
+            "x’s",
+            "-",
+            '"x',
+            "strasse",
+            "fine",
+            "cafe",
+            "café",
+            "s",
+            "x",
+            "xs",
+            "e",
+        )
     ),
 )
 
@@ -209,6 +231,40 @@ def test_a_place_in_a_folded_text_is_that_of_its_character(parts, times, accents
     index = unfolded(text, at, accents=accents)
     assert len(fold(text[:index], accents=accents)) <= at
     assert len(fold(text[: index + 1], accents=accents)) > at
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16-le", "cp1252"])
+@pytest.mark.parametrize(
+    ("needle", "text"),
+    [
+        ("I've", "so I’ve gone"),
+        ("I’ve", "so I've gone"),
+        ('"quote"', "a “quote” here"),
+        ("«quote»", 'a "quote" here'),
+        ("end - so", "the end – so it is"),
+        ("well-known", "a well‑known one".replace("‑", "–")),
+        ("naive cafe", "a naïve  café\xa0there"),
+        ("CAFE there", "a naïve  café\xa0there"),
+        ("café", "a cafe"),
+    ],
+)
+def test_kinds_of_signs_blanks_and_accents_make_no_difference(needle, text, encoding):
+    document = Document(io.BytesIO(text.encode(encoding)), "a", Encoding(encoding))
+    first = needle.split()[0]
+    for near in (True, False):
+        *_, found = steps(document, FindText(needle, 0), near=near)
+        assert isinstance(found, int)
+        *_, back = steps(document, FindText(needle, 10**6, backward=True), near=near)
+        assert back == found
+    *_, word = steps(document, FindText(first, 0))
+    assert word == found
+
+
+def test_a_row_of_a_table_is_found_with_one_blank(tmp_path):
+    (tmp_path / "a.html").write_text("<table><tr><td>alpha one<td>beta<td>12</tr></table>")
+    source = open_source(str(tmp_path / "a.html"))
+    for needle in ("one beta", "one  beta 12"):
+        assert ask(source, needle, 0) == ask(source, "one", 0) is not None
 
 
 def test_nothing_is_found_for_nothing():

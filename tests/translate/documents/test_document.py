@@ -88,8 +88,12 @@ class TestNote:
         assert found.note() is None
         assert str(found.block(3).text) == str(document(text.encode()).block(3).text)
 
-    @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-32"])
-    def test_utf16_is_said_too(self, texts, encoding):
+    @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-32"])
+    def test_nothing_is_said_of_what_has_a_mark(self, texts, encoding):
+        assert document((texts / "english.txt").read_text().encode(encoding)).note() is None
+
+    @pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+    def test_utf16_without_one_is_said_too(self, texts, encoding):
         found = document((texts / "english.txt").read_text().encode(encoding))
         note = found.note()
         assert note is not None

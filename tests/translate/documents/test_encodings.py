@@ -112,6 +112,35 @@ class TestFindEncoding:
         sample[500] = 0xFF
         assert find_encoding(bytes(sample)) == Encoding("utf-8")
 
+    @pytest.mark.parametrize("text", ["café été ", "é", "Größe. "])
+    def test_nor_does_it_in_a_short_text(self, text):
+        assert find_encoding(text.encode() + b"\xff") == Encoding("utf-8")
+
+    @pytest.mark.parametrize(
+        ("text", "encoding"),
+        [
+            ("½ Tasse Öl", "latin-1"),
+            ("Größe 50 µm, 20 °C, § 3", "latin-1"),
+            ("“Hello,” he said, don’t – “now”", "cp1252"),
+            ("don’t " * 200, "cp1252"),
+            ("5 €", "cp1252"),
+            ("le cœur et l'œuvre d'été", "iso8859-15"),
+            ("Zażółć gęślą jaźń i pięć żółtych łódek", "iso8859-2"),
+            ("Zażółć gęślą jaźń i pięć żółtych łódek", "cp1250"),
+            ("Příliš žluťoučký kůň úpěl ďábelské ódy", "cp1250"),
+            ("Все счастливые семьи похожи друг на друга", "koi8_r"),
+            ("Все счастливые семьи похожи друг на друга", "cp1251"),
+            ("Όλοι οι άνθρωποι γεννιούνται ελεύθεροι και ίσοι", "cp1253"),
+            ("すべての人間は、生まれながらにして自由であり", "cp932"),
+            ("人人生而自由,在尊严和权利上一律平等。他们赋有理性和良心", "gb18030"),
+            ("L'été dernier, à la fenêtre, où le château français brûlait. " * 10, "cp850"),
+            ("L'été dernier, à la fenêtre, où le château français brûlait. " * 10, "mac-roman"),
+        ],
+    )
+    def test_others(self, text, encoding):
+        raw = text.encode(encoding)
+        assert raw.decode(find_encoding(raw).name) == text
+
     @examples(150)
     @given(st.binary(min_size=1, max_size=60))
     def test_always_one_that_exists(self, sample):

@@ -95,9 +95,7 @@ def _change(reader: Reader, language: str, grade: int | None = None) -> None:
         if name == find_table(language):
             grade = None  # the usual one, with which passages have what is usual in theirs
         other = BrailleTable(name, book.table.how)
-        _show(
-            reader, Book(book.source, other, language=language, grade=grade, switch=book.switch)
-        )
+        _show(reader, Book(book.source, other, language=language, grade=grade, switch=book.switch))
     except InputError as error:
         reader.say(f"table: {spelled(str(error))}")
 

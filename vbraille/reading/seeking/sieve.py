@@ -7,11 +7,10 @@ found there is a hit, the blocks decide.
 from __future__ import annotations
 
 import re
-import unicodedata
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from vbraille.reading.seeking.folding import COMBINING, cases, fold_letters, unlike_ascii
+from vbraille.reading.seeking.folding import alike, fold_letters, is_plain, unlike
 from vbraille.translate.documents.encodings import TextDecoder
 
 if TYPE_CHECKING:
@@ -22,11 +21,13 @@ if TYPE_CHECKING:
 PIECE_BYTES = 262_144
 _CHUNKS = 4  # of the document's, which are decoded together on the way back
 _TAIL_BYTES = 4_096
-_NO_TEXT = re.compile(f"[\\s\u00ad\ufeff{COMBINING}]+")
+_NO_TEXT = re.compile("[\\s\u00ad\ufeff\u0300-\u036f\u0653-\u0655\u3099\u309a]+")
 _SOFT_HYPHEN, _BYTE_ORDER_MARK = "\u00ad", "\ufeff"
 # A soft hyphen before a line break joins two parts of a word; a line is kept as it is, or not.
 _IN_LINE = "(?:[^\\S\n\r\v\f\u0085\u2028\u2029]|\u00ad)*"
 _SOFT_BREAK = re.compile(f"\u00ad{_IN_LINE}(?:\r\n|[\n\v\r\u0085\u2028]){_IN_LINE}")
+# Bytes in UTF-8 with which all accents begin, and signs and letters that join others.
+_JOINING = re.compile(rb"[\xcc\xcd\xd6-\xd9\xdb-\xdf\xe0\xe1\xe3\xea\xef\xf0]|\xe2[\x83\xab-\xb7]")
 # Encodings of which each byte below 128 is its character, whatever stands before it.
 _ASCII_SAFE = ("utf-8", "ascii", "cp125", "iso8859", "latin", "koi8", "mac")
 
@@ -65,31 +66,29 @@ class Sieve:
     def __init__(self, needle: str, *, accents: bool) -> None:
         self.characters = len(needle)
         self._accents = accents
-        self._folded = re.compile(_pattern(needle, lambda letter: re.escape(letter)))
-        self._plain = re.compile(_pattern(needle, _any_case))
-        self._odd = tuple(unlike_ascii(needle))
+        same = {letter: alike(letter, accents=accents) for letter in {*needle}}
+        ascii_only = {c: "".join(filter(str.isascii, every)) or c for c, every in same.items()}
+        self._folded = re.compile(_pattern(needle, {}))
+        self._ascii = re.compile(_pattern(needle, ascii_only))
+        self._plain = re.compile(_pattern(needle, same))
+        self._odd = tuple(unlike(needle, accents=accents))
 
-    def may_hold(self, text: str, *, combining: bool) -> bool:
+    def may_hold(self, text: str, *, plain: bool) -> bool:
         """Whether a hit may be in a text whose ASCII letters are small.
 
         Parameters
         ----------
         text
             Part of a document.
-        combining
-            Whether there may be combining accents in it.
+        plain
+            Whether all its characters are folded alone.
         """
         if "\b" in text:
             return True  # a backspace strikes out what is around it
         if text.isascii():
-            return self._folded.search(text) is not None
+            return self._ascii.search(text) is not None
         joined = _SOFT_HYPHEN in text or _BYTE_ORDER_MARK in text
-        if (
-            not self._accents
-            and not joined
-            and not combining
-            and not any(odd in text for odd in self._odd)
-        ):
+        if plain and not joined and not any(odd in text for odd in self._odd):
             return self._plain.search(text) is not None
         variants = [text]
         if joined:
@@ -111,18 +110,18 @@ class Sieve:
         )
 
 
-def _any_case(letter: str) -> str:
-    same = cases(letter)
-    return re.escape(letter) if len(same) == 1 else f"[{re.escape(same)}]"
+def _pattern(needle: str, alike: dict[str, str]) -> str:
+    """Pattern of a needle in text whose blanks are of any length, and in which lines may break.
 
+    With a text for a letter, any character of it may stand for the letter.
+    """
 
-def _pattern(needle: str, letter) -> str:
-    """Pattern of a needle in text whose blanks are of any length, and in which lines may break."""
-    words = [
-        "".join(letter(c) + (r"\s*" if c in "-\u2010" else "") for c in word)
-        for word in needle.split(" ")
-    ]
-    return r"\s+".join(words)
+    def letter(c: str) -> str:
+        same = alike.get(c, c)
+        one = re.escape(c) if same == c else f"[{re.escape(same)}]"
+        return one + (r"\s*" if c == "-" else "")
+
+    return r"\s+".join("".join(map(letter, word)) for word in needle.split(" "))
 
 
 def ahead(
@@ -136,7 +135,7 @@ def ahead(
     decoder = TextDecoder(document.encoding.name)
     decoder.restore((bytes.fromhex(str(held)), int(flag)))
     offset, place = int(offset), int(character) - int(skip)
-    tail, combined = "", False
+    tail, plain_before = "", True
     since = start = place  # where a hit may begin that is not at its end yet
     while offset < document.size:
         raw = document.read(offset, piece_bytes)
@@ -144,12 +143,12 @@ def ahead(
             return
         end = offset + len(raw)
         text, characters = _decode(decoder, document, raw, offset, final=end >= document.size)
-        combining = _combining(document, raw, text)
+        plain = _is_plain(document, raw, text)
         window = tail + text
         # Where a hit may have begun before the tail, the blocks must say.
-        hit = since < start or sieve.may_hold(window, combining=combining or combined)
+        hit = since < start or sieve.may_hold(window, plain=plain and plain_before)
         yield Suspect(max(0, since), place + characters, end, hit)
-        combined = combining
+        plain_before = plain
         tail = window[-(64 * sieve.characters + _TAIL_BYTES) :]
         offset, place = end, place + characters
         start = place - len(tail)
@@ -175,16 +174,16 @@ def behind(
         stop = min(document.size, end + _TAIL_BYTES)
         raw = document.read(offset, stop - offset)
         text, _ = _decode(decoder, document, raw, offset, final=stop >= document.size)
-        combining = _combining(document, raw, text)
+        plain = _is_plain(document, raw, text)
         while stop < document.size and not sieve.enough(text[max(0, end_place - place) :]):
             raw = document.read(stop, PIECE_BYTES)
             if not raw:
                 break
             end = stop + len(raw)
             more, _ = _decode(decoder, document, raw, stop, final=end >= document.size)
-            combining = combining or _combining(document, raw, more)
+            plain = plain and _is_plain(document, raw, more)
             text, stop = text + more, end
-        hit = sieve.may_hold(text, combining=combining)
+        hit = sieve.may_hold(text, plain=plain)
         yield Suspect(int(character), min(place + len(text), end_place), offset, hit)
         after = first
 
@@ -200,15 +199,11 @@ def _decode(
     return text.lower(), len(text)
 
 
-def _combining(document: Document, raw: bytes, text: str) -> bool:
-    """Whether there may be combining accents in a piece of text, given its bytes."""
+def _is_plain(document: Document, raw: bytes, text: str) -> bool:
+    """Whether all characters of a piece of text are folded alone, given its bytes."""
     if text.isascii():
-        return False
-    if document.encoding.name.startswith("utf-8"):
-        return (
-            b"\xcc" in raw
-            or b"\xcd" in raw
-            or any(accent in text for accent in "\u0653\u0654\u0655\u3099\u309a")
-            or raw[0] & 0xC0 == 0x80  # the piece begins within a character
-        )
-    return not unicodedata.is_normalized("NFC", text)
+        return True
+    # A piece may begin within a character.
+    if document.encoding.name.startswith("utf-8") and raw[0] & 0xC0 != 0x80:
+        return _JOINING.search(raw) is None or is_plain(text)
+    return is_plain(text)

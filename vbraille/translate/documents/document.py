@@ -192,7 +192,7 @@ class Document:
             )
         if self._noted:
             return None
-        if self._found and self.encoding.name != "utf-8":
+        if self._found and self.encoding.name != "utf-8" and not self.encoding.skip:
             self._noted = True
             bad = first_not_utf8(self._read(0, SAMPLE_BYTES))
             return (

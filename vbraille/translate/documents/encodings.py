@@ -1,6 +1,6 @@
 """Bytes of a text file in any encoding, piece by piece, to code points.
 
-A byte-order mark decides; else strict UTF-8; else what a detector makes of the
+A byte-order mark decides; else strict UTF-8; else what is the likeliest by the
 first 64 kB. No byte is ever dropped: one that the encoding cannot read is
 taken as windows-1252.
 """
@@ -8,6 +8,7 @@ taken as windows-1252.
 from __future__ import annotations
 
 import codecs
+import re
 from dataclasses import dataclass
 
 SAMPLE_BYTES = 65_536
@@ -46,8 +47,29 @@ _MAGIC = {
 _TEXT_CONTROLS = frozenset(b"\b\t\n\v\f\r\x1a\x1b")
 # Encodings that Python has for text, but that no text file is written in.
 _NO_FILE_ENCODINGS = {"idna", "punycode", "unicode-escape", "raw-unicode-escape"}
+_ASCII_LETTERS = [bytes([code]) for code in range(0x80) if chr(code).isalpha()]
+# Encodings of Latin letters, the likeliest first, and of others.
+_LATIN = ("cp1252", "iso8859-15", "cp1250", "iso8859-2", "cp1254", "cp1257")
+_OLD_LATIN = ("mac-roman", "cp850", "cp852")
+_OTHERS = (
+    "cp1251", "koi8_r", "koi8_u", "cp866", "iso8859_5", "mac_cyrillic", "cp1253", "iso8859_7",
+    "cp1255", "cp1256", "iso8859_6", "cp874", "cp932", "euc_jp", "iso2022_jp", "gb18030", "big5",
+    "cp949",
+)  # fmt: skip
 # A shorter text says too little to tell DOS and Mac code pages from windows-1252.
-_TELLING_BYTES = 512
+_TELLING_BYTES = 256
+# Letters beyond ASCII of languages that have many readers, the likeliest together.
+_ALPHABETS = (
+    "àâæçéèêëîïôœùûüÿ", "äöüß", "áéíñóúü", "àâãáçéêíóôõúü", "àèéìíîòóùú", "àáçèéíïòóúü", "åäöéü",
+    "åæøéòô", "áéëèïóöüê", "áðéíóúýþæö", "ąćęłńóśźż", "áčďéěíňóřšťúůýž", "áäčďéíĺľňóôŕšťúýž",
+    "áéíóöőúüű", "ăâîșțşţ", "čćđšž", "çğıöşüâîû", "āčēģīķļņšūž", "ąčęėįšųūž", "äõöüšž",
+)  # fmt: skip
+# What is hardly ever in a text of the right encoding: controls, signs within words, half a word.
+_UNLIKELY = re.compile(
+    "[\x80-\x9f\ufffd]|"
+    r"(?<=[^\W\d_])[^\x00-\x7f\w\s’‘“”»«–—…](?=[^\W\d_])|"
+    r"(?<!\d)[¼½¾](?=[^\W\d_])"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +128,7 @@ def find_encoding(sample: bytes) -> Encoding:
 def _wide(sample: bytes) -> str | None:
     """UTF-16 or UTF-32 if zeros stand where a mostly Western text has them; otherwise None.
 
-    If such a text is short, chardet takes it for another, or in the wrong byte order.
+    Detectors take such a text for another if it is short, or in the wrong byte order.
     """
     if sample.count(0) < 2:  # a single one may be a stray
         return None
@@ -126,26 +148,50 @@ def _wide(sample: bytes) -> str | None:
 
 
 def _mostly_utf8(sample: bytes) -> bool:
-    """Whether the bytes are UTF-8 beyond ASCII except a few damaged ones."""
+    """Whether the bytes are UTF-8 beyond ASCII except some damaged ones.
+
+    What is two characters in other encodings is hardly ever one of UTF-8 by chance.
+    """
     text = sample.decode("utf-8", "surrogateescape")
     damaged = sum("\udc80" <= c <= "\udcff" for c in text)
     whole = sum(c > "\x7f" for c in text) - damaged
-    return whole > 4 * damaged
+    return whole >= damaged
 
 
 def _detect(sample: bytes) -> str:
-    import chardet
+    plain = sum(map(sample.count, _ASCII_LETTERS))
+    name, score, others = _latin(sample)
+    if others < 4 or (2 * others < plain and (score > 0.8 or 8 * others < plain)):
+        return name
+    import charset_normalizer
 
-    eras = chardet.EncodingEra
-    short = len(sample) < _TELLING_BYTES
-    likely = eras.MODERN_WEB | eras.LEGACY_ISO if short else eras.ALL
-    found = chardet.detect(sample, encoding_era=likely)["encoding"] or "windows-1252"
-    try:
-        name = codecs.lookup(found).name
-    except LookupError:
-        return "cp1252"
-    # A detector's ASCII or UTF-8 does not help here: the bytes are neither.
-    return "cp1252" if name in {"ascii", "utf-8", "iso8859-1"} else name
+    found = charset_normalizer.from_bytes(sample, cp_isolation=list(_OTHERS)).best()
+    return name if found is None else codecs.lookup(found.encoding).name
+
+
+def _latin(sample: bytes) -> tuple[str, float, int]:
+    """Encoding in which a Latin text has letters of one language only, or the most of one.
+
+    Returns
+    -------
+    name
+        The first of several that are as likely.
+    score
+        1 if all letters beyond ASCII are of one language, and less the more are not.
+    others
+        Number of these letters, and of what no text has.
+    """
+    best = "", -3.0, 0
+    for encoding in _LATIN + (_OLD_LATIN if len(sample) >= _TELLING_BYTES else ()):
+        text = sample.decode(encoding, "replace")
+        marks = len(_UNLIKELY.findall(text))
+        letters = [c for c in text.lower() if c > "\x7f" and c.isalpha() and c not in "ªºµ"]
+        of_one = max(sum(map(alphabet.count, letters)) for alphabet in _ALPHABETS)
+        likely = of_one - 2 * (len(letters) - of_one) - 2 * marks
+        score = likely / (len(letters) + marks) if letters or marks else 1.0
+        if score > best[1]:
+            best = codecs.lookup(encoding).name, score, len(letters) + marks
+    return best
 
 
 def named_encoding(name: str, sample: bytes) -> Encoding | None:
