@@ -1,14 +1,12 @@
-"""Large books: lines deep in them, memory while they are read, and all of them by two processes."""
+"""Large books: lines deep in them, and memory while they are read."""
 
 from __future__ import annotations
 
-import os
 import random
 import statistics
 import subprocess
 import sys
 import tempfile
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 from time import perf_counter, process_time
@@ -28,8 +26,6 @@ if TYPE_CHECKING:
 TABLE = "en-ueb-g2.ctb"
 WIDTH = 26
 JUMPS, LINES = 100, 40  # places that are gone to, and lines that are read there in each direction
-EXPORTED = 3_000_000  # bytes
-ROUNDS = 5
 
 _READ_ON = """
 import json, resource, sys, msgspec
@@ -54,7 +50,6 @@ def run() -> Iterator[Result]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         yield from _deep(folder, size=50_000_000)
-        yield _export(folder)
 
 
 def _deep(folder: Path, size: int) -> Iterator[Result]:
@@ -129,66 +124,3 @@ def _index(path: Path) -> tuple[Index, int]:
     while (block := document.block(number)) is not None:
         number, end = number + 1, block.text.end
     return document.index(), end
-
-
-def _export(folder: Path) -> Result:
-    """Whole books as lines, by one process and two; the same of nothing but liblouis's work.
-
-    Both are measured in turn, since others use the machine, too.
-    """
-    from vbraille.translate import Document
-
-    path = big_text(folder / "exported", EXPORTED)
-    document = Document.open(path)
-    texts = []
-    while (block := document.block(len(texts))) is not None:
-        texts.append(str(block.text))
-    halves = [texts[: len(texts) // 2], texts[len(texts) // 2 :]]
-    ours, bare, works = [], [], []
-    with ProcessPoolExecutor(2) as pool:
-        list(pool.map(_bare, [texts[:50]] * 4))
-        for _ in range(ROUNDS):
-            (one, work), (two, both) = _taken(path, 1), _taken(path, 2)
-            ours.append(one / two)
-            works.append(work / both)
-            alone = seconds(lambda: list(pool.map(_bare, [texts])))
-            bare.append(alone / seconds(lambda: list(pool.map(_bare, halves))))
-    share = statistics.median(mine / its for mine, its in zip(ours, bare, strict=True))
-    return Result(
-        f"a book of {EXPORTED // 1_000_000} MB as lines by two processes, "
-        f"{statistics.median(ours):.2f} × as fast as by one, against two bare `louis.translate` "
-        f"({statistics.median(bare):.2f} ×); half of {ROUNDS} rounds (in processor time, one has "
-        f"{statistics.median(works):.2f} × the work of the busier of two)",
-        "≥ 0.85 ×", f"{share:.2f} ×", share >= 0.85,
-    )  # fmt: skip
-
-
-def _lines(path: Path, processes: int) -> None:
-    """Lay out a book, and give each line's cells as an export does."""
-    from vbraille.layout.pages import Layout
-    from vbraille.translate import Book, BrailleTable, Document
-    from vbraille.translate.ahead import BookAhead
-
-    with BookAhead(Book(Document.open(path), BrailleTable(TABLE)), processes) as book:
-        for laid in Layout(book, 40).blocks():
-            brf = laid.cells.to_brf()
-            for start, stop, indent in laid.bounds:
-                assert len(" " * indent + brf[start:stop]) <= 40
-
-
-def _taken(path: Path, processes: int) -> tuple[float, float]:
-    """Time in which a book is laid out, and processor time of the process that has most to do."""
-    before, wall = os.times(), perf_counter()
-    _lines(path, processes)
-    wall, after = perf_counter() - wall, os.times()
-    mine, others = (
-        sum(after[n : n + 2]) - sum(before[n : n + 2]) for n in (0, 2)
-    )  # of this process, and of those that it began
-    return wall, max(mine, others)
-
-
-def _bare(texts: list[str]) -> None:
-    import louis
-
-    for text in texts:
-        louis.translate([TABLE], text, mode=louis.dotsIO | louis.ucBrl)

@@ -28,10 +28,6 @@ _UEB_WORD, _UEB_WORD_END = Cells.from_unicode("⠘⠷").masks, Cells.from_unicod
 _UEB_OPENING, _DOT_3 = Cells.from_unicode("⠐⠷").masks, Cells.from_unicode("⠄").masks
 _UEB_CLOSING, _NOTHING = Cells.from_unicode("⠠⠐⠾").masks, np.empty(0, np.uint8)
 
-# What another process needs to make a translator: the table's name, what is written for characters
-# that it does not know, the book's own languages, a grade, and whether others are switched to.
-How = tuple[str, str, tuple[str, ...], int | None, bool]
-
 
 class Translator:
     """A braille table for a book, and the tables of other languages that the book says it has.
@@ -69,12 +65,6 @@ class Translator:
         self._switch = switch
         self._chosen: dict[str, BrailleTable] = {}  # by the tags as blocks have them
         self._named = {table.name: table}
-
-    @property
-    def how(self) -> How:
-        """What another process needs to make a translator like this one."""
-        own = tuple(sorted(self._own))
-        return self.table.name, str(self.table.how), own, self._grade, self._switch
 
     @property
     def tables(self) -> tuple[BrailleTable, ...]:
