@@ -31,7 +31,7 @@ def test_a_chapter_that_is_read_is_what_the_page_says_and_is_gone_on_with():
         for number, (cells, text) in enumerate(zip(cells, texts, strict=True), 1)
     ]
     line = {text: (number, cells, text) for number, cells, text in page}
-    note, noted = line["1. Except the harbour"], line["counts them.1"]
+    note, noted = line["1. Except the harbour"], line["counts them.[1]"]
     light, cod = line["The light"], line["cod  12"]
     read = []
     with program.Terminal("read", CHAPTER, *READ) as terminal:

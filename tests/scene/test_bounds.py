@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 
+from tests.render.scene import twin as reference
 from tests.render.scene.scenes import examples, patterns, seeds
 from tests.render.scene.showing import assets_of, bitmap_of, known_boxes
-from vbraille.render.scene import reference
 from vbraille.scene.bitmap import WHOLE, Bitmap
 from vbraille.scene.bounds import EMPTY, Box, bounds
 from vbraille.scene.dots import Dots, ImageDots

@@ -2,12 +2,31 @@
 
 import io
 
-from tests.translate.braillefiles.test_ebraille import TEXT, Made
 from vbraille.translate.braillefiles.lines import open_brf
-from vbraille.translate.documents.parted import Passage
+from vbraille.translate.documents.parted import PartedSource, Passage
 from vbraille.translate.outline import outline
-from vbraille.translate.source import BlockKind, Mark, MarkKind
+from vbraille.translate.source import BlockKind as K
+from vbraille.translate.source import Mark, MarkKind
 
+TEXT = (
+    Passage("xi", K.PAGE),
+    Passage("One & two", K.HEADING, 1),
+    Passage("some  text"),
+    Passage("a", K.ITEM, 1, group=1),
+    Passage("b", K.ITEM, 2, group=1),
+    Passage("c", K.ITEM, 3, group=1),
+    Passage("d", K.ITEM, 1, group=1),
+    Passage("deep", K.ITEM, 2, group=2),
+    Passage("12", K.PAGE),
+    Passage("Inner", K.HEADING, 3),
+    Passage("quoted", K.QUOTE, 1, language="fr-CA"),
+    Passage("noted", K.NOTE),
+    Passage("  a  line", K.LINE),
+    Passage("Mid", K.HEADING, 2),
+    Passage("a row", K.ROW, group=1),
+    Passage("Last", K.HEADING, 1),
+    Passage("word " * 4_000),
+)
 MARKS = (
     Mark(MarkKind.LINK, 0, 3, "#x"),
     Mark(MarkKind.IMAGE, 4, 6),
@@ -16,6 +35,17 @@ MARKS = (
     Mark(MarkKind.NOTE, 5, 6, "#n"),
     Mark(MarkKind.UNSHOWN, 9_000, 9_001),
 )
+
+
+class Made(PartedSource):
+    """A source of these passages."""
+
+    def __init__(self, *made: Passage) -> None:
+        super().__init__("made", [1], "0" * 64)
+        self._made = made
+
+    def passages(self, _part):
+        return self._made
 
 
 def test_headings_have_their_page_and_their_percent():
@@ -34,7 +64,7 @@ def test_headings_have_their_page_and_their_percent():
 
 def test_each_thing_is_counted_once():
     long = Passage("word " * 4_000, marks=MARKS, language="de")
-    found = outline(Made(*TEXT, long, Passage("a", BlockKind.ROW), Passage("b", BlockKind.ROW)))
+    found = outline(Made(*TEXT, long, Passage("a", K.ROW), Passage("b", K.ROW)))
     assert found.counts == {
         "lists": 2,
         "tables": 2,

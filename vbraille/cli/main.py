@@ -39,12 +39,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     if sentence:
         with suppress(OSError):
             print(f"vbraille: {printable(' '.join(sentence.split()))}", file=sys.stderr)
-    try:
-        sys.stdout.flush()
-    except OSError:
-        code = code or EXIT_CODE
-        with suppress(OSError):  # Python must not try again at exit
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError:
+            if stream is sys.stdout:
+                code = code or EXIT_CODE
+            with suppress(OSError):  # Python must not try again at exit, and give a code of its own
+                os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
     return code
 
 

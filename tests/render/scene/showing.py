@@ -7,9 +7,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from tests.render.scene import twin as reference
 from vbraille.display import Display
 from vbraille.render import STRESS2_8X8
-from vbraille.render.scene import reference
 from vbraille.render.scene.assets import Assets, Written
 from vbraille.render.scene.brailleplaces import box_of
 from vbraille.render.scene.compiling import compile_scene

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from tests.render.scene import twin as reference
 from tests.render.scene.showing import STRESS2_8X8_ARRAY, At, assets_of, poses, scene_of, shown
 from tests.tiers import by_tier, heavy
-from vbraille.render.scene import reference
 from vbraille.scene.dots import Dots
 from vbraille.scene.labels import Label
 from vbraille.scene.patterns import Circle, Fill, Group, Image, PathShape, Polygon, Tile

@@ -4,9 +4,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.render.scene import twin as reference
 from tests.render.scene.scenes import examples, patterns, scenes, seeds
 from tests.render.scene.showing import STRESS2_8X8_ARRAY, assets_of, poses, scene_of
-from vbraille.render.scene import reference
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.canvas import SceneMap
 from vbraille.render.scene.compiling import SceneCompiler, compile_scene

@@ -11,6 +11,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
+from tests.render.scene import twin as reference
 from tests.render.scene.scenes import KINDS, bounded, examples, numbers, patterns, scenes, seeds
 from tests.render.scene.showing import (
     DISPLAYS,
@@ -23,7 +24,6 @@ from tests.render.scene.showing import (
     scene_of,
     shown,
 )
-from vbraille.render.scene import reference
 from vbraille.scene.bounds import bounds
 from vbraille.scene.fitting import axial_cycle
 from vbraille.scene.moving import moved

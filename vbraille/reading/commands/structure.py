@@ -213,6 +213,8 @@ def _named(block: Block, mark: Mark) -> str:
     words = " ".join(str(text)[text.index(mark.start) : text.index(mark.end)].split())
     if mark.kind is MarkKind.IMAGE:
         return words if mark.target else f"picture: {words}"
+    if mark.kind is MarkKind.NOTE:
+        words = words.strip("[]")  # which stand around the number in the text
     return f"{mark.kind.value}: {words}"
 
 
