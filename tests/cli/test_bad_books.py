@@ -231,13 +231,13 @@ def test_the_language_of_a_book_chooses_its_table(call, tmp_path):
     path = tmp_path / "book.html"
     path.write_text("<html lang='fr-CA'><p>Les bateaux rentrent.")
     assert "French uncontracted braille\n" in call("page", path).err
-    assert "table de-g2.ctb\n" in call("page", path, "--language", "de").err
+    assert "German contracted braille, grade 2\n" in call("page", path, "--language", "de").err
     path.write_text("<html lang='fre'><p>Les bateaux rentrent.")
     assert "French uncontracted braille\n" in call("page", path).err
-    assert "table fr-bfu-g2.ctb\n" in call("page", path, "--grade", "2").err
-    assert "table en-ueb-g1.ctb\n" in call("page", path, "--table", "en-ueb-g1.ctb").err
+    assert "French contracted braille, grade 2\n" in call("page", path, "--grade", "2").err
+    assert "Unified English uncontracted braille, grade 1\n" in call("page", path, "--table", "en-ueb-g1.ctb").err
     path.write_text("<html lang='tlh-x'><p>Heghlu'meH QaQ jajvam.")
-    assert "table en-ueb-g2.ctb\n" in call("page", path).err
+    assert "Unified English contracted braille, grade 2\n" in call("page", path).err
 
 
 @pytest.mark.parametrize("name", by_tier(["pandoc-3.epub", "file2brl.brf"], SAMPLES, SAMPLES))
