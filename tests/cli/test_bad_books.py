@@ -235,7 +235,10 @@ def test_the_language_of_a_book_chooses_its_table(call, tmp_path):
     path.write_text("<html lang='fre'><p>Les bateaux rentrent.")
     assert "French uncontracted braille\n" in call("page", path).err
     assert "French contracted braille, grade 2\n" in call("page", path, "--grade", "2").err
-    assert "Unified English uncontracted braille, grade 1\n" in call("page", path, "--table", "en-ueb-g1.ctb").err
+    assert (
+        "Unified English uncontracted braille, grade 1\n"
+        in call("page", path, "--table", "en-ueb-g1.ctb").err
+    )
     path.write_text("<html lang='tlh-x'><p>Heghlu'meH QaQ jajvam.")
     assert "Unified English contracted braille, grade 2\n" in call("page", path).err
 
