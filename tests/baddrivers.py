@@ -84,7 +84,7 @@ class FailsToLetGo(Good):
 BAD = {
     SlowToRead: "its read takes 1.",
     SlowToSend: "its write takes 1.",
-    BlocksOnce: "its read took 1",
+    BlocksOnce: "its read took ",  # 150 ms or more, as busy as the machine is
     NotANumber: "a place that is no number",
     Jumps: "its carriage jumps, once by 150",
     ClockGoesBack: "its clock goes back, once by ",
