@@ -1,4 +1,4 @@
-"""``vbraille session export`` of several sessions: tables, codebooks, datasets, sites and codes."""
+"""``vbraille session export`` of several sessions: tables, codebooks and datasets."""
 
 import csv
 import io
@@ -16,7 +16,6 @@ from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record.folder import create
-from vbraille.sessions.record.participants import label_of
 from vbraille.sessions.session import Session
 
 ASKS = MINI + '[[fields]]\nname = "day"\nask = "Which day"\n'
@@ -26,7 +25,7 @@ OTHERS = "participant_id\tage\nsub-X9\t44\n"
 
 @pytest.fixture(scope="module")
 def sat(tmp_path_factory):
-    """Two sessions at each of two sites, of participants whose pseudonyms are the same."""
+    """Four sessions of one participant, in two directories."""
     room = tmp_path_factory.mktemp("sessions")
     protocol = parse_protocol(ASKS, "test")
     for seed, (name, day) in enumerate(zip(NAMES, ("pre", "pre", "post", ""), strict=True), 1):
@@ -54,21 +53,33 @@ def valid(folder):
     return complaints(folder) == ""
 
 
-def test_sessions_of_several_sites_are_one_dataset(room, call):
-    said = call("session", "export", "b/s3", "a/s2", "a/s1", "--bids", "--sites", "--out", "set")
+def test_several_sessions_are_one_dataset(room, call):
+    (room / "set").mkdir()
+    (room / "set" / "README").write_text("mine")
+    said = call("session", "export", "b/s3", "a/s2", "a/s1", "--bids", "--out", "set")
     assert said.code == 0, said.err
-    assert table(room / "set" / "participants.tsv") == [
-        {"participant_id": "sub-aP01", "pseudonym": "P01", "site": "a"},
-        {"participant_id": "sub-bP01", "pseudonym": "P01", "site": "b"},
-    ]
-    assert sorted(str(p.relative_to(room / "set")) for p in (room / "set").glob("sub-*/ses-*")) == [
-        "sub-aP01/ses-01", "sub-aP01/ses-02", "sub-bP01/ses-01",
-    ]  # fmt: skip
-    (first,) = (room / "set").glob("sub-aP01/ses-01/beh/*_beh.tsv")
+    people = [{"participant_id": "sub-P01", "pseudonym": "P01"}]
+    assert table(room / "set" / "participants.tsv") == people
+    assert json.loads((room / "set" / "participants.json").read_text())["pseudonym"]["Description"]
+    sessions = sorted(path.name for path in (room / "set" / "sub-P01").iterdir())
+    assert sessions == ["ses-01", "ses-02", "ses-03"]
+    (first,) = (room / "set").glob("sub-P01/ses-01/beh/*_beh.tsv")
     assert {row["session"] for row in table(first)} == {"s1"}  # by time, not as they were given
+    assert (room / "set" / "README").read_text() == "mine"
     assert valid(room / "set")
-    assert json.loads((room / "set" / "participants.json").read_text())["site"]["Description"]
     assert said.out.count("record of ") == 3
+    said = call("session", "export", "a/s1", "--bids", "--out", "set")
+    assert (said.code, "is there already, as" in said.err) == (2, True)
+
+
+@pytest.mark.parametrize("there", [OTHERS, "", "participant_id\tpseudonym\nsub-X9\n", "\0"])
+def test_a_table_of_participants_of_others_is_left_alone(room, call, there):
+    (room / "set").mkdir()
+    (room / "set" / "participants.tsv").write_text(there)
+    said = call("session", "export", "a/s1", "--bids", "--out", "set")
+    assert (said.code, "is no table of participant_id and pseudonym alone" in said.err) == (2, True)
+    assert [path.name for path in (room / "set").iterdir()] == ["participants.tsv"]
+    assert (room / "set" / "participants.tsv").read_text() == there
 
 
 def test_sessions_may_be_named_by_what_was_asked(room, call):
@@ -82,49 +93,12 @@ def test_sessions_may_be_named_by_what_was_asked(room, call):
     assert set((room / "set").rglob("*")) == before
 
 
-def test_others_participants_columns_and_files_stay(room, call):
-    (room / "set" / "sub-X9" / "anat").mkdir(parents=True)
-    (room / "set" / "participants.tsv").write_text(OTHERS)
-    (room / "set" / "participants.json").write_text('{"age": {"Units": "years"}}')
-    (room / "set" / "README").write_text("mine")
-    assert call("session", "export", "a/s1", "--bids", "--out", "set").code == 0
-    assert table(room / "set" / "participants.tsv") == [
-        {"participant_id": "sub-X9", "age": "44", "pseudonym": "n/a"},
-        {"participant_id": "sub-P01", "age": "n/a", "pseudonym": "P01"},
-    ]
-    told = json.loads((room / "set" / "participants.json").read_text())
-    assert told["age"] == {"Units": "years"}
-    assert told["pseudonym"]["Description"]
-    assert (room / "set" / "README").read_text() == "mine"
-    before = (room / "set" / "participants.tsv").read_bytes()
-    said = call("session", "export", "a/s1", "--bids", "--out", "set")
-    assert (said.code, "is there already, as" in said.err) == (2, True)
-    assert (room / "set" / "participants.tsv").read_bytes() == before
-
-
-def test_codes_are_in_all_files_and_the_key_is_not(room, call):
-    words = ("--bids", "--sites", "--anonymous", "--key", "key.csv", "--out", "set")
-    assert call("session", "export", "a/s1", "b/s3", *words).code == 0
-    key = {row["participant"]: row["code"] for row in table(room / "key.csv", ",")}
-    assert set(key) == {"a/P01", "b/P01"}
-    assert call("session", "export", "a/s2", *words).code == 0
-    assert key == {row["participant"]: row["code"] for row in table(room / "key.csv", ",")}
-    assert {path.name for path in (room / "set").glob("sub-*")} == {
-        f"sub-{label_of(site + key[f'{site}/P01'])}" for site in "ab"
-    }
-    for path in (room / "set").rglob("*"):
-        assert "P01" not in path.name
-        if path.suffix in (".tsv", ".json"):
-            assert "P01" not in path.read_text("utf-8"), path
-    assert valid(room / "set")
-
-
 def test_a_table_of_several_sessions_and_its_codebook(room, call):
     words = ("--out", "all.csv", "--codebook", "book.csv")
-    said = call("session", "export", "a/s1", "b/s3", "--sites", *words)
+    said = call("session", "export", "a/s1", "b/s3", *words)
     assert said.code == 0
     rows = table(room / "all.csv", ",")
-    assert [row["participant"] for row in rows] == ["a/P01"] * 4 + ["b/P01"] * 4
+    assert [row["participant"] for row in rows] == ["P01"] * 8
     book = table(room / "book.csv", ",")
     assert [row["column"] for row in book] == list(rows[0])
     assert {row["file"] for row in book} == {"all.csv"}
@@ -139,11 +113,11 @@ def test_a_table_of_several_sessions_and_its_codebook(room, call):
         (("a/s1", "--bids"), "--bids needs a directory; give one with --out"),
         (("a/s1", "--bids", "--out", "o", "--codebook", "c"), "leave out --codebook"),
         (("a/s1", "--session-by", "day"), "--session-by names sessions of a dataset; add --bids"),
-        (("a/s1", "--key", "k.csv"), "--key keeps codes of what is anonymous; add --anonymous"),
+        (("a/s1", "--key", "k.csv"), "--key is gone; pseudonyms are codes already"),
+        (("a/s1", "--sites"), "--sites is gone; give participants pseudonyms"),
         (("a/s1", "--bids", "--out", "o", "--session-by", "hour"), "has no field 'hour'; its fiel"),
         (("b/s4", "--bids", "--out", "o", "--session-by", "day"), "has no answer that could name"),
         (("a/s1", "a/s2", "--bids", "--out", "o", "--session-by", "day"), "2 sessions of P01 have"),
-        (("a/s1", "--bids", "--out", "o", "--anonymous", "--key", "o/k"), "which is given away"),
         (("a/s1", "none"), "there is no directory none"),
     ],
 )

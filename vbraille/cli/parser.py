@@ -229,6 +229,7 @@ _GONE = {
     "--sheet": "print an --outline without scaling",
     "--layout": "--cells 40 --format pef makes pages; file2brl lays out for embossers",
     "--skin": "the simulated reader has one model of the skin",
+    "--key": "pseudonyms are codes already; pandas puts others in their place",
     "--sites": "give participants pseudonyms that tell the sites apart, such as B-P01",
     "--mapping": "docs/analysis.md shows how pandas makes a table of trials",
     "--workers": "one process translates",

@@ -73,12 +73,6 @@ def session_export(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--bids", action="store_true", help="Add the sessions to a BIDS dataset.")
     parser.add_argument(
-        "--sites",
-        action="store_true",
-        help="Take each folder that sessions stand in for a site with participants of its own: "
-        "P01 of the folder berlin is berlin/P01.",
-    )
-    parser.add_argument(
         "--session-by",
         metavar="FIELD",
         help="With --bids, name a participant's sessions by what the protocol asked as this field "
@@ -88,13 +82,6 @@ def session_export(parser: ArgumentParser) -> None:
         "--anonymous",
         action="store_true",
         help="Leave out times of day, paths and notes; elapsed times stay.",
-    )
-    parser.add_argument(
-        "--key",
-        metavar="FILE.csv",
-        help="With --anonymous, put codes drawn at random in place of pseudonyms; this file, which "
-        "is begun or added to, keeps which code is whose, and stays with you (default: pseudonyms "
-        "stay).",
     )
     parser.add_argument(
         "--codebook",

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import re
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from vbraille.errors import InputError, VbrailleError
+from vbraille.errors import InputError
 from vbraille.files import missing, write_file
 from vbraille.sessions.record.anonymous import number_of
 from vbraille.sessions.record.bids import SESSION, files
-from vbraille.sessions.record.export import encode
+from vbraille.sessions.record.codebook import CodebookEntry
+from vbraille.sessions.record.export import encode, to_csv
 from vbraille.sessions.record.participants import alike, label_of
-from vbraille.sessions.record.people import PEOPLE, PEOPLE_COLUMNS, described, read_people
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -24,6 +26,11 @@ if TYPE_CHECKING:
 
 _BIDS = "1.9.0"
 _ABOUT, _README = "dataset_description.json", "README"
+_PEOPLE, _PEOPLE_COLUMNS = "participants.tsv", "participants.json"
+_ID, _PSEUDONYM = "participant_id", "pseudonym"
+_DESCRIBED = CodebookEntry(
+    _PSEUDONYM, "as the laboratory has it; participant_id has letters and digits"
+)
 _README_TEXT = """\
 Legibility sessions of vbraille, as behavioural data.
 
@@ -43,7 +50,6 @@ def write(
     traces: Traces | None = None,
     *,
     without_times: bool = False,
-    site: str = "",
     session: str | None = None,
 ) -> list[Path]:
     """Add a session to a dataset, which is begun if there is none, and return the files written.
@@ -54,9 +60,6 @@ def write(
         These are described at `vbraille.sessions.record.bids.files`.
     folder
         Directory of the dataset.
-    site
-        Where the participant took part, if the dataset has several sites: P01 of two sites are two
-        participants then.
     session
         Label of the session among those of the participant; None for the next number.
 
@@ -68,11 +71,10 @@ def write(
     VbrailleError
         If the disk does not take the files. The dataset then is as it was before.
     """
-    people = read_people(folder)
+    people = _read_people(folder)
     pseudonym = record.plan.participant
-    name = f"{site}/{pseudonym}" if site else pseudonym
-    label = label_of(name)
-    _check_pseudonym(folder, people.names(), name)
+    label = label_of(pseudonym)
+    _check_pseudonym(folder, people, pseudonym)
     _check_absent(folder, record)
     if session is None:
         session = _next_session(folder / f"sub-{label}")
@@ -86,7 +88,7 @@ def write(
         traces,
         session=label_of(session),
         without_times=without_times,
-        participant=name,
+        participant=pseudonym,
     )
     if there := next((path for path in made if (folder / path).exists()), None):
         raise InputError(
@@ -94,19 +96,40 @@ def write(
             f"{setting('session-by')}, or give another directory with {setting('out')}"
         )
     new = {folder / path: content for path, content in made.items()}
-    for path, content in ((_ABOUT, _json(_about(record))), (_README, _README_TEXT.encode())):
+    for path, content in (
+        (_ABOUT, _json(_about(record))),
+        (_README, _README_TEXT.encode()),
+        (_PEOPLE_COLUMNS, _json({_PSEUDONYM: _DESCRIBED.to_bids()})),
+    ):
         if not (folder / path).exists():
             new[folder / path] = content
-    after = people.add(label, pseudonym, site)
-    told = {PEOPLE: encode(after.to_tsv())}
-    if (columns := described(folder, after)) is not None:
-        path = folder / PEOPLE_COLUMNS
-        if path.exists():
-            told[PEOPLE_COLUMNS] = _json(columns)
-        else:
-            new[path] = _json(columns)
-    _write(folder, new, told)
-    return [*new, *(folder / name for name in reversed(told))]
+    people.setdefault(label, pseudonym)
+    rows = [{_ID: f"sub-{of}", _PSEUDONYM: name} for of, name in people.items()]
+    _write(folder, new, _PEOPLE, encode(to_csv(rows, "\t", "n/a")))
+    return [*new, folder / _PEOPLE]
+
+
+def _read_people(folder: Path) -> dict[str, str]:
+    """Read the pseudonyms of a dataset's participants, by their labels.
+
+    Raises
+    ------
+    InputError
+        If the table cannot be read, or has columns of others.
+    """
+    path = folder / _PEOPLE
+    try:
+        rows = list(csv.reader(io.StringIO(path.read_text("utf-8")), delimiter="\t"))
+    except (FileNotFoundError, NotADirectoryError):
+        return {}  # a dataset that is no directory is refused when it is written
+    except (OSError, ValueError, csv.Error):
+        rows = []
+    if not rows or rows[0] != [_ID, _PSEUDONYM] or any(len(row) != 2 for row in rows):
+        raise InputError(
+            f"{path} is no table of {_ID} and {_PSEUDONYM} alone, to which participants could be "
+            f"added; give another directory with {setting('out')}, and put the tables together"
+        )
+    return {label.removeprefix("sub-"): pseudonym for label, pseudonym in rows[1:]}
 
 
 def _check_pseudonym(folder: Path, people: dict[str, str], pseudonym: str) -> None:
@@ -137,20 +160,13 @@ def _check_absent(folder: Path, record: Record) -> None:
 
 def _next_session(participant: Path) -> str:
     """Label for the next session of a participant."""
-    if (participant / "beh").exists():
-        raise InputError(
-            f"{participant} was written by an older vbraille, without sessions; "
-            f"give another directory with {setting('out')}"
-        )
     names = [path.name for path in participant.glob("ses-*")]
     numbers = [int(name[4:]) for name in names if re.fullmatch("ses-[0-9]{1,9}", name)]
     return f"{max(numbers, default=0) + 1:02}"
 
 
-def _write(folder: Path, new: dict[Path, bytes], told: dict[str, bytes]) -> None:
-    """Write new files, and then those that tell of participants; undo everything if one fails."""
-    before = {name: _content(folder / name) for name in told}
-    replaced: list[str] = []
+def _write(folder: Path, new: dict[Path, bytes], people: str, table: bytes) -> None:
+    """Write new files, and then the table of participants; undo everything if one fails."""
     written: list[Path] = []
     try:
         parents = {parent for path in new for parent in missing(path.parent)}
@@ -160,29 +176,14 @@ def _write(folder: Path, new: dict[Path, bytes], told: dict[str, bytes]) -> None
         for path, content in new.items():
             write_file(path, content)
             written.append(path)
-        for name, content in reversed(told.items()):
-            replaced.append(name)
-            write_file(folder / name, content, replace=True, durable=True)
+        write_file(folder / people, table, replace=True, durable=True)
     except BaseException as fault:
-        for name in replaced:
-            with suppress(OSError, VbrailleError):
-                if (content := before[name]) is None:
-                    (folder / name).unlink(missing_ok=True)
-                else:
-                    write_file(folder / name, content, replace=True)
         for path in reversed(written):
             with suppress(OSError):  # a directory that somebody else has used meanwhile stays
                 path.rmdir() if path.is_dir() else path.unlink()
         if isinstance(fault, OSError):
             raise InputError(f"{folder} cannot be written: {fault.strerror}") from None
         raise
-
-
-def _content(path: Path) -> bytes | None:
-    try:
-        return path.read_bytes()
-    except OSError:
-        return None
 
 
 def _about(record: Record) -> dict[str, Any]:
