@@ -96,7 +96,7 @@ def test_a_knob_turns_contrast_while_the_hand_stays_and_is_said_once(tmp_path, t
     settled = highest[turned - 1]
     assert 0.1 * TOP < settled <= 0.2 * TOP + 2  # as it was turned
     assert highest.max() > 2 * settled  # as it was before
-    assert highest[-1] == 0
+    assert highest[-1] <= 0.01 * TOP  # and REST does what is left
     # Faded: by no more than a fade goes meanwhile. Where the machine was busy, what comes at once
     # has waited since the time before, and what is next found the line full. The hand stays since
     # long before the knob was turned.

@@ -279,7 +279,7 @@ def _sent(name: str, where: str) -> str:
         return f"{held}{character}"
     if held in ("ctrl-", "alt-ctrl-") and f"ctrl-{key.lower()}" in _TYPED:
         return f"{held.removesuffix('ctrl-')}{_TYPED[f'ctrl-{key.lower()}']}"
-    near = nearest(name.lower(), (*sorted(NAMED), *_TYPED))
+    near = nearest(key.lower(), NAMED if held else (*sorted(NAMED), *_TYPED))
     near = near or '; write a character, or a name such as "down" or "ctrl-n"'
     raise InputError(f"{where}: there is no key {name!r}{near}")
 

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Block, Source
 
 
+_TABLES_S = 1.0  # more than tables of other languages take to be compiled meanwhile
+
+
 class Book:
     """Blocks of a source with their cells.
 
@@ -144,8 +147,11 @@ class Book:
         if all(block.cells is not None for block in blocks):
             return [self._cells(block) for block in blocks]
         try:
-            limit = sum(limit_s(len(block.text)) for block in blocks)
-            return call(lambda: [self._cells(block) for block in blocks], limit)
+            characters = sum(len(block.text) for block in blocks)
+            return call(
+                lambda: [self._cells(block) for block in blocks],
+                _TABLES_S + limit_s(characters),
+            )
         except EndlessError:
             return [self._cells(block) for block in blocks]
 

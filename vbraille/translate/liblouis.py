@@ -36,7 +36,7 @@ _MODE = _DOTS_IO | _UNICODE_BRAILLE
 _SIX_DOTS = bytes(range(64))
 _SMALL = "abcdefghijklmnopqrstuvwxyz"
 _DIGITS = "0123456789"
-_MOST_ENDLESS = 5  # words of a text that are tried one after the other
+_MOST_ENDLESS = 3  # words of a text that are tried one after the other
 
 _text, _place = ctypes.c_char_p, ctypes.c_void_p
 _version = LIBRARY["lou_version"]

@@ -33,7 +33,7 @@ _NAMES = (
     "/home/linuxbrew/.linuxbrew/lib/liblouis.so",
 )
 # Far more than any text takes, even on machines ten times as slow as is usual.
-_TEXT_S, _CHARACTER_S = 0.1, 1e-4
+_TEXT_S, _CHARACTER_S = 0.3, 1e-4
 _LOOK_S = 0.05  # how often it is looked whether a call has taken too long
 _STOP = signal.SIGRTMAX - 3  # a signal that nothing else sends
 

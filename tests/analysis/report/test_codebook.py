@@ -10,7 +10,7 @@ from vbraille.analysis import analyse
 from vbraille.analysis.report.codebook import codebook
 from vbraille.analysis.report.shown import csv_name
 
-SAMPLE = Path(__file__).parents[3] / "docs" / "mappings" / "trials.csv"
+SAMPLE = Path(__file__).parents[1] / "input/samples/trials.csv"
 
 
 def test_every_table_is_in_it_with_its_columns():
