@@ -93,7 +93,7 @@ def test_of_equally_good_questions_it_asks_the_first(about, bit):
 
 
 def test_of_two_pairs_that_mirror_each_other_it_asks_the_first():
-    """Gains of both are the same but for rounding, of which the last pair has the better."""
+    """The gains of both pairs differ by rounding alone, and the last pair's is larger."""
     gains = quest("spread").gains([])
     first, last = PAIRS.index((0.5, 0.75)), PAIRS.index((2.75, 3.0))
     assert set(np.flatnonzero(gains >= gains.max() - 1e-9)) == {first, last}

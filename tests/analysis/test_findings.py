@@ -134,7 +134,7 @@ def test_the_main_figure_has_the_participants_points(results):
 
 @pytest.mark.parametrize("people", [1, 2, 3])
 def test_findings_about_people_are_of_three_or_more(people):
-    """Of fewer the first sentence says that, and no sentence has a test or an interval."""
+    """With fewer than three, the first sentence says so, and none has a test or an interval."""
     results = analyse_study(study(*lines(np.random.default_rng(1), people=people)), Options())
     who = {1: "P0", 2: "P0 and P1", 3: "On average participants"}[people]
     said = one(results, rf"^{who} read right")

@@ -43,7 +43,7 @@ class Bias(NamedTuple):
 def curve(trials: int, shape: str, alarms: float | None, studies: int) -> dict[str, Found | Bias]:
     """Coverage of a psychometric function's threshold and spread, and its threshold's bias.
 
-    A study is one reader: seven levels of so many trials. Yes and no has as many blank trials as a
+    A study is one reader: seven levels of 12 or 24 trials. Yes and no has as many blank trials as a
     level has, and a share of false alarms; None is which of two.
     """
     random = np.random.default_rng([SEED, trials, len(shape), round(100 * (alarms or 0))])

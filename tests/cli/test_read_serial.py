@@ -34,7 +34,7 @@ def simulated(tmp_path, *options):
 
 
 def without_real_time():
-    """Take the right to real-time priority away, from whoever is about to run a program."""
+    """Take away the right to real-time priority before a program is started."""
     resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
     ctypes.CDLL(None).prctl(_PR_CAPBSET_DROP, _CAP_SYS_NICE, 0, 0, 0)  # which root would have
 

@@ -281,7 +281,7 @@ def _parts(row: Row) -> list[str]:
 
 
 def _enough(row: Row) -> bool:
-    """Whether a row is of so many people that it can be a finding about others."""
+    """Tell if a row is of so many people that it can be a finding about others."""
     return row["participants"] >= FEWEST_PARTICIPANTS
 
 

@@ -162,7 +162,7 @@ def _pointer() -> Pointer:
 
 
 def _may_begin(arguments: Namespace) -> bool:
-    """Whether all that is asked for may be there; a table and the like are looked at later."""
+    """Tell if all that is asked for may be there; a table and the like are looked at later."""
     file, device = arguments.file, arguments.device
     if file not in (None, "-") and not os.path.isfile(file):  # noqa: PTH113 - pathlib loads long
         return False

@@ -101,7 +101,7 @@ class Watch:
 
     @property
     def found(self) -> bool:
-        """Whether the driver gave anything wrong so far."""
+        """Tell if the driver gave anything wrong so far."""
         return bool(self._found)
 
     def faults(self) -> list[str]:

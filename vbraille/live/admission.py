@@ -79,7 +79,7 @@ class Admission:
         return f"http://{_spelled(host)}{port}/" + (f"#{token}" if token else "")
 
     def is_for(self, owner: int | None) -> bool:
-        """Whether a user of this machine may connect, on loopback the server's own or root.
+        """Tell if a user of this machine may connect, on loopback the server's own or root.
 
         Parameters
         ----------

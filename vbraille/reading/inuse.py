@@ -39,7 +39,7 @@ class DeviceInUse:
 
     @property
     def has_hand(self) -> bool:
-        """Whether a simulated hand moves the device, which is then simulated itself."""
+        """Tell if a simulated hand moves the device, which is then simulated itself."""
         return self._hand.steering is not None
 
     @property

@@ -45,7 +45,7 @@ class Reach:
     least: int = 100
 
     def ends(self, seen: int, taken_s: float) -> bool:
-        """Whether so much was seen, in such a time, that it is enough."""
+        """Tell if so much was seen, in such a time, that it is enough."""
         return seen >= self.most or (seen >= self.least and taken_s > self.seconds)
 
 

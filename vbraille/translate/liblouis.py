@@ -263,7 +263,7 @@ class BrailleTable:
 
     @cached_property
     def is_ueb(self) -> bool:
-        """Whether this is a table of Unified English Braille."""
+        """Tell if this is a table of Unified English Braille."""
         return call(lambda: _get_info(self._list, b"system")) == b"ueb"
 
     def spelled(self, text: str) -> NDArray[np.uint8]:
@@ -287,7 +287,7 @@ class BrailleTable:
         return self._substitutes.take_foreign()
 
     def take_endless(self) -> bool:
-        """Whether liblouis did not come to an end with a text; True once at most."""
+        """Tell if liblouis did not come to an end with a text; True once at most."""
         due = self._endless_due and not self._endless_taken
         self._endless_taken |= due
         return due

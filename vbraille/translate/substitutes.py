@@ -187,14 +187,14 @@ class Substitutes:
 
 @cache
 def _follows(code: int) -> bool:
-    """Whether a character may become another together with one before it."""
+    """Tell if a character may become another together with one before it."""
     # The numbers are vowels and ends of syllables of Hangul.
     return unicodedata.category(chr(code))[0] == "M" or 0x1160 <= code < 0x1200
 
 
 @cache
 def _joins(code: int) -> bool:
-    """Whether a character may become another, alone or with one before it."""
+    """Tell if a character may become another, alone or with one before it."""
     return _follows(code) or not unicodedata.is_normalized("NFC", chr(code))
 
 

@@ -55,7 +55,7 @@ def spellings(character: str, how: Undefined) -> Iterator[str]:
 
 
 def is_emoji(character: str) -> bool:
-    """Whether a character is a little picture that people write between words."""
+    """Tell if a character is a little picture that people write between words."""
     code = ord(character)
     pictures = any(first <= code <= last for first, last in _EMOJI)
     return pictures and unicodedata.category(character) in ("So", "Sk")

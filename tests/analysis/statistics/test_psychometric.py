@@ -29,7 +29,7 @@ def written_out(shape, x, m, s):
 
 
 def minus_log_posterior(at, shape, counts, guess, blanks):
-    """Of threshold, logarithm of the spread, lapses, and guesses if they are free, written out."""
+    """Compute the log likelihood of threshold, log spread, lapses and free guesses, written out."""
     m, log_s, lapse = at[:3]
     floor = at[3] if guess is None else guess
     if not (0 <= lapse <= 0.1 and 0 <= floor <= 0.9 and m > 0):
@@ -113,7 +113,7 @@ def test_all_below_a_level_and_all_above_have_an_interval():
     ids=["inside", "false alarms", "below", "above", "both"],
 )
 def test_the_interval_lies_between_quantiles(guess, blanks, counts, beyond):
-    """Of the posterior by an integration over even steps that has nothing of the product's."""
+    """Integrate the posterior over even steps, independently of the product."""
     found = fit_psychometric(LEVELS, counts, [20] * 7, guess=guess, blanks=blanks)
 
     def middles(low, high, size):

@@ -298,7 +298,7 @@ def _means(scores: Scores, factor: str) -> dict[str, dict[str, float]]:
 
 
 def _of_groups(means: dict[str, dict[str, float]]) -> bool:
-    """Whether each participant has one level, and not all the same."""
+    """Tell if each participant has one level, and not all the same."""
     own = [who for of in means.values() for who in of]
     return len(own) == len(set(own)) and sum(map(bool, means.values())) > 1
 

@@ -187,7 +187,7 @@ def _names_of_note(reader: Reader) -> tuple[str, ...]:
 
 
 def _refers(source: Source, place: int | None, names: tuple[str, ...]) -> bool:
-    """Whether the block at a place has a reference to a note with one of some names."""
+    """Tell if the block at a place has a reference to a note with one of some names."""
     number = None if place is None else source.block_at(place)
     block = None if number is None else source.block(number)
     return block is not None and any(

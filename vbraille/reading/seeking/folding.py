@@ -82,7 +82,7 @@ def _caseless(text: str) -> str:
 
 
 def is_plain(text: str) -> bool:
-    """Whether each character of a text is folded alone and to one or more."""
+    """Tell if each character of a text is folded alone and to one or more."""
     return _ACCENT.search(text) is None and unicodedata.is_normalized("NFC", text)
 
 

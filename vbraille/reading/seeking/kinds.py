@@ -154,5 +154,5 @@ def _find_group(source: Source, query: FindKind) -> Iterator[int | float]:
 
 
 def _is_another(group: int, here: int, *, backward: bool) -> bool:
-    """Whether a list or table is not the one that the reader is in, nor around that, going on."""
+    """Tell if a list or table is not the one that the reader is in, nor around that, going on."""
     return group != here if backward or not group else group > here

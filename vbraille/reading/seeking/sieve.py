@@ -200,7 +200,7 @@ def _decode(
 
 
 def _is_plain(document: Document, raw: bytes, text: str) -> bool:
-    """Whether all characters of a piece of text are folded alone, given its bytes."""
+    """Tell if all characters of a piece of text are folded alone, given its bytes."""
     if text.isascii():
         return True
     # A piece may begin within a character.

@@ -148,7 +148,7 @@ def _wide(sample: bytes) -> str | None:
 
 
 def _mostly_utf8(sample: bytes) -> bool:
-    """Whether the bytes are UTF-8 beyond ASCII except some damaged ones.
+    """Tell if the bytes are UTF-8 beyond ASCII except some damaged ones.
 
     What is two characters in other encodings is hardly ever one of UTF-8 by chance.
     """
