@@ -18,20 +18,24 @@ class Logged(SimulatedDevice):
         super().__init__(wanted, hand=Sweep(150.0))
         path, _, self.fault = address.partition(",")
         self.log = open(path, "wb", buffering=0)
+        self.risen = False  # the first line has faded in, however late it came
 
     def read(self):
-        if self.frames == 300 and self.fault.isdigit():
-            os.kill(os.getppid(), int(self.fault))
         if self.frames >= 300 and self.fault == "gone":
             raise DeviceError("the device is gone")
-        if self.frames >= 300 and self.fault == "bug":
-            raise ZeroDivisionError("a bug")
+        if self.frames >= 300 and self.risen:
+            if self.fault.isdigit():
+                fault, self.fault = int(self.fault), ""
+                os.kill(os.getppid(), fault)
+            if self.fault == "bug":
+                raise ZeroDivisionError("a bug")
         return super().read()
 
     def _send(self, frame):
         if self.frames >= 300 and self.fault == "gone":
             raise DeviceError("the device is gone")
         super()._send(frame)
+        self.risen |= frame.max() == 1.0
         self.log.write(frame.tobytes())
 
     def _release(self):
