@@ -313,10 +313,15 @@ def _add(
         command.add_argument("-h", "--help", action="help", help="Print this help.")
         add_options(command)
         if add_options.__name__ != "<lambda>":  # one whose actions have options of their own
-            _add_log(command)
+            _add_common(command)
 
 
-def _add_log(command: argparse.ArgumentParser) -> None:
+def _add_common(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--verbose",
+        action="store_true",
+        help="Say more, such as how far a search has come, and print the traceback of a fault.",
+    )
     command.add_argument(
         "--log",
         metavar="FILE",

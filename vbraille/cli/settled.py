@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli.options.groups import SETTLED
 from vbraille.cli.terminal import say_line
+from vbraille.logs import want_tracebacks
 from vbraille.reading.bindings import Bindings, Bound
 from vbraille.reading.commands.table import bound_by
 from vbraille.settings.loading import load_settings
@@ -47,6 +48,8 @@ def settle(arguments: argparse.Namespace, names: tuple[str, ...] = SETTLED) -> S
             else:
                 setattr(arguments, name, usual.get(name))
     arguments.settled = frozenset(settled)
+    if arguments.verbose:
+        want_tracebacks()
     return settings
 
 

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Final, Self
 
 import msgspec
 
-from vbraille.devices.blame import TRACEBACK
 from vbraille.live.channel import (
     Asks,
     Begin,
@@ -27,7 +26,7 @@ from vbraille.live.channel import (
 )
 from vbraille.live.desktop import has_desktop
 from vbraille.live.messages import ViewState
-from vbraille.logs import kept
+from vbraille.logs import kept, tracebacks_wanted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -88,7 +87,7 @@ class Monitor:
         self._line, other = open_line()
         pointer = None if self._pointer is None else self._pointer.descriptor
         # What a browser writes is not for whoever reads.
-        writes = bool(os.environ.get(TRACEBACK)) or kept() == "-"
+        writes = tracebacks_wanted() or kept() == "-"
         begin = Begin(
             other.fileno(),
             host=self._host,

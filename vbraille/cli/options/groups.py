@@ -160,7 +160,8 @@ def profile(parser: ArgumentParser) -> None:
 
 def leave_to_settings(parser: ArgumentParser) -> None:
     """Leave options that a settings file may say without a value; `usual` has the usual ones."""
-    parser.set_defaults(usual={name: parser.get_default(name) for name in SETTLED})
+    usual = {name: parser.get_default(name) for name in SETTLED}
+    parser.set_defaults(usual={**usual, "verbose": False})  # which every command gets later
     parser.set_defaults(**dict.fromkeys(SETTLED))
 
 

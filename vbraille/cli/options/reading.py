@@ -109,9 +109,6 @@ def _reading(parser: ArgumentParser) -> None:
         help="Lay out lines of so many cells; the hand goes along a longer one part by part "
         "(default: as many as the hand can cross).",
     )
-    parser.add_argument(
-        "--verbose", action="store_true", help="Say more, such as how far a search has come."
-    )
     groups.page(parser)
     groups.hand(parser, _OWN_RATE)
     # The model is the device's own, and only a simulated one has a hand.

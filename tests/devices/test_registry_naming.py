@@ -1,13 +1,12 @@
-"""Drivers of others that raise, or are no drivers: named with file and line, in one sentence."""
+"""Drivers of others that raise, or are no drivers: named in one sentence."""
 
-import importlib
 import sys
 
 import pytest
 
 from tests import drivers
 from tests.engine.test_loop import info
-from vbraille.devices import opened_device, registry
+from vbraille.devices import opened_device
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import Loop
 from vbraille.engine.shared import Extent, attach
@@ -66,39 +65,25 @@ RAISES = {
 
 
 @pytest.mark.parametrize(("body", "head"), RAISES.values(), ids=RAISES)
-def test_what_a_driver_raises_names_it_with_file_and_line(driver, tmp_path, body, head):
-    lines = driver(body, head)
-    number = next(number for number, line in enumerate(lines, 1) if "mark" in line)
+def test_what_a_driver_raises_names_it_in_one_sentence(driver, capfd, body, head):
+    driver(body, head)
     with pytest.raises(DeviceError) as raised:
         use()
     said = str(raised.value)
-    assert said.startswith("the driver other, which is not vbraille's own, has a fault (")
-    assert f"at {tmp_path}/other.py, line {number}; tell whoever wrote it" in said
+    assert said.startswith("the driver other (other:open_other), which is not vbraille's own, has")
     assert "\n" not in said
+    assert "Traceback" not in capfd.readouterr().err
 
 
 def test_a_driver_that_is_not_there_is_named(driver):
     driver("pass", opener="open_another")
-    with pytest.raises(DeviceError, match=r"AttributeError: .*\) at other:open_another; no line"):
-        use()
-
-
-def test_what_finds_drivers_is_not_blamed(tmp_path, monkeypatch):
-    """A package that brings a newer `importlib.metadata` puts its own in the place of Python's."""
-    source = "from importlib.metadata import EntryPoint\nclass Found(EntryPoint):\n"
-    source += "    def load(self):\n        raise AttributeError('open_another')\n"
-    (tmp_path / "backport_of_metadata.py").write_text(source)
-    monkeypatch.syspath_prepend(str(tmp_path))
-    found = importlib.import_module("backport_of_metadata")
-    driver = found.Found("other", "json:open_another", registry.GROUP)
-    monkeypatch.setattr(registry, "entry_points", lambda **_: [driver])
-    with pytest.raises(DeviceError, match=r"\) at json:open_another; no line"):
+    with pytest.raises(DeviceError, match=r"driver other \(other:open_another\).*AttributeError: "):
         use()
 
 
 def test_a_driver_that_gives_something_else_than_a_sample_is_named(driver):
     driver("def read(self):\n    return (0, 1.0)")
-    with pytest.raises(DeviceError, match=r"the driver other, .* at other:open_other; no line"):
+    with pytest.raises(DeviceError, match=r"the driver other .*Error: "):
         use()
 
 
@@ -108,11 +93,13 @@ def test_a_driver_s_own_sentences_pass(driver):
         use()
 
 
-def test_a_traceback_is_let_through_when_it_is_asked_for(driver, monkeypatch):
-    driver("def read(self):\n    return 1 / 0")
+def test_a_traceback_is_printed_when_it_is_asked_for(driver, monkeypatch, capfd, tmp_path):
+    lines = driver("def read(self):\n    return 1 / 0")
     monkeypatch.setenv("VBRAILLE_TRACEBACK", "1")
-    with pytest.raises(ZeroDivisionError):
+    with pytest.raises(DeviceError, match="ZeroDivisionError"):
         use()
+    number = next(number for number, line in enumerate(lines, 1) if "1 / 0" in line)
+    assert f'File "{tmp_path}/other.py", line {number}' in capfd.readouterr().err
 
 
 def test_what_the_program_itself_raises_is_not_blamed_on_the_driver(driver):
@@ -121,27 +108,6 @@ def test_what_the_program_itself_raises_is_not_blamed_on_the_driver(driver):
         attach(999_999, Extent(6, 10, 20, 100))
     with pytest.raises(ZeroDivisionError), opened_device("sim:", info()):
         raise ZeroDivisionError
-
-
-@pytest.mark.parametrize(
-    ("body", "sentence"),
-    [
-        (
-            "@property\ndef take_events(self):\n    return []",
-            "take_events must be a method, and",
-        ),
-        ("def take_notes(self):\n    return []", "take_notes is not asked any more; take_events"),
-        ("counts = {}", r"counts must be a method, and is \{\}"),
-        ("def taking(self):\n    return False", "taking must be a property or a value, and"),
-        ("def _send(self):\n    pass", r"can be called as _send\(self, value\)"),
-        ("@staticmethod\ndef read(self):\n    pass", r"can be called as read\(self\)"),
-        ("_release = None", "_release must be a method, and is None"),
-    ],
-)
-def test_a_driver_with_members_of_another_kind_is_not_read_on(driver, body, sentence):
-    driver(body)
-    with pytest.raises(DeviceError, match=rf"driver other \(other:open_other\) .* {sentence}"):
-        use()
 
 
 def test_what_is_no_device_is_not_read_on(driver):
