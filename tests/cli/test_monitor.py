@@ -12,11 +12,11 @@ import pytest
 from websockets.sync.client import connect
 
 from tests.cli import program
-from tests.playback.written import RECORDINGS, WRITTEN
+from tests.playback.written import WRITTEN, recorded
 from tests.tiers import heavy
 from vbraille.live.messages import FRAME
 
-RECORDING = RECORDINGS[-1]
+RECORDING = recorded()
 SESSION = WRITTEN / "0.1.0-2026-11-22/sessions/letters-stopped"
 
 

@@ -12,15 +12,12 @@ import shutil
 from hashlib import sha256
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
 
-from tests.cli.test_render import from_the_file_alone
 from tests.cli.test_session_bad_input import contents
 from tests.tiers import heavy
 from vbraille.braille.cells import Cells
-from vbraille.recording import poses_of
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.record.events import Presented
 from vbraille.sessions.record.folder import load
@@ -31,7 +28,6 @@ WRITTEN = Path(__file__).parent.parent / "written-by"
 VERSIONS = sorted(path.parent for path in WRITTEN.glob("*/sessions"))
 SESSIONS = sorted(WRITTEN.glob("*/sessions/*"))
 PLANS = sorted(WRITTEN.glob("*/plans/*.txt"))
-RECORDINGS = sorted(WRITTEN.glob("*/recordings/*.h5"))
 
 
 def named(path):
@@ -75,23 +71,6 @@ def test_there_is_of_every_kind():
     of = {form: sum(load(folder).told.format == form for folder in SESSIONS) for form in (1, 2, 3)}
     assert of == {1: 9, 2: 9, 3: 9}
     assert {ended(folder) for folder in SESSIONS} == {True, False}
-    assert len({h5py.File(path).attrs["model"] for path in RECORDINGS}) == 2
-
-
-@pytest.mark.parametrize("path", RECORDINGS, ids=named)
-def test_a_recording_opens_and_is_what_is_rendered_today(path):
-    with h5py.File(path) as file:
-        again, twin = from_the_file_alone(file)
-        kept, left_mm = file["frames"][:], file["x_mm"][:]
-        half_mm = file.attrs["column_offset_mm"][-1] / 2
-        poses = poses_of(file)
-    assert kept.max() > 0.5
-    np.testing.assert_array_equal(kept, again)
-    np.testing.assert_allclose(kept, twin, rtol=0, atol=1e-6)
-    # Its places are the left column's, and poses the centre's.
-    assert left_mm[0] == -2 * half_mm
-    np.testing.assert_array_equal(poses.x_mm, left_mm + half_mm)
-    assert not np.any((poses.y_mm, poses.theta_rad))
 
 
 @pytest.mark.parametrize("path", PLANS, ids=named)

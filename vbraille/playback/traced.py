@@ -17,8 +17,7 @@ from vbraille.errors import InputError, VbrailleError
 from vbraille.live.messages import PlayedEvent, ViewState
 from vbraille.live.states import array_shown, geometry_shown, rows_shown
 from vbraille.playback.happened import moments_of
-from vbraille.playback.reels import PLAYED, Piece
-from vbraille.playback.shown import line_shown
+from vbraille.playback.reels import PLAYED, Piece, line_shown
 from vbraille.render import work
 from vbraille.render.program import Program, nothing
 from vbraille.sessions.record import journal
