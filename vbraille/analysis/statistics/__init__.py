@@ -15,6 +15,6 @@
 `information`
     How much of what was presented came through, from a table of answers.
 
-Nothing is re-exported here: statsmodels takes over a second to import, and
+Nothing is re-exported here: scipy.stats takes half a second to import, and
 `information` needs numpy only.
 """

@@ -6,7 +6,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
-from statsmodels.stats.multitest import multipletests
+from scipy import stats
 
 from vbraille.analysis.statistics.scores import finite_scores
 
@@ -25,13 +25,11 @@ METHODS: Mapping[str, str] = MappingProxyType(
 )
 """What may be asked for, with the title of each."""
 
-_STATSMODELS = {"bonferroni": "bonferroni", "holm": "holm", "fdr": "fdr_bh"}
-
 
 def adjust(p_values: Sequence[float] | NDArray[np.float64], method: str) -> NDArray[np.float64]:
     """Adjusted p-values: each can be held against the level for a single test.
 
-    The methods are Holm's (1979) and Benjamini and Hochberg's (1995), as statsmodels has them.
+    The step-down is Holm's (1979), the false discovery rate Benjamini and Hochberg's (1995).
 
     Parameters
     ----------
@@ -57,4 +55,12 @@ def adjust(p_values: Sequence[float] | NDArray[np.float64], method: str) -> NDAr
         raise ValueError(f"p-values {p.tolist()} are not all in 0…1")
     if method == "none" or p.size == 0:
         return p.copy()
-    return np.asarray(multipletests(p, method=_STATSMODELS[method])[1], dtype=np.float64)
+    if method == "bonferroni":
+        return np.minimum(p * p.size, 1.0)
+    if method == "fdr":
+        return stats.false_discovery_control(p)
+    order = np.argsort(p)
+    steps = np.maximum.accumulate(p[order] * np.arange(p.size, 0, -1))
+    adjusted = np.empty_like(p)
+    adjusted[order] = np.minimum(steps, 1.0)
+    return adjusted

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import stats
-from statsmodels.stats.proportion import proportion_confint
 
 from vbraille.analysis.statistics.scores import check_level, finite_scores
 from vbraille.analysis.statistics.unanswerable import Unanswerable
@@ -71,9 +70,8 @@ def wilson(correct: int, trials: int, level: float = 0.95) -> Interval:
         raise ValueError(f"{correct} correct of {trials} trials")
     if trials == 0:
         raise Unanswerable("no trials")
-    ends = proportion_confint(correct, trials, alpha=1 - level, method="wilson")
-    low, high = np.clip(np.asarray(ends, dtype=np.float64), 0.0, 1.0)
-    return Interval(float(low), float(high), level)
+    ends = stats.binomtest(correct, trials).proportion_ci(level, "wilson")
+    return Interval(float(ends.low), float(ends.high), level)
 
 
 def mean_interval(values: ArrayLike, level: float = LEVEL) -> Interval:
