@@ -282,13 +282,6 @@ def simulate(parser: ArgumentParser) -> None:
         "display's own does, or 200 mm).",
     )
     parser.add_argument(
-        "--protocol",
-        choices=("1", "2"),
-        default="2",
-        help="Speak this version of the wire protocol and no other; version 1 has one axis and no "
-        "knobs (default: 2).",
-    )
-    parser.add_argument(
         "--script",
         metavar="FILE",
         help="Move buttons and knobs as this file says, with a time after the first greeting and "

@@ -1,4 +1,4 @@
-"""A controller of version 2, written from docs/wire-protocol.md alone, as its builder would.
+"""A controller written from docs/wire-protocol.md alone, as its builder would.
 
 It shares nothing with vbraille, and so tells whether the page is complete: nothing but Python's
 own library is imported. It has two axes, an angle, buttons and knobs; it keeps what it took, each
@@ -17,7 +17,6 @@ import zlib
 from contextlib import suppress
 from dataclasses import dataclass
 from math import pi
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, NamedTuple, Self
 
 if TYPE_CHECKING:
@@ -28,7 +27,7 @@ WATCHDOG_US = 50_000
 RAMP_US = 20_000
 
 HELLO, FRAME, REST = 0x01, 0x02, 0x03
-INFO, WATCHDOG, STATE2 = 0x81, 0x83, 0x85
+INFO, WATCHDOG, STATE = 0x81, 0x83, 0x85
 PLACED, RESTING, TRIPPED = 1, 2, 8
 NO_FORCE = -32768
 
@@ -95,7 +94,7 @@ class Pose(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Make:
-    """What a device of two axes with absolute encoders is, as INFO2 tells it."""
+    """What a device of two axes with absolute encoders is, as INFO tells it."""
 
     rows: int = 6
     columns: int = 10
@@ -159,7 +158,7 @@ class Make:
         return (self.columns - 1) * self.column_pitch_nm / 2e6
 
     def info(self) -> bytes:
-        """Return the body of INFO2."""
+        """Return the body of INFO."""
         return b"".join(
             (
                 struct.pack("<4B2IB", INFO, 2, self.rows, self.columns,
@@ -220,7 +219,7 @@ class Taken(NamedTuple):
     levels: tuple[int, ...]
 
 
-class SecondVersion:
+class PageController:
     """The page's minimal firmware: bytes and times go in, and bytes come out.
 
     Parameters
@@ -233,7 +232,6 @@ class SecondVersion:
 
     def __init__(self, _info: object = None, make: Make | None = None) -> None:
         self.make = make or Make()
-        self.info = SimpleNamespace(version=2)
         self.buttons, self.knobs = 0, bytes(4)
         self.trips = self.dropped = self.cut = 0
         self.taken: list[Taken] = []
@@ -274,7 +272,7 @@ class SecondVersion:
         self._told = self.make.pose(*counts)
         flags = PLACED | RESTING * self._resting | TRIPPED * self._tripped
         head = self._sequence, now_us % 2**32, counts[0], self._frame, flags, self.buttons
-        state = struct.pack("<BHIIHBBh2I4s", STATE2, *head, NO_FORCE, *counts[1:], self.knobs)
+        state = struct.pack("<BHIIHBBh2I4s", STATE, *head, NO_FORCE, *counts[1:], self.knobs)
         return said + line_of(state) if self._greeted else b""
 
     def _obey(self, line: bytes, now_us: int) -> bytes:
@@ -359,7 +357,7 @@ class Cable:
     """
 
     def __init__(
-        self, device: SecondVersion, hand: Callable[[float], tuple[float, float, float]]
+        self, device: PageController, hand: Callable[[float], tuple[float, float, float]]
     ) -> None:
         self.device, self.hand = device, hand
         self._master, self._slave = os.openpty()
