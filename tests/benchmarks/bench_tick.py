@@ -118,7 +118,9 @@ def _rows(found: dict[tuple[str, str, bool], list[dict[str, Any]]]) -> Iterator[
         if kind == "serial":
             for which, percent in ((0, "p50"), (1, "p99")):
                 names = [each for each in ("now", "before") if (kind, each, busy) in found]
-                got = ", ".join(f"{median((kind, n, busy), 'trip_us', which):.0f} µs" for n in names)
+                got = ", ".join(
+                    f"{median((kind, n, busy), 'trip_us', which):.0f} µs" for n in names
+                )
                 row = f"position at the device to the frame for it back, {percent}{where}"
                 yield Result(row, "reported", got, met=True)
         lost = sum(got["overruns"] for got in found[kind, name, busy])
@@ -173,9 +175,9 @@ def _python(root: Path, installed: str, module: str, *arguments: str) -> subproc
     # The working directory comes first, and an old checkout has benchmarks of its own: this one's
     # are run by their path.
     start = (
-        "import runpy, sys; import vbraille; sys.path.insert(0, {!r}); "
+        f"import runpy, sys; import vbraille; sys.path.insert(0, {str(ROOT)!r}); "
         "sys.argv = sys.argv[1:]; runpy.run_module(sys.argv[0], run_name='__main__')"
-    ).format(str(ROOT))
+    )
     return subprocess.Popen(
         [sys.executable, "-c", start, f"tests.benchmarks.{module}", *arguments],
         cwd=root,

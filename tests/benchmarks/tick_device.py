@@ -1,7 +1,7 @@
 """A controller that times its own round trips; see `tick_serving`.
 
-It runs before the host, and ends when its standard input does; then it prints as JSON how many round
-trips it timed, and their percentiles 50 and 99 in µs.
+It runs before the host, and ends when its standard input does; then it prints as JSON how many
+round trips it timed, and their percentiles 50 and 99 in µs.
 """
 
 from __future__ import annotations
