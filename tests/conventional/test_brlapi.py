@@ -114,7 +114,7 @@ def test_what_does_not_answer_is_said_and_found_again(brltty, display):
     assert heard(display, DisplayAway).why.startswith("what drives the display does not answer")
     brltty.process.send_signal(signal.SIGCONT)
     heard(display, DisplayStands)
-    display._process.kill()
+    display._worker.process.kill()
     heard(display, DisplayAway)
     heard(display, DisplayStands)
 

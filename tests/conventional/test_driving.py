@@ -7,13 +7,13 @@ import pytest
 from vbraille.conventional.brlapi import DisplayGoneError
 from vbraille.conventional.driving import Driving
 from vbraille.conventional.messages import (
-    TO_JSON,
     CellsTaken,
     CellsWanted,
     DisplayAway,
     DisplayStands,
     KeyPressed,
 )
+from vbraille.workers import Incoming, Outgoing
 
 STANDS = DisplayStands("Made", "of values", 4)
 
@@ -57,7 +57,7 @@ class Pins:
 @pytest.fixture
 def orders():
     reads, writes = os.pipe()
-    yield reads, lambda message: os.write(writes, TO_JSON.encode(message) + b"\n"), writes
+    yield Incoming(reads, CellsWanted), Outgoing(writes).put, writes
     os.close(reads)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -13,7 +14,8 @@ from vbraille.cli.settled import TRANSLATION
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.reading.places import BookOptions, book_to_open, last_book, resume
-from vbraille.reading.seeking import BookOpening, Seeker
+from vbraille.reading.queries import BookOpening
+from vbraille.reading.seeking.seeker import Seeker
 from vbraille.render.braille.knobs import kept_values, with_values
 from vbraille.settings.chosen import display_name
 from vbraille.translate import Document
@@ -67,7 +69,7 @@ class BookToRead:
             descriptor = source.descriptor
         return Seeker(
             BookOpening(
-                file="" if descriptor is not None else arguments.file,
+                file=b"" if descriptor is not None else os.fsencode(arguments.file),
                 descriptor=descriptor,
                 name=source.name,
                 encoding=arguments.encoding,

@@ -100,6 +100,3 @@ class KeyTyped(msgspec.Struct, frozen=True, tag=True):
 
 
 FromDisplay = DisplayStands | DisplayAway | CellsTaken | KeyPressed | KeyTyped
-TO_JSON = msgspec.json.Encoder()
-WANTED_FROM_JSON = msgspec.json.Decoder(CellsWanted)
-TOLD_FROM_JSON: msgspec.json.Decoder[FromDisplay] = msgspec.json.Decoder(FromDisplay)

@@ -174,3 +174,66 @@ class Indexed(msgspec.Struct, frozen=True, tag="indexed"):
 
 
 Answer = Found | Listed | NotFound | Searched | Counted | Failed | Indexed
+
+
+class BookOpening(msgspec.Struct, frozen=True, tag="open"):
+    """How a book is opened, as plain values that go through a pipe.
+
+    Parameters
+    ----------
+    file
+        Path of the file, as the system has it: not every byte of it need be text.
+    descriptor
+        Number of an open file that has the text, such as what standard input gave, in place of
+        a path; None for a path.
+    name
+        Name of the book in messages; empty for the path.
+    encoding, keep_lines, form, brf_table
+        As the reader opened the book.
+    table, language, grade
+        Braille table; or None, and the language and grade by which it is chosen. With a table,
+        these are what the reader chose, by which passages in other languages are translated.
+    switch
+        Whether passages in other languages are translated by the tables of those languages.
+    undefined
+        What is written for characters that the table does not know.
+    index
+        Index of the source, as far as it is known.
+    """
+
+    file: bytes = b""
+    descriptor: int | None = None
+    name: str = ""
+    encoding: str | None = None
+    keep_lines: bool = False
+    form: str | None = None
+    brf_table: str | None = None
+    table: str | None = None
+    language: str | None = None
+    grade: int | None = None
+    switch: bool = True
+    undefined: str = "mark"
+    index: Index | None = None
+
+
+class Ask(msgspec.Struct, frozen=True, tag="ask"):
+    """A question, with a number that its answers have."""
+
+    number: int
+    query: Query
+
+
+class Cancel(msgspec.Struct, frozen=True, tag="cancel"):
+    """A question is given up, by its number."""
+
+    number: int
+
+
+class Told(msgspec.Struct, frozen=True):
+    """An answer, with the number of its question; 0 for what nobody asked."""
+
+    number: int
+    answer: Answer
+
+
+Order = BookOpening | Ask | Cancel

@@ -1,41 +1,41 @@
-"""The process that speaks: sentences on standard input, as `vbraille.reading.speech` sends them.
+"""The process that speaks the sentences that `vbraille.reading.speech` sends.
 
 If there is no speech, or none any more, it says so once on standard error and ends.
 """
 
 from __future__ import annotations
 
-import os
 import sys
 from contextlib import suppress
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
-from vbraille.reading.speech import AFTER, INSTEAD
+from vbraille.reading.speech import Spoken
 from vbraille.reading.ssip import SpeechError, SpeechServer
+from vbraille.workers import begin
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
 
-_PIPE_BYTES: Final = 1 << 16  # all that a pipe holds
+    from vbraille.workers import Incoming
 
 
-def newest(lines: Iterable[str]) -> list[str]:
-    """Lines from the last on that takes the place of those before it."""
-    kept: list[str] = []
-    for line in lines:
-        if line.startswith(INSTEAD):
+def newest(sentences: Iterable[Spoken]) -> list[Spoken]:
+    """Sentences from the last on that takes the place of those before it."""
+    kept: list[Spoken] = []
+    for sentence in sentences:
+        if sentence.instead:
             kept.clear()
-        kept.append(line)
+        kept.append(sentence)
     return kept
 
 
-def speak(orders: int, language: str) -> None:
+def speak(orders: Incoming[Spoken], language: str) -> None:
     """Say what comes until it ends.
 
     Parameters
     ----------
     orders
-        Descriptor from which lines come.
+        Sentences that come.
     language
         Language that is spoken, as a tag.
 
@@ -45,36 +45,30 @@ def speak(orders: int, language: str) -> None:
         If there is no speech.
     """
     server = SpeechServer(language)
-    for lines in _batches(orders):
+    while not orders.ended:
+        orders.wait()
+        sentences = newest(orders.take())  # of several the newest are what is true
         try:
-            _say(server, lines)
+            _say(server, sentences)
         except SpeechError:  # the server may have been started anew; if not, that is the end
             server.close()
             server = SpeechServer(language)
-            _say(server, lines)
+            _say(server, sentences)
     server.close()
 
 
-def _batches(orders: int) -> Iterator[list[str]]:
-    """All lines that have come, again and again; of several the newest are what is true."""
-    begun = b""
-    while chunk := os.read(orders, _PIPE_BYTES):
-        *lines, begun = (begun + chunk).split(b"\n")
-        yield newest(line.decode("utf-8", "replace") for line in lines)
-
-
-def _say(server: SpeechServer, lines: list[str]) -> None:
-    for line in lines:
-        if line.startswith(INSTEAD):
+def _say(server: SpeechServer, sentences: list[Spoken]) -> None:
+    for sentence in sentences:
+        if sentence.instead:
             server.hush()
-        if line[len(AFTER) :].strip():
-            server.say(line[len(AFTER) :])
+        if sentence.text.strip():
+            server.say(sentence.text)
 
 
 def main() -> int:
     """Speak until there is no more to say, or no speech."""
     try:
-        speak(sys.stdin.fileno(), sys.argv[1])
+        speak(begin(Spoken)[0], sys.argv[2])
     except SpeechError as error:
         with suppress(OSError):
             print(f"speech: {error}; reading goes on without it", file=sys.stderr, flush=True)

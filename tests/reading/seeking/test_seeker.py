@@ -12,6 +12,7 @@ import pytest
 
 from vbraille.layout.pages import Layout
 from vbraille.reading.queries import (
+    BookOpening,
     Counted,
     CountLines,
     Failed,
@@ -24,7 +25,7 @@ from vbraille.reading.queries import (
     NotFound,
     Searched,
 )
-from vbraille.reading.seeking import BookOpening, Seeker
+from vbraille.reading.seeking.seeker import Seeker
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.opening import open_source
 
@@ -61,7 +62,7 @@ def book(tmp_path):
 
 
 def test_questions_are_answered(book):
-    with Seeker(BookOpening(str(book), language="en")) as seeker:
+    with Seeker(BookOpening(os.fsencode(book), language="en")) as seeker:
         assert not seeker.busy
         assert seeker.poll() is None
         found = final(seeker, FindText("LAST  words", 0))
@@ -79,14 +80,14 @@ def test_questions_are_answered(book):
 
 
 def test_the_index_of_the_whole_book_comes_of_itself(book):
-    with Seeker(BookOpening(str(book))) as seeker:
+    with Seeker(BookOpening(os.fsencode(book))) as seeker:
         seeker.start()
         *_, indexed = answers(seeker, until=Indexed)
         document = Document.open(book)
         document.adopt(indexed.index)
         assert document.complete
         assert seeker.index == indexed.index
-    with Seeker(BookOpening(str(book), index=indexed.index)) as seeker:
+    with Seeker(BookOpening(os.fsencode(book), index=indexed.index)) as seeker:
         assert isinstance(final(seeker, FindText("last", 0)), Found)
 
 
@@ -105,7 +106,7 @@ def test_the_headings_of_a_book(tmp_path):
     path = tmp_path / "book.md"
     path.write_text("# One\n\nText.\n\n## Two *and*\n\nMore.\n")
     source = open_source(path)
-    with Seeker(BookOpening(str(path), form="markdown")) as seeker:
+    with Seeker(BookOpening(os.fsencode(path), form="markdown")) as seeker:
         listed = final(seeker, ListHeadings())
     assert [(one.level, one.title) for one in listed.headings] == [(1, "One"), (2, "Two and")]
     assert [source.block_at(one.character) for one in listed.headings] == [0, 2]
@@ -114,7 +115,7 @@ def test_the_headings_of_a_book(tmp_path):
 def test_lines_of_a_braille_file(tmp_path):
     path = tmp_path / "book.brf"
     path.write_text(",! FIR/ L9E\n,! SECOND\n,! ?IRD\n")
-    with Seeker(BookOpening(str(path), form="brf")) as seeker:
+    with Seeker(BookOpening(os.fsencode(path), form="brf")) as seeker:
         seeker.ask(CountLines(6, 2))
         *_, counted = answers(seeker, until=Counted | Failed)
     line, _ = Layout(Book(open_source(str(path))), 6).place(path.read_text().index(",! ?"))
@@ -123,12 +124,12 @@ def test_lines_of_a_braille_file(tmp_path):
 
 def test_a_name_that_is_no_text(book):
     path = book.rename(book.with_name(os.fsdecode(b"b\xffk.txt")))
-    with Seeker(BookOpening(str(path))) as seeker:
+    with Seeker(BookOpening(os.fsencode(path))) as seeker:
         assert isinstance(final(seeker, FindText("last \udcff", 0)), NotFound)
 
 
 def test_what_cannot_be_opened_is_one_sentence(tmp_path):
-    with Seeker(BookOpening(str(tmp_path / "none.txt"))) as seeker:
+    with Seeker(BookOpening(os.fsencode(tmp_path / "none.txt"))) as seeker:
         failed = final(seeker, FindText("last", 0))
         assert failed.sentence == f"there is no file {tmp_path / 'none.txt'}; check the name"
 
@@ -136,7 +137,7 @@ def test_what_cannot_be_opened_is_one_sentence(tmp_path):
 def test_a_question_that_is_given_up_has_no_answer(tmp_path):
     path = tmp_path / "long.txt"
     path.write_text(LONG)
-    with Seeker(BookOpening(str(path))) as seeker:
+    with Seeker(BookOpening(os.fsencode(path))) as seeker:
         seeker.ask(FindShare(1.0))
         seeker.cancel()
         assert not seeker.busy
@@ -147,9 +148,9 @@ def test_a_question_that_is_given_up_has_no_answer(tmp_path):
 
 
 def test_a_process_that_is_killed_is_told_of_and_begun_again(book):
-    with Seeker(BookOpening(str(book))) as seeker:
+    with Seeker(BookOpening(os.fsencode(book))) as seeker:
         assert isinstance(final(seeker, FindText("last", 0)), Found)
-        process = seeker._process.popen
+        process = seeker._worker.process
         os.kill(process.pid, signal.SIGSTOP)
         seeker.ask(FindText("last", 0))
         os.kill(process.pid, signal.SIGKILL)
@@ -163,10 +164,11 @@ def test_a_process_that_is_killed_is_told_of_and_begun_again(book):
 
 _PARENT = """
 import sys
-from vbraille.reading.seeking import BookOpening, Seeker
-seeker = Seeker(BookOpening(sys.argv[1]))
+from vbraille.reading.queries import BookOpening
+from vbraille.reading.seeking.seeker import Seeker
+seeker = Seeker(BookOpening(sys.argv[1].encode()))
 seeker.start()
-print(seeker._process.popen.pid, flush=True)
+print(seeker._worker.process.pid, flush=True)
 sys.stdin.read()
 """
 
@@ -183,7 +185,7 @@ def test_it_is_gone_with_its_parent(book):
 
 
 def test_progress_is_told_at_most_twice_a_second():
-    from vbraille.reading.seeking.working import PROGRESS_S, Worker
+    from vbraille.reading.seeking.working import PROGRESS_S, BookSearch
 
     told, clock = [], iter(range(10**9))
     seconds = 0.0
@@ -191,21 +193,21 @@ def test_progress_is_told_at_most_twice_a_second():
     class Pipe:
         ended = False
 
-        def messages(self):
-            yield from ()
+        def take(self):
+            return []
 
         def flush(self):
             return True
 
         def put(self, message):
-            told.append((seconds, message["answer"]))
+            told.append((seconds, message.answer))
 
     def now():
         nonlocal seconds
         seconds = next(clock) / 50
         return seconds
 
-    worker = Worker(Pipe(), Pipe(), now)
+    worker = BookSearch(Pipe(), Pipe(), now)
     worker._works[0] = (1, (Searched(n / 999) for n in range(1000)))
     for _ in range(999):
         worker._step()

@@ -2,33 +2,27 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-from contextlib import suppress
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Final, Self
 
 import msgspec
 
-from vbraille.reading.queries import Answer, CountLines, Failed, FindText, Indexed, Searched
-from vbraille.reading.seeking.pipes import Incoming, Outgoing
+from vbraille.reading.queries import (
+    Ask,
+    Cancel,
+    CountLines,
+    Failed,
+    FindText,
+    Indexed,
+    Searched,
+    Told,
+)
+from vbraille.workers import Worker
 
 if TYPE_CHECKING:
-    from vbraille.reading.queries import Query
-    from vbraille.reading.seeking.opening import BookOpening
+    from vbraille.reading.queries import Answer, BookOpening, Query
     from vbraille.translate.source import Index
 
-_END_S = 1.0
-
-
-@dataclass(slots=True)
-class _Process:
-    """A process that runs, and the pipes to and from it."""
-
-    popen: subprocess.Popen[bytes]
-    incoming: Incoming
-    outgoing: Outgoing
+_MODULE: Final = "vbraille.reading.seeking.working"
 
 
 class Seeker:
@@ -52,7 +46,7 @@ class Seeker:
     def __init__(self, opening: BookOpening) -> None:
         self.index: Index | None = None
         self._opening = opening
-        self._process: _Process | None = None
+        self._worker: Worker[Told] | None = None
         self._last = 0
         self._asked: dict[bool, int] = {}  # number of a question, and of a count of lines
         self._answers: list[Answer] = []
@@ -70,30 +64,20 @@ class Seeker:
     @property
     def descriptor(self) -> int | None:
         """Number of the open file that can be read when an answer comes; None without a process."""
-        return None if self._process is None else self._process.incoming.descriptor
+        return None if self._worker is None else self._worker.descriptor
 
     def start(self) -> None:
         """Start the process, if it does not run, so that it can see where the book's blocks are."""
-        if self._process is not None:
+        if self._worker is not None:
             return
         descriptor = self._opening.descriptor
+        inherited = () if descriptor is None else (descriptor,)
         try:
-            popen = subprocess.Popen(
-                [sys.executable, "-m", "vbraille.reading.seeking", str(os.getpid())],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
-                pass_fds=() if descriptor is None else (descriptor,),
-            )
+            self._worker = Worker(_MODULE, tells=Told, pass_fds=inherited, quiet=True)
         except OSError as error:
             self._fail(f"the book cannot be looked through: {error.strerror}")
             return
-        assert popen.stdin is not None
-        assert popen.stdout is not None
-        incoming, outgoing = Incoming(popen.stdout.fileno()), Outgoing(popen.stdin.fileno())
-        self._process = _Process(popen, incoming, outgoing)
-        fields = msgspec.to_builtins(self._opening)
-        self._tell({"open": {**fields, "file": os.fsencode(self._opening.file)}})
+        self._worker.send(self._opening)
 
     def ask(self, query: Query) -> None:
         """Ask a question; one of the same kind that was not answered yet is given up."""
@@ -105,7 +89,8 @@ class Seeker:
         self._last += 1
         self._asked[counts] = self._last
         self.start()
-        self._tell({"ask": msgspec.to_builtins(query), "number": self._last})
+        if self._worker is not None:
+            self._worker.send(Ask(self._last, query))
 
     def poll(self) -> Answer | None:
         """Give the next answer that has come, or None.
@@ -113,8 +98,8 @@ class Seeker:
         A question has `Searched` any number of times, at most two a second, and then one other
         answer. `Indexed` comes once, without a question.
         """
-        if not self._answers and self._process is not None:
-            self._hear(self._process)
+        if not self._answers and self._worker is not None:
+            self._hear(self._worker)
         return self._answers.pop(0) if self._answers else None
 
     def cancel(self) -> None:
@@ -123,11 +108,11 @@ class Seeker:
 
     def close(self) -> None:
         """End the process. Further calls do nothing."""
-        process, self._process = self._process, None
+        worker, self._worker = self._worker, None
         self._asked.clear()
         self._answers.clear()
-        if process is not None:
-            self._end(process)
+        if worker is not None:
+            worker.close(0)  # it has nothing to leave in order
 
     def __enter__(self) -> Self:
         return self
@@ -138,17 +123,15 @@ class Seeker:
     def _give_up(self, *, counts: bool) -> None:
         number = self._asked.pop(counts, None)
         self._answers = [answer for answer in self._answers if isinstance(answer, Indexed)]
-        if number is not None and self._process is not None:
-            self._tell({"cancel": number})
+        if number is not None and self._worker is not None:
+            self._worker.send(Cancel(number))
 
-    def _hear(self, process: _Process) -> None:
-        with suppress(BrokenPipeError):
-            process.outgoing.flush()
-        for message in process.incoming.messages():
-            self._take(message["number"], msgspec.convert(message["answer"], Answer))
-        if process.incoming.ended:
-            self._process = None
-            self._end(process)
+    def _hear(self, worker: Worker[Told]) -> None:
+        for told in worker.receive():
+            self._take(told.number, told.answer)
+        if worker.ended:
+            self._worker = None
+            worker.close(0)
             self._fail("the process that looks through the book has ended; ask again")
 
     def _take(self, number: int, answer: Answer) -> None:
@@ -168,19 +151,3 @@ class Seeker:
         if self._asked:
             self._asked.clear()
             self._answers.append(Failed(sentence))
-
-    def _tell(self, message: object) -> None:
-        if self._process is not None:
-            with suppress(BrokenPipeError):  # its end is heard of when it is polled
-                self._process.outgoing.put(message)
-
-    @staticmethod
-    def _end(process: _Process) -> None:
-        popen = process.popen
-        popen.kill()  # it has nothing to leave in order
-        for pipe in (popen.stdin, popen.stdout):
-            assert pipe is not None
-            with suppress(OSError):
-                pipe.close()
-        with suppress(subprocess.TimeoutExpired):
-            popen.wait(_END_S)

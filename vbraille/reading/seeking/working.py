@@ -1,4 +1,4 @@
-"""What the process does: one question at a time, lines in between, the index when nothing is asked.
+"""The process that looks through a book: a question at a time, then lines, then the index.
 
 Work is a generator, which stops and goes on at each step, so that a question or the end of the
 parent is heard within a step.
@@ -7,44 +7,45 @@ parent is heard within a step.
 from __future__ import annotations
 
 import os
-import select
 import time
-from typing import TYPE_CHECKING, Any
-
-import msgspec
+from contextlib import suppress
+from typing import TYPE_CHECKING
 
 from vbraille.errors import VbrailleError
-from vbraille.reading.queries import CountLines, Failed, Query, Searched
+from vbraille.layout.texts import choose_table
+from vbraille.reading.queries import Ask, BookOpening, CountLines, Failed, Order, Searched, Told
 from vbraille.reading.seeking.answering import Answering
-from vbraille.reading.seeking.opening import BookOpening, open_again
+from vbraille.translate import Book, Undefined
+from vbraille.translate.opening import open_source
+from vbraille.workers import begin
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from vbraille.reading.queries import Answer
-    from vbraille.reading.seeking.pipes import Incoming, Outgoing
+    from vbraille.workers import Incoming, Outgoing
 
 PROGRESS_S = 0.5
+_NICE = 10  # the loop of the display and the reader's keys come first
 _LOOK_S = 0.02  # how often it is looked whether somebody asks; a step of work takes about as long
 
 
-class Worker:
+class BookSearch:
     """Work on one book, as messages ask for it.
-
-    A message to it is a dict: "open" with the fields of a `BookOpening`, then "ask" with those
-    of a question and its "number", or "cancel" with that. A message from it has the "number" and
-    the "answer"; the number of what nobody asked is 0.
 
     Parameters
     ----------
     incoming, outgoing
-        Pipes from and to the reader.
+        Messages from and to the reader.
     now
         Clock in seconds.
     """
 
     def __init__(
-        self, incoming: Incoming, outgoing: Outgoing, now: Callable[[], float] = time.monotonic
+        self,
+        incoming: Incoming[Order],
+        outgoing: Outgoing,
+        now: Callable[[], float] = time.monotonic,
     ) -> None:
         self._incoming = incoming
         self._outgoing = outgoing
@@ -56,46 +57,45 @@ class Worker:
         self._told_s = -PROGRESS_S
         self._looked_s = -_LOOK_S
 
-    def run(self, wait: Callable[[Incoming], None]) -> None:
-        """Work until the reader is gone; where there is nothing to do, a function waits."""
+    def run(self) -> None:
+        """Work until the reader is gone."""
         while not self._incoming.ended:
             idle = not any(self._works)
-            if idle and self._outgoing.flush():
-                wait(self._incoming)
-            elif idle:
-                time.sleep(_LOOK_S)  # the reader has not taken all that it was told
+            if idle:
+                # The reader may not have taken yet all that it was told.
+                self._incoming.wait(None if self._outgoing.flush() else _LOOK_S)
             if idle or self._now() - self._looked_s >= _LOOK_S:
                 self._looked_s = self._now()
-                for message in self._incoming.messages():
-                    self._take(message)
+                for order in self._incoming.take():
+                    self._take(order)
                 self._outgoing.flush()
             self._step()
 
-    def _take(self, message: dict[str, Any]) -> None:
-        if "open" in message:
-            fields = {**message["open"], "file": os.fsdecode(message["open"]["file"])}
-            self._open(msgspec.convert(fields, BookOpening))
-        elif "ask" in message:
-            self._begin(message["number"], msgspec.convert(message["ask"], Query))
-        elif "cancel" in message:
-            for urgency, work in enumerate(self._works[:2]):
-                if work is not None and work[0] == message["cancel"]:
-                    self._works[urgency] = None
+    def _take(self, order: Order) -> None:
+        match order:
+            case BookOpening():
+                self._open(order)
+            case Ask():
+                self._begin(order)
+            case _:
+                for urgency, work in enumerate(self._works[:2]):
+                    if work is not None and work[0] == order.number:
+                        self._works[urgency] = None
 
     def _open(self, opening: BookOpening) -> None:
         try:
-            self._answering = Answering(open_again(opening))
+            self._answering = Answering(_open_again(opening))
         except VbrailleError as error:
             self._failed = str(error)
             return
         self._works[2] = (0, self._answering.index())
 
-    def _begin(self, number: int, query: Query) -> None:
+    def _begin(self, asked: Ask) -> None:
         if self._answering is None:
-            self._tell(number, Failed(self._failed or "the book has not been opened"))
+            self._tell(asked.number, Failed(self._failed or "the book has not been opened"))
             return
-        urgency = 1 if isinstance(query, CountLines) else 0
-        self._works[urgency] = (number, self._answering.answer(query))
+        urgency = 1 if isinstance(asked.query, CountLines) else 0
+        self._works[urgency] = (asked.number, self._answering.answer(asked.query))
         self._told_s = self._now() - PROGRESS_S / 2  # what is answered at once has no progress
 
     def _step(self) -> None:
@@ -123,9 +123,45 @@ class Worker:
             return
 
     def _tell(self, number: int, answer: Answer) -> None:
-        self._outgoing.put({"number": number, "answer": answer})
+        self._outgoing.put(Told(number, answer))
 
 
-def wait(incoming: Incoming) -> None:
-    """Wait until a message or the end of the pipe comes."""
-    select.select([incoming.descriptor], [], [])
+def _open_again(opening: BookOpening) -> Book:
+    """Open a book as the reader has it open.
+
+    Raises
+    ------
+    InputError
+        If the book or its table cannot be opened.
+    """
+    # A path of its own gives the process a place of its own in the file.
+    file = os.fsdecode(opening.file)
+    path = file if opening.descriptor is None else f"/proc/self/fd/{opening.descriptor}"
+    source = open_source(
+        path,
+        name=opening.name or file,
+        encoding=opening.encoding,
+        keep_lines=opening.keep_lines,
+        brf_table=opening.brf_table,
+        form=opening.form,
+        wishes=("encoding", "keep_lines"),  # the reader has the book open with them
+    )
+    if opening.index is not None:
+        source.adopt(opening.index)
+    if source.in_cells:
+        return Book(source)
+    undefined = Undefined(opening.undefined)
+    named = None if opening.table else opening.language
+    table = choose_table(named, None if opening.table else opening.grade, opening.table, undefined)
+    return Book(
+        source,
+        table,
+        language=opening.language or "",
+        grade=opening.grade,
+        switch=opening.switch,
+    )
+
+
+if __name__ == "__main__":
+    with suppress(BrokenPipeError):
+        BookSearch(*begin(Order, _NICE)).run()
