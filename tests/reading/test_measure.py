@@ -8,7 +8,7 @@ import pytest
 
 from tests.reading.test_reader import Bench
 from tests.translate.documents.epubs import CONTAINER, opf, xhtml
-from vbraille.reading.places.anchoring import place_in
+from vbraille.reading.places.place import place_in
 from vbraille.reading.queries import FindShare
 from vbraille.reading.seeking.steps import steps
 from vbraille.translate import Book, BrailleTable

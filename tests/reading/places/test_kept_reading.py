@@ -81,7 +81,7 @@ def test_the_page_of_print(tmp_path):
     source = Paged()
     layout = Layout(Book(source, BrailleTable("en-ueb-g2.ctb")), 20)
     with KeptPlaces.open(tmp_path / "places.sqlite") as places:
-        book = places.book(None, source.sha256())
+        book = places.book(tmp_path / "book.txt")
         keeping = Keeping(book)
         pages = []
         for number in (1, 2, 4, 5):
