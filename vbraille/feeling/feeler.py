@@ -6,10 +6,10 @@ import math
 from typing import TYPE_CHECKING, Final
 
 from vbraille.errors import InputError
-from vbraille.feeling.composing import at_height
+from vbraille.feeling.composing import at_height, compose
 from vbraille.feeling.guiding import Guide
 from vbraille.feeling.index import SceneIndex
-from vbraille.feeling.loading import check_fits, load_scene, with_known
+from vbraille.feeling.loading import check_fits, load_scene
 from vbraille.feeling.opacities import Opacities
 from vbraille.reading.bindings import spoken
 from vbraille.reading.context import Context
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.engine.engine import Engine
-    from vbraille.feeling.composing import Composer
     from vbraille.feeling.index import NamedElement
     from vbraille.feeling.loading import LoadedScene
     from vbraille.pose import Pose
@@ -50,8 +49,8 @@ class Feeler:
         Engine that drives the device, which is started.
     where
         Function that tells where the array is; None before that is known.
-    composer
-        What makes programs of scenes.
+    rate_hz
+        Frames a second.
     style
         How the braille of labels is shown.
     say
@@ -85,7 +84,7 @@ class Feeler:
         engine: Engine,
         *,
         where: Callable[[], Pose | None],
-        composer: Composer,
+        rate_hz: float,
         style: BrailleStyle,
         say: Callable[[str], None],
         bound: Bound,
@@ -110,7 +109,7 @@ class Feeler:
         self._where = where
         self._style = style
         self._room = room
-        self._composer = composer
+        self._rate_hz = rate_hz
         self._steering = steering
         self._at_mm = loaded.scene.canvas.height_mm / 2 if at_mm is None else at_mm
         self._aim: tuple[float, float] | None = None  # where keys have sent the hand
@@ -288,7 +287,6 @@ class Feeler:
         """Read the file again, and show what it holds now; what is wrong with it is said."""
         try:
             loaded = load_scene(self.loaded.opened.path, self._style)
-            loaded = with_known(loaded, self.loaded)
             check_fits(loaded.scene, self.display)
             program = self._compose(loaded)
             if program.nbytes > self._room:
@@ -321,7 +319,13 @@ class Feeler:
             self._steering.give(GlideTo(x_mm, y_mm, speed_mm_s))
 
     def _compose(self, loaded: LoadedScene) -> Program:
-        return self._composer.compose(loaded, contrast=self.contrast, own_y_mm=self._at_mm)
+        return compose(
+            loaded,
+            self.display,
+            rate_hz=self._rate_hz,
+            contrast=self.contrast,
+            own_y_mm=self._at_mm,
+        )
 
     def _show(self, program: Program) -> None:
         self._program = program
