@@ -117,9 +117,7 @@ def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:
         raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
     first = told.events[0]
     if 1 in told.bad and not (
-        isinstance(first, Session)
-        and first.sha256.keys() >= set(FILES)
-        and first.format == FORMAT
+        isinstance(first, Session) and first.sha256.keys() >= set(FILES) and first.format == FORMAT
     ):
         raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
     if not isinstance(first, Session):
