@@ -21,7 +21,6 @@ from vbraille.sessions.planning.questions import (
     SameQuestion,
     WhichQuestion,
 )
-from vbraille.sessions.planning.rules import is_balanced
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -141,7 +140,7 @@ def ordered(protocol: Protocol, heads: Sequence[dict[str, Any]]) -> str:
     """Clause that says in which order the blocks of conditions came."""
     if protocol.order_rows:
         return "in the order that a table gives each participant"
-    if is_balanced(protocol):
+    if protocol.balanced:
         number = len(balanced_orders(len(protocol.conditions)))
         used = ", ".join(map(str, sorted({head["order"] for head in heads})))
         return f"balanced by Williams squares (of {count(number, 'order')}: {used})"

@@ -22,7 +22,6 @@ from vbraille.sessions.planning.protocolfiles import (
     load_protocol,
     parse_protocol,
 )
-from vbraille.sessions.planning.rules import is_balanced
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\n'
 VBD_HEAD = f'{HEAD}model = "vbd"\n'
@@ -146,11 +145,11 @@ class TestParsing:
     def test_what_is_left_out(self):
         protocol = parse(VBD_HEAD + PAIRS)
         assert protocol.geometry == VBD
-        assert (protocol.medium, protocol.repeat_faults) == ("device", True)
+        assert (protocol.medium, protocol.faults.repeat) == ("device", True)
         assert protocol.practice == Practice()
         assert not protocol.rules.never_twice_running
         assert (protocol.design.blocks, protocol.design.repeats) == ("conditions", 1)
-        assert (protocol.design.order, is_balanced(protocol)) == (None, False)
+        assert (protocol.design.order, protocol.balanced) == (None, False)
         assert [(c.name, protocol.tuning(c), c.given) for c in protocol.conditions] == [
             ("all", Tuning(), {})
         ]
@@ -214,7 +213,7 @@ class TestParsing:
         assert protocol.practice == Practice(3, ((3, 3),))
         assert (protocol.trial.gap_s, protocol.trial.warning_s) == (1.0, 20.0)
         assert (protocol.session.limit_s, protocol.session.break_every) == (60.0, 5)
-        assert not protocol.repeat_faults
+        assert not protocol.faults.repeat
         assert protocol.sound.cue == Tone(1000, 100)
         assert protocol.fields == (Question("finger", "Which?"),)
 

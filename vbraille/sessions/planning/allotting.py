@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.chance import balanced_orders
-from vbraille.sessions.planning.rules import is_balanced
 from vbraille.toml.tomlfile import which
 from vbraille.wording import setting
 
@@ -63,7 +62,7 @@ def choose_order(protocol: Protocol, participant: str, order: int | None) -> int
     """
     if protocol.order_rows:
         return _row(protocol, participant, order)
-    if not is_balanced(protocol):
+    if not protocol.balanced:
         if order is not None:
             raise InputError(
                 f"{protocol.name} has no balanced orders; leave {setting('order')} out"

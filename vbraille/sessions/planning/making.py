@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import cycle
+from itertools import cycle, zip_longest
 from typing import TYPE_CHECKING
 
 from msgspec import structs
@@ -14,7 +14,6 @@ from vbraille.sessions.planning.chance import Chance, balanced_orders
 from vbraille.sessions.planning.choosing import varied
 from vbraille.sessions.planning.design import Choice, Item, StringList
 from vbraille.sessions.planning.plan import Plan
-from vbraille.sessions.planning.rules import check_plan
 from vbraille.sessions.planning.sequencing import arranged
 from vbraille.sessions.planning.spellings import WrittenText
 from vbraille.sessions.planning.stimuli import (
@@ -44,7 +43,7 @@ def make_plan(
     texture: float | None = None,
     contrast: float | None = None,
 ) -> Plan:
-    """Make the plan of a session, and check it.
+    """Make the plan of a session.
 
     Parameters
     ----------
@@ -93,7 +92,7 @@ def make_plan(
         trials = with_catch(trials, protocol.design.catch, Chance(f"{drawn} catch"))
     # Practice is shuffled separately, so that the number of its trials does not change the others.
     practice = _practice(protocol, conditions, Chance(f"{drawn} practice"))
-    plan = Plan(
+    return Plan(
         protocol=protocol.name,
         participant=participant,
         seed=seed,
@@ -102,8 +101,67 @@ def make_plan(
         practice=_numbered(practice),
         trials=_numbered(trials),
     )
-    check_plan(protocol, plan)
-    return plan
+
+
+def check_plan(protocol: Protocol, plan: Plan) -> None:
+    """Check that a plan is what the protocol, the participant and the seed make.
+
+    Cells of texts are taken from the plan, since liblouis may have other tables than it had.
+
+    Raises
+    ------
+    InputError
+        If the plan was altered; the sentence says where.
+    """
+    cells = {(s.text, s.table): s.masks for s in plan.stimuli() if s.text and s.table}
+    protocol = structs.replace(protocol, cells=cells)
+    try:
+        again = make_plan(
+            protocol,
+            plan.participant,
+            plan.seed,
+            plan.order or None,
+            group=plan.group or None,
+            texture=_own_tuning(protocol, plan, "texture"),
+            contrast=_own_tuning(protocol, plan, "contrast"),
+        )
+        if said := _difference(plan, again):
+            raise ValueError(said)
+    except (InputError, ValueError) as error:
+        raise InputError(
+            f"the plan of {plan.participant} for {protocol.name} is not what seed {plan.seed} "
+            f"makes: {error}; put it back as it was"
+        ) from None
+
+
+def _difference(plan: Plan, again: Plan) -> str:
+    """Say where a plan differs from the one that was made again; empty if it does not."""
+    for name in ("protocol", "group", "order"):
+        if (kept := getattr(plan, name)) != (made := getattr(again, name)):
+            return f"{name} is {kept!r}, and must be {made!r}"
+    for name, trials, made in (
+        ("practice trial", plan.practice, again.practice),
+        ("trial", plan.trials, again.trials),
+    ):
+        for number, (kept, wanted) in enumerate(zip_longest(trials, made), 1):
+            if kept is None or wanted is None:
+                return f"{name} {number} is {'missing' if kept is None else 'one too many'}"
+            for field in wanted.__struct_fields__:
+                if getattr(kept, field) != getattr(wanted, field):
+                    return f"{name} {number} differs in its {field}"
+    return ""
+
+
+def _own_tuning(protocol: Protocol, plan: Plan, name: str) -> float | None:
+    """Texture or contrast that was given for the session instead of the display's; else None."""
+    free = [condition.name for condition in protocol.conditions if name not in condition.given]
+    if name == varied(protocol):
+        return None
+    for trial in (*plan.trials, *plan.practice):
+        if trial.condition in free:
+            value = getattr(trial.stimuli[0].tuning, name)
+            return None if value == getattr(protocol.style.tuning, name) else value
+    return None
 
 
 def _tuned(protocol: Protocol, given: dict[str, float | None]) -> list[Condition]:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _Plan = TypeVar("_Plan")
 
-VERSION = 2  # of the rules that plans are made by
+VERSION = 2  # of the making of plans; what a seed makes may change with a higher one alone
 _OF_STIMULUS = {"cells", "value_mm", *(f.name for f in (*fields(Tuning), *fields(Geometry)))}
 # Left out where the display's mapping is used, where a protocol gives cells, and on the device.
 _OPTIONAL = ("mapping", "text", "table", "on")

@@ -148,6 +148,9 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         What these files hold: items, and orders of participants; empty without such files.
     group
         Group whose share of the protocol this is; empty for the protocol of all.
+    cells
+        Dot masks of texts that are known already, by the text and its table; those of others are
+        made by the tables.
 
     Raises
     ------
@@ -162,6 +165,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
     item_rows: tuple[ItemRow, ...] = ()
     order_rows: tuple[OrderRow, ...] = ()
     group: str = ""
+    cells: dict[tuple[str, str], tuple[int, ...]] = {}  # noqa: RUF012
 
     def __post_init__(self) -> None:
         if not _NAME.fullmatch(self.name):
@@ -263,9 +267,10 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         return "table" if self.order.kind == "table" else self.order.of_blocks
 
     @property
-    def repeat_faults(self) -> bool:
-        """Whether a trial in which the device failed is shown again."""
-        return self.faults.repeat
+    def balanced(self) -> bool:
+        """Whether participants differ in the order of the conditions."""
+        by_blocks = self.design.blocks == "conditions" and self.block_order in ("balanced", None)
+        return by_blocks and len(self.conditions) > 1
 
     @property
     def task(self) -> str:
@@ -359,7 +364,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
             if table is None:
                 raise ValueError(f"the condition {condition.name} has no table; give it one")
             text = str(masks)
-            masks = cells_of(text, table)
+            masks = self.cells.get((text, table)) or cells_of(text, table)
         if self.place_of(condition) == CONVENTIONAL:
             return Stimulus(
                 masks, style.tuning, style.geometry, text=text, table=table, on=CONVENTIONAL

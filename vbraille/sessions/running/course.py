@@ -373,7 +373,7 @@ class Course(CourseState):
 
     def _repeat_faulty(self, trial: Trial, what: str) -> None:
         """Show the open trial again after a fault, if the protocol says so."""
-        repeats = self.protocol.repeat_faults
+        repeats = self.protocol.faults.repeat
         how = "is repeated" if repeats else "goes on"
         self._say(f"fault: {what}; {self.name(trial)} {how}")
         if repeats:
