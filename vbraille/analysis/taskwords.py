@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.sessions.planning.chance import balanced_orders
 from vbraille.sessions.planning.choosing import varied
-from vbraille.sessions.planning.knobs import KNOBS
 from vbraille.sessions.planning.procedures import (
     FixedProcedure,
     QuestProcedure,
@@ -21,6 +20,7 @@ from vbraille.sessions.planning.questions import (
     SameQuestion,
     WhichQuestion,
 )
+from vbraille.sessions.planning.stimuli import KNOBS
 from vbraille.wording import count
 
 if TYPE_CHECKING:

@@ -5,10 +5,9 @@ from itertools import groupby, pairwise, permutations, product
 
 from vbraille.sessions.planning.appearance import TUNED
 from vbraille.sessions.planning.chance import balanced_orders
-from vbraille.sessions.planning.design import Choice, Combinations
-from vbraille.sessions.planning.knobs import KNOBS
+from vbraille.sessions.planning.design import Choice, Combinations, name_item
 from vbraille.sessions.planning.making import make_plan
-from vbraille.sessions.planning.practice import name_item
+from vbraille.sessions.planning.stimuli import KNOBS
 
 
 def broken_rules(protocol, participant, seed):

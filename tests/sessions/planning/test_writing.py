@@ -13,8 +13,8 @@ from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.making import check_plan, make_plan
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
-from vbraille.sessions.planning.writing import cells_of, parse_text
-from vbraille.sessions.record.dataset import write
+from vbraille.sessions.planning.spellings import cells_of, parse_text
+from vbraille.sessions.record.bids import write
 from vbraille.sessions.record.export import rows
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.session import Session

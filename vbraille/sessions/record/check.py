@@ -14,6 +14,7 @@ from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Closed, Lost, Run
 from vbraille.sessions.record.folder import (
     FILES,
+    Record,
     load,
     missed_tie,
     read_file,
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from vbraille.sessions.record.folder import Record
     from vbraille.sessions.record.journal import JournalContents
     from vbraille.sessions.record.traces import Trace
 
