@@ -14,8 +14,8 @@ from vbraille.cli.settled import TRANSLATION
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.reading.places import BookOptions, book_to_open, last_book, resume
-from vbraille.reading.queries import BookOpening
-from vbraille.reading.seeking.seeker import Seeker
+from vbraille.reading.search.queries import BookOpening
+from vbraille.reading.search.seeker import Seeker
 from vbraille.render.braille.knobs import kept_values, with_values
 from vbraille.settings.chosen import display_name
 from vbraille.translate import Document

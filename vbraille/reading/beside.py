@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from vbraille.reading.bindings import Bound
     from vbraille.reading.cues import Cue
-    from vbraille.reading.queries import Answer, Query
+    from vbraille.reading.search.queries import Answer, Query
     from vbraille.render import BrailleStyle
     from vbraille.render.program import Program
     from vbraille.translate.source import Source

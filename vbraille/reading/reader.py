@@ -8,9 +8,9 @@ from vbraille.reading.beside import Beside
 from vbraille.reading.context import Context
 from vbraille.reading.keeping import Keeping
 from vbraille.reading.linereader import LineReader
-from vbraille.reading.looking import Looking
 from vbraille.reading.prompt import Prompt
-from vbraille.reading.queries import CountLines
+from vbraille.reading.search.queries import CountLines
+from vbraille.reading.search.seeker import Search
 from vbraille.reading.whereabouts import heading_name
 from vbraille.reading.window import Window
 
@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 
     from vbraille.engine.engine import Engine
     from vbraille.layout.pages import Layout
-    from vbraille.reading.beside import KeptLike, SeekerLike
-    from vbraille.reading.queries import Counted, Query
+    from vbraille.reading.beside import KeptLike
+    from vbraille.reading.search.queries import Counted, Query
+    from vbraille.reading.search.seeker import Seeker
     from vbraille.render import BrailleStyle, Model
     from vbraille.translate import Book
     from vbraille.translate.source import Mark
@@ -50,10 +51,8 @@ class Reader(LineReader):
         Meaning of the keys at the moment.
     prompt : Prompt or None
         What is being typed.
-    seeker : SeekerLike or None
-        Process that looks through the whole book; None to do so here.
-    looking : Looking
-        What is looked for in the whole book.
+    search : Search
+        Search in the whole book.
     fold_accents : bool
         Whether a search takes letters with accents and without for the same.
     sought : str
@@ -75,8 +74,7 @@ class Reader(LineReader):
     ) -> None:
         super().__init__(layout, engine, model=model, say=say, beside=beside, **how)
         beside = Beside() if beside is None else beside
-        self.seeker = beside.seeker
-        self.looking = Looking(say, verbose=beside.verbose, counted=self._take_count)
+        self.search = Search(say, beside.seeker, verbose=beside.verbose, counted=self._take_count)
         self.keeping = Keeping(beside.kept)
         self.save_style = beside.save_style
         self.styles_before: list[BrailleStyle] = []  # before each turn that was not taken back
@@ -112,13 +110,13 @@ class Reader(LineReader):
 
     def attend(self, now_s: float, *, resting: bool) -> None:
         """Do what is done by time: take what was found, keep the place, scroll."""
-        if self.seeker is not None:
-            self.looking.poll(self.seeker, self.layout.book.source, now_s)
-            self._count(self.seeker)
+        if self.search.seeker is not None:
+            self.search.poll(self.layout.book.source, now_s)
+            self._count(self.search.seeker)
         self.keeping.step(now_s)
         super().attend(now_s, resting=resting)
 
-    def _count(self, seeker: SeekerLike) -> None:
+    def _count(self, seeker: Seeker) -> None:
         """Have the lines before this one counted, where their number is not known."""
         layout, line = self.layout, self.line
         if self._counting or layout.counted or line is None or layout.book is not self._book:
@@ -249,7 +247,7 @@ class Reader(LineReader):
 
         What is near comes at once; what is far may come while reading goes on.
         """
-        self.looking.find(self.layout.book.source, query, then, self.seeker)
+        self.search.find(self.layout.book.source, query, then)
 
     def ask(
         self,
@@ -343,5 +341,5 @@ class Reader(LineReader):
 
     def leave(self) -> None:
         """Keep the place at which reading goes on another time; nothing is read after this."""
-        self.looking.cancel(self.seeker)
+        self.search.cancel()
         self.keeping.leave()

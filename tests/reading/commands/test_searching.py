@@ -7,8 +7,7 @@ from vbraille.reading.beside import Beside
 from vbraille.reading.context import Context
 from vbraille.reading.cues import Cue
 from vbraille.reading.echo import Echo
-from vbraille.reading.nearby import look, look_everywhere
-from vbraille.reading.queries import (
+from vbraille.reading.search.queries import (
     Counted,
     CountLines,
     Failed,
@@ -17,6 +16,7 @@ from vbraille.reading.queries import (
     NotFound,
     Searched,
 )
+from vbraille.reading.search.seeker import look, look_everywhere
 from vbraille.translate import Document
 
 TEXT = "The Café is here.\n\nno\n\nA cafe, two\ncafés, and THE\nstreet Straße.\n"
@@ -113,7 +113,7 @@ def test_what_is_far_is_looked_for_while_reading_goes_on():
     assert bench.press("b") == ["line: 5001"]
     assert bench.press("p") == ["line: 5000"]
     assert bench.press("b") == ["line: 2"]
-    assert not bench.reader.looking.busy
+    assert not bench.reader.search.busy
 
 
 def test_progress_is_said_every_two_seconds_and_only_if_asked_for():

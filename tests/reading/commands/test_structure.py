@@ -12,7 +12,7 @@ from vbraille.layout.braillepages import Imprint, pef
 from vbraille.reading.beside import Beside
 from vbraille.reading.cues import Cue
 from vbraille.reading.echo import Echo
-from vbraille.reading.seeking.answering import Answering
+from vbraille.reading.search.answering import Answering
 from vbraille.translate import Book, BrailleTable, Cells
 from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.braillefiles.pef import PefBook

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.braille.dots import dots_of
 from vbraille.reading.echo import Echo
-from vbraille.reading.nearby import within
+from vbraille.reading.search.structure import within
 from vbraille.reading.whereabouts import block_of, whereabouts
 from vbraille.translate.documents.markup.tables import BETWEEN
 from vbraille.translate.source import BlockKind

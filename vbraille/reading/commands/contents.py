@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 from vbraille.reading.context import Context
 from vbraille.reading.cues import Cue
-from vbraille.reading.queries import ListHeadings
+from vbraille.reading.search.queries import ListHeadings
 from vbraille.wording import count
 
 if TYPE_CHECKING:
-    from vbraille.reading.queries import ListedHeading
     from vbraille.reading.reader import Reader
+    from vbraille.reading.search.queries import ListedHeading
 
     Numbered = dict[int, ListedHeading]
 

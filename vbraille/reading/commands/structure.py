@@ -6,9 +6,16 @@ import re
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
-from vbraille.reading.nearby import within
-from vbraille.reading.queries import FindKind, FindLine, FindPage, FindShare
-from vbraille.reading.seeking.kinds import EACH_ITEM, IMAGE, LINK, START, first_place, marks_of
+from vbraille.reading.search.queries import FindKind, FindLine, FindPage, FindShare
+from vbraille.reading.search.structure import (
+    EACH_ITEM,
+    IMAGE,
+    LINK,
+    START,
+    first_place,
+    marks_of,
+    within,
+)
 from vbraille.reading.whereabouts import (
     LINES_PER_PAGE,
     block_of,
@@ -263,7 +270,7 @@ def _go_to_page(reader: Reader, *, backward: bool) -> None:
 
 def _go_to_braille_page(reader: Reader, page: int, name: str) -> None:
     before, number, layout = reader.character, (page - 1) * LINES_PER_PAGE + 1, reader.layout
-    if page >= 1 and reader.seeker is not None and layout.lines_to(number) > _NEAR_LINES:
+    if page >= 1 and reader.search.seeker is not None and layout.lines_to(number) > _NEAR_LINES:
         table = "" if layout.book.table is None else layout.book.table.name
         query = FindLine(number, layout.width, table)
         reader.find(query, lambda place: _arrive_at_page(reader, place, str(page)))
@@ -292,7 +299,7 @@ def _go_to_typed(reader: Reader, typed: str) -> None:
         reader.find(query, lambda place: _arrive_at_page(reader, place, typed))
     elif not typed.isdecimal():
         reader.say(f"go to: {typed!r} is no page; type a number, or percent as in 40%")
-    elif reader.seeker is None and not is_counted(reader.layout):
+    elif reader.search.seeker is None and not is_counted(reader.layout):
         reader.say("go to: pages of this book are not counted yet; type percent as in 40%")
     else:
         _go_to_braille_page(reader, int(typed), typed)

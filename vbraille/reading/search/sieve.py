@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from vbraille.reading.seeking.folding import alike, fold_letters, is_plain, unlike
+from vbraille.reading.search.folding import alike, fold_letters, is_plain, unlike
 from vbraille.translate.documents.encodings import TextDecoder
 
 if TYPE_CHECKING:

@@ -13,8 +13,16 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import VbrailleError
 from vbraille.layout.texts import choose_table
-from vbraille.reading.queries import Ask, BookOpening, CountLines, Failed, Order, Searched, Told
-from vbraille.reading.seeking.answering import Answering
+from vbraille.reading.search.answering import Answering
+from vbraille.reading.search.queries import (
+    Ask,
+    BookOpening,
+    CountLines,
+    Failed,
+    Order,
+    Searched,
+    Told,
+)
 from vbraille.translate import Book, Undefined
 from vbraille.translate.opening import open_source
 from vbraille.workers import begin
@@ -22,7 +30,7 @@ from vbraille.workers import begin
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from vbraille.reading.queries import Answer
+    from vbraille.reading.search.queries import Answer
     from vbraille.workers import Incoming, Outgoing
 
 PROGRESS_S = 0.5

@@ -5,7 +5,8 @@ import io
 import pytest
 
 from vbraille.layout.pages import Layout
-from vbraille.reading.queries import (
+from vbraille.reading.search.answering import Answering, answer
+from vbraille.reading.search.queries import (
     Counted,
     CountLines,
     FindKind,
@@ -17,7 +18,6 @@ from vbraille.reading.queries import (
     NotFound,
     Searched,
 )
-from vbraille.reading.seeking.answering import Answering, answer
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.documents.parted import PartedSource, Passage

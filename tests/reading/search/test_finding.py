@@ -9,11 +9,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tests.tiers import by_tier, examples
-from vbraille.reading.queries import FindText, Found, NotFound, Searched
-from vbraille.reading.seeking.answering import answer
-from vbraille.reading.seeking.folding import fold, needle_of, unfolded
-from vbraille.reading.seeking.sieve import Sieve, ahead
-from vbraille.reading.seeking.steps import steps
+from vbraille.reading.search.answering import answer, steps
+from vbraille.reading.search.folding import fold, needle_of, unfolded
+from vbraille.reading.search.queries import FindText, Found, NotFound, Searched
+from vbraille.reading.search.sieve import Sieve, ahead
 from vbraille.translate import Document
 from vbraille.translate.documents.encodings import Encoding
 from vbraille.translate.documents.parted import PartedSource, Passage

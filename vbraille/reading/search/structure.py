@@ -1,17 +1,21 @@
-"""Blocks of a kind, found as they follow each other: headings, lists, links, pages of print."""
+"""Blocks found as they follow each other: of a kind, near a place, or after a share of the book."""
 
 from __future__ import annotations
 
+import time
+from dataclasses import dataclass
+from itertools import count
 from typing import TYPE_CHECKING
 
-from vbraille.reading.queries import ListedHeading
+from vbraille.reading.search.queries import ListedHeading
 from vbraille.translate.documents.document import Document
 from vbraille.translate.source import BlockKind, MarkKind
+from vbraille.translate.text import to_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.reading.queries import FindKind
+    from vbraille.reading.search.queries import FindKind
     from vbraille.translate.source import Block, Mark, Source
 
 # Kinds that `FindKind` is asked for beside those of blocks.
@@ -156,3 +160,97 @@ def _find_group(source: Source, query: FindKind) -> Iterator[int | float]:
 def _is_another(group: int, here: int, *, backward: bool) -> bool:
     """Tell if a list or table is not the one that the reader is in, nor around that, going on."""
     return group != here if backward or not group else group > here
+
+
+def known_blocks(source: Source) -> int:
+    """Number of blocks that can be reached without reading up to them.
+
+    A row of an index begins with the number of the block at which its part of the source begins.
+    """
+    rows = source.index().rows
+    first = rows[-1][0] if rows and rows[-1] else 0
+    return first if isinstance(first, int) else 0
+
+
+def extend(source: Source) -> bool:
+    """Read the next part of a source that is not known yet; False if all of it is."""
+    if source.complete:
+        return False
+    if isinstance(source, Document):
+        return source.extend()
+    source.block(known_blocks(source))
+    return True
+
+
+def extended(source: Source) -> Iterator[float]:
+    """Read a source till all of it is known, and tell after each step how much is, 0 to 1."""
+    while extend(source):
+        yield share_known(source)
+
+
+def share_known(source: Source) -> float:
+    """About how much of the source is known, 0 to 1."""
+    return 1.0 if source.complete else source.progress(max(known_blocks(source) - 1, 0))
+
+
+def find_share(source: Source, share: float) -> Iterator[int | float]:
+    """Look for the text before which so much of the source stands.
+
+    Yields
+    ------
+    int or float
+        How much of the source is known, 0 to 1, as floats; then the place of the first character,
+        or of the last if there is none after.
+    """
+    yield from extended(source)
+    character = round(share * source.end)
+    at = source.block_at(character)
+    at = known_blocks(source) if at is None else at
+    for numbers in (count(at), range(at - 1, -1, -1)):
+        for number in numbers:
+            block = source.block(number)
+            if block is None:
+                break
+            if len(block.text):
+                index = min(block.text.index(character), len(block.text) - 1)
+                yield int(block.text.places[index])
+                return
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """How far to look.
+
+    Parameters
+    ----------
+    most
+        Largest number of blocks, or of steps.
+    seconds
+        Longest time.
+    least
+        Number of blocks or steps that are looked at whatever time that takes.
+    """
+
+    most: int = 2_000
+    seconds: float = 0.010
+    least: int = 100
+
+    def ends(self, seen: int, taken_s: float) -> bool:
+        """Tell if so much was seen, in such a time, that it is enough."""
+        return seen >= self.most or (seen >= self.least and taken_s > self.seconds)
+
+
+def within(
+    source: Source, number: int, *, backward: bool = False, reach: Reach | None = None
+) -> Iterator[tuple[int, Block]]:
+    """Blocks from one on, with their numbers, until the end or as far as the reach goes."""
+    reach, since_s = Reach() if reach is None else reach, time.perf_counter()
+    for seen, found in enumerate(blocks_from(source, number, backward=backward)):
+        if reach.ends(seen, time.perf_counter() - since_s):
+            return
+        yield found
+
+
+def words_in(block: Block) -> int:
+    """Count the words of a block."""
+    return len(to_text(block.text.codes).split())
