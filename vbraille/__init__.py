@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from vbraille.errors import InputError as InputError
     from vbraille.errors import VbrailleError as VbrailleError
     from vbraille.pose import Pose as Pose
+    from vbraille.reading.device import OpenDevice as OpenDevice
+    from vbraille.reading.device import open_to_read as open  # noqa: A004
     from vbraille.reading.frames import RenderedLine as RenderedLine
     from vbraille.reading.frames import render_text as render_text
-    from vbraille.reading.opened import OpenDevice as OpenDevice
-    from vbraille.reading.opening import open_to_read as open  # noqa: A004
     from vbraille.render.braille.mappings import MAPPINGS as MAPPINGS
     from vbraille.render.braille.models import LATERO as LATERO
     from vbraille.render.braille.models import STRESS2 as STRESS2
@@ -56,7 +56,7 @@ _PLACES = {
     "LATERO": "vbraille.render.braille.models",
     "MAPPINGS": "vbraille.render.braille.mappings",
     "Model": "vbraille.render.braille.models",
-    "OpenDevice": "vbraille.reading.opened",
+    "OpenDevice": "vbraille.reading.device",
     "Pose": "vbraille.pose",
     "RenderedLine": "vbraille.reading.frames",
     "Results": "vbraille.analysis.results",
@@ -69,7 +69,7 @@ _PLACES = {
     "VBD": "vbraille.render.braille.models",
     "VbrailleError": "vbraille.errors",
     "analyse": "vbraille.analysis",
-    "open": "vbraille.reading.opening:open_to_read",
+    "open": "vbraille.reading.device:open_to_read",
     "open_scene": "vbraille.scene.reading",
     "render_text": "vbraille.reading.frames",
 }

@@ -2,7 +2,7 @@
 
 from vbraille.devices.events import Button, Knob
 from vbraille.engine.clock import ManualClock
-from vbraille.reading.opened import OpenDevice
+from vbraille.reading.device import OpenDevice
 from vbraille.render import STRESS2
 from vbraille.testing import simulated_device
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from vbraille.feeling.feeler import Feeler
     from vbraille.reading.cues import Cue
-    from vbraille.reading.opened import OpenDevice
+    from vbraille.reading.device import OpenDevice
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
     from vbraille.translate.source import Source

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.reading.bindings import ANY, Bindings, Command, bind
+from vbraille.reading.bindings import ANY, Bindings, Command, Context, bind
 from vbraille.reading.commands import control
 from vbraille.reading.commands.table import TYPING, say_keys
-from vbraille.reading.context import Context
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -79,7 +78,7 @@ COMMANDS = (
     Command("CONTRAST_UP", ("c",), "more contrast", _turn(1)),
     Command("CONTRAST_DOWN", ("C",), "less contrast", _turn(-1)),
     Command("RELOAD", ("r",), "read the file of the picture again", _does("reload")),
-    Command("PAUSE", (" ",), "rest the array at once, or go on", _does("pause")),
+    Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
     Command("HELP", ("h", "f1"), "say the keys", say_keys),
     Command(
         "LEARN",
@@ -92,7 +91,7 @@ COMMANDS = (
         "QUIT",
         ("q",),
         "stop feeling",
-        _does("quit"),
+        control.stop,
         (Context.READING, Context.PLACING, Context.LEARNING),
     ),
     *TYPING,
@@ -100,7 +99,7 @@ COMMANDS = (
         "ZERO",
         (ANY,),
         "the carriage is at its corner or stop, when that is asked for",
-        _does("set_zero"),
+        control.set_zero,
         (Context.PLACING,),
     ),
 )

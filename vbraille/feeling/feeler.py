@@ -11,10 +11,9 @@ from vbraille.feeling.guiding import Guide
 from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import check_fits, load_scene, with_known
 from vbraille.feeling.opacities import Opacities
-from vbraille.reading.bindings import spoken
-from vbraille.reading.context import Context
+from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
-from vbraille.reading.prompt import Prompt
+from vbraille.reading.exploration import Exploration, Prompt
 from vbraille.simulation.steering import GlideTo
 from vbraille.wording import spelled
 
@@ -39,7 +38,7 @@ _CONTRAST_STEP: Final = 0.1
 _MOVED_MM: Final = 0.2  # a hand that moved less is asked about no more
 
 
-class Feeler:
+class Feeler(Exploration):
     """Somebody who feels a scene on a device; `vbraille.feeling.commands` calls its methods.
 
     Parameters
@@ -71,13 +70,13 @@ class Feeler:
 
     Attributes
     ----------
-    done : bool
-        Whether the feeler has enough.
     contrast : float
         Factor of all deflections, from 0 to 1.
     under : NamedElement or None
         Element that was under the finger when that was last looked for.
     """
+
+    does, doing = "feel", "feeling"
 
     def __init__(
         self,
@@ -95,18 +94,12 @@ class Feeler:
         at_mm: float | None = None,
         entering: bool = False,
     ) -> None:
-        self.engine = engine
+        super().__init__(engine, say, bound, cue)
         self.loaded = loaded
-        self.bound: Bound | None = bound
-        self.cue = cue
-        self.context = Context.READING
-        self.prompt: Prompt | None = None
-        self.done = False
         self.contrast = 1.0
         self.entering = entering
         self.under: NamedElement | None = None
         self.shown = 0  # how many pictures were
-        self._say = say
         self._where = where
         self._style = style
         self._room = room
@@ -129,28 +122,6 @@ class Feeler:
         """Place of the array's centre on the canvas, in mm; None before it is known."""
         pose = self._where()
         return None if pose is None else (pose.x_mm, pose.y_mm)
-
-    def say(self, sentence: str) -> None:
-        """Say a sentence."""
-        self._say(sentence)
-
-    def key(self, name: str, usual: str) -> str:
-        """Name of a key that calls a command, for a sentence."""
-        keys = () if self.bound is None else self.bound.keys_of(name)
-        return keys[0] if keys else spoken(usual)
-
-    def quit(self) -> None:
-        """Stop feeling."""
-        self.done = True
-
-    def pause(self) -> None:
-        """Rest the array at once, or go on."""
-        self.engine.paused = not self.engine.paused
-        self.say("paused" if self.engine.paused else "feeling")
-
-    def set_zero(self) -> None:
-        """Say that the carriage is where it has to be shown."""
-        self.engine.set_zero()
 
     def start(self, program: Program) -> None:
         """Put the scene under the hand, and say what it is."""

@@ -10,9 +10,9 @@ from vbraille.conventional.messages import (
     KeyPressed,
     KeyTyped,
 )
+from vbraille.reading.bindings import Context
 from vbraille.reading.commands.asking import say_cell
 from vbraille.reading.commands.table import BOUND, press, press_display_key
-from vbraille.reading.context import Context
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from vbraille.engine.engine import Engine
     from vbraille.layout.pages import Line
-    from vbraille.reading.beside import FeltLike, FiguresLike
-    from vbraille.reading.figured import Here, PlacedFigure
+    from vbraille.reading.exploration import Exploration
+    from vbraille.reading.figured import Figures, Here, PlacedFigure
     from vbraille.reading.window import Window
     from vbraille.render import BrailleStyle, Model
     from vbraille.render.program import Program
@@ -72,7 +72,7 @@ class UnderHand:
         Number of times that something else was put under the hand.
     figured : Figured
         The figures of the text, and those of the page under the hand.
-    alone : FeltLike or None
+    alone : Exploration or None
         Figure that is felt in place of the text; None if the text is under the hand.
     patient : bool
         Whether the hand may do as it likes, since somebody moves it in the live view.
@@ -87,7 +87,7 @@ class UnderHand:
         *,
         by_hand: bool,
         key: str,
-        figures: Callable[[], FiguresLike] | None = None,
+        figures: Callable[[], Figures] | None = None,
     ) -> None:
         self.surface: Surface | None = None
         self.style = model.style
@@ -98,7 +98,7 @@ class UnderHand:
         self.width = self.width_in(model.style)
         self.rows = rows_on(model.display, model.style)
         self.figured = Figured(figures, model.display)
-        self.alone: FeltLike | None = None
+        self.alone: Exploration | None = None
         self._awaited = False  # whether the page's figures are still to be compiled
         self._row = 0  # of the line that the finger is on, or was on last
         self._y_mm: float | None = None  # where the finger is, and the part of what is shown there

@@ -2,8 +2,8 @@
 
 from tests.reading.places.resumed import open_kept
 from vbraille.layout.pages import Layout
-from vbraille.reading.keeping import Keeping
 from vbraille.reading.places import BookOptions, KeptPlaces
+from vbraille.reading.reader import Keeping
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.documents.parted import PartedSource, Passage
 from vbraille.translate.source import BlockKind

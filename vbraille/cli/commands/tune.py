@@ -19,8 +19,8 @@ from vbraille.files import write_file
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line, choose_table
 from vbraille.reading.bindings import spoken
+from vbraille.reading.device import HAND, OpenDevice
 from vbraille.reading.keyboard import Keyboard
-from vbraille.reading.opened import HAND, OpenDevice
 from vbraille.reading.practice import practice_text
 from vbraille.reading.tuning_course import TuningCourse, from_json, to_json
 from vbraille.render import MODELS, model_of

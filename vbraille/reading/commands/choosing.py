@@ -10,8 +10,8 @@ from vbraille.translate import Book, BrailleTable, find_table
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
-    from vbraille.reading.beside import ScrollLike
     from vbraille.reading.reader import Reader
+    from vbraille.reading.scrolling import Scroll
 
 _CONTRACTED = 2  # the grade that is asked for
 
@@ -71,7 +71,7 @@ def slower(reader: Reader) -> None:
         _say_speed(reader, scrolling.slower())
 
 
-def _scroll(reader: Reader) -> ScrollLike | None:
+def _scroll(reader: Reader) -> Scroll | None:
     if reader.scroll is None:
         reader.say("autoscroll: there is none here")
     return reader.scroll

@@ -6,7 +6,7 @@ import re
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
-from vbraille.reading.context import Context
+from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
 from vbraille.reading.search.queries import ListHeadings
 from vbraille.wording import count

@@ -1,12 +1,18 @@
-"""A text that the reader types, which is collected without a word until Enter."""
+"""Somebody who explores a text or a picture by keys, and the text that is typed meanwhile."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
+
+from vbraille.reading.bindings import Context, spoken
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from vbraille.engine.engine import Engine
+    from vbraille.reading.bindings import Bound
+    from vbraille.reading.cues import Cue
 
 LONGEST = 200  # characters
 _MOST_EARLIER = 50  # texts that are kept to be brought again
@@ -94,3 +100,61 @@ class Prompt:
             self.others.remove(answer)
         self.others.append(answer)
         del self.others[:-_MOST_EARLIER]
+
+
+class Exploration:
+    """Something that somebody explores, told by keys what to do until there is no more to do.
+
+    Parameters
+    ----------
+    engine
+        Engine that drives the device.
+    say
+        Function that is called with each thing to be said.
+    bound
+        Commands with their keys; None for those of reading.
+    cue
+        Function that is called with short signals, beside the sentences.
+
+    Attributes
+    ----------
+    does, doing : str
+        Words for what somebody does here, such as "read" and "reading".
+    context : Context
+        Meaning of the keys at the moment.
+    prompt : Prompt or None
+        What is being typed.
+    done : bool
+        Whether there is no more to do.
+    """
+
+    does: ClassVar[str]
+    doing: ClassVar[str]
+
+    def __init__(
+        self,
+        engine: Engine,
+        say: Callable[[str], None],
+        bound: Bound | None,
+        cue: Callable[[Cue], None],
+    ) -> None:
+        self.engine = engine
+        self.say = say
+        self.bound = bound
+        self.cue = cue
+        self.context = Context.READING
+        self.prompt: Prompt | None = None
+        self.done = False
+
+    def attend(self, now_s: float) -> None:
+        """Do what is done by time, in seconds by a clock that does not go back."""
+        raise NotImplementedError
+
+    def key(self, name: str, usual: str) -> str:
+        """Name of a key that calls a command, for a sentence."""
+        keys = () if self.bound is None else self.bound.keys_of(name)
+        return keys[0] if keys else spoken(usual)
+
+    def quit(self) -> None:
+        """Do no more."""
+        self.done = True
