@@ -23,8 +23,7 @@ from vbraille.engine.record import Flag
 from vbraille.feeling.commands import BOUND
 from vbraille.feeling.composing import Composer
 from vbraille.feeling.feeler import Feeler
-from vbraille.feeling.filewatch import FileWatch
-from vbraille.feeling.loading import load_scene
+from vbraille.feeling.loading import FileWatch, load_scene
 from vbraille.render import MODELS
 from vbraille.render.program import Program
 from vbraille.render.scene.compiling import SceneCompiler, compile_scene

@@ -15,8 +15,8 @@ from vbraille.layout.pages import Layout
 from vbraille.reading.bindings import Bindings
 from vbraille.reading.commands.table import bound_by, press
 from vbraille.reading.cues import Cue
-from vbraille.reading.echo import Echo
-from vbraille.reading.foot import STAY_S
+from vbraille.reading.handwatch import STAY_S
+from vbraille.reading.outputs import Echo
 from vbraille.reading.viewed import ReadView, Said
 from vbraille.render import LATERO, STRESS2_8X8
 from vbraille.render.braille.straying import MOST_TILT_RAD

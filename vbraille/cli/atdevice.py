@@ -22,8 +22,7 @@ from vbraille.reading.bindings import Context, spoken
 from vbraille.reading.commands.table import press
 from vbraille.reading.cues import Cues, choose_cues
 from vbraille.reading.device import OpenDevice
-from vbraille.reading.echo import Echo
-from vbraille.reading.hearing import Hearing
+from vbraille.reading.outputs import Echo, Outputs
 from vbraille.simulation.specs import has_hand
 
 if TYPE_CHECKING:
@@ -71,7 +70,7 @@ class Surroundings:
     ----------
     device
         The device, which is not driven yet.
-    hearing
+    outputs
         Sentences, speech and cues.
     live
         Live view; None if there is none.
@@ -82,7 +81,7 @@ class Surroundings:
     """
 
     device: OpenDevice
-    hearing: Hearing
+    outputs: Outputs
     live: LiveView | None
     keyboard: Keyboard
     closing: ExitStack
@@ -129,23 +128,23 @@ def surrounded(
             live = closing.enter_context(LiveView(arguments))
         cues = Cues(choose_cues(arguments.cues, attended=keyboard.attached))
         say = say_line if live is None else live.say
-        hearing = closing.enter_context(Hearing(say, cues, echo=echo))
+        outputs = closing.enter_context(Outputs(say, cues, echo=echo))
         if arguments.speech:
-            hearing.speak(language)
+            outputs.speak(language)
         device = OpenDevice(
             arguments.device,
             wanted,
             often=often,
             hand=hand,
             seed=1 if arguments.seed is None else arguments.seed,
-            say=hearing.say,
+            say=outputs.say,
             attended=keyboard.attached,
             begun=arguments.begun,
             pointer=arguments.pointer if has_hand(arguments.device) else None,
             on_share=None if live is None else live.share,
         )
         try:
-            yield Surroundings(device, hearing, live, keyboard, closing)
+            yield Surroundings(device, outputs, live, keyboard, closing)
         finally:
             EAR.close()  # so that the array goes to rest
             device.close()
@@ -193,7 +192,7 @@ class AtDevice(ABC):
 
     def __init__(self, around: Surroundings, who: Exploration, keys: StoppableKeyboard) -> None:
         self._device = around.device
-        self._hearing = around.hearing
+        self._outputs = around.outputs
         self._who = who
         self._keys = keys
         self._live = around.live

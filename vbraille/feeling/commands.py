@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.reading.bindings import ANY, Bindings, Command, Context, bind
@@ -104,3 +105,16 @@ COMMANDS = (
     ),
 )
 BOUND = bind(COMMANDS, Bindings(buttons=BUTTONS))
+
+
+def back(feeler: Feeler) -> None:
+    """Go back to the text."""
+    feeler.quit()
+
+
+# In a text Escape leads back; the way to an element is then said until the finger is there.
+_OTHERS = tuple(
+    replace(command, keys=()) if command.name == "CANCEL" else command for command in COMMANDS
+)
+FROM_TEXT = (Command("BACK", ("G", "escape"), "back to the text", back), *_OTHERS)
+BOUND_FROM_TEXT = bind(FROM_TEXT, Bindings(buttons=BUTTONS))

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Any
 from vbraille.engine.upright import Upright
 from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
-from vbraille.reading.echo import Echo
 from vbraille.reading.exploration import Exploration, Prompt
-from vbraille.reading.ranged import LineRange
+from vbraille.reading.outputs import Echo
 from vbraille.reading.search.queries import CountLines
 from vbraille.reading.search.seeker import Search
-from vbraille.reading.surface import Surface, around, turned
-from vbraille.reading.underhand import UnderHand
+from vbraille.reading.surface import LineRange, Surface, Window, around, turned
+from vbraille.reading.textview import TextView
 from vbraille.reading.whereabouts import (
     LINES_PER_PAGE,
     first_character,
@@ -24,7 +23,6 @@ from vbraille.reading.whereabouts import (
     page_label,
     place_sentence,
 )
-from vbraille.reading.window import Window
 from vbraille.translate.source import BlockKind
 
 if TYPE_CHECKING:
@@ -179,7 +177,7 @@ class Reader(Exploration):
     ----------
     range : LineRange
         Lines that are read.
-    under : UnderHand
+    under : TextView
         What is under the hand.
     search : Search
         Search in the whole book.
@@ -225,7 +223,7 @@ class Reader(Exploration):
         self.echo = echo
         self.scroll = scroll
         key = self.key("LNDN", "n") if stay else ""
-        self.under = UnderHand(
+        self.under = TextView(
             engine, model, steering, say, by_hand=advance, key=key, figures=figures
         )
         self.search = Search(say, seeker, verbose=verbose, counted=self._take_count)

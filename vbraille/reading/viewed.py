@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from vbraille.live.messages import PagePress, Turn
     from vbraille.reading.device import OpenDevice
     from vbraille.reading.exploration import Exploration
-    from vbraille.reading.window import Window
+    from vbraille.reading.surface import Window
 
 MOST_SAID: Final = 20
 BEFORE, AFTER = 2, 3  # lines around the one under the hand

@@ -5,7 +5,7 @@ import pytest
 from tests.reading.test_reader import Bench
 from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
-from vbraille.reading.echo import Echo
+from vbraille.reading.outputs import Echo
 from vbraille.reading.search.queries import (
     Counted,
     CountLines,

@@ -17,8 +17,7 @@ from vbraille.errors import InputError
 from vbraille.feeling.commands import BOUND
 from vbraille.feeling.composing import Composer
 from vbraille.feeling.feeler import Feeler
-from vbraille.feeling.filewatch import FileWatch
-from vbraille.feeling.loading import check_fits, load_scene
+from vbraille.feeling.loading import FileWatch, check_fits, load_scene
 from vbraille.reading.commands.table import press_button
 from vbraille.reading.keyboard import Keyboard
 from vbraille.render import MODELS, model_of
@@ -72,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
                 "or with a hand such as --hand wide"
             )
         with surrounded(arguments, keyboard, wanted, hand, loaded.scene.language) as around:
-            device, hearing = around.device, around.hearing
+            device, outputs = around.device, around.outputs
             display = device.find()
             if arguments.model is not None:
                 check_actuators(display, wanted)
@@ -89,10 +88,10 @@ def run(arguments: argparse.Namespace) -> int:
                 where=lambda: device.pose,
                 composer=composer,
                 style=model.style,
-                say=hearing.say,
+                say=outputs.say,
                 bound=BOUND,
                 room=room,
-                cue=hearing.cue,
+                cue=outputs.cue,
                 steering=device.steering,
                 at_mm=arguments.at,
                 entering=arguments.say_entering,

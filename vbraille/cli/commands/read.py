@@ -18,9 +18,8 @@ from vbraille.devices.registry import check_actuators, check_height, check_trave
 from vbraille.display import USUAL_RATE_HZ, check_rate
 from vbraille.errors import InputError
 from vbraille.reading.device import HAND
-from vbraille.reading.echo import Echo
-from vbraille.reading.hearing import language_of
 from vbraille.reading.keyboard import Keyboard
+from vbraille.reading.outputs import Echo, language_of
 from vbraille.reading.places import KeptPlaces
 from vbraille.reading.scrolling import Scroll
 from vbraille.render import MODELS, model_of
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
     from vbraille.cli.build import Page
     from vbraille.cli.stoppable import StoppableKeyboard
     from vbraille.devices.events import Event
-    from vbraille.reading.alongside import Alongside
+    from vbraille.reading.conventionalview import ConventionalView
     from vbraille.reading.device import OpenDevice
     from vbraille.reading.exploration import Exploration
     from vbraille.reading.figured import Figures
@@ -84,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
             echo=echo,
             often=arguments.rate is not None,
         ) as around:
-            device, hearing = around.device, around.hearing
+            device, outputs = around.device, around.outputs
             also = _also(arguments, around)
             display = device.find()
             rate_hz = min(rate_hz, display.rate_hz)
@@ -114,13 +113,13 @@ def run(arguments: argparse.Namespace) -> int:
                 seeker=seeker,
                 kept=opened.kept,
                 scroll=Scroll(),
-                cue=hearing.cue,
+                cue=outputs.cue,
                 save_style=lambda style: _save(settings.path, profile, replace(model, style=style)),
                 verbose=arguments.verbose,
                 figures=lambda: _figures(page, Path(arguments.file).parent, device, rate_hz),
             )
             if opened.place is not None:
-                hearing.say(f"book: {opened.book.source.title or opened.book.source.name}")
+                outputs.say(f"book: {opened.book.source.title or opened.book.source.name}")
                 device.reader.announce()
             if around.live is not None:
                 around.live.show(lambda said, facts: _view(device, said, facts), hand)
@@ -138,7 +137,11 @@ class _Reading(AtDevice):
     """One reading, to the end of the text."""
 
     def __init__(
-        self, page: Page, around: Surroundings, keys: StoppableKeyboard, also: Alongside | None
+        self,
+        page: Page,
+        around: Surroundings,
+        keys: StoppableKeyboard,
+        also: ConventionalView | None,
     ) -> None:
         super().__init__(around, around.device.reader, keys)
         self._page = page
@@ -154,7 +157,7 @@ class _Reading(AtDevice):
 
     def _see(self, events: Iterable[Event]) -> None:  # noqa: ARG002 - the device obeys them
         device = self._device
-        self._hearing.see(device.line)
+        self._outputs.see(device.line)
         if device.reader.layout is self._page.layout:
             self._page.see(device.reader.line_number)
         self._say_notes()
@@ -193,16 +196,16 @@ def _view(device: OpenDevice, said: Said, facts: list[tuple[str, str]]) -> ReadV
     return ReadView(device, source.title or PurePath(source.name).name, said, [*tables, *facts])
 
 
-def _also(arguments: argparse.Namespace, around: Surroundings) -> Alongside | None:
+def _also(arguments: argparse.Namespace, around: Surroundings) -> ConventionalView | None:
     """Conventional display that was asked for, which comes while the text is laid out."""
     if arguments.also is None:
         return None
     # Only a reading that has such a display needs what drives it.
     from vbraille.conventional.display import ConventionalDisplay
-    from vbraille.reading.alongside import Alongside
+    from vbraille.reading.conventionalview import ConventionalView
 
     display = around.closing.enter_context(ConventionalDisplay(arguments.also))
-    return Alongside(display, around.hearing.say)
+    return ConventionalView(display, around.outputs.say)
 
 
 def _figures(page: Page, folder: Path, device: OpenDevice, rate_hz: float) -> Figures:

@@ -28,7 +28,7 @@ from vbraille.display import check_rate
 from vbraille.engine.advance import EndOfLine
 from vbraille.errors import InputError
 from vbraille.newfile import new_file
-from vbraille.reading.speed import too_fast_note
+from vbraille.reading.handwatch import too_fast_note
 from vbraille.recording import Recorder
 from vbraille.render import MODELS
 from vbraille.simulation.motion import SLACK

@@ -21,8 +21,7 @@ from vbraille.layout.texts import cells_per_line, choose_table
 from vbraille.reading.bindings import spoken
 from vbraille.reading.device import HAND, OpenDevice
 from vbraille.reading.keyboard import Keyboard
-from vbraille.reading.practice import practice_text
-from vbraille.reading.tuning_course import TuningCourse, from_json, to_json
+from vbraille.reading.tuning_course import TuningCourse, from_json, practice_text, to_json
 from vbraille.render import MODELS, model_of
 from vbraille.settings.applying import with_profile
 from vbraille.settings.chosen import display_name

@@ -9,7 +9,7 @@ from vbraille.reading.search.queries import FindShare
 
 if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
-    from vbraille.reading.window import Window
+    from vbraille.reading.surface import Window
 
 
 def next_line(reader: Reader) -> None:

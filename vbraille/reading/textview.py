@@ -11,10 +11,8 @@ from vbraille.engine.advance import EndOfLine
 from vbraille.engine.record import Flag
 from vbraille.layout.texts import cells_per_line
 from vbraille.reading.figured import Figured
-from vbraille.reading.foot import Foot
-from vbraille.reading.speed import too_fast_note
+from vbraille.reading.handwatch import Foot, LineWatch, too_fast_note
 from vbraille.reading.surface import Surface, below_pitches, rows_on
-from vbraille.reading.waiting import Waiting
 from vbraille.simulation.steering import ReadLine, ReadPage
 
 if TYPE_CHECKING:
@@ -26,7 +24,7 @@ if TYPE_CHECKING:
     from vbraille.layout.pages import Line
     from vbraille.reading.exploration import Exploration
     from vbraille.reading.figured import Figures, Here, PlacedFigure
-    from vbraille.reading.window import Window
+    from vbraille.reading.surface import Window
     from vbraille.render import BrailleStyle, Model
     from vbraille.render.program import Program
     from vbraille.simulation.steering import Steering
@@ -38,7 +36,7 @@ _STAY_NS = 120_000_000
 _PAUSED, _HELD, _TURNED = int(Flag.PAUSED), int(Flag.HELD), int(Flag.TURNED)
 
 
-class UnderHand:
+class TextView:
     """What is under the hand: a part of a line, or a page of lines of which the finger is on one.
 
     Parameters
@@ -111,7 +109,7 @@ class UnderHand:
         self._key = key
         self._end: EndOfLine
         self._end_mm = 0.0
-        self._waiting: Waiting
+        self._waiting: LineWatch
         self._begun = False  # whether the hand was before the end since the window is there
         self._too_fast_said = False
 
@@ -220,7 +218,7 @@ class UnderHand:
         self._end_mm = self._end_of(window)
         self._end = EndOfLine(span_mm, self._end_mm)
         by_hand = self._by_hand and not self.surface.paged
-        self._waiting = Waiting(span_mm, self._end_mm, name, by_hand=by_hand, key=self._key)
+        self._waiting = LineWatch(span_mm, self._end_mm, name, by_hand=by_hand, key=self._key)
 
     def come_to(self, ticks: NDArray[np.void], name: Callable[[Line], str]) -> bool:
         """Take from ticks which line of a page the finger is on, once it has stayed there a moment.

@@ -4,12 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from vbraille.conventional.messages import (
-    DisplayAway,
-    DisplayStands,
-    KeyPressed,
-    KeyTyped,
-)
+from vbraille.conventional.brlapi import DisplayAway, DisplayStands, KeyPressed, KeyTyped
 from vbraille.reading.bindings import Context
 from vbraille.reading.commands.asking import say_cell
 from vbraille.reading.commands.table import BOUND, press, press_display_key
@@ -111,7 +106,7 @@ def _same(line: Line, other: Line | None) -> bool:
     )
 
 
-class Alongside:
+class ConventionalView:
     """A conventional display on which the line under the hand stands, and whose keys are obeyed.
 
     Parameters

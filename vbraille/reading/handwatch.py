@@ -1,8 +1,8 @@
-"""A line that does not come to its end: what is the matter, said once for each line."""
+"""The hand: whether it comes to the end of its line, is too fast, or stays below the page."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
+
+    from vbraille.render import BrailleStyle
 
 STILL_S = 10.0
 REFUSED_S = 1.0  # time without a frame taken, after which it is said
@@ -29,7 +31,7 @@ _NS_PER_S = 1_000_000_000
 _PLACING, _HELD = int(Flag.MARK | Flag.STOP), int(Flag.HELD)
 
 
-class Waiting:
+class LineWatch:
     """Watch a hand that does not finish its line.
 
     Parameters
@@ -209,3 +211,65 @@ class Waiting:
                     f"what is in the carriage's way, or give a shorter {setting('travel')}"
                 )
         self._farthest_mm = float(np.fmax.reduce(x_mm[home[-1] :]))
+
+
+# Ours: longer than a finger that strays off the last line takes to come back, shorter than one
+# that waits for something to happen.
+STAY_S: Final = 0.5
+_STAY_NS: Final = round(STAY_S * 1e9)
+# A plain number, as in `vbraille.reading.textview`.
+_UNFELT: Final = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD | Flag.TURNED)
+
+
+class Foot:
+    """Watches for a finger that has been on a page and stays below its last line.
+
+    Parameters
+    ----------
+    rows
+        Number of rows of the page.
+    """
+
+    def __init__(self, rows: int) -> None:
+        self._rows = rows
+        self._begun = False  # whether the finger was on the page since that came
+        self._since_ns: int | None = None
+
+    def rest(self) -> None:
+        """Take the time below the page to begin anew, since nothing was felt meanwhile."""
+        self._since_ns = None
+
+    def stays(self, ticks: NDArray[np.void]) -> bool:
+        """Look at ticks, which are all since the last call: whether it has stayed long enough.
+
+        Time in which the device was away, or at rest by itself, does not count.
+        """
+        felt = ticks["flags"] & _UNFELT == 0
+        on = felt & (ticks["part"] < self._rows)
+        self._begun = self._begun or bool(on.any())
+        elsewhere = np.flatnonzero(on | ~felt)
+        if elsewhere.size:
+            self.rest()
+            ticks = ticks[elsewhere[-1] + 1 :]
+        if not ticks.size or not self._begun:
+            return False
+        if self._since_ns is None:
+            self._since_ns = int(ticks["time_ns"][0])
+        return int(ticks["time_ns"][-1]) - self._since_ns >= _STAY_NS
+
+
+# Above this the devices' reconstruction filters take texture away (Lévesque 2009, 6.2).
+FILTER_HZ = 200.0
+
+
+def too_fast_note(speed_mm_s: float, style: BrailleStyle) -> str | None:
+    """Note on a hand so fast that the filters take texture away; None if it is not."""
+    if not style.tuning.texture:
+        return None
+    period_mm = style.profile.texture_period_mm(style.geometry.dot_width_mm, style.tuning.cycles)
+    if speed_mm_s / period_mm <= FILTER_HZ:
+        return None
+    return (
+        f"speed: {speed_mm_s:.0f} mm/s, at which texture passes {FILTER_HZ:g} Hz and fades; "
+        f"below {FILTER_HZ * period_mm:.0f} mm/s it is felt"
+    )

@@ -3,11 +3,11 @@
 import pytest
 
 from tests.reading.test_reader import Bench
-from vbraille.conventional.messages import DisplayAway, DisplayStands, KeyPressed, KeyTyped
+from vbraille.conventional.brlapi import DisplayAway, DisplayStands, KeyPressed, KeyTyped
 from vbraille.errors import InputError
-from vbraille.reading.alongside import Alongside, Pane
 from vbraille.reading.bindings import Bindings, Context
 from vbraille.reading.commands.table import bound_by
+from vbraille.reading.conventionalview import ConventionalView, Pane
 from vbraille.simulation.hand import Sweep
 
 TEXT = "one two three four five six seven eight nine ten plus\n\nthe last\n"
@@ -50,7 +50,7 @@ class Beside1:
         bound = bound_by(Bindings({}, buttons or {}))
         self.bench = Bench(TEXT, hand=hand, width=60, bound=bound)
         self.pins = Pins(columns)
-        self.alongside = Alongside(self.pins, self.bench.said.append)
+        self.alongside = ConventionalView(self.pins, self.bench.said.append)
         self.attend()
 
     def attend(self):

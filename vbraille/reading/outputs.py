@@ -2,17 +2,42 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import TYPE_CHECKING, Final, Self
 
-from vbraille.reading.echo import Echo
 from vbraille.reading.speech import Speech
+from vbraille.reading.whereabouts import place_sentence
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
-    from vbraille.layout.pages import Line
+    from vbraille.layout.pages import Layout, Line
     from vbraille.reading.cues import Cue, Cues
     from vbraille.translate import Book
+
+
+class Echo(StrEnum):
+    """How much is said of each line."""
+
+    NONE = "none"
+    TEXT = "text"
+    CELLS = "cells"
+    BOTH = "both"
+
+    def sentences(self, line: Line, layout: Layout) -> Iterator[str]:
+        """Sentences that are said of a line of a layout, in order."""
+        if self is Echo.NONE:
+            return
+        yield place_sentence(layout, line)
+        yield from self.words(line)
+
+    def words(self, line: Line) -> Iterator[str]:
+        """Sentences on what is printed of a line."""
+        if self in (Echo.CELLS, Echo.BOTH):
+            yield f"cells: {line.printed.to_unicode()}"
+        if self in (Echo.TEXT, Echo.BOTH):
+            yield f"text: {line.text.strip()}"
+
 
 _USUAL_LANGUAGE: Final = "en"
 _CELLS: Final = "cells: "  # what a sentence of braille signs begins with, which nobody can say
@@ -33,7 +58,7 @@ def language_of(book: Book, asked: str | None = None) -> str:
     return asked or book.source.language or table or _USUAL_LANGUAGE
 
 
-class Hearing:
+class Outputs:
     """What a reader hears. A context manager.
 
     Parameters

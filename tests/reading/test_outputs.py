@@ -5,8 +5,7 @@ import pytest
 from tests.reading.ssipserver import SsipServer
 from vbraille.layout.pages import Layout
 from vbraille.reading.cues import Cue, CueKind, Cues
-from vbraille.reading.echo import Echo
-from vbraille.reading.hearing import Hearing, language_of
+from vbraille.reading.outputs import Echo, Outputs, language_of
 from vbraille.translate import Book, BrailleTable, Document
 
 TABLE = BrailleTable("en-ueb-g2.ctb")
@@ -29,7 +28,7 @@ def test_sentences_and_lines_are_spoken_each_once(tmp_path, monkeypatch, echo, s
     monkeypatch.setenv("SPEECHD_ADDRESS", f"unix_socket:{tmp_path / 'sock'}")
     layout, printed = layout_of(tmp_path), []
     with SsipServer(tmp_path / "sock") as server:
-        with Hearing(printed.append, Cues(CueKind.NONE), echo=echo) as hearing:
+        with Outputs(printed.append, Cues(CueKind.NONE), echo=echo) as hearing:
             hearing.speak("fr")
 
             def so_far(number):
@@ -52,7 +51,7 @@ def test_sentences_and_lines_are_spoken_each_once(tmp_path, monkeypatch, echo, s
 
 def test_without_speech_it_prints(tmp_path):
     printed = []
-    with Hearing(printed.append, Cues(CueKind.NONE)) as hearing:
+    with Outputs(printed.append, Cues(CueKind.NONE)) as hearing:
         hearing.say("line: 1")
         hearing.see(layout_of(tmp_path).line(1))
         hearing.cue(Cue.LIMIT)
