@@ -19,9 +19,8 @@ from tests.live.pages import get, page, parts_of
 from tests.live.rings import TestRing, frame_of
 from tests.tiers import by_tier
 from vbraille.live.channel import MOST_MESSAGE_BYTES, Shares, Tells, encode, open_line, to_server
-from vbraille.live.desktop import has_desktop
 from vbraille.live.messages import PagePress, Turn
-from vbraille.live.monitor import Monitor
+from vbraille.live.monitor import Monitor, has_desktop
 from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.steering import BeAt
 
@@ -222,7 +221,7 @@ def test_blind_is_a_matter_of_the_server():
 
 _PARENT = """
 import sys, time
-from vbraille.live.desktop import has_desktop
+from vbraille.live.monitor import has_desktop
 from vbraille.live.monitor import Monitor
 monitor = Monitor()
 monitor.launch()

@@ -94,7 +94,7 @@ def test_nothing_is_translated_or_laid_out_for_a_page():
     watch = Watch(width=40)
     watch.viewed.changed()
     layout = watch.reader.layout
-    last = max(line.number for line in watch.viewed._state().lines)
+    last = max(line.number for line in watch.viewed._parts()["lines"])
     assert layout.lines_to(last + 1) == 1  # the next paragraph is not there yet
     assert last < layout.count()
 

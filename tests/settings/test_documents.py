@@ -8,10 +8,9 @@ import pytest
 from vbraille.errors import InputError
 from vbraille.render import STRESS2, VBD
 from vbraille.render.braille.knobs import kept_values
-from vbraille.settings.applying import with_profile
 from vbraille.settings.origins import USUAL, say_settings, say_tuning
-from vbraille.settings.parsing import parse_settings
 from vbraille.settings.tables import ProfileTable, ReadTable
+from vbraille.settings.values import parse_settings, with_profile
 
 PAGE = (Path(__file__).parents[2] / "docs/settings.md").read_text(encoding="utf-8")
 FILE = Path("settings.toml")

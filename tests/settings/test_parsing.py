@@ -9,11 +9,14 @@ from vbraille.files import settings_path
 from vbraille.reading.bindings import Bindings
 from vbraille.reading.commands.table import bound_by
 from vbraille.render import STRESS2, VBD
-from vbraille.settings.applying import missing_profile, with_profile
-from vbraille.settings.chosen import display_name
-from vbraille.settings.loading import load_settings
 from vbraille.settings.origins import say_bindings, say_settings, say_tuning
-from vbraille.settings.parsing import parse_settings
+from vbraille.settings.values import (
+    display_name,
+    load_settings,
+    missing_profile,
+    parse_settings,
+    with_profile,
+)
 
 FILE = Path("settings.toml")
 TEXT = """# mine

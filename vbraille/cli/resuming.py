@@ -17,7 +17,7 @@ from vbraille.reading.places import BookOptions, book_to_open, last_book, resume
 from vbraille.reading.search.queries import BookOpening
 from vbraille.reading.search.seeker import Seeker
 from vbraille.render.braille.knobs import kept_values, with_values
-from vbraille.settings.chosen import display_name
+from vbraille.settings.values import display_name
 from vbraille.translate import Document
 
 if TYPE_CHECKING:

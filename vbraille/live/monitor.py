@@ -1,7 +1,4 @@
-"""The live view as the program that reads has it: a process of its own, which is never waited for.
-
-Whatever becomes of that process, reading goes on: the worst is a sentence among `Monitor.notes`.
-"""
+"""Whether somebody sits at a desktop, who would see a browser that opens."""
 
 from __future__ import annotations
 
@@ -10,21 +7,13 @@ import os
 import socket
 import subprocess
 import sys
+from contextlib import suppress
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Final, Self
 
 import msgspec
 
-from vbraille.live.channel import (
-    Asks,
-    Begin,
-    Shares,
-    Tells,
-    encode,
-    from_server,
-    open_line,
-)
-from vbraille.live.desktop import has_desktop
+from vbraille.live.channel import Asks, Begin, Shares, Tells, encode, from_server, open_line
 from vbraille.live.messages import ViewState
 from vbraille.logs import kept, tracebacks_wanted
 
@@ -34,6 +23,15 @@ if TYPE_CHECKING:
     from vbraille.engine.shared import Extent
     from vbraille.live.messages import PagePress, Turn
     from vbraille.simulation.pointing import Pointer
+
+
+def has_desktop() -> bool:
+    """Whether somebody sits here who would see a browser that opens."""
+    desktop = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    with suppress(OSError, ValueError, AttributeError):  # there may be no standard input
+        return bool(desktop) and sys.stdin.isatty()
+    return False
+
 
 _END_S: Final = 2.0
 _HEARD_BYTES: Final = 1 << 16  # the server's messages are short

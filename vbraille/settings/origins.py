@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.render.braille.knobs import KNOBS, kept_values
 from vbraille.render.braille.straying import BAND
-from vbraille.settings.applying import with_profile
-from vbraille.settings.chosen import display_name
+from vbraille.settings.values import display_name, with_profile
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
 
     from vbraille.render import BrailleStyle, Model
-    from vbraille.settings.chosen import Settings
+    from vbraille.settings.values import Settings
 
 # Words for what is usual where neither an option nor the file says something else.
 USUAL = {

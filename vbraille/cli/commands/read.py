@@ -23,7 +23,7 @@ from vbraille.reading.outputs import Echo, language_of
 from vbraille.reading.places import KeptPlaces
 from vbraille.reading.scrolling import Scroll
 from vbraille.render import MODELS, model_of
-from vbraille.settings.applying import with_profile
+from vbraille.settings.values import with_profile
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
 from vbraille.translate.documents.document import Document
 from vbraille.wording import spelled
