@@ -158,10 +158,10 @@ def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToR
         keep_lines=bool(arguments.keep_lines),
         turned=turned,
     )
-    resumed = resume(source, kept, options)
-    if resumed.note is not None:
-        say_line(resumed.note, aside=True)
-    return BookToRead(book, resumed.kept, resumed.place)
+    place, note = resume(source, kept, options)
+    if note is not None:
+        say_line(note, aside=True)
+    return BookToRead(book, kept, place)
 
 
 def _said(arguments: argparse.Namespace) -> frozenset[str]:

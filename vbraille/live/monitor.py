@@ -8,7 +8,6 @@ import socket
 import subprocess
 import sys
 from contextlib import suppress
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Final, Self
 
 import msgspec
@@ -182,7 +181,7 @@ class Monitor:
         try:
             if self._unshared is not None:
                 descriptor, extent = self._unshared
-                message = encode(Shares(**asdict(extent)))
+                message = encode(Shares(extent))
                 socket.send_fds(self._line, [message], [descriptor], socket.MSG_NOSIGNAL)
                 self._forget_memory()
             if self._untold is not None:

@@ -307,10 +307,6 @@ class Reader(Exploration):
         """What is kept of the book."""
         return self.keeping.kept
 
-    @kept.setter
-    def kept(self, kept: KeptBook | None) -> None:
-        self.keeping = Keeping(kept)
-
     @property
     def hit(self) -> int | None:
         """Place of what was found last; None if that is not on the line under the hand."""

@@ -180,13 +180,11 @@ class TomlFile:
         if _levels(self._tree) > _MOST_LEVELS:
             raise InputError(f"{where} nests its tables too deep; make it flatter")
         spaces = {**_SPACES, 0x0A: " "} if several_lines else _SPACES
-        if all(_is_good(value, spaces) for value in _values(self._tree)):
-            return
-        path, value = next(leaf for leaf in _leaves(self._tree) if not _is_good(leaf[1], spaces))
-        if isinstance(value, str):
-            lines = "text" if several_lines else "one line"
-            self._refuse(path, f"{lines} without control characters")
-        self._refuse(path, "a smaller number")
+        for path, value in _leaves(self._tree):
+            if not _is_good(value, spaces):
+                lines = "text" if several_lines else "one line"
+                what = f"{lines} without control characters"
+                self._refuse(path, what if isinstance(value, str) else "a smaller number")
 
     def read(
         self,
@@ -220,7 +218,7 @@ class TomlFile:
             path = (*under, *found)
             if isinstance(error.__cause__, ValueError):
                 colon = "" if isinstance(self._at(path), dict) else ": "
-                self._fail(path, f"{colon}{error.__cause__}")
+                self.fail(path, f"{colon}{error.__cause__}")
             self._explain(path, message, _types_at(kind, found))
 
     def names(self, *path: str | int) -> tuple[str, ...]:
@@ -249,23 +247,6 @@ class TomlFile:
         """Lines of keys, tables and items, from 1, by the keys that lead to them."""
         return lines_of(self._text)
 
-    def fail(self, path: Path, problem: str) -> NoReturn:
-        """Refuse the file for a problem at a place in it.
-
-        Parameters
-        ----------
-        path
-            Keys that lead to the place.
-        problem
-            Rest of a sentence that begins with the name of the place.
-
-        Raises
-        ------
-        InputError
-            In any case.
-        """
-        self._fail(path, problem)
-
     @contextmanager
     def checking(self) -> Iterator[None]:
         """Add the file and the line to the message of a `ValueError` about the file as a whole.
@@ -291,26 +272,26 @@ class TomlFile:
         value = self._at(path)
         expected = _EXPECTED.match(message)
         if message.startswith("Object missing"):
-            self._fail(path, f"lacks {message.split('`')[1]}; add it")
+            self.fail(path, f"lacks {message.split('`')[1]}; add it")
         if message.startswith("Object contains unknown") and isinstance(value, dict):
             self._fail_unknown(path, value, [t for t in types if isinstance(t, inspect.StructType)])
         literals = dict.fromkeys(t.values for t in types if isinstance(t, inspect.LiteralType))
         names = [str(name) for values in literals for name in values]
         if message.startswith("Invalid"):
-            self._fail(path, f"is {quote(value)}{which(str(value), names)}")
+            self.fail(path, f"is {quote(value)}{which(str(value), names)}")
         if expected and expected[2]:
             items = [f.name for t in types if isinstance(t, inspect.StructType) for f in t.fields]
             which_items = f": {', '.join(items)}" if items else ""
-            self._fail(path, f"has {len(value)} items; give {expected[2]}{which_items}")
+            self.fail(path, f"has {len(value)} items; give {expected[2]}{which_items}")
         if expected and any(map(_is_tables, types)):
-            self._fail(path, f"must be tables; write each under [[{path[-1]}]]")
+            self.fail(path, f"must be tables; write each under [[{path[-1]}]]")
         if expected:
             # Words of one list are few; those that tell kinds of tables apart are many.
             few = len(literals) == 1
             words = {**_WANTED, "str": " or ".join(map(quote, names))} if few else _WANTED
             wanted = [words.get(name) for name in expected[1].split(" | ")]
             self._refuse(path, " or ".join(filter(None, wanted)))
-        self._fail(path, f"cannot be used: {message}")
+        self.fail(path, f"cannot be used: {message}")
 
     def _fail_unknown(
         self, path: Path, table: dict[str, Any], kinds: list[inspect.StructType]
@@ -322,18 +303,33 @@ class TomlFile:
         others = [repr(kind.tag) for kind in kinds if key in _keys(kind)]
         if others:
             (kind,) = own
-            self._fail(
+            self.fail(
                 (*path, key),
                 f"is of {kind.tag_field} = {' or '.join(others)}; "
                 f"leave it out of {kind.tag_field} = {kind.tag!r}",
             )
-        self._fail(path, f"has no key {quote(key)}{which(key, known)}", key)
+        self.fail(path, f"has no key {quote(key)}{which(key, known)}", key)
 
     def _refuse(self, path: Path, wanted: str) -> NoReturn:
-        self._fail(path, f"is {quote(self._at(path))}; it must be {wanted}")
+        self.fail(path, f"is {quote(self._at(path))}; it must be {wanted}")
 
-    def _fail(self, path: Path, problem: str, key: str = "") -> NoReturn:
-        """Raise a sentence that names the line, the table, the key and the problem."""
+    def fail(self, path: Path, problem: str, key: str = "") -> NoReturn:
+        """Refuse the file for a problem at a place in it, by a sentence that names its line.
+
+        Parameters
+        ----------
+        path
+            Keys that lead to the place.
+        problem
+            Rest of a sentence that begins with the name of the place.
+        key
+            Key whose line is named in place of the place's; empty for none.
+
+        Raises
+        ------
+        InputError
+            In any case.
+        """
         named = self._named(path)
         if named and not problem.startswith(":"):
             is_item = isinstance(path[-1], int) and not isinstance(self._at(path), dict)
@@ -415,19 +411,6 @@ def _levels(tree: object) -> int:
         level = [v for values in inner for v in values if isinstance(v, dict | list)]
         number += 1
     return number
-
-
-def _values(tree: object) -> Iterator[object]:
-    """All values of a file that contain no other values, at any depth."""
-    left: list[object] = [tree]
-    while left:
-        value = left.pop()
-        if isinstance(value, dict):
-            left += value.values()
-        elif isinstance(value, list):
-            left += value
-        else:
-            yield value
 
 
 def _leaves(tree: object) -> Iterator[tuple[Path, object]]:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from vbraille.reading.search.answering import Hit
     from vbraille.reading.search.queries import Answer, BookOpening, Query
-    from vbraille.translate.source import Index, Source
+    from vbraille.translate.source import Source
 
 _PROGRESS_S: Final = 2.0
 _MODULE: Final = "vbraille.reading.search.process"
@@ -52,15 +52,9 @@ class Seeker:
     ----------
     opening
         How the book is opened there. A descriptor in it is inherited.
-
-    Attributes
-    ----------
-    index : Index or None
-        Where all blocks of the book are, once that is known.
     """
 
     def __init__(self, opening: BookOpening) -> None:
-        self.index: Index | None = None
         self._opening = opening
         self._worker: Worker[Told] | None = None
         self._last = 0
@@ -71,11 +65,6 @@ class Seeker:
     def busy(self) -> bool:
         """Whether a question has not been answered; a count of lines is no question here."""
         return False in self._asked
-
-    @property
-    def counting(self) -> bool:
-        """Whether lines are being counted."""
-        return True in self._asked
 
     @property
     def descriptor(self) -> int | None:
@@ -151,9 +140,7 @@ class Seeker:
             self._fail("the process that looks through the book has ended; ask again")
 
     def _take(self, number: int, answer: Answer) -> None:
-        if isinstance(answer, Indexed):
-            self.index = answer.index
-        else:
+        if not isinstance(answer, Indexed):
             asked = [counts for counts, n in self._asked.items() if n == number]
             if not asked:
                 return  # it was given up
