@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from vbraille.devices.base import Device
     from vbraille.devices.events import Event
     from vbraille.display import Display
-    from vbraille.reading.exploration import Exploration
+    from vbraille.reading.activity import Activity
     from vbraille.reading.keyboard import Keyboard
 
 
@@ -190,7 +190,7 @@ class AtDevice(ABC):
         Keyboard, whose keys are taken.
     """
 
-    def __init__(self, around: Surroundings, who: Exploration, keys: StoppableKeyboard) -> None:
+    def __init__(self, around: Surroundings, who: Activity, keys: StoppableKeyboard) -> None:
         self._device = around.device
         self._outputs = around.outputs
         self._who = who
@@ -234,7 +234,7 @@ class AtDevice(ABC):
         self._tell(events)
 
     @property
-    def _keyed(self) -> Exploration:
+    def _keyed(self) -> Activity:
         """Whoever keys are for at the moment."""
         return self._who
 

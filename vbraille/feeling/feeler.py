@@ -10,9 +10,9 @@ from vbraille.feeling.composing import at_height
 from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import check_fits, load_scene, with_known
 from vbraille.feeling.opacities import Opacities
+from vbraille.reading.activity import Activity, Prompt
 from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
-from vbraille.reading.exploration import Exploration, Prompt
 from vbraille.simulation.steering import GlideTo
 from vbraille.wording import spelled
 
@@ -84,7 +84,7 @@ _CONTRAST_STEP: Final = 0.1
 _MOVED_MM: Final = 0.2  # a hand that moved less is asked about no more
 
 
-class Feeler(Exploration):
+class Feeler(Activity):
     """Somebody who feels a scene on a device; `vbraille.feeling.commands` calls its methods.
 
     Parameters

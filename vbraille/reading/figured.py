@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.layout.pages import Line
+    from vbraille.reading.activity import Activity
     from vbraille.reading.cues import Cue
-    from vbraille.reading.exploration import Exploration
     from vbraille.reading.surface import Surface
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
@@ -62,7 +62,7 @@ class Figures(Protocol):
 
     def feel(
         self, address: str, say: Callable[[str], None], cue: Callable[[Cue], None]
-    ) -> Exploration:
+    ) -> Activity:
         """Put a figure alone under the hand, in place of the text.
 
         Raises

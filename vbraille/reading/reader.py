@@ -6,9 +6,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.upright import Upright
+from vbraille.reading.activity import Activity, Prompt
 from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
-from vbraille.reading.exploration import Exploration, Prompt
 from vbraille.reading.outputs import Echo
 from vbraille.reading.search.queries import CountLines
 from vbraille.reading.search.seeker import Search
@@ -126,7 +126,7 @@ class Keeping:
         self.kept.keep_at(source, character, width=layout.width, table=name, **told)
 
 
-class Reader(Exploration):
+class Reader(Activity):
     """Somebody who reads one line after the other, each alone or on a page of several.
 
     The line under the hand is the one that the finger is on: on a page it changes as the finger

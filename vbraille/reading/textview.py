@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from vbraille.engine.engine import Engine
     from vbraille.layout.pages import Line
-    from vbraille.reading.exploration import Exploration
+    from vbraille.reading.activity import Activity
     from vbraille.reading.figured import Figures, Here, PlacedFigure
     from vbraille.reading.surface import Window
     from vbraille.render import BrailleStyle, Model
@@ -70,7 +70,7 @@ class TextView:
         Number of times that something else was put under the hand.
     figured : Figured
         The figures of the text, and those of the page under the hand.
-    alone : Exploration or None
+    alone : Activity or None
         Figure that is felt in place of the text; None if the text is under the hand.
     patient : bool
         Whether the hand may do as it likes, since somebody moves it in the live view.
@@ -96,7 +96,7 @@ class TextView:
         self.width = self.width_in(model.style)
         self.rows = rows_on(model.display, model.style)
         self.figured = Figured(figures, model.display)
-        self.alone: Exploration | None = None
+        self.alone: Activity | None = None
         self._awaited = False  # whether the page's figures are still to be compiled
         self._row = 0  # of the line that the finger is on, or was on last
         self._y_mm: float | None = None  # where the finger is, and the part of what is shown there

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.layout.pages import Line
     from vbraille.live.messages import PagePress, Turn
+    from vbraille.reading.activity import Activity
     from vbraille.reading.device import OpenDevice
-    from vbraille.reading.exploration import Exploration
     from vbraille.reading.surface import Window
 
 MOST_SAID: Final = 20
@@ -73,7 +73,7 @@ class View(ABC):
     ----------
     device
         Device that something is explored on.
-    exploration
+    activity
         Reader or feeler.
     said
         What was said.
@@ -89,13 +89,13 @@ class View(ABC):
     def __init__(
         self,
         device: OpenDevice,
-        exploration: Exploration,
+        activity: Activity,
         said: Said,
         facts: Iterable[tuple[str, str]] = (),
     ) -> None:
         self.standing = ""
         self._device = device
-        self._exploration = exploration
+        self._activity = activity
         self._said = said
         self._facts = list(facts)
         self._gone = ""  # sentence on where the device is
@@ -108,7 +108,7 @@ class View(ABC):
 
     @abstractmethod
     def _parts(self) -> dict[str, Any]:
-        """Parts of the state that are of one exploration alone."""
+        """Parts of the state that are of one activity alone."""
 
     @abstractmethod
     def obey(self, asked: PagePress | Turn) -> None:
@@ -123,8 +123,8 @@ class View(ABC):
                 self._gone = ""
 
     def changed(self) -> ViewState | None:
-        """State of the exploration; None if it is what it was at the last call."""
-        device, done = self._device, self._exploration.done
+        """State of the activity; None if it is what it was at the last call."""
+        device, done = self._device, self._activity.done
         # What is compared is small, for this is asked fifty times a second. What cannot change is
         # compared as an object, and kept here, so that no other can take its place in memory.
         now = (
@@ -156,10 +156,10 @@ class View(ABC):
 
     def _standing(self) -> str:
         """Sentence on the state of the device."""
-        doing, placing = self._exploration.doing, self._device.placing
+        doing, placing = self._activity.doing, self._device.placing
         if self.standing:
             return self.standing
-        if self._exploration.done:
+        if self._activity.done:
             return f"{doing} is over"
         if self._gone:
             return self._gone

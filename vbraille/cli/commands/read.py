@@ -36,9 +36,9 @@ if TYPE_CHECKING:
     from vbraille.cli.build import Page
     from vbraille.cli.stoppable import StoppableKeyboard
     from vbraille.devices.events import Event
+    from vbraille.reading.activity import Activity
     from vbraille.reading.conventionalview import ConventionalView
     from vbraille.reading.device import OpenDevice
-    from vbraille.reading.exploration import Exploration
     from vbraille.reading.figured import Figures
     from vbraille.reading.viewed import ReadView, Said
     from vbraille.render import Model
@@ -163,7 +163,7 @@ class _Reading(AtDevice):
         self._say_notes()
 
     @property
-    def _keyed(self) -> Exploration:
+    def _keyed(self) -> Activity:
         """Whoever feels a figure alone, or the reader."""
         return self._device.reader.under.alone or self._device.reader
 

@@ -8,13 +8,14 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ParamSpec
 
+from vbraille.reading.activity import LONGEST
 from vbraille.reading.bindings import ANY, Bindings, Bound, Command, Context, bind, spoken
-from vbraille.reading.exploration import LONGEST
 from vbraille.reading.keys import PASTE, pasted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from vbraille.reading.activity import Activity
     from vbraille.reading.commands import (
         asking,
         control,
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
         structure,
         turning,
     )
-    from vbraille.reading.exploration import Exploration
     from vbraille.reading.reader import Reader
 
 Given = ParamSpec("Given")
@@ -109,7 +109,7 @@ def find(key: str, context: Context) -> Command | None:
     return BOUND.find(key, context)
 
 
-def press(reader: Exploration, key: str) -> None:
+def press(reader: Activity, key: str) -> None:
     """Call the command that a key stands for in the reader's context."""
     bound = reader.bound or BOUND
     text = pasted(key)
@@ -127,7 +127,7 @@ def press(reader: Exploration, key: str) -> None:
             reader.say(f"no command: {spoken(key)}; {reader.key('HELP', 'h')} says the keys")
 
 
-def _paste(reader: Exploration, key: str, text: str) -> None:
+def _paste(reader: Activity, key: str, text: str) -> None:
     """Put pasted text into what is being typed; elsewhere it is no command."""
     if reader.prompt is not None and reader.context is Context.PROMPT:
         reader.prompt.paste(text)
@@ -135,7 +135,7 @@ def _paste(reader: Exploration, key: str, text: str) -> None:
         reader.say("paste: text that is pasted is passed over; type the keys")
 
 
-def press_button(reader: Exploration, number: int) -> None:
+def press_button(reader: Activity, number: int) -> None:
     """Call the command that a button of the device stands for."""
     _call(reader, f"button {number}", (reader.bound or BOUND).buttons.get(number))
 
@@ -151,7 +151,7 @@ def press_display_key(reader: Reader, name: str) -> None:
     _call(reader, f"display {name}", (reader.bound or BOUND).display_keys.get(name))
 
 
-def _call(reader: Exploration, name: str, command: Command | None) -> None:
+def _call(reader: Activity, name: str, command: Command | None) -> None:
     """Call the command of something that is pressed and is no key of the keyboard."""
     if reader.context is Context.LEARNING:
         _learn(reader, name, command)
@@ -188,14 +188,14 @@ def turn_knob(reader: Reader, number: int, share: float) -> str:
     return ""
 
 
-def say_keys(reader: Exploration) -> None:
+def say_keys(reader: Activity) -> None:
     """Say what the keys do."""
     for command in (reader.bound or BOUND).of(reader.context):
         if command.keys:
             reader.say(f"{command.spoken_keys}: {command.help}")
 
 
-def _learn(reader: Exploration, name: str, command: Command | None) -> None:
+def _learn(reader: Activity, name: str, command: Command | None) -> None:
     if command is not None and command.name in ("LEARN", "QUIT"):
         control.end_learning(reader)
     else:

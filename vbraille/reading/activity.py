@@ -1,4 +1,4 @@
-"""Somebody who explores a text or a picture by keys, and the text that is typed meanwhile."""
+"""An activity at a device that is told by keys, such as reading, and what is typed meanwhile."""
 
 from __future__ import annotations
 
@@ -102,8 +102,8 @@ class Prompt:
         del self.others[:-_MOST_EARLIER]
 
 
-class Exploration:
-    """Something that somebody explores, told by keys what to do until there is no more to do.
+class Activity:
+    """What somebody does at a device, told by keys, until there is no more to do.
 
     Parameters
     ----------
