@@ -13,7 +13,7 @@ from vbraille.reading.bindings import Bindings, Context
 from vbraille.reading.commands.table import KEY_SETS, bound_by, press_button, turn_knob
 from vbraille.reading.device import SETTLED_S, KnobTurns
 from vbraille.reading.outputs import Echo
-from vbraille.settings.values import parse_settings
+from vbraille.settings.tables import parse_settings
 from vbraille.translate import Book, BrailleTable
 from vbraille.translate.documents.html import HtmlBook
 

@@ -9,7 +9,7 @@ from vbraille.cli.terminal import say_line
 from vbraille.logs import want_tracebacks
 from vbraille.reading.bindings import Bindings, Bound
 from vbraille.reading.commands.table import bound_by
-from vbraille.settings.values import load_settings
+from vbraille.settings.loading import load_settings
 
 if TYPE_CHECKING:
     import argparse

@@ -6,13 +6,8 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-import msgspec
-
 from vbraille.errors import InputError
-from vbraille.files import settings_path
 from vbraille.render.braille.knobs import with_values
-from vbraille.settings.tables import ProfileTable, ReadTable, check_name
-from vbraille.toml.tomlfile import TomlFile, which
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
@@ -71,78 +66,6 @@ class Settings:
 def display_name(model: Model) -> str:
     """Name of a display in a settings file: its model's, or its own in small letters."""
     return model.name or re.sub(r"[^a-z0-9]+", "-", model.title.lower()).strip("-") or "display"
-
-
-_TABLES = ("read", "keys", "buttons", "profile")
-
-
-def parse_settings(text: str, path: Path) -> Settings:
-    """Make settings of the text of their file.
-
-    Raises
-    ------
-    InputError
-        If the text has something that no settings file can have.
-    """
-    file = TomlFile(text, path.name)
-    for table in file.names():
-        if table not in _TABLES:
-            file.fail((table,), f"is no table of settings{which(table, _TABLES)}")
-        if table == "profile" and not file.is_table(table):
-            file.fail((table,), "is no table; write which one is in use under [read]")
-        file.names(table)  # it must be a table
-    read = file.read(ReadTable, under=("read",)) if "read" in file.names() else ReadTable()
-    profiles = {
-        name: {
-            display: _given(file.read(ProfileTable, under=("profile", name, display)))
-            for display in file.names("profile", name)
-        }
-        for name in file.names("profile")
-    }
-    for name in profiles:
-        try:
-            check_name(name)
-        except ValueError as error:
-            file.fail(("profile", name), f": {error}")
-    return Settings(
-        path,
-        _given(read),
-        {key: file.read(tuple[str, ...], under=("keys", key)) for key in file.names("keys")},
-        {key: file.read(str, under=("buttons", key)) for key in file.names("buttons")},
-        profiles,
-        file.lines(),
-    )
-
-
-def _given(table: msgspec.Struct) -> dict[str, Any]:
-    """Values that a table of the file has."""
-    return {
-        name: value for name, value in msgspec.structs.asdict(table).items() if value is not None
-    }
-
-
-def load_settings(given: str | None = None) -> Settings:
-    """Read the settings file; without one there are no settings.
-
-    Parameters
-    ----------
-    given
-        Path that an option gives, at which there must be a file; None for the usual place.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or has something that no settings file can have. One sentence
-        says the line, the key, and the nearest name.
-    """
-    path = settings_path(given)
-    if given is None and not path.exists():
-        return Settings(path)
-    # Imported here, since most have no such file, and need not wait for what reads it.
-    from vbraille.settings.values import parse_settings
-    from vbraille.toml.textfile import read_text
-
-    return parse_settings(read_text(path, "settings file"), path)
 
 
 def with_profile(settings: Settings, profile: str, model: Model) -> Model:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli.settled import bind_settings
 from vbraille.reading.bindings import spoken
-from vbraille.settings.values import load_settings
+from vbraille.settings.loading import load_settings
 
 if TYPE_CHECKING:
     import argparse

@@ -10,8 +10,9 @@ from vbraille.cli.terminal import say_line
 from vbraille.files import settings_path
 from vbraille.render import MODELS
 from vbraille.render.braille.knobs import KNOBS
+from vbraille.settings.loading import load_settings
 from vbraille.settings.origins import say_bindings, say_settings, say_tuning
-from vbraille.settings.values import load_settings, with_profile
+from vbraille.settings.values import with_profile
 
 if TYPE_CHECKING:
     import argparse
