@@ -1,4 +1,9 @@
-"""Messages between a program and the process that drives a conventional display."""
+"""A display that BRLTTY drives, through BRLTTY's own library.
+
+The library is called by ctypes: Debian's Python binding of it is for Debian's Python only, and
+twelve functions are all that is needed. What a connection actually uses (its last argument) is
+not asked for, since the library leaves garbage there.
+"""
 
 from __future__ import annotations
 

@@ -184,7 +184,7 @@ class BookFigures:
     def feel(self, address: str, say: Callable[[str], None], cue: Callable[[Cue], None]) -> Feeler:
         """Put a figure alone under the hand, in place of the text; see `FiguresLike`."""
         # As above.
-        from vbraille.feeling.composing import Composer
+        from vbraille.feeling.composing import compose
         from vbraille.feeling.feeler import Feeler
 
         device = self._device
@@ -193,15 +193,14 @@ class BookFigures:
             raise InputError(self._why[address])
         loaded = figure.loaded
         check_fits(loaded.scene, device.display)
-        composer = Composer(device.display, rate_hz=self._rate_hz)
-        program = composer.compose(loaded)
+        program = compose(loaded, device.display, rate_hz=self._rate_hz)
         if program.nbytes > self._room:
             raise InputError(f"{loaded.title} is too large; feel it by vbraille feel")
         feeler = Feeler(
             loaded,
             device.engine,
             where=lambda: device.pose,
-            composer=composer,
+            rate_hz=self._rate_hz,
             style=device.style,
             say=say,
             bound=BOUND_FROM_TEXT,

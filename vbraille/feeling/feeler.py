@@ -1,4 +1,4 @@
-"""The way to a place of the picture, said to whoever moves the device."""
+"""Somebody who feels a picture: what is under the hand, and all that may be asked for meanwhile."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING, Final
 
 from vbraille.errors import InputError
-from vbraille.feeling.composing import at_height
+from vbraille.feeling.composing import at_height, compose
 from vbraille.feeling.index import SceneIndex
-from vbraille.feeling.loading import check_fits, load_scene, with_known
+from vbraille.feeling.loading import check_fits, load_scene
 from vbraille.feeling.opacities import Opacities
 from vbraille.reading.activity import Activity, Prompt
 from vbraille.reading.bindings import Context
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.engine.engine import Engine
-    from vbraille.feeling.composing import Composer
     from vbraille.feeling.index import NamedElement
     from vbraille.feeling.loading import LoadedScene
     from vbraille.pose import Pose
@@ -95,8 +94,8 @@ class Feeler(Activity):
         Engine that drives the device, which is started.
     where
         Function that tells where the array is; None before that is known.
-    composer
-        What makes programs of scenes.
+    rate_hz
+        Frames a second.
     style
         How the braille of labels is shown.
     say
@@ -130,7 +129,7 @@ class Feeler(Activity):
         engine: Engine,
         *,
         where: Callable[[], Pose | None],
-        composer: Composer,
+        rate_hz: float,
         style: BrailleStyle,
         say: Callable[[str], None],
         bound: Bound,
@@ -149,7 +148,7 @@ class Feeler(Activity):
         self._where = where
         self._style = style
         self._room = room
-        self._composer = composer
+        self._rate_hz = rate_hz
         self._steering = steering
         self._at_mm = loaded.scene.canvas.height_mm / 2 if at_mm is None else at_mm
         self._aim: tuple[float, float] | None = None  # where keys have sent the hand
@@ -305,7 +304,6 @@ class Feeler(Activity):
         """Read the file again, and show what it holds now; what is wrong with it is said."""
         try:
             loaded = load_scene(self.loaded.opened.path, self._style)
-            loaded = with_known(loaded, self.loaded)
             check_fits(loaded.scene, self.display)
             program = self._compose(loaded)
             if program.nbytes > self._room:
@@ -338,7 +336,13 @@ class Feeler(Activity):
             self._steering.give(GlideTo(x_mm, y_mm, speed_mm_s))
 
     def _compose(self, loaded: LoadedScene) -> Program:
-        return self._composer.compose(loaded, contrast=self.contrast, own_y_mm=self._at_mm)
+        return compose(
+            loaded,
+            self.display,
+            rate_hz=self._rate_hz,
+            contrast=self.contrast,
+            own_y_mm=self._at_mm,
+        )
 
     def _show(self, program: Program) -> None:
         self._program = program

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
-
-from msgspec.structs import replace as set_fields
 
 from vbraille.errors import InputError
 from vbraille.labelling import label_warnings, write_labels
@@ -98,19 +96,6 @@ def load_scene(path: Path | str, style: BrailleStyle) -> LoadedScene:
     written = write_labels(scene, style, places)
     notes = (*opened.warnings, *label_warnings(scene, written, places))
     return LoadedScene(opened, Assets(bitmaps, written), notes)
-
-
-def with_known(loaded: LoadedScene, before: LoadedScene) -> LoadedScene:
-    """Make the same scene, whose elements are those of another one where they are equal.
-
-    What is the same object need not be compiled again; see `Composer`.
-    """
-    known = {element: element for element in before.scene.elements}
-    elements = tuple(known.get(element, element) for element in loaded.scene.elements)
-    opened = replace(loaded.opened, resolved=set_fields(loaded.scene, elements=elements))
-    bare = not (loaded.assets.bitmaps or loaded.assets.written)
-    same = bare and not (before.assets.bitmaps or before.assets.written)
-    return replace(loaded, opened=opened, assets=before.assets if same else loaded.assets)
 
 
 def check_fits(scene: Scene, display: Display) -> None:

@@ -1,4 +1,7 @@
-"""Whether somebody sits at a desktop, who would see a browser that opens."""
+"""The live view as the program that reads has it: a process of its own, which is never waited for.
+
+Whatever becomes of that process, reading goes on: the worst is a sentence among `Monitor.notes`.
+"""
 
 from __future__ import annotations
 

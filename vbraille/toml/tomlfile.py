@@ -1,4 +1,4 @@
-"""Line numbers of the keys, tables and items of a TOML text, which `tomllib` does not tell."""
+"""Reading of TOML into typed values, or into one sentence that says what is wrong and where."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from vbraille.devices.registry import check_actuators, find_driver
 from vbraille.display import check_rate
 from vbraille.errors import InputError
 from vbraille.feeling.commands import BOUND
-from vbraille.feeling.composing import Composer
+from vbraille.feeling.composing import compose
 from vbraille.feeling.feeler import Feeler
 from vbraille.feeling.loading import FileWatch, check_fits, load_scene
 from vbraille.reading.commands.table import press_button
@@ -77,8 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
                 check_actuators(display, wanted)
             _check(loaded, display, arguments.at)
             model = model_of(display)
-            composer = Composer(display, rate_hz=rate_hz)
-            program = composer.compose(loaded, own_y_mm=arguments.at)
+            program = compose(loaded, display, rate_hz=rate_hz, own_y_mm=arguments.at)
             room = max(_SPARE * program.nbytes, _LEAST_ROOM)
             device.start(model, room)
             keys = around.keys()
@@ -86,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
                 loaded,
                 device.engine,
                 where=lambda: device.pose,
-                composer=composer,
+                rate_hz=rate_hz,
                 style=model.style,
                 say=outputs.say,
                 bound=BOUND,

@@ -1,16 +1,14 @@
-"""Values of options, out of what was typed."""
+"""Groups of options that several commands have, each with a sentence that stands alone."""
 
 from __future__ import annotations
 
 import argparse
 import re
-from typing import TYPE_CHECKING
 
+TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     from argparse import ArgumentParser
     from collections.abc import Sequence
-
-TYPE_CHECKING = False  # as in vbraille.cli
 
 
 class Pairs(argparse.Action):

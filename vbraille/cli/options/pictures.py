@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING
 
 from vbraille.cli.options import groups
 from vbraille.cli.options.groups import MODELS, SPEC, number, seed, whole
 from vbraille.cli.options.live import add_live_options
 
+TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     from argparse import ArgumentParser
-
-TYPE_CHECKING = False  # as in vbraille.cli
 
 # Options of a path over a picture, beside its name.
 PATH_OPTIONS = ("at", "radius", "seconds", "spacing", "speed", "sway", "unsteady", "back")

@@ -1,4 +1,4 @@
-"""Commands that go by what the text is made of: paragraphs, pages, headings, lists, links."""
+"""Commands that go by what the text is made of: paragraphs, headings, lists, links, figures."""
 
 from __future__ import annotations
 

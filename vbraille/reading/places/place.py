@@ -1,4 +1,4 @@
-"""What is kept of a book: plain values, and their bytes in the database."""
+"""A place in a book with the text around it, by which it is found again, and what else is kept."""
 
 from __future__ import annotations
 

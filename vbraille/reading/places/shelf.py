@@ -1,4 +1,4 @@
-"""All books that somebody has read, each with what is kept of it."""
+"""All books that were read, each with what is kept of it; one is opened where it was left."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ import numpy as np
 from vbraille.render import work
 from vbraille.render.machine import words
 from vbraille.render.scene.assets import Assets
-from vbraille.render.scene.elements import FlatElements, check_depth
+from vbraille.render.scene.compiling import flatten_scene
 from vbraille.render.scene.flat import flatten
 from vbraille.render.scene.grid import TileGrid, assemble
 from vbraille.render.scene.trees import ONE, mask
@@ -78,8 +78,7 @@ class SceneMap:
             Deflections, 0 … 1; 0 beyond the canvas.
         """
         if self._shown is None:
-            flat = FlatElements().put_together(self._scene, self._assets, math.inf)
-            self._shown = self._assemble(flat)
+            self._shown = self._assemble(flatten_scene(self._scene, self._assets))
         return _raster(self._shown, x_mm, y_mm, time_s, parity, noise_seed)
 
     def opacity(
@@ -111,9 +110,7 @@ class SceneMap:
             return None
         whole = Group(operation=self._scene.operation, parts=elements)
         tree = mask(elements[0] if len(elements) == 1 else whole, self._assets)
-        flat = flatten(ONE if tree is None else tree)
-        check_depth(flat)
-        return flat
+        return flatten(ONE if tree is None else tree)
 
     def _assemble(self, flat: Flat | None) -> _Numbers:
         head = np.zeros(words.GRID)

@@ -1,4 +1,4 @@
-"""What shapes and dots lie in, part by part, and where they are solid.
+"""What shapes and dots lie in, part by part.
 
 An array is told of those segments of a filled shape that it may touch, and of those alone. Whether
 a place is inside is how often a line from it to the right crosses the shape's edges, even or odd,
@@ -14,29 +14,23 @@ So a filled shape has as parts its segments, the wall without ends, and a wall f
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from vbraille.render.scene import pathparts
-from vbraille.render.scene.brailleplaces import corners_mm, size_mm
 from vbraille.render.scene.nodes import LeafReach
-from vbraille.scene.bitmap import WHOLE
 from vbraille.scene.bounds import around, drawn_radius_mm
 from vbraille.scene.dots import Dots
 from vbraille.scene.dotting import dots_of
 from vbraille.scene.patterns import Circle
 
 if TYPE_CHECKING:
-    from vbraille.render.scene.assets import Written
     from vbraille.render.scene.nodes import Enclosed
     from vbraille.render.scene.pathparts import AnyShape
-    from vbraille.scene.bitmap import Bitmap
-    from vbraille.scene.labels import Label
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import Fill
 
 # As plain numbers, which are many times faster to put into an array.
-_CAPSULE, _RING, _EDGE, _WALL, _AROUND, _DISC_INSIDE, _BAR_INSIDE = map(
+_CAPSULE, _RING, _EDGE, _WALL, _AROUND = map(
     int,
     (
         LeafReach.CAPSULE,
@@ -44,12 +38,9 @@ _CAPSULE, _RING, _EDGE, _WALL, _AROUND, _DISC_INSIDE, _BAR_INSIDE = map(
         LeafReach.EDGE,
         LeafReach.WALL,
         LeafReach.AROUND,
-        LeafReach.DISC_INSIDE,
-        LeafReach.BAR_INSIDE,
     ),
 )
 _ROUNDING_MM = 1e-6
-_SQUARES = 64
 
 
 def enclosed_dots(pattern: AnyShape | Dots) -> tuple[Enclosed, ...]:
@@ -96,58 +87,3 @@ def enclosed_fill(shape: AnyShape, fill: Fill) -> tuple[Enclosed, ...]:
             places.append(start)
     left, top, right, bottom = around(places)
     return (*edges, (_AROUND, left, top, right, bottom, reach), *walls)
-
-
-def disc(circle: Circle) -> Enclosed:
-    """Inside of a circle."""
-    return (_DISC_INSIDE, *circle.center_mm, circle.radius_mm, 0.0, 0.0)
-
-
-def cells(label: Label, written: Written) -> Enclosed | None:
-    """Rectangle of a label's cells; None without cells."""
-    if size_mm(written)[1] == 0.0:
-        return None
-    radius = written.style.geometry.dot_width_mm / 2
-    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = corners_mm(label, written, radius)
-    half = size_mm(written)[1] / 2 + radius
-    return (_BAR_INSIDE, (x0 + x3) / 2, (y0 + y3) / 2, (x1 + x2) / 2, (y1 + y2) / 2, half)
-
-
-def pixels(mask: Bitmap) -> Enclosed | None:
-    """Find a large rectangle in which the opacity mask of an image is 1; None if there is none.
-
-    It is sought among squares of pixels, as few as `_SQUARES` to each side, and is the largest of
-    those that consist of such squares.
-    """
-    rows, columns = mask.intensities.shape
-    step = max(1, math.ceil(max(rows, columns) / _SQUARES))
-    whole = mask.intensities[: rows - rows % step, : columns - columns % step] == WHOLE
-    squares = whole.reshape(rows // step, step, columns // step, step).all(axis=(1, 3))
-    top, left, bottom, right = _largest_rectangle(squares.tolist())
-    # Between the middles of the outermost pixels the bilinear mask is 1 throughout.
-    width, height = mask.width_mm / columns, mask.height_mm / rows
-    x, y = mask.place_mm
-    start, end = x + (left * step + 0.5) * width, x + (right * step - 0.5) * width
-    upper, lower = y + (top * step + 0.5) * height, y + (bottom * step - 0.5) * height
-    if end <= start or lower <= upper:
-        return None
-    middle = (upper + lower) / 2
-    return (_BAR_INSIDE, start, middle, end, middle, (lower - upper) / 2)
-
-
-def _largest_rectangle(squares: list[list[bool]]) -> tuple[int, int, int, int]:
-    """Top, left, bottom and right of the largest rectangle of squares that are all true."""
-    best, found = 0, (0, 0, 0, 0)
-    heights = [0] * (len(squares[0]) if squares else 0)
-    for row, line in enumerate(squares):
-        heights = [height + 1 if one else 0 for height, one in zip(heights, line, strict=True)]
-        rising: list[tuple[int, int]] = []  # where columns of growing height begin
-        for column, height in enumerate([*heights, 0]):
-            begin = column
-            while rising and rising[-1][1] >= height:
-                begin, high = rising.pop()
-                if high * (column - begin) > best:
-                    best = high * (column - begin)
-                    found = (row + 1 - high, begin, row + 1, column)
-            rising.append((begin, height))
-    return found

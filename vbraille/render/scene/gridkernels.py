@@ -7,7 +7,7 @@ come before what is made of them, so that words can be said in that order, too.
 import numpy as np
 
 from vbraille.render.machine import words as w
-from vbraille.render.scene.reachkernels import AROUND, BOX, NODE, PART, REACH_KIND
+from vbraille.render.scene.reachkernels import NODE, PART
 from vbraille.render.waves import compiled
 
 # Columns of nodes: see `vbraille.render.scene.flat`.
@@ -23,9 +23,8 @@ from vbraille.render.waves import compiled
     CHANGES,  # place of a change's words, and how many these are
     CHANGE_COUNT,
     PARTED,  # 1 if its words are told of parts
-    SOLID,  # 1 if it is 1, or hides what is beneath it, where it is solid
-) = range(12)
-NODE_COLUMNS = 12
+) = range(11)
+NODE_COLUMNS = 11
 LEAF, ADD, MAXIMUM, MULTIPLY, BLEND, OVER, LAYER, CHANGE = range(8)
 ITSELF, PAIR, COVER = range(3)
 _NONE = -1
@@ -40,11 +39,8 @@ _NONE = -1
     _ALIVE,
     _FIRST,
     _LAST,
-    _INSIDE,  # bit 0: something of it is solid here; bit 1: something of it begins or ends
-    _SOLIDS,  # how many children are 1 in all of the tile
-    _SOLID_MASK,  # which of the first three are, and, bit 3, whether the last one is
-) = range(10)
-ROOM_COLUMNS = 10
+) = range(7)
+ROOM_COLUMNS = 7
 
 
 @compiled
@@ -59,17 +55,10 @@ def _gather(nodes, always, reach, listed, room, active, stamp):
             node = int(reach[n, NODE])
             if room[node, _STAMP] != stamp:
                 room[node, _FIRST] = k - always.size
-                room[node, _INSIDE] = 0
-            kind = reach[n, REACH_KIND]
-            if kind >= AROUND:
-                room[node, _INSIDE] |= 1
-            elif kind != BOX:
-                room[node, _INSIDE] |= 2
             room[node, _LAST] = k - always.size + 1
         while room[node, _STAMP] != stamp:
             room[node, _STAMP] = stamp
             room[node, _HAVE] = room[node, _MASK] = room[node, _ALIVE] = 0
-            room[node, _SOLIDS] = room[node, _SOLID_MASK] = 0
             room[node, _LOWEST] = _NONE
             active[count] = node
             count += 1
@@ -94,29 +83,6 @@ def _is_present(nodes, node, room):
     if kind == CHANGE:
         return have > 0 or nodes[node, ALWAYS] != 0.0
     return have > 0
-
-
-@compiled
-def _is_solid(nodes, node, room):
-    """Tell whether a node that is present is 1 in all of a tile, or hides what is beneath it.
-
-    It is told only where it is exact: a sum of what is 1 and something else is cut to 1, but what
-    is laid over what is 1 may be less by a rounding.
-    """
-    kind, solids, which = nodes[node, KIND], room[node, _SOLIDS], room[node, _SOLID_MASK]
-    if kind == LEAF:
-        if nodes[node, ONE] != 0.0:
-            return True
-        return nodes[node, SOLID] * (1.0 - nodes[node, ALWAYS]) != 0.0 and room[node, _INSIDE] == 1
-    if kind in (ADD, MAXIMUM):
-        return solids > 0
-    if kind == MULTIPLY:
-        return solids == nodes[node, CHILDREN]
-    if kind == BLEND:
-        return which & 3 == 3
-    if kind == LAYER:
-        return which & 2 != 0
-    return kind == OVER and which & 8 != 0
 
 
 @compiled
@@ -150,20 +116,12 @@ def _choose(nodes, room, active, count):
         if nodes[node, PARENT] == 0.0:
             continue
         parent = node + int(nodes[node, PARENT])
-        solid = _is_solid(nodes, node, room)
         room[parent, _HAVE] += 1
-        room[parent, _SOLIDS] += solid
-        room[parent, _SOLID_MASK] &= 7
-        if solid:
-            if nodes[node, PUSHES] == ITSELF:
-                room[parent, _SOLID_MASK] |= 8
-            if nodes[node, ORDINAL] < 3.0:
-                room[parent, _SOLID_MASK] |= 1 << int(nodes[node, ORDINAL])
         if nodes[node, ORDINAL] < 3.0:
             room[parent, _MASK] |= 1 << int(nodes[node, ORDINAL])
         if nodes[node, ONE] != 0.0 and nodes[node, ORDINAL] == 2.0:
             room[parent, _MASK] |= 8
-        covers = nodes[parent, KIND] == OVER and (nodes[node, PUSHES] == COVER or solid)
+        covers = nodes[parent, KIND] == OVER and nodes[node, PUSHES] == COVER
         if covers or room[parent, _LOWEST] == _NONE:
             room[parent, _LOWEST] = node
     for k in range(count - 1, -1, -1):

@@ -44,9 +44,6 @@ class LeafReach(IntEnum):
     EDGE = 3  # left, y of the start, right, y of the end of a segment
     WALL = 4  # where two segments meet: the lesser left of theirs, y, the greater left, y
     AROUND = 5  # left, top, right, bottom of all the segments
-    # What a leaf is solid in.
-    DISC_INSIDE = 6  # centre, radius
-    BAR_INSIDE = 7  # start, end of a line; all that is no farther from it, across, than the reach
 
 
 # What a leaf or a part of it lies in: a `LeafReach`, its four numbers, and the reach in mm.
@@ -72,11 +69,6 @@ class Node:
         What a leaf, or each of its parts, lies in; empty for its box.
     parts
         Whether ``enclosed`` is about parts.
-    inside
-        Where a leaf without such parts is solid, as far as it is simple to tell.
-    solid
-        Whether a leaf is 1 wherever it is solid, or hides all that is beneath it there. A filled
-        shape is so where all that an array reaches is inside of it, and far from its edges.
     pushes
         What it leaves on the stack below an OVER.
     changes : tuple of (operation, constants)
@@ -95,8 +87,6 @@ class Node:
     box: Box | None = None
     enclosed: tuple[Enclosed, ...] = ()
     parts: bool = False
-    inside: Enclosed | None = None
-    solid: bool = False
     pushes: Pushes = Pushes.ITSELF
     changes: tuple[tuple[int, tuple[float, ...]], ...] = field(default=())
     everywhere: bool = False

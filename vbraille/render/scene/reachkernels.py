@@ -19,20 +19,15 @@ from vbraille.render.waves import compiled
 ) = range(8)
 REACH_COLUMNS = 8
 
-BOX, CAPSULE, RING, EDGE, WALL, AROUND, DISC_INSIDE, BAR_INSIDE = range(8)
+BOX, CAPSULE, RING, EDGE, WALL, AROUND = range(6)
 _ROUNDING_MM = 1e-6
 
 
 @compiled
 def _is_near(reach, n, x, y, radius):
-    """Tell whether anything of a thing is nearer than that to a place.
-
-    Of what is inside of a shape: whether all that is nearer than that to a place is inside.
-    """
+    """Tell whether anything of a thing is nearer than that to a place."""
     a, b, c, d = reach[n, A], reach[n, B], reach[n, C], reach[n, D]
     kind = reach[n, REACH_KIND]
-    if kind == BAR_INSIDE:
-        return _is_in_bar(a, b, c, d, reach[n, REACH_MM], x, y, radius + _ROUNDING_MM)
     radius += reach[n, REACH_MM]
     if kind == EDGE:
         beside = a > x + radius or c < x - radius
@@ -44,8 +39,6 @@ def _is_near(reach, n, x, y, radius):
         return dx * dx + dy * dy <= radius * radius
     if kind == RING:
         return abs(math.sqrt((x - a) ** 2 + (y - b) ** 2) - c) <= radius
-    if kind == DISC_INSIDE:
-        return math.sqrt((x - a) ** 2 + (y - b) ** 2) + radius + _ROUNDING_MM <= c
     dx, dy = c - a, d - b
     u, v = x - a, y - b
     square = dx * dx + dy * dy
@@ -57,21 +50,11 @@ def _is_near(reach, n, x, y, radius):
 
 
 @compiled
-def _is_in_bar(a, b, c, d, half, x, y, radius):
-    """Tell whether all that is nearer than that to a place is in a rectangle about a line."""
-    dx, dy = c - a, d - b
-    length = math.sqrt(dx * dx + dy * dy)
-    right, down = dx / length, dy / length
-    u, v = (x - a) * right + (y - b) * down, (y - b) * right - (x - a) * down
-    return radius <= u and u + radius <= length and abs(v) + radius <= half
-
-
-@compiled
 def _range(reach, n, radius, left, top, tiles_per_mm, columns, rows):
     """Range of the tiles that a thing can be near to: columns, and rows."""
     a, b, c, d = reach[n, A], reach[n, B], reach[n, C], reach[n, D]
     radius += reach[n, REACH_MM]
-    if reach[n, REACH_KIND] == RING or reach[n, REACH_KIND] == DISC_INSIDE:
+    if reach[n, REACH_KIND] == RING:
         a, b, c, d = a - c, b - c, a + c, b + c
     x0, x1 = (min(a, c) - radius - left) * tiles_per_mm, (max(a, c) + radius - left) * tiles_per_mm
     y0, y1 = (min(b, d) - radius - top) * tiles_per_mm, (max(b, d) + radius - top) * tiles_per_mm

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.render.machine import words
 from vbraille.render.scene import shapecode
-from vbraille.render.scene.enclosures import disc, enclosed_dots, enclosed_fill, enclosed_stroke
+from vbraille.render.scene.enclosures import enclosed_dots, enclosed_fill, enclosed_stroke
 from vbraille.render.scene.nodes import Node, NodeKind, Pushes, joined
 from vbraille.render.scene.pathparts import AnyShape, ShapeOrDots
 from vbraille.render.scene.shapecode import fill_of
@@ -70,8 +70,7 @@ def pair(pattern: ShapeOrDots, own: Node) -> Node:
     """Leaf that pushes a deflection, and then its mask from the same coordinates."""
     assert own.say is not None
     say = partial(_say_pair, own.say, partial(_say_mask, pattern))
-    filled = isinstance(pattern, AnyShape) and fill_of(pattern) is not None
-    return replace(own, say=say, pushes=Pushes.PAIR, depth=own.depth + 1, solid=filled)
+    return replace(own, say=say, pushes=Pushes.PAIR, depth=own.depth + 1)
 
 
 def mask(pattern: ShapeOrDots) -> Node:
@@ -79,8 +78,8 @@ def mask(pattern: ShapeOrDots) -> Node:
     if isinstance(pattern, Dots) or fill_of(pattern) is None:
         return _drawn(pattern, partial(_say_mask, pattern))
     if pattern.dots is None:
-        return replace(_filled(pattern, partial(_say_mask, pattern), 1), solid=True)
-    inside = replace(_filled(pattern, partial(_say_fill_mask, pattern), 1), solid=True)
+        return _filled(pattern, partial(_say_mask, pattern), 1)
+    inside = _filled(pattern, partial(_say_fill_mask, pattern), 1)
     return joined(NodeKind.MAXIMUM, (inside, _drawn(pattern, partial(_say_mask, pattern))))
 
 
@@ -98,7 +97,7 @@ def _filled(shape: AnyShape, say: Saying, depth: int = 3) -> Node:
     box, fill = unchanged_bounds(shape), fill_of(shape)
     assert fill is not None
     if isinstance(shape, Circle):
-        return Node(NodeKind.LEAF, say=say, box=box, inside=disc(shape), depth=depth)
+        return Node(NodeKind.LEAF, say=say, box=box, depth=depth)
     enclosed = enclosed_fill(shape, fill)
     return Node(NodeKind.LEAF, say=say, box=box, enclosed=enclosed, parts=True, depth=depth)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.render.machine import words
 from vbraille.render.machine.labelplaces import TABLE
-from vbraille.render.scene import enclosures, shapecode, shapetrees, texturecode
+from vbraille.render.scene import shapecode, shapetrees, texturecode
 from vbraille.render.scene.brailleplaces import box_of, pack_label
 from vbraille.render.scene.nodes import Node, NodeKind, Pushes, joined
 from vbraille.render.scene.pathparts import AnyShape, ShapeOrDots
@@ -87,15 +87,12 @@ def mask(pattern: AnyPattern, assets: Assets) -> Node | None:
         case Image():
             bitmap = assets.bitmaps[pattern]
             hiding = opaque(bitmap)
-            say, inside = partial(_say_bitmap, hiding), enclosures.pixels(hiding)
-            box = bitmap_box(bitmap)
-            return Node(NodeKind.LEAF, say=say, box=box, inside=inside, solid=True)
+            return Node(NodeKind.LEAF, say=partial(_say_bitmap, hiding), box=bitmap_box(bitmap))
         case Label():
             written = assets.written[pattern]
             packed = pack_label(pattern, written)
             say, box = partial(_say_label, words.LABEL_MASK, packed), box_of(pattern, written)
-            inside = enclosures.cells(pattern, written)
-            return Node(NodeKind.LEAF, say=say, box=box, inside=inside, solid=True)
+            return Node(NodeKind.LEAF, say=say, box=box)
         case Group():
             return _group_mask(pattern, assets)
         case _ if isinstance(pattern, ShapeOrDots):
