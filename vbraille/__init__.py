@@ -34,9 +34,9 @@ if TYPE_CHECKING:
     from vbraille.render.braille.models import STRESS2_8X8 as STRESS2_8X8
     from vbraille.render.braille.models import VBD as VBD
     from vbraille.render.braille.models import Model as Model
+    from vbraille.render.braille.profiles import Tuning as Tuning
     from vbraille.render.braille.straying import Straying as Straying
     from vbraille.render.braille.style import BrailleStyle as BrailleStyle
-    from vbraille.render.braille.tuning import Tuning as Tuning
     from vbraille.scene.reading import open_scene as open_scene
     from vbraille.scene.scene import Canvas as Canvas
     from vbraille.scene.scene import Scene as Scene
@@ -65,7 +65,7 @@ _PLACES = {
     "Scene": "vbraille.scene.scene",
     "Session": "vbraille.sessions.session",
     "Straying": "vbraille.render.braille.straying",
-    "Tuning": "vbraille.render.braille.tuning",
+    "Tuning": "vbraille.render.braille.profiles",
     "VBD": "vbraille.render.braille.models",
     "VbrailleError": "vbraille.errors",
     "analyse": "vbraille.analysis",

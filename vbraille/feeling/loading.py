@@ -12,8 +12,7 @@ from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.brailleplaces import box_of
 from vbraille.scene.bounds import Box
 from vbraille.scene.images import load_bitmaps
-from vbraille.scene.labels import Label
-from vbraille.scene.patterns import Image
+from vbraille.scene.patterns import Image, Label
 from vbraille.scene.reading import open_scene
 from vbraille.scene.walking import each
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from vbraille.render.braille.tuning import Tuning
+    from vbraille.render.braille.profiles import Tuning
     from vbraille.render.program import Program
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Stimulus
