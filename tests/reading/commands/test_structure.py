@@ -15,9 +15,9 @@ from vbraille.reading.search.answering import Answering
 from vbraille.translate import Book, BrailleTable, Cells
 from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.braillefiles.pef import PefBook
+from vbraille.translate.documents.chapters import Passage
 from vbraille.translate.documents.html import HtmlBook
 from vbraille.translate.documents.markdown import read_markdown
-from vbraille.translate.documents.parted import Passage
 from vbraille.translate.source import Mark, MarkKind
 
 TABLE = BrailleTable("en-ueb-g1.ctb")
@@ -341,7 +341,7 @@ href="#n1">1</a>.</p><p>The end.</p>
     ],
 )
 def test_enter_on_a_note_goes_back_to_its_reference(keys, last):
-    source = HtmlBook(io.BytesIO(NOTES.encode()), "book.html")
+    source = HtmlBook.open(io.BytesIO(NOTES.encode()), "book.html")
     bench = Bench(book=Book(source, TABLE), width=60)
     assert bench.press(keys)[-1] == last
 

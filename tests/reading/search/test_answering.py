@@ -20,13 +20,13 @@ from vbraille.reading.search.queries import (
 )
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.braillefiles.lines import open_brf
-from vbraille.translate.documents.parted import PartedSource, Passage
+from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.source import BlockKind, Mark, MarkKind
 
 ROWS = 200
 
 
-class Structured(PartedSource):
+class Structured(ChapterSource):
     """A book of headings, a long table, pages, and a link."""
 
     def __init__(self):

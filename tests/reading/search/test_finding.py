@@ -14,8 +14,8 @@ from vbraille.reading.search.folding import fold, needle_of, unfolded
 from vbraille.reading.search.queries import FindText, Found, NotFound, Searched
 from vbraille.reading.search.sieve import Sieve, ahead
 from vbraille.translate import Document
+from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.documents.encodings import Encoding
-from vbraille.translate.documents.parted import PartedSource, Passage
 from vbraille.translate.opening import open_source
 
 PIECES = (
@@ -27,15 +27,15 @@ PIECES = (
 texts = st.lists(st.sampled_from(PIECES), min_size=1, max_size=30).map("".join)
 
 
-class Chapters(PartedSource):
+class Chapters(ChapterSource):
     """Chapters of one paragraph each."""
 
     def __init__(self, *chapters):
         super().__init__("book", [1] * len(chapters), "0" * 64)
-        self.chapters = chapters
+        self._chapters = chapters
 
     def passages(self, part):
-        return [Passage(self.chapters[part])]
+        return [Passage(self._chapters[part])]
 
 
 def blocks(source):

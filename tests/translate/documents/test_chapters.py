@@ -1,12 +1,12 @@
-"""Sources in parts: numbers and places of blocks, whatever is asked for first."""
+"""Sources in chapters: numbers and places of blocks, whatever is asked for first."""
 
 import numpy as np
 import pytest
 
-from vbraille.translate.documents.parted import PIECE_CHARACTERS, PartedSource, Passage
+from vbraille.translate.documents.chapters import LONGEST_BLOCK, ChapterSource, Passage
 from vbraille.translate.source import BlockKind, Mark, MarkKind
 
-PARTS = (
+CHAPTERS = (
     (Passage("One", BlockKind.HEADING, 1, anchors=("one",)), Passage("first"), Passage("")),
     (),
     (
@@ -18,16 +18,16 @@ PARTS = (
 )
 
 
-class Made(PartedSource):
-    """A source of the parts above, which counts how often it reads each."""
+class Made(ChapterSource):
+    """A source of the chapters above, which counts how often it reads each."""
 
     def __init__(self) -> None:
         super().__init__("made", [3, 1, 3, 9], "0" * 64)
-        self.reads = [0] * len(PARTS)
+        self.reads = [0] * len(CHAPTERS)
 
-    def passages(self, part):
-        self.reads[part] += 1
-        return PARTS[part]
+    def passages(self, chapter):
+        self.reads[chapter] += 1
+        return CHAPTERS[chapter]
 
 
 def all_blocks(source):
@@ -49,7 +49,7 @@ def test_the_places_of_blocks_follow_one_another():
     assert texts[:7] == ["One", "first", "", "a", "b", "see there", "c"]
     assert "".join(texts[7:]) == "word " * 4000
     assert [block.continues for block in blocks[7:]] == [False, True, True]
-    assert all(len(text) <= PIECE_CHARACTERS for text in texts)
+    assert all(len(text) <= LONGEST_BLOCK for text in texts)
     assert [block.group for block in blocks[:8]] == [0, 0, 0, 1, 1, 0, 2, 0]
 
 
@@ -108,3 +108,33 @@ def test_anchors_and_progress():
     assert shares[0] == 0.0
     assert shares == sorted(shares)
     assert shares[-1] < 1.0
+
+
+class Long(ChapterSource):
+    """A source of one short chapter and one of many passages, and how many of those it has made."""
+
+    def __init__(self) -> None:
+        super().__init__("long", [1, 999], "0" * 64)
+        self.made = 0
+
+    def passages(self, chapter):
+        for number in range(10_000 if chapter else 1):
+            self.made += 1
+            yield Passage(f"x{number}", BlockKind.ITEM, 1, group=1 + number // 5_000)
+
+
+def test_a_long_chapter_is_read_in_pieces():
+    source = Long()
+    assert str(source.block(1).text) == "x0"
+    assert source.made < 3_000
+    assert not source.complete
+    assert source.progress(1) < source.progress(1_500) < 1.0
+    assert str(source.block(9_000).text) == "x8999"
+    assert (source.block(2).group, source.block(5_001).group) == (2, 3)
+    assert source.block(10_001) is None
+    again = Long()
+    again.adopt(source.index())
+    assert str(again.block(5_001).text) == "x5000"
+    assert again.block(5_001).group == 3
+    assert str(again.block(20).text) == "x19"
+    assert again.block_at(source.end - 1) == 10_000
