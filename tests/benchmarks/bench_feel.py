@@ -23,16 +23,15 @@ from vbraille.engine.record import Flag
 from vbraille.feeling.commands import BOUND
 from vbraille.feeling.composing import compose
 from vbraille.feeling.feeler import Feeler
-from vbraille.feeling.filewatch import FileWatch
-from vbraille.feeling.loading import load_scene
+from vbraille.feeling.loading import FileWatch, load_scene
 from vbraille.render import MODELS
 from vbraille.render.program import Program
 from vbraille.render.scene.compiling import compile_scene
+from vbraille.scene.converting import write_scene
 from vbraille.scene.patterns import Circle, Fill, Group
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke
 from vbraille.scene.textures import LinearGrating, RadialGrating, UniformVibration
-from vbraille.scene.writing import write_scene
 from vbraille.simulation.specs import device_spec
 from vbraille.simulation.steering import ReadPage, Steering
 

@@ -18,18 +18,16 @@ from tests.conventional.handytech import (
 from tests.tiers import heavy
 from vbraille.conventional.brlapi import (
     BrlapiDisplay,
+    CellsTaken,
+    DisplayAway,
     DisplayGoneError,
+    DisplayStands,
+    KeyPressed,
     host_of,
     load_library,
     typed,
 )
 from vbraille.conventional.display import ConventionalDisplay
-from vbraille.conventional.messages import (
-    CellsTaken,
-    DisplayAway,
-    DisplayStands,
-    KeyPressed,
-)
 from vbraille.errors import InputError
 
 SHOWN = bytes((0x11, 0xFF, 0x00, 0x80))

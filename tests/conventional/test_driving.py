@@ -4,15 +4,15 @@ import os
 
 import pytest
 
-from vbraille.conventional.brlapi import DisplayGoneError
-from vbraille.conventional.driving import Driving
-from vbraille.conventional.messages import (
+from vbraille.conventional.brlapi import (
     CellsTaken,
     CellsWanted,
     DisplayAway,
+    DisplayGoneError,
     DisplayStands,
     KeyPressed,
 )
+from vbraille.conventional.driving import Driving
 from vbraille.workers import Incoming, Outgoing
 
 STANDS = DisplayStands("Made", "of values", 4)

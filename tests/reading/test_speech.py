@@ -7,9 +7,8 @@ from itertools import count
 import pytest
 
 from tests.reading.ssipserver import SsipServer
-from vbraille.reading.speaking import newest, speak
+from vbraille.reading.speaking import SpeechError, SpeechServer, address, newest, speak
 from vbraille.reading.speech import Speech, Spoken
-from vbraille.reading.ssip import SpeechError, SpeechServer, address
 from vbraille.workers import Incoming, Outgoing
 
 

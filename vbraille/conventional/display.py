@@ -5,12 +5,12 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Final, Self
 
-from vbraille.conventional.brlapi import host_of
-from vbraille.conventional.messages import (
+from vbraille.conventional.brlapi import (
     CellsWanted,
     DisplayAway,
     DisplayStands,
     FromDisplay,
+    host_of,
 )
 from vbraille.workers import Worker
 

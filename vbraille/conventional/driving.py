@@ -12,14 +12,19 @@ import time
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from vbraille.conventional.brlapi import BrlapiDisplay, DisplayGoneError
-from vbraille.conventional.messages import CellsTaken, CellsWanted, DisplayAway
+from vbraille.conventional.brlapi import (
+    BrlapiDisplay,
+    CellsTaken,
+    CellsWanted,
+    DisplayAway,
+    DisplayGoneError,
+)
 from vbraille.workers import begin
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.conventional.messages import FromDisplay
+    from vbraille.conventional.brlapi import FromDisplay
     from vbraille.workers import Incoming
 
 CHECK_S: Final = 0.5  # from one question whether the display is still there to the next

@@ -13,9 +13,9 @@ from urllib.parse import unquote
 import numpy as np
 
 from vbraille.errors import InputError
+from vbraille.feeling.commands import BOUND_FROM_TEXT
 from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import LoadedScene, check_fits, load_scene
-from vbraille.feeling.textcommands import BOUND
 from vbraille.render.scene.figures import FigureAt, page_with_figures
 from vbraille.translate.documents.epub import EpubBook
 from vbraille.wording import count, printable, spelled
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from vbraille.feeling.feeler import Feeler
     from vbraille.reading.cues import Cue
-    from vbraille.reading.opened import OpenDevice
+    from vbraille.reading.device import OpenDevice
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
     from vbraille.translate.source import Source
@@ -203,7 +203,7 @@ class BookFigures:
             rate_hz=self._rate_hz,
             style=device.style,
             say=say,
-            bound=BOUND,
+            bound=BOUND_FROM_TEXT,
             room=self._room,
             cue=cue,
             steering=device.steering,

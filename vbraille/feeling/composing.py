@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Final
 from vbraille.errors import InputError
 from vbraille.render import work
 from vbraille.render.program import Program
-from vbraille.render.scene.compiling import compile_scene
-from vbraille.render.scene.frequencies import highest_hz
+from vbraille.render.scene.compiling import compile_scene, highest_hz
 from vbraille.scene.patterns import Group
 from vbraille.scene.scene import Scene
 

@@ -14,9 +14,8 @@ from vbraille.render.machine import words
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import compile_scene
 from vbraille.scene.bitmap import Bitmap
-from vbraille.scene.patterns import Circle, Group, Image, Tile
+from vbraille.scene.patterns import Circle, Group, Image, StraightLine, Tile
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Stroke, Vibration
 from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
 

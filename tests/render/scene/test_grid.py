@@ -8,9 +8,8 @@ import pytest
 from tests.benchmarks.scenes import DISPLAY, nested, shapes, short_lines
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import compile_scene
-from vbraille.scene.patterns import Circle, Fill, Group, Polygon
+from vbraille.scene.patterns import Circle, Fill, Group, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Stroke
 from vbraille.scene.textures import LinearGrating, Uniform
 

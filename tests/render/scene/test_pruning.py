@@ -17,11 +17,18 @@ from vbraille.render.machine import words
 from vbraille.render.scene.assets import Assets, Written
 from vbraille.render.scene.compiling import compile_scene
 from vbraille.scene.bitmap import Bitmap
-from vbraille.scene.dots import Dots
-from vbraille.scene.labels import Label
-from vbraille.scene.patterns import Circle, Fill, Group, Image, PathShape, Polygon
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Fill,
+    Group,
+    Image,
+    Label,
+    PathShape,
+    Polygon,
+    StraightLine,
+)
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Along, DotStyle, Dotting, Stroke, VertexMarkers
 from vbraille.scene.textures import LinearGrating, Uniform
 

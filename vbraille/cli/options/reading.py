@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from vbraille.cli.options import feeling, groups
-from vbraille.cli.options.groups import MODELS, SPEC
+from vbraille.cli.options import groups, pictures
+from vbraille.cli.options.groups import MODELS, SPEC, duration, number, whole
 from vbraille.cli.options.live import add_live_options
-from vbraille.cli.options.values import duration, number, whole
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
@@ -194,7 +193,7 @@ def render(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--force", action="store_true", help="Replace the file if it is there already."
     )
-    feeling.path(parser)
+    pictures.path(parser)
     parser.set_defaults(model=None)  # which is another one for lines than for pictures
     parser.add_argument(
         "--plain", action="store_true", help="Print progress as lines, without a bar."

@@ -2,7 +2,7 @@
 
 from vbraille.reading.places.book import KeptBook
 from vbraille.reading.places.place import Bookmark, BookOptions, KeptPlace, ListedBook
-from vbraille.reading.places.shelf import KeptPlaces, ResumedBook, book_to_open, last_book, resume
+from vbraille.reading.places.shelf import KeptPlaces, book_to_open, last_book, resume
 
 __all__ = [
     "BookOptions",
@@ -11,7 +11,6 @@ __all__ = [
     "KeptPlace",
     "KeptPlaces",
     "ListedBook",
-    "ResumedBook",
     "book_to_open",
     "last_book",
     "resume",

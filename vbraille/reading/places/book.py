@@ -45,6 +45,15 @@ class KeptBook:
         Path of the file.
     title
         Title, or the file's name.
+
+    Attributes
+    ----------
+    place : KeptPlace or None
+        Place at which reading goes on; None if the book was not read yet.
+    tuning : dict or None
+        How the book's braille was tuned; None if nobody kept that.
+    options : BookOptions
+        Options with which the book was opened.
     """
 
     def __init__(self, store: Store, digest: str, path: Path, title: str) -> None:
@@ -60,9 +69,9 @@ class KeptBook:
         )
         settled, options, place, tuning = row or (1, None, None, None)
         self._settled = bool(settled)
-        self._options = decoded(options, BookOptions) or BookOptions()
-        self._place = decoded(place, KeptPlace)
-        self._tuning = decoded(tuning, dict)
+        self.options = decoded(options, BookOptions) or BookOptions()
+        self.place: KeptPlace | None = decoded(place, KeptPlace)
+        self.tuning: dict[str, Any] | None = decoded(tuning, dict)
 
     @property
     def fault(self) -> str | None:
@@ -75,21 +84,6 @@ class KeptBook:
         return not self._settled
 
     @property
-    def place(self) -> KeptPlace | None:
-        """Place at which reading goes on; None if the book was not read yet."""
-        return self._place
-
-    @property
-    def tuning(self) -> dict[str, Any] | None:
-        """How the book's braille was tuned; None if nobody kept that."""
-        return self._tuning
-
-    @property
-    def options(self) -> BookOptions:
-        """Options with which the book was opened."""
-        return self._options
-
-    @property
     def index(self) -> Index | None:
         """Where the book's blocks are, as far as it was kept."""
         row = self._store.first("SELECT packed FROM indices WHERE book = ?", self.digest)
@@ -98,9 +92,9 @@ class KeptBook:
     def keep(self, place: KeptPlace) -> None:
         """Keep the place at which reading goes on; call it at each step of the reading loop."""
         self.tend()
-        if place == self._place and "place" not in self._unwritten:
+        if place == self.place and "place" not in self._unwritten:
             return
-        self._place = place
+        self.place = place
         self._put(
             "place",
             "UPDATE books SET place = ?, read_s = ? WHERE digest = ?",
@@ -130,7 +124,7 @@ class KeptBook:
         line, lines_before, width, table, page
             As in `KeptPlace`.
         """
-        old = self._place
+        old = self.place
         if old is not None and (old.character, old.line) == (character, line):
             self.keep(old)
             return
@@ -183,13 +177,13 @@ class KeptBook:
         packed = msgspec.msgpack.encode(tuning)
         if len(packed) > _LARGEST_TUNING:
             raise ValueError(f"tuning has {len(packed)} bytes; at most {_LARGEST_TUNING} are kept")
-        self._tuning = dict(tuning)
+        self.tuning = dict(tuning)
         self._set("tuning", packed)
 
     def keep_options(self, options: BookOptions) -> None:
         """Keep the options with which the book is open."""
-        if options != self._options:
-            self._options = options
+        if options != self.options:
+            self.options = options
             with suppress(UnicodeEncodeError):  # the name of a table's file may be no text
                 self._set("options", msgspec.msgpack.encode(options))
 
@@ -219,8 +213,8 @@ class KeptBook:
         if self._settled:
             return None
         found = True
-        if self._place is not None:
-            self._place, found = anchored(source, self._place)
+        if self.place is not None:
+            self.place, found = anchored(source, self.place)
         marks = self.bookmarks()
         for mark in marks:
             old = KeptPlace(mark.character, share=mark.share, after=mark.after or mark.text)
@@ -229,7 +223,7 @@ class KeptBook:
                 msgspec.structs.replace(mark, character=place.character, share=place.share)
             )
         self._settled = True
-        packed = None if self._place is None else msgspec.msgpack.encode(self._place)
+        packed = None if self.place is None else msgspec.msgpack.encode(self.place)
         self._put(
             "settled",
             "UPDATE books SET settled = 1, place = ? WHERE digest = ?",
@@ -280,9 +274,9 @@ class KeptBook:
                 os.fsencode(self.path),
                 self.title,
                 self._store.now(),
-                msgspec.msgpack.encode(self._options),
-                None if self._place is None else msgspec.msgpack.encode(self._place),
-                None if self._tuning is None else msgspec.msgpack.encode(self._tuning),
+                msgspec.msgpack.encode(self.options),
+                None if self.place is None else msgspec.msgpack.encode(self.place),
+                None if self.tuning is None else msgspec.msgpack.encode(self.tuning),
             ),
         )
 

@@ -1,4 +1,4 @@
-"""What is kept of a book: plain values, and their bytes in the database."""
+"""A place in a book with the text around it, by which it is found again, and what else is kept."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from vbraille.reading.queries import FindShare, FindText, Found
-from vbraille.reading.seeking.answering import answer
+from vbraille.reading.search.answering import answer
+from vbraille.reading.search.queries import FindShare, FindText, Found
 from vbraille.translate.source import share_before
 
 if TYPE_CHECKING:
-    from vbraille.reading.queries import Query
+    from vbraille.reading.search.queries import Query
     from vbraille.translate.source import Source
 
 

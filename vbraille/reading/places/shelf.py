@@ -1,4 +1,4 @@
-"""All books that somebody has read, each with what is kept of it."""
+"""All books that were read, each with what is kept of it; one is opened where it was left."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import hashlib
 import os
 import sqlite3
 import time
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
@@ -189,31 +188,6 @@ def _take_in(connection: sqlite3.Connection, digest: str, path: bytes, title: st
     connection.execute("UPDATE books SET path = ? WHERE digest = ?", (path, digest))
 
 
-@dataclass(frozen=True, slots=True)
-class ResumedBook:
-    """A book that is open, and what is kept of it.
-
-    Parameters
-    ----------
-    source
-        The book.
-    kept
-        What is kept of it.
-    options
-        Options with which it was opened.
-    place
-        Place at which reading goes on; None for the beginning.
-    note
-        Sentence for the reader, such as that the text has changed; None if there is none.
-    """
-
-    source: Source
-    kept: KeptBook
-    options: BookOptions
-    place: KeptPlace | None
-    note: str | None
-
-
 def last_book(places: KeptPlaces) -> KeptBook:
     """The book that was read last.
 
@@ -265,8 +239,17 @@ def book_to_open(places: KeptPlaces, number: int) -> KeptBook:
     return places.book(book.path)
 
 
-def resume(source: Source, kept: KeptBook, options: BookOptions) -> ResumedBook:
-    """Give an open book what is kept of it: where its blocks are, and the place."""
+def resume(
+    source: Source, kept: KeptBook, options: BookOptions
+) -> tuple[KeptPlace | None, str | None]:
+    """Give an open book what is kept of it, such as where its blocks are.
+
+    Returns
+    -------
+    tuple[KeptPlace or None, str or None]
+        Place at which reading goes on, None for the beginning; and a sentence for the reader, such
+        as that the text has changed, None if there is none.
+    """
     same_text = (kept.options.encoding, kept.options.keep_lines, kept.options.form) == (
         options.encoding,
         options.keep_lines,
@@ -283,4 +266,4 @@ def resume(source: Source, kept: KeptBook, options: BookOptions) -> ResumedBook:
         place, _ = anchored(source, place)  # the same bytes, but other characters
     kept.keep_options(options)
     kept.keep_title(source.title)
-    return ResumedBook(source, kept, options, place, note)
+    return place, note

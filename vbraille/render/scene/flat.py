@@ -9,15 +9,13 @@ import numpy as np
 
 from vbraille.render.machine import words
 from vbraille.render.scene import gridkernels as g
-from vbraille.render.scene.blocks import WordBlock
-from vbraille.render.scene.nodes import LeafReach, NodeKind
-from vbraille.render.scene.reachkernels import REACH_COLUMNS
+from vbraille.render.scene.gridkernels import REACH_COLUMNS
+from vbraille.render.scene.nodes import LeafReach, NodeKind, WordBlock
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.render.scene.blocks import TableEntry
-    from vbraille.render.scene.nodes import Node
+    from vbraille.render.scene.nodes import Node, TableEntry
 
 
 _BOX = int(LeafReach.BOX)

@@ -21,7 +21,7 @@ from vbraille.sessions.running.logbook import Happened, Logbook
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.render.braille.tuning import Tuning
+    from vbraille.render.braille.profiles import Tuning
     from vbraille.sessions.planning.conduct import Tone
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.events import Event
-    from vbraille.render.braille.tuning import Tuning
+    from vbraille.render.braille.profiles import Tuning
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.planning.stimuli import Stimulus
     from vbraille.sessions.record.journal import Tie
