@@ -12,12 +12,13 @@ import pytest
 from websockets.sync.client import connect
 
 from tests.cli import program
-from tests.playback.written import WRITTEN, recorded
+from tests.playback.written import recorded
+from tests.sessions.written import written
 from tests.tiers import heavy
 from vbraille.live.messages import FRAME
 
 RECORDING = recorded()
-SESSION = WRITTEN / "0.1.0-2026-11-22/sessions/letters-stopped"
+SESSION = written("stopped")
 
 
 def refused(said, code=2):

@@ -15,13 +15,12 @@ from tests.cli.test_session_bad_input import contents
 from tests.sessions.sittings import MINI
 from vbraille.sessions.record import events
 from vbraille.sessions.record.check import check_folder
-from vbraille.sessions.record.journal import decode, first_lines
-from vbraille.sessions.record.salvage import salvage
+from vbraille.sessions.record.journal import decode, first_lines, salvage
 from vbraille.wording import spelled
 
 LONG = MINI.replace("length = 1", "length = 2\nrepeats = 2")  # 32 trials
 WHOLE = first_lines(
-    events.Session(format=2, sha256={}, t_s=0.0),
+    events.Session(format=6, sha256={}, t_s=0.0),
     *(events.Note(text="x" * n, t_s=1.0 + n) for n in range(12)),
 )
 

@@ -9,13 +9,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tests.playback.written import WRITTEN, asked, recorded
+from tests.playback.written import asked, recorded
+from tests.sessions.written import written
 from tests.tiers import by_tier
 from vbraille.errors import InputError, VbrailleError
 from vbraille.live.messages import Map, Next, Turn
 from vbraille.playback import open_recording
 
-STOPPED = WRITTEN / "0.1.0-2026-11-22/sessions/letters-stopped"
+STOPPED = written("stopped")
 _fuzzed = settings(
     max_examples=by_tier(25, 150, 5000),
     suppress_health_check=[HealthCheck.function_scoped_fixture],

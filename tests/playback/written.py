@@ -1,4 +1,4 @@
-"""Recordings of lines and pages, sessions that were written, and what is played of them."""
+"""Recordings of lines and pages, and what is played of them."""
 
 from dataclasses import replace
 from functools import cache
@@ -6,24 +6,11 @@ from pathlib import Path
 from tempfile import mkdtemp
 
 import numpy as np
-import pytest
 
-from tests.tiers import heavy
 from vbraille.live.messages import FRAME, Next
 from vbraille.newfile import new_file
 from vbraille.recording import Recorder
 from vbraille.render import MAPPINGS, STRESS2, VBD, single_row
-
-WRITTEN = Path(__file__).parent.parent / "written-by"
-SESSIONS = sorted(path for path in WRITTEN.glob("*/sessions/*") if any(path.glob("trace-*.gz")))
-ON_PAPER = sorted(path for path in WRITTEN.glob("*/sessions/*") if not any(path.glob("trace-*")))
-# One of each kind that differs in what has to be done; the others are as these.
-_ALWAYS = (
-    "0.1.0-2026-11-21/sessions/words-host-died",
-    "0.1.0-2026-11-22-format-3/sessions/words-host-died",
-    "0.1.0-2026-11-22/sessions/letters-stopped",
-)
-
 
 LINES = [np.array(cells, np.uint8) for cells in ([1, 3, 9], [63], [5, 8, 1, 2], [0, 7])]
 MODELS = {
@@ -66,15 +53,6 @@ def recorded(name="stress2-alternate"):
     model = replace(model, style=replace(model.style, mapping=mapping))
     path = Path(mkdtemp(prefix="vbraille-recording-")) / f"{name}.h5"
     return record(path, LINES, np.linspace(-12, 60, 700), model=model)
-
-
-def each(paths):
-    """Paths as parameters of tests; some of them for the heavier tiers alone."""
-    names = [str(path.relative_to(WRITTEN)) for path in paths]
-    return [
-        pytest.param(path, id=name, marks=() if name in _ALWAYS else heavy)
-        for path, name in zip(paths, names, strict=True)
-    ]
 
 
 def asked(viewer, at_s, since_s=None, **more):

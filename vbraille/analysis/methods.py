@@ -14,7 +14,7 @@ from vbraille.analysis.input.trials import natural
 from vbraille.braille.spelling import to_braille
 from vbraille.render.braille.models import MODELS
 from vbraille.sessions.planning.factors import within
-from vbraille.sessions.planning.knobs import GAP, KNOBS
+from vbraille.sessions.planning.stimuli import GAP, KNOBS
 from vbraille.version import __version__
 from vbraille.wording import count
 

@@ -14,7 +14,7 @@ from vbraille.settings.loading import load_settings
 if TYPE_CHECKING:
     import argparse
 
-    from vbraille.settings.chosen import Settings
+    from vbraille.settings.values import Settings
 
 TRANSLATION = ("language", "grade", "table")
 
@@ -55,7 +55,7 @@ def settle(arguments: argparse.Namespace, names: tuple[str, ...] = SETTLED) -> S
 
 def chosen_profile(arguments: argparse.Namespace, settings: Settings) -> str:
     """Name of the profile in use; one that an option names and is not there is said on stderr."""
-    from vbraille.settings.applying import missing_profile
+    from vbraille.settings.values import missing_profile
 
     if arguments.profile is None:
         return settings.profile

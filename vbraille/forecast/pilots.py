@@ -177,13 +177,12 @@ def _begin(folder: Path, about: dict[str, Any], first: PilotTask) -> None:
 def _kept(folder: Path, tasks: list[PilotTask]) -> KeptResults:
     """Sessions of the pilot that have ended, by the numbers of their tasks."""
     from vbraille.sessions.record.folder import load
-    from vbraille.sessions.record.progress import Progress
 
     kept = KeptResults(None, {})
     for number, task in enumerate(tasks):
         if (folder / task.participant).exists():
             record = load(Path(task.folder))
-            if Progress(record.plan, record.told.events, record.procedure).ended:
+            if record.progress().ended:
                 kept.found[number] = len(record.plan.trials)
     return kept
 

@@ -1,4 +1,4 @@
-"""A session's directory: the files written before the first trial, and those that grow.
+"""A session's directory: files written before the first trial, those that grow, and whose it is.
 
 `docs/session-format.md` describes the files.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import gzip
 import json
 import platform
+import re
 import sys
 import zlib
 from dataclasses import dataclass, replace
@@ -19,12 +20,13 @@ import numpy as np
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_folder
-from vbraille.sessions.planning.choosing import procedure_of
+from vbraille.sessions.planning.choosing import Procedure, procedure_of
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Closed, Session
-from vbraille.sessions.record.salvage import salvage
+from vbraille.sessions.record.journal import JournalContents, Tie, salvage
+from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.traces import TRACE, Trace, read_last_tie, read_trace
 from vbraille.version import __version__
 
@@ -32,14 +34,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from vbraille.sessions.planning.procedure import Procedure
     from vbraille.sessions.planning.protocol import Protocol
-    from vbraille.sessions.record.journal import JournalContents, Tie
+
 
 FORMAT = 6
-_CENTRED_FROM = 3  # the first format whose traces have places of the array's centre
-SHOWN_FROM = 4  # the first format whose journal has what was shown
-WATCHED_FROM = 5  # the first format whose journal has who may have watched
 HEAD, PLAN, PROTOCOL = "session.json", "plan.json", "protocol.toml"
 FILES = (HEAD, PLAN, PROTOCOL)
 _TOLD_VERSIONS = ("numpy", "numba", "pyserial", "cobs", "h5py")
@@ -70,10 +68,9 @@ class Record:
     told: JournalContents
     procedure: Procedure
 
-    @property
-    def centred(self) -> bool:
-        """Whether traces have places of the array's centre, and not of its left column."""
-        return self.told.format >= _CENTRED_FROM
+    def progress(self) -> Progress:
+        """How far the session had come by then."""
+        return Progress(self.plan, self.told.events, self.procedure)
 
 
 def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -> None:
@@ -111,7 +108,7 @@ def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:
     Raises
     ------
     InputError
-        If the directory holds no session, or one of a newer format.
+        If the directory holds no session, or one of another format.
     VbrailleError
         If the journal cannot be read, or its first line is damaged.
     """
@@ -125,17 +122,15 @@ def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:
         raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
     first = told.events[0]
     if 1 in told.bad and not (
-        isinstance(first, Session)
-        and first.sha256.keys() >= set(FILES)
-        and first.format in range(1, FORMAT + 1)
+        isinstance(first, Session) and first.sha256.keys() >= set(FILES) and first.format == FORMAT
     ):
         raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
     if not isinstance(first, Session):
         raise InputError(f"{path} is not the journal of a session")
-    if first.format > FORMAT:
+    if first.format != FORMAT:
         raise InputError(
             f"{folder} is a session of format {first.format}, and this vbraille knows format "
-            f"{FORMAT}; use the vbraille that made it, or a newer one"
+            f"{FORMAT}; use the vbraille that made it"
         )
     return told
 
@@ -182,7 +177,7 @@ def load(folder: Path, *, salvaged: bool = False) -> Record:
     Raises
     ------
     InputError
-        If the directory holds no session, or one of a newer format.
+        If the directory holds no session, or one of another format.
     VbrailleError
         If the journal cannot be used, or another file is missing or was changed.
     """
@@ -250,7 +245,7 @@ def check_end(folder: Path, told: JournalContents) -> None:
     VbrailleError
         If some are missing: nothing may be added to the journal then.
     """
-    for path in sorted(folder.glob("trace-*.gz")) if told.format > 1 else ():
+    for path in sorted(folder.glob("trace-*.gz")):
         tie = read_last_tie(path)
         fault = None if tie is None else missed_tie([tie], told)
         if fault is not None:
@@ -298,3 +293,48 @@ def _clear(partial: Path, names: Iterable[str]) -> None:
     for name in names:
         (partial / name).unlink(missing_ok=True)
     partial.rmdir()
+
+
+def label_of(pseudonym: str) -> str:
+    """Label that BIDS takes for a pseudonym or other name: its letters and digits alone."""
+    return re.sub(r"[^A-Za-z0-9]", "", pseudonym)
+
+
+def alike(one: str, other: str) -> bool:
+    """Whether two pseudonyms differ only in case, leading zeros, or signs that labels lack."""
+    return _plain(one) == _plain(other) or label_of(one).lower() == label_of(other).lower()
+
+
+def participants_in(room: Path) -> dict[str, str]:
+    """Participants whose sessions are in a directory, each with the name of one session."""
+    found: dict[str, str] = {}
+    try:
+        heads = sorted(room.glob(f"*/{HEAD}"))
+    except OSError:
+        return {}
+    for head in heads:
+        try:
+            told = json.loads(head.read_text("utf-8"))
+            found.setdefault(str(told["participant"]), head.parent.name)
+        except (OSError, ValueError, KeyError, TypeError):
+            continue  # this is no readable session; whoever uses it will be told
+    return found
+
+
+def nearly_same(room: Path, participant: str) -> tuple[str, str] | None:
+    """Another participant in a directory whose pseudonym is similar to a new one.
+
+    Returns
+    -------
+    tuple[str, str] or None
+        Pseudonym of the other participant, and the name of one of their sessions. None if there
+        is no such participant, or the new pseudonym is already in the directory itself.
+    """
+    known = participants_in(room)
+    if participant in known:
+        return None
+    return next(((other, known[other]) for other in known if alike(other, participant)), None)
+
+
+def _plain(pseudonym: str) -> str:
+    return label_of(re.sub(r"(?<![0-9])0+(?=[0-9])", "", pseudonym)).lower()

@@ -1,0 +1,108 @@
+"""Text as it is compared in a search: without case, with one kind of quotes, dashes and blanks."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.translate.levels import TYPED
+from vbraille.translate.text import to_codes, to_text
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+# Accents that stand for themselves after a letter, in all scripts whose readers may leave them out.
+_ACCENTS = (
+    "\u0300-\u036f\u0591-\u05bd\u05bf\u05c1\u05c2\u05c4\u05c5\u05c7\u064b-\u0655\u0670"
+    "\u1ab0-\u1aff\u1dc0-\u1dff\u20d0-\u20ff\u3099\u309a"
+)
+_ACCENT = re.compile(f"[{_ACCENTS}]+")
+_QUOTES = "'\"`´‘’‚‛“”„‟′″‹›«»ʼ＇＂"
+_DASHES = "-‐‑‒–—―−⁃﹘﹣－"
+_SIGNS = {ord(c): sign for sign, same in (("'", _QUOTES), ("-", _DASHES)) for c in same}
+_BLANKS = re.compile(r"\s+")
+_SMALL = re.compile(f"[{''.join(map(chr, TYPED))}]")
+_TABLED = 0x3100  # all letters with accents, and none of the many signs of East Asia
+_NOTHING, _SEVERAL = 0xFFFF_FFFF, 0xFFFF_FFFE
+# What is folded before an ASCII letter that follows another has nothing to do with what is after.
+_WITHIN_WORD = re.compile("[A-Za-z](?=[A-Za-z])")
+_PIECE = 4_096  # characters that are folded together on the way to a place
+_NOT_READ = re.compile("[\u00ad\ufeff]+")
+
+
+def fold(text: str, *, accents: bool) -> str:
+    """Text without what makes no difference in a search; a longer text's is never shorter.
+
+    Parameters
+    ----------
+    text
+        Text as it is read.
+    accents
+        Whether accents make no difference, either.
+    """
+    if text.isascii():
+        folded = text.lower().replace('"', "'").replace("`", "'")
+    else:
+        if not unicodedata.is_normalized("NFC", text):
+            text = unicodedata.normalize("NFC", text)
+        folded = _without_accents(text) if accents else _caseless(text).translate(_SIGNS)
+    return _BLANKS.sub(" ", folded)
+
+
+def _caseless(text: str) -> str:
+    """Text without differences of case, and with the numbers of H₂O and 10⁶ as they are typed."""
+    folded = text.casefold()
+    return folded.translate(TYPED) if _SMALL.search(folded) else folded
+
+
+def _without_accents(text: str) -> str:
+    """Text with small letters without accents, by a table as long as each remains one letter."""
+    codes = to_codes(text)
+    if int(codes.max()) < _TABLED:
+        letters = _letters()[codes]
+        if not (letters == _SEVERAL).any():
+            return to_text(letters[letters != _NOTHING])
+    return _stripped(text)
+
+
+def _stripped(text: str) -> str:
+    left = _ACCENT.sub("", unicodedata.normalize("NFD", _caseless(text)))
+    return unicodedata.normalize("NFC", left).translate(_SIGNS)
+
+
+@cache
+def _letters() -> NDArray[np.uint32]:
+    """For each code point that has a place in the table: what remains of it."""
+    table = np.empty(_TABLED, np.uint32)
+    for code in range(_TABLED):
+        left = _stripped(chr(code))
+        table[code] = _NOTHING if not left else _SEVERAL if len(left) > 1 else ord(left)
+    return table
+
+
+def needle_of(text: str, *, accents: bool) -> str:
+    """What is looked for, folded; empty if nothing is left of it."""
+    return fold(_NOT_READ.sub("", text).strip(), accents=accents).strip()
+
+
+def unfolded(text: str, at: int, *, accents: bool) -> int:
+    """Index of the character of a text of which `fold` made the one at an index."""
+    start, end = 0, len(text)
+    while (cut := _WITHIN_WORD.search(text, start + _PIECE)) is not None:
+        folded = len(fold(text[start : cut.end()], accents=accents))
+        if folded > at:
+            end = cut.end()
+            break
+        start, at = cut.end(), at - folded
+    low, high = start, end - 1
+    while low < high:
+        middle = (low + high) // 2
+        if len(fold(text[start : middle + 1], accents=accents)) > at:
+            high = middle
+        else:
+            low = middle + 1
+    return low
