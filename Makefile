@@ -95,7 +95,7 @@ speech:
 	@touch $@
 
 .venv/runs: .venv/pip pyproject.toml
-	$(BIN)/pip install -q --disable-pip-version-check -e '.[office]'
+	$(BIN)/pip install -q --disable-pip-version-check -e .
 	@touch $@
 
 # All at once on a fresh machine: that is half a minute less than one after the other.

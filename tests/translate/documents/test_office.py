@@ -2,16 +2,12 @@
 
 import hashlib
 import io
-import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from tests.cli.books import ODT, WORD, docx, odt
 from vbraille.errors import InputError
-from vbraille.translate.documents.office.annotations import ANNOTATED, annotation
 from vbraille.translate.documents.office.htmltree import tag_of
 from vbraille.translate.documents.office.officebook import open_office
 from vbraille.translate.source import BlockKind, MarkKind
@@ -160,14 +156,6 @@ def test_the_digest_is_of_the_file():
     assert source.sha256() == hashlib.sha256(content).hexdigest()
 
 
-def test_annotations_of_annotations_and_of_what_would_be_markup():
-    text = annotation(['lang=fr"><b>', "sup"], annotation(["sub"], "x"))
-    found = ANNOTATED.fullmatch(text)
-    assert found is not None
-    assert found[1] == "lang=frb|sup"
-    assert found[2].endswith("x")
-
-
 @pytest.mark.parametrize(
     ("given", "tag"),
     [
@@ -181,26 +169,6 @@ def test_annotations_of_annotations_and_of_what_would_be_markup():
 )
 def test_tags_as_word_processors_have_them(given, tag):
     assert tag_of(*given) == tag
-
-
-def test_the_sentence_where_the_reader_is_not_installed():
-    """The everyday installation does not have it."""
-    code = (
-        "import sys\n"
-        "sys.modules['anydoc'] = None\n"
-        "from vbraille.cli.main import main\n"
-        f"sys.exit(main(['page', {str(FILES / 'pandoc.rtf')!r}]))\n"
-    )
-    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert said.returncode == 2
-    assert said.stdout == ""
-    begun = "is in RTF, and what reads that is not installed; "
-    command = said.stderr.partition(begun)[2].removesuffix(" installs it\n")
-    pip, *arguments = shlex.split(command)
-    assert arguments == ["install", "firecrawl-anydoc"]
-    # Debian's own pip refuses to install anything: it must be that of the project's environment.
-    whose = subprocess.run([pip, "--version"], capture_output=True, text=True, check=True)
-    assert sys.prefix in whose.stdout
 
 
 @pytest.mark.parametrize("form", ["docx", "odt", "rtf"])
@@ -422,3 +390,75 @@ def test_what_is_nested_very_deep_is_read_or_refused(form):
                 opened(content, form)
         else:
             assert "".join(str(block.text) for block in opened(content, form)[1]) == "x"
+
+
+def rtf_blocks(text):
+    return opened(b"{\\rtf1\\ansi" + text.encode("cp1252") + b"}", "rtf")[1]
+
+
+def rtf_texts(text):
+    return [str(block.text) for block in rtf_blocks(text)]
+
+
+def test_text_in_shapes_of_rtf_is_read_and_deleted_text_is_not():
+    shape = r"{\shp{\*\shpinst{\sp{\sn fFlipH}{\sv 0}}{\shptxt{\pard in a box\par}}}{\shprslt{no}}}"
+    assert rtf_texts(r"\pard one " + shape + r" two\par") == ["one", "in a box", "two"]
+    assert rtf_texts(r"\pard one {\deleted no}{\revised two}{\v no}\par") == ["one two"]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (r"co\_op a\~b c\-d {\b e}\tab f", "co\u2011op a\xa0b cd e f"),
+        (r"\u233?\'e9\uc0\u233 \uc2\u233\'ff\'ff!", "éééé!"),
+        (r"\u-10179?\u-8704? \ldblquote x\rdblquote", "\U0001f600 “x”"),
+        (r"a\'", "a"),
+        (r"\bin3 }}}a", "a"),
+        ("a}}}b", "ab"),
+    ],
+)
+def test_characters_of_rtf(text, expected):
+    assert rtf_texts(r"\pard " + text + r"\par")[:1] == [expected]
+
+
+def test_alphabets_and_signs_of_rtf():
+    fonts = r"{\fonttbl{\f0 Arial;}{\f1\fcharset204 Arial Cyr;}{\f2\fcharset2 Symbol;}}"
+    text = r"\pard {\f1\'ec\'e8\'f0} {\f0\'e9} {\f2\'61}\par"
+    assert rtf_texts(fonts + text) == ["мир é α"]
+
+
+def test_structure_of_rtf():
+    text = (
+        r"{\stylesheet{\s0 Normal;}{\s1\sbasedon0\outlinelevel0 heading 1;}{\s2\sbasedon0 Quote;}}"
+        r"{\pard\s1\b One\par}{\pard\s2 quoted\par}"
+        r"\pard{\listtext 1.\tab}\ls1\ilvl0 first\par\pard\ls1\ilvl0 more\par"
+        r"\pard{\listtext\'b7\tab}\ls1\ilvl1 inner\par\pard{\listtext 2.\tab}\ls1\ilvl0 second\par"
+        r"\pard{\field{\*\fldinst{HYPERLINK \"https://a.b\"}}{\fldrslt{\ul there}}} on"
+        r"{\super\chftn}{\*\footnote\pard{\super\chftn} a note\par}\par"
+        r"\trowd\trhdr\cellx1\cellx2\cellx3\pard\intbl A\cell B\cell C\cell\row"
+        r"\trowd\clvmgf\cellx1\cellx2\cellx3\pard\intbl 1\cell\cell 2\cell\row"
+        r"\trowd\clvmrg\cellx1\cellx2\cellx3\pard\intbl\cell 3\cell\cell\row"
+        r"\trowd\cellx1\cellx3\pard\intbl 4\cell 5\cell\row\pard after{\pict\pngblip 89504e}\par"
+    )
+    found = rtf_blocks(text)
+    assert [(b.kind.value, b.level, str(b.text), b.headers) for b in found] == [
+        ("heading", 1, "One", ()),
+        ("quote", 1, "quoted", ()),
+        ("item", 1, "1. first", ()),
+        ("paragraph", 0, "more", ()),
+        ("item", 2, "• inner", ()),
+        ("item", 1, "2. second", ()),
+        ("paragraph", 0, "there on[1]", ()),
+        ("row", 0, "A  B  C", ()),
+        ("row", 0, "1  2", ("A", "C")),
+        ("row", 0, "3", ("B",)),
+        ("row", 0, "4  5", ("A", "B")),
+        ("paragraph", 0, "after [picture]", ()),
+        ("note", 0, "1. a note", ()),
+    ]
+    assert marks(found[6])[0] == (MarkKind.LINK, "there", "https://a.b")
+
+
+def test_groups_of_rtf_by_the_million_are_refused():
+    with pytest.raises(InputError, match="thousands of groups"):
+        opened(b"{\\rtf1" + b"{" * 1_000_000 + b"one", "rtf")

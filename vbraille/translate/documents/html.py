@@ -151,22 +151,27 @@ def local_target(address: str) -> str:
     return f"#{unquote(address[1:])}" if address.startswith("#") else address
 
 
-def read_whole(stream: BinaryIO, name: str) -> bytes:
+def read_whole(stream: BinaryIO, name: str, most: int = MOST_BYTES) -> bytes:
     """All bytes of a file, which is closed.
 
     Raises
     ------
     InputError
-        If it cannot be read, or is empty or too large for markup.
+        If it cannot be read, or is empty or larger than so many bytes.
     """
     try:
         with stream:
             stream.seek(0)
-            content = stream.read(MOST_BYTES + 1)
+            content = stream.read(most + 1)
     except OSError as error:
         raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
     if not content:
         raise InputError(f"{name} is empty; give a file with text in it")
+    if len(content) > most:
+        raise InputError(
+            f"{name} is larger than {most // 1_000_000} MB, which no text is; split it, save it "
+            f"without its pictures, or save it as plain text"
+        )
     return content
 
 

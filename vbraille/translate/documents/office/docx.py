@@ -13,10 +13,14 @@ from lxml import etree
 from vbraille.translate.documents.markup.lists import numeral
 from vbraille.translate.documents.office.formulas import tex_of
 from vbraille.translate.documents.office.htmltree import (
+    CODES,
     DEEPEST,
+    HEADING,
+    QUOTES,
     Notes,
     Pictures,
     chain,
+    field_target,
     most_frequent,
     primary,
     put,
@@ -25,6 +29,7 @@ from vbraille.translate.documents.office.htmltree import (
     put_text,
     put_unshown,
     remove,
+    symbol,
     tag_of,
     told,
     unwrap,
@@ -38,9 +43,6 @@ if TYPE_CHECKING:
     from vbraille.translate.documents.markup.archive import Archive
 
 _RELATION = "{http://schemas.openxmlformats.org/package/2006/relationships}Relationship"
-_HEADING = re.compile(r"heading ([1-9])$", re.I)
-_QUOTES = frozenset(("quote", "intense quote", "block text", "block quote", "quotations"))
-_CODES = frozenset(("source code", "html preformatted", "preformatted text", "plain text", "code"))
 _NUMBERING = {
     "decimal": "1",
     "decimalZero": "1",
@@ -60,14 +62,6 @@ _SKIPPED_NAMES = (
     "footnoteRef endnoteRef annotationRef"
 )
 _SKIPPED = frozenset(_SKIPPED_NAMES.split())
-# Characters of the font Symbol, from 0x41 to 0x7A, and some signs of it and of Wingdings.
-_GREEK = "ΑΒΧΔΕΦΓΗΙϑΚΛΜΝΟΠΘΡΣΤΥςΩΞΨΖ[∴]⊥_‾αβχδεφγηιϕκλμνοπθρστυϖωξψζ"
-_SYMBOL = {0xA3: "≤", 0xA5: "∞", 0xAC: "←", 0xAD: "↑", 0xAE: "→", 0xAF: "↓", 0xB0: "°", 0xB1: "±"}
-_SYMBOL |= {0xB2: "″", 0xB3: "≥", 0xB4: "×", 0xB7: "•", 0xB8: "÷", 0xB9: "≠", 0xBA: "≡", 0xBB: "≈"}
-_SYMBOL |= {0xC7: "∩", 0xC8: "∪", 0xCC: "⊂", 0xCE: "∈", 0xD6: "√", 0xE5: "∑", 0xF2: "∫"}
-_WINGDINGS = {0x6F: "☐", 0x71: "☐", 0xA8: "☐", 0xFE: "☑", 0xFD: "☒", 0xFC: "✓", 0xFB: "✗"}
-_WINGDINGS |= {0x4A: "☺", 0x4C: "☹", 0x9F: "•", 0xA7: "▪", 0xDF: "←", 0xE0: "→", 0xE8: "→"}
-_FONTS = {"symbol": _SYMBOL, "wingdings": _WINGDINGS}
 
 
 @dataclass(frozen=True, slots=True)
@@ -280,7 +274,7 @@ class _Reader:
         level = self._heading_level(chained, title)
         number, at = self._listed(chained)
         listing = self._levels.get(number, {}).get(at)
-        is_quote = not _QUOTES.isdisjoint(kinds)
+        is_quote = not QUOTES.isdisjoint(kinds)
         label = ""
         if level:
             self._lists = []
@@ -296,7 +290,7 @@ class _Reader:
                 last = into[-1] if len(into) else None
                 is_same = last is not None and last.tag == "blockquote"
                 inner = last if last is not None and is_same else put(into, "blockquote")
-            block = put(inner, "p" if _CODES.isdisjoint(kinds) else "pre")
+            block = put(inner, "p" if CODES.isdisjoint(kinds) else "pre")
         self._around = chained[1:]
         for mark in marks:
             self._bookmark(mark, block)
@@ -319,7 +313,7 @@ class _Reader:
         if title in ("title", "titel", "titre"):
             return 1
         for properties in chained:
-            found = _HEADING.search(self._value(properties, "name") or "")
+            found = HEADING.search(self._value(properties, "name") or "")
             outline = self._value(properties, "pPr/outlineLvl")
             if found is not None:
                 return int(found[1])
@@ -509,15 +503,8 @@ class _Reader:
 
     def _link_of_field(self, into: Element) -> Element:
         """Put the link that a field makes of its text; the same element if it makes none."""
-        words = self._fields[-1].split()
-        if not words or words[0].upper() != "HYPERLINK":
-            return into
-        told = [word.strip('"') for word in words[1:] if not word.startswith("\\") or word == "\\l"]
-        if "\\l" in told:
-            place = told.index("\\l")
-            base = "".join(told[:place])
-            return put(into, "a", href=f"{base}#{''.join(told[place + 1 : place + 2])}")
-        return put(into, "a", href=told[0]) if told else into
+        target = field_target(self._fields[-1])
+        return put(into, "a", href=target) if target else into
 
     def _run(
         self,
@@ -644,19 +631,6 @@ class _Reader:
             put_unshown(into, "diagram")
         else:
             put_unshown(into, "picture" if has_picture else "drawing")
-
-
-def symbol(code: int, font: str) -> str:
-    """Character of a code of a font of signs; empty if it is not known here."""
-    plain = code & 0xFF if 0xF000 <= code < 0xF100 else code
-    name = font.lower().split(" ")[0]
-    if name == "symbol" and 0x41 <= plain < 0x41 + len(_GREEK):
-        return _GREEK[plain - 0x41]
-    if name in _FONTS and plain in _FONTS[name]:
-        return _FONTS[name][plain]
-    if name == "symbol" and 0x20 < plain < 0x41:
-        return chr(plain)
-    return chr(code) if 0x20 < code < 0xD800 and name not in _FONTS else ""
 
 
 def _name(element: Element) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from lxml import etree
@@ -14,6 +15,17 @@ if TYPE_CHECKING:
 
 _NO_LANGUAGE = frozenset(("", "none", "zxx", "und", "x-none", "mul"))
 _LONGEST_CHAIN = 20  # styles that are based on each other
+HEADING = re.compile(r"heading ([1-9])$", re.I)
+QUOTES = frozenset(("quote", "intense quote", "block text", "block quote", "quotations"))
+CODES = frozenset(("source code", "html preformatted", "preformatted text", "plain text", "code"))
+# Characters of the font Symbol, from 0x41 to 0x7A, and some signs of it and of Wingdings.
+_GREEK = "ΑΒΧΔΕΦΓΗΙϑΚΛΜΝΟΠΘΡΣΤΥςΩΞΨΖ[∴]⊥_‾αβχδεφγηιϕκλμνοπθρστυϖωξψζ"
+_SYMBOL = {0xA3: "≤", 0xA5: "∞", 0xAC: "←", 0xAD: "↑", 0xAE: "→", 0xAF: "↓", 0xB0: "°", 0xB1: "±"}
+_SYMBOL |= {0xB2: "″", 0xB3: "≥", 0xB4: "×", 0xB7: "•", 0xB8: "÷", 0xB9: "≠", 0xBA: "≡", 0xBB: "≈"}
+_SYMBOL |= {0xC7: "∩", 0xC8: "∪", 0xCC: "⊂", 0xCE: "∈", 0xD6: "√", 0xE5: "∑", 0xF2: "∫"}
+_WINGDINGS = {0x6F: "☐", 0x71: "☐", 0xA8: "☐", 0xFE: "☑", 0xFD: "☒", 0xFC: "✓", 0xFB: "✗"}
+_WINGDINGS |= {0x4A: "☺", 0x4C: "☹", 0x9F: "•", 0xA7: "▪", 0xDF: "←", 0xE0: "→", 0xE8: "→"}
+_FONTS = {"symbol": _SYMBOL, "wingdings": _WINGDINGS}
 DEEPEST = 60  # lists, quotations and tables in each other
 
 
@@ -158,3 +170,28 @@ def told(about: Element | None, name: str) -> str:
     """Value of the first of Dublin Core's elements with a name."""
     found = None if about is None else about.find(f".//{{http://purl.org/dc/elements/1.1/}}{name}")
     return "" if found is None else " ".join("".join(map(str, found.itertext())).split())
+
+
+def field_target(instruction: str) -> str:
+    """Address of the link that a field makes of its text; empty if it makes none."""
+    words = instruction.split()
+    if not words or words[0].upper() != "HYPERLINK":
+        return ""
+    told = [word.strip('"') for word in words[1:] if not word.startswith("\\") or word == "\\l"]
+    if "\\l" in told:
+        place = told.index("\\l")
+        return f"{''.join(told[:place])}#{''.join(told[place + 1 : place + 2])}"
+    return told[0] if told else ""
+
+
+def symbol(code: int, font: str) -> str:
+    """Character of a code of a font of signs; empty if it is not known here."""
+    plain = code & 0xFF if 0xF000 <= code < 0xF100 else code
+    name = font.lower().split(" ")[0]
+    if name == "symbol" and 0x41 <= plain < 0x41 + len(_GREEK):
+        return _GREEK[plain - 0x41]
+    if name in _FONTS and plain in _FONTS[name]:
+        return _FONTS[name][plain]
+    if name == "symbol" and 0x20 < plain < 0x41:
+        return chr(plain)
+    return chr(code) if 0x20 < code < 0xD800 and name not in _FONTS else ""
