@@ -7,7 +7,6 @@ from vbraille.analysis.input.trials import Places
 from vbraille.analysis.measures import (
     characters,
     confusion,
-    doterrors,
     legibility,
     movement,
     overtime,
@@ -79,7 +78,7 @@ def all_tables(trials, places):
         characters.dots(places),
         *(confusion.to_table(*of, places) for of in matrices if of[1] is not None),
         confusion.transmitted(trials, places, seed=1),
-        doterrors.errors(places),
+        confusion.errors(places),
         overtime.over_time(trials),
         overtime.slopes(trials),
         seen,

@@ -19,7 +19,7 @@ from tests.analysis.published import (
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.input.trials import Places, chosen, name_cell
-from vbraille.analysis.measures import characters, confusion, doterrors
+from vbraille.analysis.measures import characters, confusion
 from vbraille.analysis.measures.legibility import averages, legibility
 from vbraille.analysis.schemas import Kind, round_half_up, to_print
 from vbraille.sessions.planning.making import make_plan
@@ -273,7 +273,7 @@ def test_3_4_wrong_characters_of_wrong_strings(told):
 )
 def test_3_4_errors_by_kind(told):
     glyphs, added, removed, two = told
-    table = doterrors.errors(of_table_3_4(glyphs)[1])
+    table = confusion.errors(of_table_3_4(glyphs)[1])
     assert {row["error"]: row["count"] for row in table.records()} == {
         "1 dot added": added,
         "1 dot moved": 42,
@@ -360,7 +360,7 @@ def test_3_5_frequent_errors_can_be_a_dot_added_or_moved(told):
         for pair in pairs:
             shown, answer = ("".join(glyph[place] for place in label) for label in pair)
             row = {"participant": "all", "condition": "all", "presented": shown, "answered": answer}
-            kinds.add(tuple(doterrors.errors(trials_of([row])[1]).frame["error"].tolist()))
+            kinds.add(tuple(confusion.errors(trials_of([row])[1]).frame["error"].tolist()))
         assert kinds & {("1 dot added",), ("1 dot moved",)}
 
 

@@ -15,7 +15,6 @@ from vbraille.analysis.statistics.marginalmeans import (
     compare,
     compare_all,
     difference,
-    odds_ratio,
     separate_cells,
     tells_difference,
 )
@@ -105,10 +104,9 @@ def intervals(people: int, share: float, sd: float, kind: str, what: str, studie
     else:
         fit = fit_trials(made.correct, made.trials, separate_cells(people, 2))
         if what == "odds ratio":
-            found, truth = odds_ratio(fit, [0, 1], [1, 0]), logit(second) - logit(first)
+            (low, high), truth = combine(fit, [-1, 1]).ends(), logit(second) - logit(first)
         else:
-            found, truth = difference(fit, [0, 1], [1, 0]), second - first
-        low, high = found.low, found.high
+            (low, high), truth = difference(fit, [0, 1], [1, 0]), second - first
         if what == "difference of shares":
             low = np.where(tells_difference(made.correct, made.trials), low, np.nan)
     given = np.isfinite(low)
@@ -123,7 +121,7 @@ def mean_shares(correct: np.ndarray, trials: np.ndarray) -> tuple[np.ndarray, np
         likely = np.zeros((MEANS, SPREADS), np.float32)
         for k, n in zip(right[asked > 0].tolist(), asked[asked > 0].tolist(), strict=True):
             likely = likely + _log_likelihood(float(k), float(n))
-        ends.append(quantiles(likely[None], float(asked[asked > 0].mean()), LEVEL))
+        ends.append(quantiles(likely[None], float(asked[asked > 0].mean())))
     low, high = zip(*ends, strict=True)
     return np.concatenate(low), np.concatenate(high)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import expit
 
-from vbraille.analysis.statistics.correction import adjust
+from vbraille.analysis.statistics.intervals import adjust
 from vbraille.forecast.studies import (
     StudyPlan,
     StudyTask,

@@ -12,23 +12,18 @@ from vbraille.analysis.input.trials import Places, written
 from vbraille.analysis.measures import (
     characters,
     confusion,
-    covariates,
-    doterrors,
+    discrimination,
     legibility,
     levels,
-    liked,
     movement,
     overtime,
     preferences,
     rated,
-    remarks,
-    sensitivity,
-    thresholds,
     trialsmodel,
 )
 from vbraille.analysis.methods import methods
 from vbraille.analysis.results import Chapter, Results
-from vbraille.analysis.statistics.correction import METHODS
+from vbraille.analysis.statistics.intervals import METHODS
 from vbraille.sessions.planning.questions import RatingQuestion
 
 if TYPE_CHECKING:
@@ -109,7 +104,7 @@ def analyse_study(study: Study, options: Options) -> Results:
     if study.judgements is not None:
         chapters += _of_judgements(study, study.judgements)
     if any(sitting.notes for sitting in study.sittings):
-        table = remarks.notes(study.sittings)
+        table = rated.notes(study.sittings)
         chapters.append(Chapter("Notes", "What the experimenter wrote down.", (table,)))
     told = methods(study)
     done = [("Methods", told)] if told else []
@@ -218,7 +213,7 @@ def _confusions(trials: pd.DataFrame, places: Places, options: Options) -> Chapt
 
 
 def _errors(places: Places) -> Chapter:
-    table, own = doterrors.errors(places), doterrors.of_participants(places)
+    table, own = confusion.errors(places), confusion.errors_of_participants(places)
     figures = (bars.errors(table, own),) if len(table) else ()
     return Chapter("Errors", "What is wrong with wrong answers.", (table, own), figures)
 
@@ -265,14 +260,14 @@ def _modelled(trials: pd.DataFrame, options: Options) -> Chapter:
     return Chapter(
         "Trials modelled",
         "Conditions, and what else legibility goes with, by a logistic model of single trials.",
-        (*tables, covariates.covariates(trials, options.factors)),
+        (*tables, trialsmodel.covariates(trials, options.factors)),
     )
 
 
 def _of_comparisons(study: Study, comparisons: pd.DataFrame, options: Options) -> Chapter:
     table, preferred = preferences.tuning(comparisons, seed=options.seed)
     own = preferences.choices_of_participants(comparisons)
-    each = liked.liked(comparisons, [sitting.protocol for sitting in study.sittings])
+    each = preferences.liked(comparisons, [sitting.protocol for sitting in study.sittings])
     return Chapter(
         "Which of two was chosen",
         "What participants took for closer to the reference.",
@@ -314,9 +309,9 @@ def _of_judgements(study: Study, judgements: pd.DataFrame) -> list[Chapter]:
 
 def _told_apart(judgements: pd.DataFrame) -> Chapter:
     """Sensitivity, and thresholds where levels vary."""
-    tables = [sensitivity.sensitivity(judgements)]
+    tables = [discrimination.sensitivity(judgements)]
     figures: tuple[ReportFigure, ...] = ()
-    found, by_level = thresholds.thresholds(judgements)
+    found, by_level = discrimination.thresholds(judgements)
     if len(found) or "detect" in {*judgements["question"]}:
         tables += [found, by_level]
         figures = tuple(rises.rises(found, by_level))

@@ -286,6 +286,11 @@ class ResultTable:
         )
 
 
+def mean_or_none(values: Sequence[float]) -> float | None:
+    """Mean of some values; None if there are none."""
+    return float(np.mean(values)) if len(values) else None
+
+
 def to_csv(frame: pd.DataFrame) -> str:
     """Text of a table as CSV: numbers in full precision, a missing value empty, no formulas."""
     safe = frame.copy(deep=False)

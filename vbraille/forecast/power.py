@@ -10,8 +10,7 @@ import numpy as np
 from scipy.stats import nct
 from scipy.stats import t as student
 
-from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, wilson
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, Unanswerable, wilson
 from vbraille.errors import InputError, VbrailleError
 from vbraille.forecast.effects import shares_of
 from vbraille.forecast.kept import KeptResults, work_on

@@ -24,7 +24,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import expit, ndtri
 
-from vbraille.analysis.statistics.correction import adjust
+from vbraille.analysis.statistics.intervals import adjust
 from vbraille.analysis.statistics.marginalmeans import compare, separate_cells
 from vbraille.analysis.statistics.paired import paired_p_values
 from vbraille.analysis.statistics.trialsmodel import fit_trials

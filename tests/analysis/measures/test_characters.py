@@ -11,8 +11,14 @@ from hypothesis import strategies as st
 
 from tests.analysis.making import answers, record
 from vbraille.analysis.input.trials import UNREAD_MASK
-from vbraille.analysis.measures.averages import mean_or_none, over_participants
-from vbraille.analysis.measures.characters import cell_order, characters, dots, strings
+from vbraille.analysis.measures.characters import (
+    cell_order,
+    characters,
+    dots,
+    over_participants,
+    strings,
+)
+from vbraille.analysis.schemas import mean_or_none
 from vbraille.analysis.statistics.intervals import wilson
 from vbraille.analysis.statistics.shares import mean_share
 

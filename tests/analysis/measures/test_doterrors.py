@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from tests.analysis.making import answers
 from vbraille.analysis.input.trials import UNREAD_MASK, Places
-from vbraille.analysis.measures.doterrors import errors
+from vbraille.analysis.measures.confusion import errors
 
 
 def kinds(table):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.analysis.measures.test_preferences import WIDTHS_MM, comparisons, nearest
-from vbraille.analysis.measures.liked import liked
+from vbraille.analysis.measures.preferences import liked
 from vbraille.sessions.planning.protocolfiles import load_protocol
 
 W = "dot_width_mm"

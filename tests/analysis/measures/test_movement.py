@@ -11,7 +11,7 @@ from tests.sessions.sittings import Session
 from vbraille.analysis.input.sittings import SessionTrials, read_sitting
 from vbraille.analysis.input.strokes import IN_PART, ONE_PASS, RESCAN, Reading
 from vbraille.analysis.measures.movement import correlations, patterns, trajectories
-from vbraille.analysis.statistics.correlation import correlation_interval
+from vbraille.analysis.statistics.intervals import correlation_interval
 from vbraille.sessions.record.export import NEVER_CAME
 
 

@@ -1,5 +1,4 @@
 import time
-from dataclasses import replace
 from itertools import permutations
 
 import numpy as np
@@ -9,11 +8,15 @@ from scipy.stats import t, ttest_1samp
 from statsmodels.genmod.families import Binomial
 from statsmodels.genmod.generalized_linear_model import GLM
 
-from vbraille.analysis.statistics.bradleyterry import bradley_terry, position_bias, preferred
-from vbraille.analysis.statistics.firth import connected, fit
-from vbraille.analysis.statistics.intervals import wilson
+from vbraille.analysis.statistics.bradleyterry import (
+    bradley_terry,
+    connected,
+    fit,
+    position_bias,
+    preferred,
+)
+from vbraille.analysis.statistics.intervals import Unanswerable, wilson
 from vbraille.analysis.statistics.shares import mean_share
-from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 # Citations among Biometrika, Communications in Statistics, JASA and JRSS-B:
 # Stigler 1994; Agresti 2002, p. 448.
@@ -68,7 +71,6 @@ def test_the_published_scale_of_statistics_journals():
     c = scale.covariance
     errors = np.sqrt(c[0, 0] + np.diag(c) - 2 * c[0])
     np.testing.assert_allclose(errors, [0, 0.10255, 0.06059, 0.07083], atol=2e-4)
-    assert scale.comparisons == CITATIONS.sum()
 
 
 @pytest.mark.parametrize("k", [3, 6])
@@ -83,7 +85,6 @@ def test_many_comparisons_give_the_likelihood_of_a_binomial_regression(rng, k):
     np.testing.assert_allclose(
         to_first @ scale.covariance @ to_first.T, theirs.cov_params(), rtol=1e-3
     )
-    np.testing.assert_allclose(scale.errors, np.sqrt(np.diag(scale.covariance)))
 
 
 @pytest.mark.no_cover
@@ -154,14 +155,6 @@ def test_which_values_hang_together(pairs, whether):
 def test_what_is_no_table_of_comparisons(wins, error, reason):
     with pytest.raises(error, match=reason):
         bradley_terry(wins)
-
-
-def test_a_scale_checks_itself():
-    scale = bradley_terry(CITATIONS)
-    with pytest.raises(ValueError, match="of 4 strengths"):
-        replace(scale, errors=scale.errors[:2])
-    with pytest.raises(ValueError, match="sum 0"):
-        replace(scale, strengths=scale.strengths + 1)
 
 
 def wins_by(strengths, times=10_000):
@@ -238,8 +231,6 @@ def test_of_one_participant_the_comparisons_are_resampled():
     assert one.how == "bootstrap over the comparisons of one participant"
     assert one.interval.low < one.value < one.interval.high
     assert one == preferred(WIDTHS_MM, *comparisons([wins_by(s, 6)]), seed=3, resamples=300)
-    narrow = preferred(WIDTHS_MM, *comparisons([wins_by(s, 6)]), seed=3, resamples=300, level=0.5)
-    assert narrow.interval.high - narrow.interval.low < one.interval.high - one.interval.low
 
 
 def test_at_the_end_of_what_was_tested_the_best_may_lie_beyond():
@@ -316,8 +307,6 @@ def test_what_has_no_preferred_value():
         ({"first": [1, 1]}, "with itself"),
         ({"chosen": [0, 2]}, "chosen must be"),
         ({"groups": [0]}, "one length"),
-        ({"resamples": 0}, "resamples"),
-        ({"level": 0}, "level"),
     ],
 )
 def test_what_are_no_comparisons(change, reason):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from vbraille.analysis.statistics.correction import METHODS, adjust
+from vbraille.analysis.statistics.intervals import METHODS, adjust
 
 
 @pytest.mark.parametrize(

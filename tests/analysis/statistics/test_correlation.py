@@ -2,8 +2,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from vbraille.analysis.statistics.correlation import correlation_interval
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.statistics.intervals import Unanswerable, correlation_interval
 
 
 def test_of_normal_values_it_is_near_fishers(rng):

@@ -10,8 +10,8 @@ from scipy.stats import norm
 
 from tests.benchmarks.coverage_readers import curve
 from tests.tiers import by_tier
+from vbraille.analysis.statistics.intervals import Unanswerable
 from vbraille.analysis.statistics.psychometric import fit_psychometric
-from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 LEVELS = np.linspace(0.25, 1.75, 7)
 COUNTS = {0.5: [10, 13, 12, 17, 19, 19, 20], None: [1, 0, 4, 9, 17, 18, 20]}
@@ -73,19 +73,6 @@ def test_the_estimate_is_the_most_likely(shape, guess, counts, blanks):
     assert math.log(found.spread) == pytest.approx(best.x[1], abs=2e-3)
     assert found.threshold_interval.low < found.threshold < found.threshold_interval.high
     assert found.spread_interval.low < found.spread < found.spread_interval.high
-    step = 1e-4
-    rise = written_out(shape, found.threshold + step, found.threshold, found.spread)
-    rise -= written_out(shape, found.threshold - step, found.threshold, found.spread)
-    whole = 1 - found.guess - found.lapse
-    assert found.slope == pytest.approx(whole * rise / (2 * step), rel=1e-5)
-
-
-def test_answers_that_fit_are_told_from_others():
-    fits = fit_psychometric(LEVELS, COUNTS[0.5], [20] * 7)
-    assert fits.df == 5
-    assert fits.p > 0.2
-    odd = fit_psychometric(LEVELS, [10, 19, 6, 19, 8, 20, 20], [20] * 7)
-    assert odd.p < 0.01
 
 
 def test_a_level_that_stands_there_twice_is_one():
@@ -197,8 +184,6 @@ def test_guesses_are_the_share_of_yes_at_nothing():
     """With enough blank trials, that share and no other."""
     found = fit_psychometric(LEVELS, ALARMS, [20] * 7, guess=None, blanks=(3000, 10_000))
     assert found.guess == pytest.approx(0.3, abs=0.01)
-    assert found.df == 5
-    assert fit_psychometric(LEVELS[:3], [1, 9, 19], [20] * 3, guess=None).p != 0
 
 
 @pytest.mark.parametrize(

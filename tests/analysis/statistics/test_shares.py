@@ -8,6 +8,7 @@ from scipy.stats import binom, norm
 
 from tests.benchmarks.coverage_people import shares
 from tests.tiers import examples
+from vbraille.analysis.statistics.intervals import Unanswerable
 from vbraille.analysis.statistics.shares import (
     MEANS,
     SPREADS,
@@ -15,7 +16,6 @@ from vbraille.analysis.statistics.shares import (
     log_likelihood,
     mean_share,
 )
-from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 
 def test_the_grid_has_the_means_that_it_says():

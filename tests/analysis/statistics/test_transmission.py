@@ -2,9 +2,8 @@ import numpy as np
 import pytest
 
 from tests.benchmarks.coverage_trials import bits_of, even, readers
-from vbraille.analysis.statistics.information import presented_bits, transmitted_bits
-from vbraille.analysis.statistics.transmission import transmission
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.statistics.information import presented_bits, transmission, transmitted_bits
+from vbraille.analysis.statistics.intervals import Unanswerable
 
 READERS = readers()
 

@@ -6,7 +6,7 @@ import math
 import re
 from typing import TYPE_CHECKING
 
-from vbraille.analysis.statistics.scores import LARGEST
+from vbraille.analysis.statistics.intervals import LARGEST
 from vbraille.braille.cells import UNICODE_BLANK
 from vbraille.braille.spelling import LETTERS, UNREAD, to_braille
 

@@ -26,7 +26,7 @@ import numpy as np
 import pandas as pd
 
 from vbraille.analysis.input.fieldvalues import UNKNOWN, is_pair, parse_pair
-from vbraille.analysis.statistics.scores import LARGEST
+from vbraille.analysis.statistics.intervals import LARGEST
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:

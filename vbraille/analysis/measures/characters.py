@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from vbraille.analysis.input.trials import codes, groups, name_cell, name_string
-from vbraille.analysis.measures.averages import over_participants
 from vbraille.analysis.measures.legibility import unequal_notes
 from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
 from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, too_few
@@ -22,6 +21,64 @@ if TYPE_CHECKING:
 
     from vbraille.analysis.input.trials import Places
     from vbraille.analysis.schemas import ResultTable
+
+
+class OwnMeans(NamedTuple):
+    """Participants' own means at each of k levels.
+
+    Parameters
+    ----------
+    levels : int64[k]
+        Codes of the levels that occur, ascending.
+    starts : int64[k]
+        Where the means of each level begin in the two that follow.
+    means : float64[n]
+        Means of the participants who have a level, level by level.
+    numbers : int64[n]
+        Number of observations behind each of these means.
+    """
+
+    levels: NDArray[np.int64]
+    starts: NDArray[np.int64]
+    means: NDArray[np.float64]
+    numbers: NDArray[np.int64]
+
+
+def over_participants(level: NDArray[np.int64], frame: pd.DataFrame) -> OwnMeans:
+    """Mean of each level over conditions within each participant.
+
+    Tables 3.2 and 3.3 of Lévesque 2009 were most likely found in this way: "computed across
+    all subjects using individual subject means to compensate for the unequal number of trials
+    under the different conditions".
+
+    Parameters
+    ----------
+    level : int64[n]
+        Level of each observation.
+    frame
+        Data frame of observations: whether each is ``correct``, its ``participant`` and
+        ``condition``.
+    """
+    participant, condition = codes(frame["participant"]), codes(frame["condition"])
+    shape = (int(level.max()) + 1, int(participant.max()) + 1)
+    cell = np.ravel_multi_index((level, participant), shape)
+    numbers = np.unique(cell, return_counts=True)[1]
+    correct = frame["correct"].to_numpy()
+    (level, participant, _), means = _means((level, participant, condition), correct)
+    (level, _), means = _means((level, participant), means)
+    levels, starts = np.unique(level, return_index=True)
+    return OwnMeans(levels, starts, means, numbers)
+
+
+def _means(
+    of: tuple[NDArray[np.int64], ...], value: NDArray
+) -> tuple[tuple[NDArray[np.int64], ...], NDArray[np.float64]]:
+    """Codes that occur, in order, and the mean of the observations that have each of them."""
+    shape = tuple(int(code.max()) + 1 for code in of)
+    cells, cell = np.unique(np.ravel_multi_index(of, shape), return_inverse=True)
+    sums = np.bincount(cell, value, cells.size)
+    return np.unravel_index(cells, shape), sums / np.bincount(cell, minlength=cells.size)
+
 
 _ABOUT = (
     "Legibility is the mean of the participants' own means, conditions averaged within a "
@@ -68,8 +125,6 @@ DOTS = Schema(
     "Legibility of the characters that have so many dots (Lévesque 2009, fig. 4.8). " + _ABOUT,
     (Column("dots", "dots", "dots of the character", Kind.COUNT), *_COUNTS),
 )
-
-
 DOTS_OWN = Schema(
     "dots_participants",
     "Legibility by number of dots, of each participant",

@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.analysis.input.trials import Places, groups
-from vbraille.analysis.measures.averages import mean_or_none
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
-from vbraille.analysis.statistics.intervals import wilson
+from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema, mean_or_none
+from vbraille.analysis.statistics.intervals import Unanswerable, wilson
 from vbraille.analysis.statistics.shares import mean_share
-from vbraille.analysis.statistics.unanswerable import Unanswerable
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -103,7 +101,7 @@ def averages(table: ResultTable) -> ResultTable:
         }
         try:
             interval = mean_share(own["legibility"], having["trials"].tolist())
-            row |= {"low": interval.low, "high": interval.high}
+            row |= interval._asdict()
         except Unanswerable as reason:
             notes.append(f"no interval: {reason}")
         if not own["character_legibility"]:

@@ -9,10 +9,8 @@ from scipy import stats
 
 from vbraille.analysis.input.strokes import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
 from vbraille.analysis.input.trials import chosen, codes, factor, groups, name_string
-from vbraille.analysis.measures.averages import mean_or_none
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema, to_print
-from vbraille.analysis.statistics.correlation import correlation_interval
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema, mean_or_none, to_print
+from vbraille.analysis.statistics.intervals import Unanswerable, correlation_interval
 from vbraille.wording import count
 
 if TYPE_CHECKING:

@@ -17,12 +17,11 @@ from scipy.special import expit
 
 from vbraille.analysis.statistics.intervals import (
     FEWEST_PARTICIPANTS,
-    LEVEL,
+    TAIL,
     Interval,
+    Unanswerable,
     too_few,
 )
-from vbraille.analysis.statistics.scores import check_level
-from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -56,7 +55,7 @@ class Grid(NamedTuple):
     weight: NDArray[np.float64]
 
 
-def mean_share(shares: ArrayLike, trials: ArrayLike, level: float = LEVEL) -> Interval:
+def mean_share(shares: ArrayLike, trials: ArrayLike) -> Interval:
     """Interval of the mean share over the population that participants come from.
 
     Parameters
@@ -65,8 +64,6 @@ def mean_share(shares: ArrayLike, trials: ArrayLike, level: float = LEVEL) -> In
         Share of right answers, 0…1, for each participant.
     trials : int[n]
         Number of answers that each share is of.
-    level
-        Level of confidence.
 
     Raises
     ------
@@ -75,7 +72,6 @@ def mean_share(shares: ArrayLike, trials: ArrayLike, level: float = LEVEL) -> In
     ValueError
         If a share is not in 0…1, or has no trials.
     """
-    check_level(level)
     share, number = np.asarray(shares, np.float64), np.asarray(trials, np.float64)
     if share.ndim != 1 or share.shape != number.shape:
         raise ValueError(f"{share.shape} shares of {number.shape} numbers of trials")
@@ -88,8 +84,8 @@ def mean_share(shares: ArrayLike, trials: ArrayLike, level: float = LEVEL) -> In
     found = np.zeros((MEANS, SPREADS))
     for own, of in zip((share * number).tolist(), number.tolist(), strict=True):
         found += log_likelihood(own, of)
-    low, high = quantiles(found[None], float(number.mean()), level)
-    return Interval(float(low[0]), float(high[0]), level)
+    low, high = quantiles(found[None], float(number.mean()))
+    return Interval(float(low[0]), float(high[0]))
 
 
 @lru_cache(maxsize=512)
@@ -132,7 +128,7 @@ def log_likelihood(correct: float, trials: float) -> NDArray[np.float32]:
 
 
 def quantiles(
-    likelihoods: NDArray[np.floating], trials: float, level: float
+    likelihoods: NDArray[np.floating], trials: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Ends of the intervals of many studies at once.
 
@@ -149,8 +145,6 @@ def quantiles(
         Sums of the participants' log likelihoods.
     trials
         Mean of the participants' numbers of trials.
-    level
-        Level of confidence.
 
     Returns
     -------
@@ -162,8 +156,7 @@ def quantiles(
     cells = np.einsum("rms,ms->rm", np.exp(likelihoods - best), prior)
     sums = np.cumsum(cells, axis=1, dtype=np.float64)
     sums = np.concatenate((np.zeros((len(sums), 1)), sums / sums[:, -1:]), axis=1)
-    tail = (1 - level) / 2
-    return _inverse(sums, grid.ends, tail), _inverse(sums, grid.ends, 1 - tail)
+    return _inverse(sums, grid.ends, TAIL), _inverse(sums, grid.ends, 1 - TAIL)
 
 
 @cache

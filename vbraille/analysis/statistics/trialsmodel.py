@@ -25,9 +25,7 @@ import numpy as np
 from scipy.special import expit
 from scipy.stats import t as student
 
-from vbraille.analysis.statistics.intervals import LEVEL
-from vbraille.analysis.statistics.scores import check_level
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.statistics.intervals import LEVEL, Unanswerable
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -93,7 +91,6 @@ class Contrasts:
 
     def ends(self, level: float = LEVEL) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Lower and upper ends of the intervals, float64[studies] each; NaN where there is none."""
-        check_level(level)
         half = student.ppf((1 + level) / 2, self.degrees) * self.errors
         return self.estimates - half, self.estimates + half
 
@@ -210,15 +207,6 @@ def combine(fit: TrialsFit, weights: ArrayLike) -> Contrasts:
         np.where(unknown, np.nan, np.sqrt(variance)),
         np.where(unknown, np.nan, np.maximum(degrees, 1.0)),
     )
-
-
-def plain_covariance(fit: TrialsFit) -> NDArray[np.float64]:
-    """Sandwich without a correction for few participants, float64[studies, p, p].
-
-    It is the one that Liang and Zeger (1986) give, by which the fit is held against others.
-    """
-    meat = np.einsum("skp,skq->spq", fit.scores, fit.scores)
-    return fit.spread @ meat @ fit.spread
 
 
 def adjusted_weights(
