@@ -88,6 +88,31 @@ class Column:
 
 # Column of a table where a value may be missing: it says why.
 NOTE_COLUMN = Column(NOTE, "note", "why a value is missing, or what to know of the row")
+PARTICIPANT = Column("participant", "participant", "pseudonym")
+CONDITION = Column("condition", "condition", "name, as in the protocol")
+PROTOCOL = Column("protocol", "protocol", "name of the protocol")
+SESSION = Column("session", "session", "name of the session")
+TRIAL = Column("trial", "trial", "its number in the session", Kind.COUNT)
+PARTICIPANTS = Column("participants", "participants", "how many", Kind.COUNT)
+
+
+def ends(
+    kind: Kind = Kind.NUMBER, name: str = "", heading: str = "", of: str = "95 % interval"
+) -> tuple[Column, Column]:
+    """Columns of the ends of an interval of the column before them.
+
+    Parameters
+    ----------
+    name, heading
+        What the names and the headings of the two begin with.
+    of
+        Words for the interval.
+    """
+    unit = " (%)" if kind is Kind.PERCENT else ""
+    return (
+        Column(f"{name}low", f"{heading}from{unit}", f"lower end of its {of}", kind),
+        Column(f"{name}high", f"{heading}to{unit}", "upper end", kind),
+    )
 
 
 @dataclass(frozen=True, slots=True)

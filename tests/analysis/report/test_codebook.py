@@ -7,8 +7,8 @@ from pathlib import Path
 from tests.analysis.report.made import RESULTS
 from tests.tiers import heavy
 from vbraille.analysis import analyse
-from vbraille.analysis.report.codebook import codebook
-from vbraille.analysis.report.shown import csv_name
+from vbraille.analysis.report.tohtml import csv_name
+from vbraille.analysis.report.written import codebook
 
 SAMPLE = Path(__file__).parents[1] / "input/samples/trials.csv"
 

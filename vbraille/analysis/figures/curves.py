@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.analysis.input.trials import name_string
 from vbraille.analysis.results import ReportFigure
-from vbraille.analysis.schemas import Column, Kind, Schema, to_print
+from vbraille.analysis.schemas import PARTICIPANT, SESSION, TRIAL, Column, Kind, Schema, to_print
 from vbraille.pictures.charts import Curve, Path, Paths, Runs
 
 if TYPE_CHECKING:
@@ -24,9 +24,9 @@ PATHS = Schema(
     "theirs. At most 600 ticks of it.",
     (
         Column("pattern", "pattern", "reading pattern"),
-        Column("participant", "participant", "pseudonym"),
-        Column("session", "session", "name of the session"),
-        Column("trial", "trial", "its number in the session", Kind.COUNT),
+        PARTICIPANT,
+        SESSION,
+        TRIAL,
         Column("presented", "string", "names of its cells"),
         Column("time_s", "time (s)", "since the trial began", Kind.NUMBER),
         Column("x_mm", "x (mm)", "place of the array's left column", Kind.NUMBER),

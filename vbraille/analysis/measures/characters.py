@@ -9,7 +9,7 @@ import pandas as pd
 
 from vbraille.analysis.input.trials import codes, groups, name_cell, name_string
 from vbraille.analysis.measures.legibility import unequal_notes
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
+from vbraille.analysis.schemas import NOTE_COLUMN, PARTICIPANT, Column, Kind, Schema, ends
 from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, too_few
 from vbraille.analysis.statistics.shares import mean_share
 from vbraille.braille.cells import UNICODE_BLANK
@@ -91,8 +91,7 @@ _COUNTS = (
     Column("correct", "correct", "how often the answer was right", Kind.COUNT),
     Column("participants", "participants", "to how many participants", Kind.COUNT),
     Column("legibility", "legibility (%)", "mean of participants' means", Kind.PERCENT),
-    Column("low", "from (%)", "lower end of its 95 % interval", Kind.PERCENT),
-    Column("high", "to (%)", "upper end", Kind.PERCENT),
+    *ends(Kind.PERCENT),
     Column("pooled", "pooled (%)", "correct by presented", Kind.PERCENT),
     NOTE_COLUMN,
 )
@@ -130,7 +129,7 @@ DOTS_OWN = Schema(
     "Legibility by number of dots, of each participant",
     "Shares of each participant's own places, averaged over conditions.",
     (
-        Column("participant", "participant", "pseudonym"),
+        PARTICIPANT,
         Column("dots", "dots", "dots of the character", Kind.COUNT),
         *_COUNTS[:2],
         Column("legibility", "legibility (%)", "mean over conditions", Kind.PERCENT),

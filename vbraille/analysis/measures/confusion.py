@@ -10,7 +10,7 @@ import numpy as np
 from vbraille.analysis.input.trials import UNREAD_MASK, groups, masks_of, name_cell, name_string
 from vbraille.analysis.measures.characters import cell_order
 from vbraille.analysis.measures.legibility import unequal_notes
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
+from vbraille.analysis.schemas import NOTE_COLUMN, PARTICIPANT, Column, Kind, Schema
 from vbraille.analysis.statistics import information
 from vbraille.analysis.statistics.information import transmission
 from vbraille.analysis.statistics.intervals import Unanswerable
@@ -185,7 +185,7 @@ ERRORS_OWN = Schema(
     "Errors of each participant",
     "Of the places that the participant answered wrongly.",
     (
-        Column("participant", "participant", "pseudonym"),
+        PARTICIPANT,
         Column("error", "error", "what is wrong with the answer, in words"),
         Column("count", "places", "how many places", Kind.COUNT),
         Column("share", "of own errors (%)", "their share of the wrong places", Kind.PERCENT),

@@ -10,7 +10,16 @@ import pandas as pd
 
 from vbraille.analysis.input.judgements import LEVELS
 from vbraille.analysis.input.trials import groups
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
+from vbraille.analysis.schemas import (
+    CONDITION,
+    NOTE_COLUMN,
+    PARTICIPANT,
+    PROTOCOL,
+    Column,
+    Kind,
+    Schema,
+    ends,
+)
 from vbraille.analysis.statistics.detection import same_different, two_alternatives, yes_no
 from vbraille.analysis.statistics.intervals import Unanswerable
 from vbraille.analysis.statistics.psychometric import fit_psychometric
@@ -34,18 +43,16 @@ SENSITIVITY = Schema(
     "difference felt; d′ of two is divided by √2.",
     (
         Column("question", "question", "detect, same-different or which"),
-        Column("participant", "participant", "pseudonym"),
-        Column("condition", "condition", "name, as in the protocol"),
+        PARTICIPANT,
+        CONDITION,
         Column("signals", "signals", "trials with a signal", Kind.COUNT),
         Column("hits", "hits", "of these, answered yes, different or first", Kind.COUNT),
         Column("noises", "noises", "trials without a signal", Kind.COUNT),
         Column("false_alarms", "false alarms", "of these, answered likewise", Kind.COUNT),
         Column("d_prime", "d′", "sensitivity", Kind.NUMBER),
-        Column("d_low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("d_high", "to", "upper end", Kind.NUMBER),
+        *ends(name="d_"),
         Column("criterion", "criterion", "above 0 for too few yes", Kind.NUMBER),
-        Column("criterion_low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("criterion_high", "to", "upper end", Kind.NUMBER),
+        *ends(name="criterion_"),
         NOTE_COLUMN,
     ),
 )
@@ -121,8 +128,8 @@ def _told(found: Detection) -> Row:
 
 _WHOSE = (
     Column("question", "question", "detect or which"),
-    Column("participant", "participant", "pseudonym"),
-    Column("protocol", "protocol", "name of the protocol"),
+    PARTICIPANT,
+    PROTOCOL,
     Column("level", "level", "what varies, with its unit: of which, the difference of the two"),
 )
 THRESHOLDS = Schema(
@@ -139,13 +146,10 @@ THRESHOLDS = Schema(
         Column("trials", "trials", "how many", Kind.COUNT),
         Column("blanks", "blank trials", "of these, without anything to be felt", Kind.COUNT),
         Column("threshold", "threshold", "in the unit of the level", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % credible interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(of="95 % credible interval"),
         Column("spread", "spread", "the larger, the flatter; of which, one over the exponent",
                Kind.NUMBER),
-        Column("spread_low", "spread from", "lower end of its 95 % credible interval",
-               Kind.NUMBER),
-        Column("spread_high", "spread to", "upper end", Kind.NUMBER),
+        *ends(name="spread_", heading="spread ", of="95 % credible interval"),
         Column("guesses", "guesses (%)", "share of yes, or of right answers, at nothing",
                Kind.PERCENT),
         Column("lapses", "lapses (%)", "share of answers that no level helps", Kind.PERCENT),

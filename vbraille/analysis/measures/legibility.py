@@ -5,7 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.analysis.input.trials import Places, groups
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema, mean_or_none
+from vbraille.analysis.schemas import (
+    CONDITION,
+    NOTE_COLUMN,
+    PARTICIPANT,
+    Column,
+    Kind,
+    Schema,
+    ends,
+    mean_or_none,
+)
 from vbraille.analysis.statistics.intervals import Unanswerable, wilson
 from vbraille.analysis.statistics.shares import mean_share
 from vbraille.wording import count
@@ -22,13 +31,12 @@ LEGIBILITY = Schema(
     "of characters the share of places. The interval is Wilson's: of this participant alone. SD is "
     "that of a sample.",
     (
-        Column("participant", "participant", "pseudonym"),
-        Column("condition", "condition", "name, as in the protocol"),
+        PARTICIPANT,
+        CONDITION,
         Column("trials", "trials", "trials answered", Kind.COUNT),
         Column("correct", "correct", "strings of which every place is right", Kind.COUNT),
         Column("legibility", "legibility (%)", "correct by trials", Kind.PERCENT),
-        Column("low", "from (%)", "lower end of legibility's 95 % interval", Kind.PERCENT),
-        Column("high", "to (%)", "upper end", Kind.PERCENT),
+        *ends(Kind.PERCENT),
         Column("characters", "characters", "places presented", Kind.COUNT),
         Column("characters_correct", "characters correct", "places that are right", Kind.COUNT),
         Column(
@@ -51,12 +59,11 @@ AVERAGES = Schema(
     "have not (Lévesque 2009, table 3.1). The interval is of the mean share of "
     "the population that participants come from, by a logit-normal model of how people differ.",
     (
-        Column("condition", "condition", "name, as in the protocol"),
+        CONDITION,
         Column("participants", "participants", "participants who have the condition", Kind.COUNT),
         Column("trials", "trials", "mean number of trials, over all participants", Kind.SECONDS),
         Column("legibility", "legibility (%)", "mean of theirs", Kind.PERCENT),
-        Column("low", "from (%)", "lower end of its 95 % interval", Kind.PERCENT),
-        Column("high", "to (%)", "upper end", Kind.PERCENT),
+        *ends(Kind.PERCENT),
         Column(
             "character_legibility", "legibility of characters (%)", "mean of theirs", Kind.PERCENT
         ),

@@ -11,7 +11,15 @@ import pandas as pd
 
 from vbraille.analysis.input.trials import LeftOut
 from vbraille.analysis.input.trials import factor as ordered
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema, mean_or_none
+from vbraille.analysis.schemas import (
+    NOTE_COLUMN,
+    PARTICIPANT,
+    Column,
+    Kind,
+    Schema,
+    ends,
+    mean_or_none,
+)
 from vbraille.analysis.statistics.anova import Anova, anova
 from vbraille.analysis.statistics.intervals import (
     Unanswerable,
@@ -43,8 +51,7 @@ MEANS = Schema(
         Column("level", "level", "of the factor"),
         Column("participants", "participants", "who have it", Kind.COUNT),
         Column("mean", "mean", "in the measure's unit", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         NOTE_COLUMN,
     ),
 )
@@ -57,7 +64,7 @@ OWN = Schema(
         Column("measure", "measure", "what is compared, with its unit; legibility from 0 to 1"),
         Column("factor", "factor", "by what"),
         Column("level", "level", "of the factor"),
-        Column("participant", "participant", "pseudonym"),
+        PARTICIPANT,
         Column("mean", "mean", "in the measure's unit", Kind.NUMBER),
     ),
 )
@@ -76,15 +83,13 @@ T_TESTS = Schema(
         Column("second", "second", "level"),
         Column("participants", "participants", "who have both", Kind.COUNT),
         Column("mean_difference", "mean difference", "in the measure's unit", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         Column("t", "t", "Student's", Kind.NUMBER),
         Column("df", "df", "degrees of freedom", Kind.COUNT),
         Column("p", "p", "two-sided, not corrected", Kind.P),
         Column("p_corrected", "p corrected", "for the tests of this measure and factor", Kind.P),
         Column("d_z", "d_z", "effect size", Kind.NUMBER),
-        Column("d_low", "d_z from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("d_high", "d_z to", "upper end", Kind.NUMBER),
+        *ends(name="d_", heading="d_z "),
         Column("g_z", "g_z", "effect size, corrected", Kind.NUMBER),
         NOTE_COLUMN,
     ),
@@ -113,8 +118,7 @@ ANOVA = Schema(
         Column("mauchly_w", "W", "Mauchly's", Kind.NUMBER),
         Column("mauchly_p", "p of W", "that sphericity holds, as R's mauchly.test", Kind.P),
         Column("partial_eta2", "partial eta²", "effect size", Kind.NUMBER),
-        Column("partial_low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("partial_high", "to", "upper end", Kind.NUMBER),
+        *ends(name="partial_"),
         Column("generalised_eta2", "generalised eta²", "effect size", Kind.NUMBER),
         NOTE_COLUMN,
     ),

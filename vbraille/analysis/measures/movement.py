@@ -9,7 +9,19 @@ from scipy import stats
 
 from vbraille.analysis.input.strokes import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
 from vbraille.analysis.input.trials import chosen, codes, factor, groups, name_string
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema, mean_or_none, to_print
+from vbraille.analysis.schemas import (
+    CONDITION,
+    NOTE_COLUMN,
+    PARTICIPANT,
+    SESSION,
+    TRIAL,
+    Column,
+    Kind,
+    Schema,
+    ends,
+    mean_or_none,
+    to_print,
+)
 from vbraille.analysis.statistics.intervals import Unanswerable, correlation_interval
 from vbraille.wording import count
 
@@ -23,8 +35,8 @@ if TYPE_CHECKING:
     from vbraille.analysis.schemas import ResultTable, Row
 
 _WHOSE = (
-    Column("participant", "participant", "pseudonym"),
-    Column("condition", "condition", "name, as in the protocol"),
+    PARTICIPANT,
+    CONDITION,
 )
 _SPEEDS = (
     Column("speed_right_mm_s", "speed to the right (mm/s)", "mean of the strokes", Kind.SPEED),
@@ -36,8 +48,8 @@ TRAJECTORIES = Schema(
     f"{PATTERN_RULE} {SPEED_RULE}",
     (
         *_WHOSE,
-        Column("session", "session", "name of the session"),
-        Column("trial", "trial", "its number in the session", Kind.COUNT),
+        SESSION,
+        TRIAL,
         Column("presented", "string", "names of its cells"),
         Column("duration_s", "duration (s)", "by the thesis's rule", Kind.SECONDS),
         Column("returned", "returned", "1 if the hand went back over the first dot", Kind.COUNT),
@@ -76,8 +88,7 @@ CORRELATIONS = Schema(
         Column("condition", "condition", "in which; else all"),
         Column("n", "n", "pairs of values", Kind.COUNT),
         Column("r", "r", "Pearson's", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         Column("p", "p", "that there is no correlation", Kind.P),
         NOTE_COLUMN,
     ),

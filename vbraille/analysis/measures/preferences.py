@@ -10,7 +10,15 @@ import pandas as pd
 from vbraille.adaptive.estimates import GridAxis
 from vbraille.adaptive.questplus import geometric, nearer_quest, steps
 from vbraille.analysis.input.trials import chosen, codes
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
+from vbraille.analysis.schemas import (
+    NOTE_COLUMN,
+    PARTICIPANT,
+    PARTICIPANTS,
+    Column,
+    Kind,
+    Schema,
+    ends,
+)
 from vbraille.analysis.statistics.bradleyterry import bradley_terry, position_bias, preferred
 from vbraille.analysis.statistics.intervals import Unanswerable, too_few
 from vbraille.sessions.planning.procedures import PREFERRED as CENTRE
@@ -26,13 +34,14 @@ if TYPE_CHECKING:
 
     Axes = tuple[GridAxis, ...]
 
+_PARAMETER = Column("parameter", "parameter", "what the stimuli differ in, with its unit")
 CHOICES = Schema(
     "choices",
     "How often each value was chosen",
     "The scale is Bradley and Terry's (1952), with Firth's penalty (1993): one value is chosen "
     "over another with odds of e to the difference of their strengths.",
     (
-        Column("parameter", "parameter", "what the stimuli differ in, with its unit"),
+        _PARAMETER,
         Column("value", "value", "of the parameter", Kind.VALUE),
         Column("presented", "presented", "comparisons that it was part of", Kind.COUNT),
         Column("chosen", "chosen", "comparisons in which it was chosen", Kind.COUNT),
@@ -47,8 +56,8 @@ CHOICES_OWN = Schema(
     "How often each participant chose each value",
     "Of the comparisons that the value was part of.",
     (
-        Column("parameter", "parameter", "what the stimuli differ in, with its unit"),
-        Column("participant", "participant", "pseudonym"),
+        _PARAMETER,
+        PARTICIPANT,
         Column("value", "value", "of the parameter", Kind.VALUE),
         Column("presented", "presented", "comparisons that it was part of", Kind.COUNT),
         Column("chosen", "chosen", "comparisons in which it was chosen", Kind.COUNT),
@@ -63,16 +72,14 @@ PREFERRED = Schema(
     "one participant it is of this participant's value, by a bootstrap. Half of the choices should "
     "be of what came first: p is by a t-test over participants, of one by an exact binomial test.",
     (
-        Column("parameter", "parameter", "what the stimuli differ in, with its unit"),
-        Column("participants", "participants", "how many", Kind.COUNT),
+        _PARAMETER,
+        PARTICIPANTS,
         Column("comparisons", "comparisons", "how many", Kind.COUNT),
         Column("preferred", "preferred", "value of the parameter", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         Column("how", "interval", "what the interval comes from"),
         Column("first_share", "first chosen (%)", "choices of what came first", Kind.PERCENT),
-        Column("first_low", "from (%)", "lower end of its 95 % interval", Kind.PERCENT),
-        Column("first_high", "to (%)", "upper end", Kind.PERCENT),
+        *ends(Kind.PERCENT, name="first_"),
         Column("first_p", "p", "that first and second are chosen alike", Kind.P),
         NOTE_COLUMN,
     ),
@@ -176,12 +183,11 @@ LIKED = Schema(
     "likely. Range, noise and lapses are those of the protocol's quest; without one, the range is "
     "that of the values compared, in 50 steps, the noise 2 to 40 % of it, and lapses are 3 %.",
     (
-        Column("parameter", "parameter", "what the stimuli differ in, with its unit"),
-        Column("participant", "participant", "pseudonym"),
+        _PARAMETER,
+        PARTICIPANT,
         Column("comparisons", "comparisons", "how many", Kind.COUNT),
         Column("preferred", "preferred", "value of the parameter", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % credible interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(of="95 % credible interval"),
         Column("sd", "standard deviation", "of the posterior", Kind.NUMBER),
     ),
 )

@@ -9,7 +9,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.analysis.input.trials import groups
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
+from vbraille.analysis.schemas import (
+    CONDITION,
+    NOTE_COLUMN,
+    PARTICIPANT,
+    PARTICIPANTS,
+    PROTOCOL,
+    SESSION,
+    TRIAL,
+    Column,
+    Kind,
+    Schema,
+    ends,
+)
 from vbraille.analysis.statistics.intervals import Unanswerable, mean_interval
 
 if TYPE_CHECKING:
@@ -25,9 +37,6 @@ if TYPE_CHECKING:
 
     from vbraille.analysis.input.sittings import SessionTrials
 
-_PROTOCOL = Column("protocol", "protocol", "name of the protocol")
-_CONDITION = Column("condition", "condition", "name, as in the protocol")
-_PARTICIPANTS = Column("participants", "participants", "how many", Kind.COUNT)
 RATINGS = Schema(
     "ratings",
     "Ratings",
@@ -35,13 +44,12 @@ RATINGS = Schema(
     "mean, as far as the scale goes where a session tells its ends. In the quartiles each "
     "participant weighs the same.",
     (
-        _PROTOCOL,
-        _CONDITION,
-        _PARTICIPANTS,
+        PROTOCOL,
+        CONDITION,
+        PARTICIPANTS,
         Column("ratings", "ratings", "how many", Kind.COUNT),
         Column("mean", "mean", "in steps of the scale", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         Column("median", "median", "in steps of the scale", Kind.NUMBER),
         Column("low_quartile", "lower quartile", "in steps of the scale", Kind.NUMBER),
         Column("high_quartile", "upper quartile", "in steps of the scale", Kind.NUMBER),
@@ -54,13 +62,12 @@ RATING_PAIRS = Schema(
     "Mean over participants of the share of their pairs of ratings in which the first condition's "
     "is the higher, ties counting half, with Student's interval.",
     (
-        _PROTOCOL,
+        PROTOCOL,
         Column("first", "first", "one condition"),
         Column("second", "second", "the other"),
         Column("participants", "participants", "who rated both", Kind.COUNT),
         Column("higher", "first higher (%)", "share of pairs", Kind.PERCENT),
-        Column("low", "from (%)", "lower end of its 95 % interval", Kind.PERCENT),
-        Column("high", "to (%)", "upper end", Kind.PERCENT),
+        *ends(Kind.PERCENT),
         NOTE_COLUMN,
     ),
 )
@@ -71,13 +78,12 @@ MAGNITUDES = Schema(
     "t of logarithms, each participant's estimates are divided by the mean of all conditions, and "
     "multiplied by that of all participants, since everybody's numbers are of an own size.",
     (
-        _PROTOCOL,
-        _CONDITION,
-        _PARTICIPANTS,
+        PROTOCOL,
+        CONDITION,
+        PARTICIPANTS,
         Column("estimates", "estimates", "how many", Kind.COUNT),
         Column("mean", "geometric mean", "of the numbers given", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         NOTE_COLUMN,
     ),
 )
@@ -87,15 +93,14 @@ CONFIDENCE = Schema(
     "The mean is over participants of their own means, with Student's interval of the population's "
     "mean, as far as the scale goes where a session tells its ends.",
     (
-        _PROTOCOL,
+        PROTOCOL,
         Column("question", "question", "what was asked"),
-        _CONDITION,
+        CONDITION,
         Column("outcome", "outcome", "how the answers were scored; - if they were not"),
-        _PARTICIPANTS,
+        PARTICIPANTS,
         Column("answers", "answers", "how many", Kind.COUNT),
         Column("mean", "mean", "confidence, in steps of the scale", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         NOTE_COLUMN,
     ),
 )
@@ -104,10 +109,10 @@ WORDS = Schema(
     "Answers in words",
     "As they were typed. Nobody has scored them.",
     (
-        Column("participant", "participant", "pseudonym"),
-        Column("session", "session", "name of the session"),
-        Column("trial", "trial", "its number in the session", Kind.COUNT),
-        _CONDITION,
+        PARTICIPANT,
+        SESSION,
+        TRIAL,
+        CONDITION,
         Column("presented", "presented", "what was shown"),
         Column("answered", "answered", "the words"),
     ),
@@ -252,8 +257,8 @@ NOTES = Schema(
     "A note that was typed between two trials has none of its own; one typed before the first "
     "trial has none before it, and one after the last has none after it.",
     (
-        Column("participant", "participant", "pseudonym"),
-        Column("session", "session", "name of the session"),
+        PARTICIPANT,
+        SESSION,
         Column("text", "note", "as it was typed"),
         Column("trial_before", "trial before", "the one shown last before it"),
         Column("trial", "trial", "the one that was open"),

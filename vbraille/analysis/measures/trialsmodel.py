@@ -11,7 +11,7 @@ import pandas as pd
 
 from vbraille.analysis.input.trials import chosen, codes, factor
 from vbraille.analysis.measures.levels import MOST_LEVELS
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
+from vbraille.analysis.schemas import NOTE_COLUMN, PARTICIPANTS, Column, Kind, Schema, ends
 from vbraille.analysis.statistics.intervals import (
     FEWEST_PARTICIPANTS,
     LEVEL,
@@ -146,8 +146,7 @@ MEANS = Schema(
         Column("participants", "participants", "who have it", Kind.COUNT),
         Column("trials", "trials", "of all participants", Kind.COUNT),
         Column("legibility", "legibility (%)", "estimated share of strings right", Kind.PERCENT),
-        Column("low", "from (%)", "lower end of its 95 % interval", Kind.PERCENT),
-        Column("high", "to (%)", "upper end", Kind.PERCENT),
+        *ends(Kind.PERCENT),
         NOTE_COLUMN,
     ),
 )
@@ -160,7 +159,7 @@ EFFECTS = Schema(
     "and Pustejovsky 2015). With few participants near 0 and 100 % it finds too little.",
     (
         Column("effect", "effect", "factors that act together"),
-        Column("participants", "participants", "how many", Kind.COUNT),
+        PARTICIPANTS,
         Column("trials", "trials", "of all participants", Kind.COUNT),
         Column("df1", "df of the effect", "degrees of freedom of the effect", Kind.COUNT),
         Column("df2", "df of its error", "degrees of freedom of its error", Kind.NUMBER),
@@ -182,8 +181,7 @@ CONTRASTS = Schema(
         Column("participants", "participants", "who have one of them or both", Kind.COUNT),
         Column("odds_ratio", "odds ratio", "odds of a right answer in first by second's",
                Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         Column("low_together", "from, together", "lower end, all pairs holding together",
                Kind.NUMBER),
         Column("high_together", "to, together", "upper end", Kind.NUMBER),
@@ -192,11 +190,9 @@ CONTRASTS = Schema(
         Column("p", "p", "two-sided, not corrected", Kind.P),
         Column("p_corrected", "p corrected", "for all pairs", Kind.P),
         Column("difference", "difference (%)", "of the shares, in percentage points", Kind.PERCENT),
-        Column("difference_low", "from (%)", "lower end of its 95 % interval", Kind.PERCENT),
-        Column("difference_high", "to (%)", "upper end", Kind.PERCENT),
+        *ends(Kind.PERCENT, name="difference_"),
         Column("d", "d", "effect size", Kind.NUMBER),
-        Column("d_low", "d from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("d_high", "d to", "upper end", Kind.NUMBER),
+        *ends(name="d_", heading="d "),
         NOTE_COLUMN,
     ),
 )  # fmt: skip
@@ -391,8 +387,7 @@ COVARIATES = Schema(
         Column("participants", "participants", "who have it", Kind.COUNT),
         Column("trials", "trials", "of all participants", Kind.COUNT),
         Column("odds_ratio", "odds ratio", "for a unit more", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         Column("df", "df", "degrees of freedom of t", Kind.NUMBER),
         Column("t", "t", "of the logarithm of the odds ratio", Kind.NUMBER),
         Column("p", "p", "two-sided", Kind.P),
