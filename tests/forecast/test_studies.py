@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import expit
 
+from tests.forecast.closedform import mean_and_spread
 from vbraille.analysis.statistics.intervals import adjust
 from vbraille.forecast.studies import (
     StudyPlan,
@@ -13,7 +14,6 @@ from vbraille.forecast.studies import (
     _corrected,
     count_found,
     log_odds_of,
-    mean_and_spread,
     simulate,
 )
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.errors import VbrailleError, check_range
-from vbraille.forecast.kept import KeptResults, work_on
+from vbraille.forecast.workers import KeptResults, work_on
 from vbraille.render import MODELS
 from vbraille.sessions.planning.spellings import Masks, SpellingKeys, spelled
 from vbraille.sessions.simulated.observer import Observer

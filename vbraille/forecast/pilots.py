@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import check_free, write_file
-from vbraille.forecast.kept import KeptResults, work_on
+from vbraille.forecast.workers import KeptResults, work_on
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.session import Session

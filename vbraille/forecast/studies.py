@@ -30,8 +30,6 @@ from vbraille.analysis.statistics.paired import paired_p_values
 from vbraille.analysis.statistics.trialsmodel import fit_trials
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(80)
@@ -180,32 +178,3 @@ def _corrected(p: NDArray[np.float64], method: str) -> NDArray[np.float64]:
     for study, own in enumerate(known):
         corrected[study, own] = adjust(p[study, own], method)
     return corrected
-
-
-def mean_and_spread(
-    plan: StudyPlan, first: int, second: int | None, trials: Sequence[int]
-) -> tuple[float, float]:
-    """Mean and s.d. over people of a difference of shares, exactly; by equation 1.
-
-    Parameters
-    ----------
-    plan
-        What is simulated.
-    first, second
-        Conditions; the second is None for the difference of the first to one half.
-    trials
-        Trials of a participant in each condition.
-    """
-    weights = _WEIGHTS / _WEIGHTS.sum()
-    own: list[tuple[NDArray[np.float64], NDArray[np.float64]]] = []
-    for condition in (first,) if second is None else (first, second):
-        # Shares given a participant's z, and what varies beside it.
-        log_odds = plan.log_odds[condition] + plan.between * _NODES
-        shares = expit(log_odds[:, None] + plan.differing * _NODES)
-        mean = shares @ weights
-        within = (shares * (1 - shares)) @ weights / trials[condition]
-        own.append((mean, within + (shares - mean[:, None]) ** 2 @ weights))
-    apart = own[0][0] - (0.5 if second is None else own[1][0])
-    mean = float(apart @ weights)
-    variance = sum(of[1] for of in own) @ weights + (apart - mean) ** 2 @ weights
-    return mean, float(np.sqrt(variance))
