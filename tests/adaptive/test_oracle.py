@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from vbraille.adaptive.estimates import GridAxis
-from vbraille.adaptive.questplus import detection_quest, nearer_quest
+from vbraille.adaptive.questplus import GridAxis, detection_quest, nearer_quest
 
 MADE = json.loads(Path(__file__).with_name("oracle.json").read_text())
 MODELS = {model["name"]: model for model in MADE["models"]}

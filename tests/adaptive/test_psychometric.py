@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from tests.tiers import examples
-from vbraille.adaptive.psychometric import SHAPES, detected, nearer, phi
+from vbraille.adaptive.questplus import SHAPES, detected, nearer, phi
 
 X = np.linspace(-8, 8, 401)
 MM = st.floats(0.3, 4.0)

@@ -7,10 +7,11 @@ from hypothesis import strategies as st
 from scipy.stats import norm
 
 from tests.tiers import examples
-from vbraille.adaptive.estimates import GridAxis, estimate
 from vbraille.adaptive.questplus import (
+    GridAxis,
     GridQuest,
     detection_quest,
+    estimate,
     geometric,
     nearer_quest,
     ordered_pairs,

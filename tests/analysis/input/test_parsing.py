@@ -7,9 +7,8 @@ import pandas as pd
 import pytest
 
 from tests.analysis.making import levels, sheet
-from vbraille.analysis.input.fieldvalues import parse_cells
 from vbraille.analysis.input.parsing import parse
-from vbraille.analysis.input.sheets import Sheet, from_rows, read_csv
+from vbraille.analysis.input.sheets import Sheet, from_rows, parse_cells, read_csv
 from vbraille.analysis.input.trials import TRIAL_COLUMNS, LeftOut
 from vbraille.errors import InputError
 

@@ -9,11 +9,9 @@ from tests.analysis.making import levels, made, record, sheet
 from tests.sessions.sittings import Session
 from vbraille.analysis.chapters import Options, analyse_study
 from vbraille.analysis.input.parsing import parse
-from vbraille.analysis.input.sources import distinct_names
-from vbraille.analysis.input.study import load_study
+from vbraille.analysis.input.study import distinct_names, load_study
 from vbraille.analysis.input.trials import written
 from vbraille.analysis.measures.characters import strings
-from vbraille.analysis.measures.movement import correlations
 from vbraille.analysis.schemas import to_csv as frame_to_csv
 from vbraille.errors import InputError
 from vbraille.sessions.planning.making import make_plan
@@ -68,31 +66,11 @@ def shown_by(name, people):
     return parse([sheet(*lines, columns=columns)]).trials
 
 
-def test_the_strings_of_the_letters_protocol_are_26_and_not_446():
-    trials = shown_by("letters", 6)
-    assert len(trials.presented) > 400
-    table = strings(trials)
-    assert len(table.rows) == 26
-    listed = parse_protocol(builtin_text("letters"), "letters").design.strings
-    assert len(listed) == 26
-    row = record(table, name="epkgn")
-    assert (row["presented"], row["correct"], row["participants"]) == (18, 18, 6)
-    assert row["orders"] > 12
-    assert record(correlations(trials), of="strings")["n"] == 26
-
-
 def test_strings_that_keep_their_order_are_themselves():
     trials = shown_by("legibility", 2)
     assert len(strings(trials).rows) == 16  # ac is not ca
     assert {row["orders"] for row in strings(trials).records()} == {1}
     assert len(strings(shown_by("words", 1)).rows) == 40
-
-
-def test_another_protocol_of_the_same_name_is_not_ours():
-    columns = "participant protocol condition presented answered"
-    lines = ["A letters T0 abc abc", "A letters T0 cab cab", "B letters T0 npgke npgke"]
-    trials, _ = made(*lines, columns=columns)
-    assert len(strings(trials).rows) == 3
 
 
 def test_a_table_tells_the_set_of_its_strings():
@@ -141,15 +119,9 @@ def exports(sites, tmp_path):
     return found
 
 
-def test_so_are_the_tables_of_two_folders(sites, tmp_path):
-    paths = exports(sites, tmp_path)
-    study = load_study(paths)
-    assert levels(study.trials.session) == (
-        "x/trials.csv: P01-orders",
-        "y/trials.csv: P01-orders",
-    )
-    assert len(study.trials) == 24
-    assert any("taken for one person" in warning for warning in study.warnings)
+def test_tables_that_name_two_sessions_alike_are_refused(sites, tmp_path):
+    with pytest.raises(InputError, match=r"is there a second time; .* a name of its own"):
+        load_study(exports(sites, tmp_path))
 
 
 def test_tables_without_sessions_are_their_files(tmp_path):

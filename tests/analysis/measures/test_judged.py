@@ -7,7 +7,7 @@ from scipy.stats import norm, t
 
 from tests.analysis.making import record, sheet
 from vbraille.analysis.chapters import Options, analyse_study
-from vbraille.analysis.figures.rises import rises
+from vbraille.analysis.figures import rises
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.sheets import from_rows, read_csv
 from vbraille.analysis.input.study import Study

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from vbraille.analysis.input.fieldvalues import UNKNOWN, is_pair, parse_pair
+from vbraille.analysis.input.sheets import UNKNOWN, is_pair, parse_pair
 from vbraille.analysis.statistics.intervals import LARGEST
 from vbraille.errors import InputError
 

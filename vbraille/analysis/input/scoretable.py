@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from vbraille.analysis.input.fieldvalues import UNKNOWN
+from vbraille.analysis.input.sheets import UNKNOWN
 from vbraille.analysis.input.trials import comparable, factor
 from vbraille.errors import InputError
 

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from vbraille.adaptive.estimates import GridAxis
-from vbraille.adaptive.questplus import geometric, nearer_quest, steps
+from vbraille.adaptive.questplus import GridAxis, geometric, nearer_quest, steps
 from vbraille.analysis.input.trials import chosen, codes
 from vbraille.analysis.schemas import (
     NOTE_COLUMN,

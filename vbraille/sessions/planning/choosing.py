@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from msgspec import structs
 
-from vbraille.adaptive.stopping import Asked
+from vbraille.adaptive.staircase import Asked
 from vbraille.errors import VbrailleError
 from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.knobs import KNOBS, value_at, with_value
@@ -31,8 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from vbraille.adaptive.questplus import GridQuest
-    from vbraille.adaptive.staircase import Staircases
-    from vbraille.adaptive.stopping import StopRule
+    from vbraille.adaptive.staircase import Staircases, StopRule
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.procedure import Answered, Procedure
     from vbraille.sessions.planning.protocol import Protocol
