@@ -65,20 +65,6 @@ def test_information_is_symmetric_and_the_divergence_from_independence(rng):
     assert found == pytest.approx(transmitted_bits(counts.T))
 
 
-@pytest.mark.parametrize("measure", ALL)
-def test_what_is_no_table_of_answers(measure):
-    with pytest.raises(Unanswerable, match="no answers"):
-        measure(np.zeros((2, 3), dtype=int))
-    with pytest.raises(Unanswerable, match="no answers"):
-        measure(np.zeros((0, 0), dtype=int))
-    with pytest.raises(ValueError, match="column of its own"):
-        measure([[1], [2]])
-    with pytest.raises(ValueError, match="not integers"):
-        measure([[1.5, 0.5]])
-    with pytest.raises(ValueError, match="below 0"):
-        measure([[1, -1], [0, 1]])
-
-
 def test_one_character_alone_has_no_kappa():
     with pytest.raises(Unanswerable, match="one character"):
         cohen_kappa([[9, 0], [0, 0]])

@@ -56,17 +56,17 @@ SENSITIVITY = Schema(
         NOTE_COLUMN,
     ),
 )
-_SIGNAL = ("hit", "miss")
+_DETECTIONS = {"detect": yes_no, "same-different": same_different, "which": two_alternatives}
 
 
 def sensitivity(judgements: pd.DataFrame) -> ResultTable:
     """Sensitivity and criterion of each participant in each condition."""
     rows: list[Row] = []
-    for question in ("detect", "same-different", "which"):
+    for question, detection in _DETECTIONS.items():
         asked = judgements[(judgements["question"] == question) & (judgements["outcome"] != "")]
         for (participant, _), own in groups(asked, "participant", "protocol"):
             for (condition,), part in groups(own, "condition"):
-                counts = _of_two(part) if question == "which" else _found(part, own)
+                counts = _counts(question, part, own)
                 if not counts[1] and question != "which":
                     continue  # a condition of blank trials alone
                 row: Row = dict(
@@ -74,43 +74,26 @@ def sensitivity(judgements: pd.DataFrame) -> ResultTable:
                 )
                 row |= {"question": question, "participant": participant, "condition": condition}
                 try:
-                    rows.append(row | _told(_detection(question, *counts)))
+                    rows.append(row | _told(detection(*counts)))
                 except Unanswerable as reason:
                     rows.append(row | {"note": f"no d′: {reason}"})
     return SENSITIVITY.fill(rows, () if rows else ("nothing was looked for",))
 
 
-def _found(part: pd.DataFrame, own: pd.DataFrame) -> tuple[int, int, int, int]:
-    """Hits and signals of a condition, false alarms and noises of all conditions."""
-    signals = part["outcome"].isin(_SIGNAL)
-    noises = own[~own["outcome"].isin(_SIGNAL)]
-    return (
-        int((part["outcome"] == "hit").sum()),
-        int(signals.sum()),
-        int((noises["outcome"] == "false alarm").sum()),
-        len(noises),
-    )
+def _counts(question: str, part: pd.DataFrame, own: pd.DataFrame) -> tuple[int, int, int, int]:
+    """Hits and signals of a condition, false alarms and noises: those of all conditions.
 
-
-def _of_two(part: pd.DataFrame) -> tuple[int, int, int, int]:
-    """Answers "first" where the first is right, those trials, and the same where it is not."""
-    first = part["presented"].str.split().str[0] == part["answered"]
-    right = part["outcome"] == "right"
-    is_first = first == right
-    return (
-        int((first & is_first).sum()),
-        int(is_first.sum()),
-        int((first & ~is_first).sum()),
-        int((~is_first).sum()),
-    )
-
-
-def _detection(question: str, hits: int, signals: int, alarms: int, noises: int) -> Detection:
+    Of two, a signal is where the first is right, and noises are those of the condition alone.
+    """
     if question == "which":
-        return two_alternatives(hits, signals, noises - alarms, noises)
-    if question == "same-different":
-        return same_different(hits, signals, alarms, noises)
-    return yes_no(hits, signals, alarms, noises)
+        yes = part["presented"].str.split().str[0] == part["answered"]
+        signal = yes == (part["outcome"] == "right")
+        signals, noises = yes[signal], yes[~signal]
+    else:
+        yes = own["outcome"].isin(("hit", "false alarm"))
+        signal = own["outcome"].isin(("hit", "miss"))
+        signals, noises = yes[part.index][signal[part.index]], yes[~signal]
+    return int(signals.sum()), signals.size, int(noises.sum()), noises.size
 
 
 def _told(found: Detection) -> Row:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -181,14 +182,8 @@ def correlations(trials: pd.DataFrame) -> ResultTable:
 
 def _described(reading: Reading) -> Row:
     """Values of a reading, or a note on why one is missing."""
-    row: Row = {
-        "duration_s": reading.duration_s,
-        "returned": int(reading.returned),
-        "passes": reading.passes,
-        "rescans": reading.rescans,
-        "pattern": reading.pattern,
-        "speed_right_mm_s": reading.speed_right_mm_s,
-        "speed_left_mm_s": reading.speed_left_mm_s,
+    row: Row = {name: of for name, of in asdict(reading).items() if name in TRAJECTORIES.names} | {
+        "returned": int(reading.returned)
     }
     ways = {"right": reading.speed_right_mm_s, "left": reading.speed_left_mm_s}
     return row | {"note": "; ".join(f"no stroke to the {w}" for w, v in ways.items() if v is None)}

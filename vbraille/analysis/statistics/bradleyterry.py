@@ -14,7 +14,6 @@ from vbraille.analysis.statistics.intervals import (
     TAIL,
     Interval,
     Unanswerable,
-    finite_scores,
     mean_interval,
     wilson,
 )
@@ -94,16 +93,8 @@ def bradley_terry(wins: ArrayLike) -> Scale:
     Unanswerable
         If there are no comparisons, or they fall into groups of values that were
         never compared with each other.
-    ValueError
-        If these are no counts of pairs.
     """
     table = np.asarray(wins)
-    if table.ndim != 2 or table.shape[0] != table.shape[1]:
-        raise ValueError(f"wins of shape {table.shape}; a square is needed")
-    if table.size and not np.issubdtype(table.dtype, np.integer):
-        raise ValueError(f"wins are {table.dtype}, not integers")
-    if (table < 0).any() or np.diag(table).any():
-        raise ValueError("wins must be 0 or more, and 0 of a value over itself")
     if table.sum() == 0:
         raise Unanswerable("no comparisons")
     counts = table.astype(np.float64)[None]
@@ -153,12 +144,8 @@ def preferred(
     ------
     Unanswerable
         If there are no comparisons, or nobody's comparisons make a scale with a highest value.
-    ValueError
-        If the columns are no comparisons of these values.
     """
-    values = finite_scores("values", values)
-    if np.unique(values).size != values.size:
-        raise ValueError(f"a value occurs twice in {values.tolist()}")
+    values = np.asarray(values, np.float64)
     wins = _wins_of_each(values.size, first, second, chosen, groups)
     order = np.argsort(values)
     values, wins = values[order], wins[:, order][:, :, order]
@@ -220,12 +207,8 @@ def position_bias(chosen: ArrayLike, groups: ArrayLike) -> PositionBias:
     ------
     Unanswerable
         If there are no comparisons.
-    ValueError
-        If a choice is neither 0 nor 1.
     """
-    choice, who = _column("chosen", chosen, 2), np.asarray(groups)
-    if choice.shape != who.shape:
-        raise ValueError("chosen and groups must be of one length")
+    choice, who = np.asarray(chosen), np.asarray(groups)
     if choice.size == 0:
         raise Unanswerable("no comparisons")
     index = np.unique(who, return_inverse=True)[1]
@@ -243,26 +226,11 @@ def position_bias(chosen: ArrayLike, groups: ArrayLike) -> PositionBias:
     return PositionBias(float(own.mean()), interval, float(test.pvalue))
 
 
-def _column(name: str, column: ArrayLike, count: int) -> NDArray[np.int64]:
-    """A column of whole numbers in 0…count - 1."""
-    whole = np.asarray(column)
-    if whole.ndim != 1 or (whole.size and whole.dtype.kind not in "iub"):
-        raise ValueError(f"{name} must be one column of whole numbers")
-    if whole.size and not 0 <= whole.min() <= whole.max() < count:
-        raise ValueError(f"{name} must be in 0…{count - 1}")
-    return whole.astype(np.int64)
-
-
 def _wins_of_each(
     k: int, first: ArrayLike, second: ArrayLike, chosen: ArrayLike, groups: ArrayLike
 ) -> NDArray[np.int64]:
     """How often each participant chose one value over another, int64[participants, k, k]."""
-    one, two = _column("first", first, k), _column("second", second, k)
-    choice, who = _column("chosen", chosen, 2), np.asarray(groups)
-    if not one.shape == two.shape == choice.shape == who.shape:
-        raise ValueError("first, second, chosen and groups must be of one length")
-    if (one == two).any():
-        raise ValueError("a value was compared with itself")
+    one, two, choice, who = (np.asarray(column) for column in (first, second, chosen, groups))
     names, index = np.unique(who, return_inverse=True)
     wins = np.zeros((len(names), k, k), dtype=np.int64)
     np.add.at(wins, (index, np.where(choice, two, one), np.where(choice, one, two)), 1)

@@ -71,29 +71,24 @@ def yes_no(hits: int, signals: int, false_alarms: int, noises: int) -> Detection
     )
 
 
-def two_alternatives(right_first: int, firsts: int, right_second: int, seconds: int) -> Detection:
+def two_alternatives(hits: int, firsts: int, false_alarms: int, seconds: int) -> Detection:
     """Sensitivity of which of two: d′ = (z(H) - z(F)) / √2, for two looks at the difference.
-
-    A hit is "first" where the first was it, a false alarm "first" where the second was.
 
     Parameters
     ----------
-    right_first, firsts
-        Number of right answers where the first was it, and of these trials.
-    right_second, seconds
-        The same where the second was.
+    hits, firsts
+        Number of answers "first" where the first was it, and of these trials.
+    false_alarms, seconds
+        Number of answers "first" where the second was, and of these trials.
 
     Raises
     ------
     Unanswerable
         If there are no trials of one order.
     ValueError
-        If there are more right answers than trials.
+        If there are more answers than trials.
     """
-    if not 0 <= right_second <= seconds:
-        raise ValueError(f"{right_second} right of {seconds} trials")
-    found = yes_no(right_first, firsts, seconds - right_second, seconds)
-    return _scaled(found, lambda d: d / math.sqrt(2))
+    return _scaled(yes_no(hits, firsts, false_alarms, seconds), lambda d: d / math.sqrt(2))
 
 
 def same_different(

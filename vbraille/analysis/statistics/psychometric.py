@@ -21,7 +21,7 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.special import expit, ndtr, xlog1py, xlogy
 
-from vbraille.analysis.statistics.intervals import TAIL, Interval, Unanswerable, finite_scores
+from vbraille.analysis.statistics.intervals import TAIL, Interval, Unanswerable
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -131,8 +131,6 @@ def fit_psychometric(
     Unanswerable
         If there are fewer than three levels, all answers or none are positive, or their share
         does not rise.
-    ValueError
-        If there is no such shape, the counts are none, or there are blanks of fixed guesses.
     """
     asked = _answers(levels, positive, trials, shape, guess, blanks)
     edges = _first_edges(asked, shape, scale)
@@ -172,21 +170,8 @@ def _answers(
     blanks: tuple[int, int],
 ) -> LevelCounts:
     """Counts with equal levels put together, in their order, after checks."""
-    if shape not in SHAPES:
-        raise ValueError(f"no shape {shape!r}; there are {', '.join(SHAPES)}")
-    if guess is not None and not 0 <= guess < 1:
-        raise ValueError(f"guess {guess} is not in 0…1")
-    if not 0 <= blanks[0] <= blanks[1]:
-        raise ValueError(f"{blanks[0]} positive answers to {blanks[1]} blanks")
-    if guess is not None and blanks[1]:
-        raise ValueError("blanks tell of free guesses, and guess is fixed")
-    x = finite_scores("levels", levels)
-    y, n = (np.asarray(of, np.float64) for of in (positive, trials))
-    if not (x.shape == y.shape == n.shape) or not ((y >= 0) & (y <= n) & (n < np.inf)).all():
-        raise ValueError("positive answers must be counts, no more than the trials of each level")
+    x, y, n = (np.asarray(of, np.float64) for of in (levels, positive, trials))
     x, y, n = x[n > 0], y[n > 0], n[n > 0]
-    if shape == "weibull" and not (x > 0).all():
-        raise ValueError("levels of a Weibull must be above 0")
     found, at = np.unique(x, return_inverse=True)
     y, n = (np.asarray(np.bincount(at, of, found.size), np.float64) for of in (y, n))
     if found.size < FEWEST_LEVELS:

@@ -35,7 +35,6 @@ SETTLED = 1e-10  # log odds; steps below it end a fit
 _LARGEST_STEP = 2.0  # log odds; first steps from the middle to the ceiling would overshoot
 _ALONE = 1e-9  # share of a coefficient's information that must come from others
 _ALIKE = 1e-9  # of the variance by chance alone, below which participants do not differ at all
-_LARGE = 1_000_000  # numbers of the products of a design's columns that are kept for all steps
 _OWN = 1.0  # trials at the model's share that a participant's own share of a cell is drawn by
 
 
@@ -120,13 +119,8 @@ def fit_trials(
         If the arrays do not fit together, or there are more right answers than answers.
     """
     y, n, x = _checked(correct, trials, design)
-    studies, participants, cells = y.shape
-    p = x.shape[-1]
-    if studies * participants * cells * p**2 > _LARGE:
-        squares = None
-    else:
-        squares = (x[..., :, None] * x[..., None, :]).reshape(participants, cells, p * p)
-    _check_rank(_information((n > 0).astype(np.float64), x, squares).sum(axis=1))
+    studies, p = len(y), x.shape[-1]
+    _check_rank(_information((n > 0).astype(np.float64), x).sum(axis=1))
     beta = np.zeros((studies, p))
     settled = np.zeros(studies, dtype=bool)
     going = np.arange(studies)
@@ -135,17 +129,10 @@ def fit_trials(
         right, asked = (of[going].reshape(going.size, -1) for of in (y, n))
         share = expit(beta[going] @ rows.T)
         weight = asked * share * (1 - share)
-        if squares is None:
-            whole = _information(weight.reshape(-1, participants, cells), x, None).sum(axis=1)
-        else:
-            whole = (weight @ squares.reshape(-1, p * p)).reshape(-1, p, p)
-        spread = np.linalg.inv(whole)
+        spread = np.linalg.inv(_information(weight, rows))
         residual = right - asked * share
         if penalised:
-            if squares is None:
-                along = np.stack([((rows @ of) * rows).sum(axis=1) for of in spread])
-            else:
-                along = spread.reshape(-1, p * p) @ squares.reshape(-1, p * p).T
+            along = ((rows @ spread) * rows).sum(axis=-1)
             residual = residual + weight * along * (0.5 - share)
         step = np.einsum("spq,sq->sp", spread, residual @ rows)
         longest = np.abs(step).max(axis=1)
@@ -158,14 +145,14 @@ def fit_trials(
             break
     share = expit(np.einsum("kcp,sp->skc", x, beta))
     weight = n * share * (1 - share)
-    each = _information(weight, x, squares)
+    each = _information(weight, x)
     own_share = (y + _OWN * share) / (n + _OWN)
     return TrialsFit(
         beta,
         np.linalg.inv(each.sum(axis=1)),
         each,
         np.einsum("skc,kcp->skp", y - n * share, x),
-        _information(n * own_share * (1 - own_share), x, squares),
+        _information(n * own_share * (1 - own_share), x),
         settled,
     )
 
@@ -283,23 +270,9 @@ def term_covariance(
     return form
 
 
-def _information(
-    weight: NDArray[np.float64], x: NDArray[np.float64], squares: NDArray[np.float64] | None
-) -> NDArray[np.float64]:
-    """Each participant's sum over cells of weights times x x', float64[studies, k, p, p].
-
-    Where `squares` has these products, all studies are summed at once.
-    """
-    p = x.shape[-1]
-    if squares is not None:
-        sums = np.matmul(weight.swapaxes(0, 1), squares).swapaxes(0, 1)
-        return sums.reshape(*weight.shape[:2], p, p)
-    return np.array(
-        [
-            [(of[:, None] * own).T @ own for of, own in zip(study, x, strict=True)]
-            for study in weight
-        ]
-    )
+def _information(weight: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Sum over cells of weights, float64[…, c], times x x' of x, float64[…, c, p]."""
+    return (weight[..., None] * x).swapaxes(-1, -2) @ x
 
 
 def _checked(
