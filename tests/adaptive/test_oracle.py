@@ -13,10 +13,7 @@ MODELS = {model["name"]: model for model in MADE["models"]}
 
 
 def quest_of(model):
-    axes = [
-        GridAxis(name, tuple(values), tuple(model["prior"].get(name, ())))
-        for name, values in model["axes"].items()
-    ]
+    axes = [GridAxis(name, tuple(values)) for name, values in model["axes"].items()]
     if model["family"].startswith("nearer"):
         pairs = list(product(*model["stimuli"]))
         return nearer_quest(pairs, *axes, log=model["family"].endswith("log"))

@@ -25,7 +25,6 @@ PLAN = StudyPlan(
     sizes=(5, 8),
     test="model",
     correction="holm",
-    alpha=0.05,
 )
 
 

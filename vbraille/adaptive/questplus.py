@@ -61,7 +61,7 @@ CREDIBLE = 0.95  # share of a posterior that a credible interval holds
 
 @dataclass(frozen=True, slots=True)
 class GridAxis:
-    """Possible values of a parameter of whoever answers.
+    """Possible values of a parameter of whoever answers, all equally likely beforehand.
 
     Parameters
     ----------
@@ -69,37 +69,21 @@ class GridAxis:
         Name of the parameter.
     values
         Values, increasing; a single value fixes the parameter.
-    weights
-        How likely each value is beforehand, up to a factor; empty if all are equally likely.
 
     Raises
     ------
     ValueError
-        If there is no value, values do not increase, or weights are not as many, not above 0 or
-        not finite.
+        If there is no value, or values do not increase.
     """
 
     name: str
     values: tuple[float, ...]
-    weights: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.values:
             raise ValueError(f"{self.name} has no values; give one or more")
         if not np.isfinite(self.values).all() or (np.diff(self.values) <= 0).any():
             raise ValueError(f"{self.name} has values that do not increase; sort them")
-        if self.weights and len(self.weights) != len(self.values):
-            raise ValueError(
-                f"{self.name} has {len(self.weights)} weights; there must be {len(self.values)}"
-            )
-        if not (np.isfinite(self.weights).all() and (np.array(self.weights) > 0).all()):
-            raise ValueError(f"{self.name} has a weight that is not above 0")
-
-    @property
-    def prior(self) -> NDArray[np.float64]:
-        """Probabilities of the values beforehand; float64[values]."""
-        weights = np.array(self.weights or (1.0,) * len(self.values))
-        return weights / weights.sum()
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,26 +147,12 @@ def phi(z: Floats) -> Floats:
     return np.array(made).reshape(np.shape(z)) / 2
 
 
-def normal(x: Floats, threshold: Floats, spread: Floats) -> Floats:
-    """Shape of the cumulative normal, equation (4); arrays are broadcast."""
-    return phi((x - threshold) / spread)
-
-
-def logistic(x: Floats, threshold: Floats, spread: Floats) -> Floats:
-    """Shape of the logistic function, equation (4); arrays are broadcast."""
-    return 0.5 + 0.5 * np.tanh((x - threshold) / spread / 2)
-
-
-def weibull(x: Floats, threshold: Floats, spread: Floats) -> Floats:
-    """Shape of the Weibull function, equation (4); arrays are broadcast."""
-    return -np.expm1(-((x / threshold) ** spread))
-
-
 SHAPES: dict[str, Callable[[Floats, Floats, Floats], Floats]] = {
-    "normal": normal,
-    "logistic": logistic,
-    "weibull": weibull,
+    "normal": lambda x, threshold, spread: phi((x - threshold) / spread),
+    "logistic": lambda x, threshold, spread: 0.5 + 0.5 * np.tanh((x - threshold) / spread / 2),
+    "weibull": lambda x, threshold, spread: -np.expm1(-((x / threshold) ** spread)),
 }
+"""Shapes by equation (4), of stimulus, threshold and spread; arrays are broadcast."""
 
 
 def detected(
@@ -267,21 +237,8 @@ class GridQuest:
     Raises
     ------
     ValueError
-        If there is no stimulus, one is given twice, too many parameters have several values, or
-        the table has another shape or is no table of probabilities.
+        If there is no stimulus, one is given twice, or too many parameters have several values.
     """
-
-    __slots__ = (
-        "_along",
-        "_index",
-        "_kept",
-        "_logs",
-        "_prior",
-        "_table",
-        "_uncertain",
-        "axes",
-        "stimuli",
-    )
 
     def __init__(
         self,
@@ -297,14 +254,6 @@ class GridQuest:
         shape = tuple(len(axis.values) for axis in self.axes)
         if not 1 <= sum(size > 1 for size in shape) <= MOST_AXES:
             raise ValueError(f"1 to {MOST_AXES} parameters must have several values")
-        if table.ndim < 2 or table.shape[1:] != (len(self.stimuli), *shape):
-            raise ValueError(
-                f"the table has shape {table.shape}; it must be outcomes, {len(self.stimuli)}, "
-                f"{', '.join(map(str, shape))}"
-            )
-        sums = table.sum(axis=0)
-        if not (np.isfinite(sums).all() and (table > 0).all() and np.allclose(sums, 1.0)):
-            raise ValueError("the table must have probabilities above 0 that add up to 1")
         names = [axis.name for axis in self.axes]
         if about and about not in names:
             raise ValueError(f"there is no parameter {about!r}; there is {', '.join(names)}")
@@ -313,10 +262,8 @@ class GridQuest:
         self._uncertain = -(flat * self._logs).sum(axis=0)
         # With two outcomes, the first follows from the second.
         self._table = flat[1:] if len(flat) == 2 else flat
-        prior = np.ones(())
-        for axis in self.axes:
-            prior = np.multiply.outer(prior, axis.prior)
-        self._prior = np.log(prior.reshape(-1))
+        # The logarithm of the same probability for each combination of parameters.
+        self._prior = np.full(flat.shape[-1], np.log(math.prod(1 / size for size in shape)))
         # The value of what is asked about in each combination of parameters.
         self._along: NDArray[np.float64] | None = None
         if about:

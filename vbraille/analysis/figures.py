@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,39 +24,39 @@ from vbraille.pictures.charts import Bars, Curve, Matrix, Path, Paths, Rise, Ris
 from vbraille.wording import count
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from vbraille.analysis.input.sittings import Example, SessionTrials
     from vbraille.analysis.schemas import ResultTable, Row
-    from vbraille.pictures.charts import Numbers
+    from vbraille.pictures.charts import Chart, Numbers
 
 MOST_ERRORS = 12  # kinds of errors that are drawn
 
 
 def legibility(table: ResultTable, averages: ResultTable) -> ReportFigure:
     """Bars of legibility by participant and condition: Lévesque 2009, figs. 4.7 and 4.9."""
-    people = _distinct(table, "participant")
-    conditions = _distinct(table, "condition")
+    people, conditions = _distinct(table, "participant"), _distinct(table, "condition")
     at = {(row["participant"], row["condition"]): row for row in table.records()}
-    panels = [("strings read right (%)", "legibility", 100.0)]
-    if any(len_ > 1 for len_ in _places(table)):
-        panels.append(("characters read right (%)", "character_legibility", 100.0))
+    panels = [("strings read right (%)", ("legibility", "low", "high"), 100.0)]
+    if any(row["characters"] >= 2 * row["trials"] for row in at.values() if row["trials"]):
+        panels.append(("characters read right (%)", ("character_legibility",), 100.0))
     if (table.frame["timed"] > 0).any():
-        panels.append(("mean duration (s)", "duration_mean_s", 1.0))
-
-    def bars(condition: str, name: str, scale: float) -> Series:
-        lows, highs = (
-            tuple(_scaled(at[who, condition][end], scale) for who in people)
-            if name == "legibility"
-            else ()
-            for end in ("low", "high")
-        )
-        values = tuple(_scaled(at[who, condition][name], scale) for who in people)
-        return Series(condition, values, lows, highs)
-
+        panels.append(("mean duration (s)", ("duration_mean_s",), 1.0))
     drawn = tuple(
-        (label, tuple(bars(condition, name, scale) for condition in conditions))
-        for label, name, scale in panels
+        (
+            label,
+            tuple(
+                Series(
+                    condition,
+                    *(
+                        tuple(_scaled(at[who, condition][name], scale) for who in people)
+                        for name in names
+                    ),
+                )
+                for condition in conditions
+            ),
+        )
+        for label, names, scale in panels
     )
     known = [row for row in table.records() if row["trials"]]
     best, worst = (extreme(known, key=lambda row: row["legibility"]) for extreme in (max, min))
@@ -224,11 +224,6 @@ def _points(
     return tuple(tuple(own.get(each) for each in groups) for own in of.values())
 
 
-def _places(table: ResultTable) -> list[int]:
-    """Mean number of places in a string, for each row that has any."""
-    return [row["characters"] // row["trials"] for row in table.records() if row["trials"]]
-
-
 def _distinct(table: ResultTable, name: str) -> list[str]:
     return table.frame[name].unique().tolist()
 
@@ -349,8 +344,7 @@ def over_time(table: ResultTable, slopes: ResultTable) -> Iterator[ReportFigure]
     whose = ["participant", "session", "condition"]
     runs = []
     several = len(table.frame["session"].unique()) > len(table.frame["participant"].unique())
-    by = table.frame.groupby(whose, sort=False)
-    for (who, session, condition), rows in list(by)[: MOST_RUNS * MOST_PAGES]:
+    for (who, session, condition), rows in table.frame.groupby(whose, sort=False):
         average = rows["average"].astype(object).where(rows["average"].notna(), None)
         runs.append(
             Curve(
@@ -366,25 +360,11 @@ def over_time(table: ResultTable, slopes: ResultTable) -> Iterator[ReportFigure]
         f"10 trials"
         for row in sure
     )
-    pages = -(-by.ngroups // MOST_RUNS)
-    left = f" Of {pages} pages {MOST_PAGES} are drawn; the table has all." * (pages > MOST_PAGES)
-    for page in range(min(pages, MOST_PAGES)):
-        part = f", {page + 1} of {pages}" if pages > 1 else ""
-        text = (
-            f"A panel a participant and condition; dots are single trials, the curve is the "
-            f"average of the past 10. Legibility changed with p below 0.05: {said or 'nowhere'}."
-            f"{left}"
-        )
-        yield ReportFigure(
-            "over_time" if not page else f"over_time_{page + 1}",
-            f"Legibility over time{part}",
-            text if not page else "As the figure before, of the participants that follow.",
-            table.name,
-            Runs(
-                f"Legibility over time{part}",
-                tuple(runs[page * MOST_RUNS : (page + 1) * MOST_RUNS]),
-            ),
-        )
+    text = (
+        f"A panel a participant and condition; dots are single trials, the curve is the average of "
+        f"the past 10. Legibility changed with p below 0.05: {said or 'nowhere'}."
+    )
+    yield from _pages("over_time", "Legibility over time", text, table, runs, MOST_RUNS, Runs)
 
 
 def examples(sittings: Sequence[SessionTrials]) -> tuple[ResultTable, ReportFigure] | None:
@@ -472,21 +452,36 @@ def rises(table: ResultTable, levels: ResultTable) -> Iterator[ReportFigure]:
         for row in known[:_TOLD]
     )
     more = "; the table has all" if len(known) > _TOLD else ""
-    pages = -(-len(panels) // MOST_RISES)
+    text = (
+        "A panel for each participant and level; the more trials, the larger the dot, and the "
+        f"curve is the psychometric function. Thresholds with their 95 % intervals: "
+        f"{said or 'none'}{more}."
+    )
+    title = "Answers by level, and thresholds"
+    yield from _pages("thresholds", title, text, levels, panels, MOST_RISES, Rises)
+
+
+def _pages(
+    name: str,
+    title: str,
+    text: str,
+    table: ResultTable,
+    panels: Sequence[Any],
+    most: int,
+    chart: Callable[[str, tuple[Any, ...]], Chart],
+) -> Iterator[ReportFigure]:
+    """Figures of many panels, so many to a figure; of more than `MOST_PAGES` the table has all."""
+    pages = -(-len(panels) // most)
+    if pages > MOST_PAGES:
+        text += f" Of {pages} pages {MOST_PAGES} are drawn; the table has all."
     for page in range(min(pages, MOST_PAGES)):
-        part = f", {page + 1} of {pages}" if pages > 1 else ""
-        title = f"Answers by level, and thresholds{part}"
-        text = (
-            "A panel for each participant and level; the more trials, the larger the dot, and the "
-            f"curve is the psychometric function. Thresholds with their 95 % intervals: "
-            f"{said or 'none'}{more}."
-        )
+        of_page = f"{title}, {page + 1} of {pages}" if pages > 1 else title
         yield ReportFigure(
-            "thresholds" if not page else f"thresholds_{page + 1}",
-            title,
-            text if not page else "As the figure before, of the participants that follow.",
-            levels.name,
-            Rises(title, tuple(panels[page * MOST_RISES : (page + 1) * MOST_RISES])),
+            f"{name}_{page + 1}" if page else name,
+            of_page,
+            "As the figure before, of the participants that follow." if page else text,
+            table.name,
+            chart(of_page, tuple(panels[page * most : (page + 1) * most])),
         )
 
 

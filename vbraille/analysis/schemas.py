@@ -131,6 +131,8 @@ class Schema:
         Columns in their order.
     grows
         What further columns there are, where that depends on the trials; otherwise empty.
+    empty
+        Note of a table without rows that has no other.
     """
 
     name: str
@@ -138,6 +140,7 @@ class Schema:
     about: str
     columns: tuple[Column, ...]
     grows: str = ""
+    empty: str = ""
 
     @property
     def names(self) -> list[str]:
@@ -177,6 +180,8 @@ class Schema:
         if NOTE in given:
             given[NOTE] = given[NOTE].astype(object).fillna("")
         frame = given.astype({column.name: column.dtype for column in schema.columns})
+        if frame.empty and self.empty:
+            notes = notes or (self.empty,)
         return ResultTable(schema, frame, tuple(notes), tuple(marks))
 
 

@@ -6,7 +6,6 @@ Each point of the grid is read in one even pass, at 1,000 frames a second, strin
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
-from functools import lru_cache
 from itertools import product
 from math import inf, prod
 from typing import TYPE_CHECKING, Any, Literal
@@ -143,10 +142,10 @@ def _check_values(name: str, values: tuple[float, ...]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class GridTask:
-    """A point of a grid, by its number, with the text of the grid's file."""
+    """A point of a grid, with its number."""
 
-    text: str
-    where: str
+    grid: GridFile
+    point: dict[str, Any]
     number: int
 
 
@@ -189,17 +188,9 @@ def read_grid(text: str, where: str) -> GridFile:
     return TomlFile(text, where).read(GridFile, spelled(SpellingKeys(), planned=False))
 
 
-@lru_cache(maxsize=1)
-def _read_once(text: str, where: str) -> tuple[GridFile, list[dict[str, Any]]]:
-    """Grid and its points, which a worker needs again for each of its tasks."""
-    grid = read_grid(text, where)
-    return grid, grid.points()
-
-
 def predict_point(task: GridTask) -> list[int]:
     """Characters, those right, strings, and those right, at a point of a grid."""
-    grid, points = _read_once(task.text, task.where)
-    point = points[task.number]
+    grid, point = task.grid, task.point
     model, style = MODELS[grid.model_name], grid.style_at(point)
     observer = Observer(model.display, style, noise=grid.noise)
     sequence = np.random.SeedSequence(grid.seed, spawn_key=(task.number,))
@@ -255,7 +246,7 @@ def predict(
     grid = read_grid(text, path)
     points = grid.points()
     kept = KeptResults(keep, {"grid": text})
-    tasks = [GridTask(text, path, number) for number in range(len(points))]
+    tasks = [GridTask(grid, point, number) for number, point in enumerate(points)]
     ended = work_on(workers, predict_point, tasks, kept, told)
     found = [Prediction(points[number], *kept.found[number]) for number in sorted(kept.found)]
     if not found and ended is not None:

@@ -11,6 +11,7 @@ import numpy as np
 from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, Unanswerable, wilson
 from vbraille.errors import InputError, VbrailleError
 from vbraille.forecast.studies import (
+    ALPHA,
     StudyPlan,
     StudyTask,
     count_found,
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from vbraille.forecast.workers import Workers
     from vbraille.sessions.planning.protocol import Protocol
 
-ALPHA = 0.05
 ENOUGH = 0.8
 MOST_PARTICIPANTS = 500
 MOST_STUDIES = 1_000_000
@@ -195,7 +195,6 @@ class PowerQuestion:
             sizes=self.sizes,
             test="half" if choosing else self.test or TESTS[0],
             correction=self.correction,
-            alpha=ALPHA,
         )
 
     def _trials(self, names: list[str]) -> tuple[tuple[int, ...], ...]:
@@ -315,7 +314,7 @@ def _about(question: PowerQuestion, plan: StudyPlan, studies: int) -> tuple[tupl
             f"by an s.d. of {plan.between:g} in log odds, and in what a condition adds to them "
             f"by {plan.differing:g}",
         ),
-        ("test", f"{tests[plan.test]}, two-sided at {plan.alpha:g}{correction}"),
+        ("test", f"{tests[plan.test]}, two-sided at {ALPHA:g}{correction}"),
         ("simulated", f"{studies} {studied} of each size, seed {question.seed}"),
     )
 

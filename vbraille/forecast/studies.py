@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(80)
 _MOST_LOG_ODDS = 40.0
+ALPHA = 0.05  # level at which a difference counts as found
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +57,6 @@ class StudyPlan:
         for a t-test of shares in the first condition against one half.
     correction
         How the p-values of a study's pairs are corrected: a key of `correction.METHODS`.
-    alpha
-        Level at which a difference counts as found.
     """
 
     trials: tuple[tuple[int, ...], ...]
@@ -67,7 +66,6 @@ class StudyPlan:
     sizes: tuple[int, ...]
     test: str
     correction: str
-    alpha: float
 
     @property
     def pairs(self) -> list[tuple[int, int]]:
@@ -142,7 +140,7 @@ def count_found(task: StudyTask) -> list[list[list[int]]]:
     for size in plan.sizes:
         p = _p_values(plan, correct[:, :size], trials[:size])
         untested = np.isnan(p)
-        found = _corrected(p, plan.correction) < plan.alpha
+        found = _corrected(p, plan.correction) < ALPHA
         counts.append(np.column_stack([found.sum(axis=0), untested.sum(axis=0)]).tolist())
     return counts
 

@@ -3,7 +3,6 @@
 from collections import defaultdict
 from statistics import fmean
 
-import numpy as np
 import pandas as pd
 import pytest
 from hypothesis import given
@@ -74,12 +73,10 @@ def test_means_are_those_taken_one_by_one(observed):
         for what, whos in of.items()
     }
     own = over_participants(frame["level"].to_numpy(), frame.assign(**whose))
-    assert own.levels.tolist() == sorted(means)
-    each = np.split(own.means, own.starts[1:])
-    assert [len(whos) for whos in each] == [len(of[what]) for what in sorted(means)]
-    assert own.numbers.sum() == len(observed)
-    found = [whos.mean() for whos in each]
-    assert found == pytest.approx([means[what] for what in sorted(means)])
+    each = own.groupby(level="level")["mean"]
+    assert each.size().to_dict() == {what: len(whos) for what, whos in of.items()}
+    assert own["number"].sum() == len(observed)
+    assert each.mean().to_dict() == pytest.approx(means)
 
 
 def test_equal_numbers_of_trials_make_means_and_pooled_the_same():

@@ -58,9 +58,3 @@ def test_what_is_no_table_of_scores():
         arrange(["a"], {}, [1])
     with pytest.raises(ValueError, match="5 factors"):
         arrange(["a"], {str(i): ["x"] for i in range(5)}, [1])
-    with pytest.raises(ValueError, match="participants: 1 rows"):
-        arrange(["a"], {"mode": ["x", "y"]}, [1, 2])
-    with pytest.raises(ValueError, match="factor 'mode': 1 rows"):
-        arrange(["a", "b"], {"mode": ["x"]}, [1, 2])
-    with pytest.raises(ValueError, match="within"):
-        arrange(["a", "b"], {"mode": ["x", "y"]}, [1, np.inf])

@@ -223,7 +223,7 @@ def _each(
 
 
 def _seconds(sheet: Sheet, rows: pd.DataFrame, column: str, absent: float) -> pd.Series:
-    parsed = _each(sheet, rows, column, partial(parse_seconds, number=sheet.number), absent)
+    parsed = _each(sheet, rows, column, partial(parse_seconds, value=sheet.value), absent)
     return parsed.astype(np.float64)
 
 

@@ -86,6 +86,15 @@ class Sheet:
         """
         return float(text.replace(",", ".") if self.decimal_comma else text)
 
+    def value(self, text: str) -> float:
+        """Value of a number's text, NaN if it is not known, and infinity if it is none."""
+        if text.strip().lower() in UNKNOWN:
+            return math.nan
+        try:
+            return self.number(text)
+        except ValueError:
+            return math.inf
+
 
 def read_csv(path: Path) -> Sheet:
     """Read a CSV file whose first row has the names of the columns.
@@ -204,21 +213,16 @@ def parse_whole(text: str) -> int:
     return int(float(text))
 
 
-def parse_seconds(text: str, *, number: Callable[[str], float]) -> float:
+def parse_seconds(text: str, *, value: Callable[[str], float]) -> float:
     """Seconds; NaN if they are not known.
 
     Parameters
     ----------
-    number
-        Function that gives the value of a number's text.
+    value
+        `Sheet.value` of the table.
     """
-    if text.strip().lower() in UNKNOWN:
-        return math.nan
-    try:
-        seconds = number(text)
-    except ValueError:
-        seconds = -1.0
-    if not 0 <= seconds <= LARGEST:
+    seconds = value(text)
+    if not (math.isnan(seconds) or 0 <= seconds <= LARGEST):
         raise ValueError(f"is {text!r}; give seconds, or nothing if they are not known")
     return seconds
 

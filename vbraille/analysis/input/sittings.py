@@ -31,10 +31,6 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.notes import PlacedNote
 
 MOST_PICKED = 600
-EXAMPLE_RULE = (
-    "The example of a pattern is the trial of that pattern whose duration is the median of theirs, "
-    "the lower of two in the middle, and of equal ones the earlier trial."
-)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,7 +88,9 @@ class SessionTrials:
         For each answered trial that shows a string on a device, by its number: how the string was
         read, or a clause that says why that is not known.
     examples
-        One trial of each pattern that occurs, in the order of `PATTERNS`, by `EXAMPLE_RULE`.
+        One trial of each pattern that occurs, in the order of `PATTERNS`: of its trials that whose
+        duration is the median of theirs, the lower of two in the middle, and of equal ones the
+        earlier trial.
     faults
         What is damaged, in clauses.
     state
@@ -207,7 +205,7 @@ def _example(trajectory: Trajectory, trial: Trial, participant: str, pattern: st
 
 
 def _examples(examples: Iterable[tuple[float, Example]]) -> tuple[Example, ...]:
-    """One example of each pattern by `EXAMPLE_RULE`, out of examples with their durations."""
+    """One example of each pattern, out of examples with their durations."""
     of: dict[str, list[tuple[float, int, Example]]] = defaultdict(list)
     for duration_s, example in examples:
         of[example.pattern].append((duration_s, example.trial, example))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -10,7 +10,7 @@ import pandas as pd
 from vbraille.analysis.input.trials import codes, groups, name_cell, name_string
 from vbraille.analysis.measures.legibility import unequal_notes
 from vbraille.analysis.schemas import NOTE_COLUMN, PARTICIPANT, Column, Kind, Schema, ends
-from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, too_few
+from vbraille.analysis.statistics.intervals import Unanswerable
 from vbraille.analysis.statistics.shares import mean_share
 from vbraille.braille.cells import UNICODE_BLANK
 
@@ -20,64 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.analysis.input.trials import Places
-    from vbraille.analysis.schemas import ResultTable
-
-
-class OwnMeans(NamedTuple):
-    """Participants' own means at each of k levels.
-
-    Parameters
-    ----------
-    levels : int64[k]
-        Codes of the levels that occur, ascending.
-    starts : int64[k]
-        Where the means of each level begin in the two that follow.
-    means : float64[n]
-        Means of the participants who have a level, level by level.
-    numbers : int64[n]
-        Number of observations behind each of these means.
-    """
-
-    levels: NDArray[np.int64]
-    starts: NDArray[np.int64]
-    means: NDArray[np.float64]
-    numbers: NDArray[np.int64]
-
-
-def over_participants(level: NDArray[np.int64], frame: pd.DataFrame) -> OwnMeans:
-    """Mean of each level over conditions within each participant.
-
-    Tables 3.2 and 3.3 of Lévesque 2009 were most likely found in this way: "computed across
-    all subjects using individual subject means to compensate for the unequal number of trials
-    under the different conditions".
-
-    Parameters
-    ----------
-    level : int64[n]
-        Level of each observation.
-    frame
-        Data frame of observations: whether each is ``correct``, its ``participant`` and
-        ``condition``.
-    """
-    participant, condition = codes(frame["participant"]), codes(frame["condition"])
-    shape = (int(level.max()) + 1, int(participant.max()) + 1)
-    cell = np.ravel_multi_index((level, participant), shape)
-    numbers = np.unique(cell, return_counts=True)[1]
-    correct = frame["correct"].to_numpy()
-    (level, participant, _), means = _means((level, participant, condition), correct)
-    (level, _), means = _means((level, participant), means)
-    levels, starts = np.unique(level, return_index=True)
-    return OwnMeans(levels, starts, means, numbers)
-
-
-def _means(
-    of: tuple[NDArray[np.int64], ...], value: NDArray
-) -> tuple[tuple[NDArray[np.int64], ...], NDArray[np.float64]]:
-    """Codes that occur, in order, and the mean of the observations that have each of them."""
-    shape = tuple(int(code.max()) + 1 for code in of)
-    cells, cell = np.unique(np.ravel_multi_index(of, shape), return_inverse=True)
-    sums = np.bincount(cell, value, cells.size)
-    return np.unravel_index(cells, shape), sums / np.bincount(cell, minlength=cells.size)
+    from vbraille.analysis.schemas import ResultTable, Row
 
 
 _ABOUT = (
@@ -191,29 +134,47 @@ def _dots(places: Places) -> NDArray[np.int64]:
     return np.array([mask.bit_count() for mask in range(256)])[places.frame["presented"]]
 
 
+def over_participants(level: NDArray[np.int64], frame: pd.DataFrame) -> pd.DataFrame:
+    """Mean of each level over conditions within each participant.
+
+    Tables 3.2 and 3.3 of Lévesque 2009 were most likely found in this way: "computed across
+    all subjects using individual subject means to compensate for the unequal number of trials
+    under the different conditions".
+
+    Parameters
+    ----------
+    level : int64[n]
+        Level of each observation.
+    frame
+        Data frame of observations: whether each is ``correct``, its ``participant`` and
+        ``condition``.
+
+    Returns
+    -------
+    DataFrame
+        The ``mean`` of each level and participant that occur together, which are the index, and
+        the ``number`` of observations behind it.
+    """
+    whose, frame = ["level", "participant"], frame.assign(level=level)
+    cells = frame.groupby([*whose, "condition"], observed=True)["correct"].mean()
+    means = cells.groupby(level=whose, observed=True).mean()
+    return pd.DataFrame({"mean": means, "number": frame.groupby(whose, observed=True).size()})
+
+
 def _counts(level: NDArray[np.int64], frame: pd.DataFrame) -> pd.DataFrame:
     """Values of the columns `_COUNTS`, a row a level; the index has the levels, ascending."""
     if not level.size:
         return pd.DataFrame(columns=[column.name for column in _COUNTS])
-    own = over_participants(level, frame)
-    people = np.diff(own.starts, append=own.means.size)
+    rows: list[Row] = []
+    for _, own in over_participants(level, frame).groupby(level="level"):
+        row: Row = {"participants": len(own), "legibility": own["mean"].mean()}
+        try:
+            rows.append(row | mean_share(own["mean"], own["number"])._asdict())
+        except Unanswerable as reason:
+            rows.append(row | {"note": f"no interval: {reason}"})
     counts = frame["correct"].groupby(level).agg(presented="size", correct="sum")
-    sums = np.add.reduceat(own.means, own.starts)
-    low, high = np.full((2, people.size), np.nan)
-    for at in np.flatnonzero(people >= FEWEST_PARTICIPANTS).tolist():
-        theirs = slice(own.starts[at], own.starts[at] + people[at])
-        interval = mean_share(own.means[theirs], own.numbers[theirs])
-        low[at], high[at] = interval.low, interval.high
-        sums[at] = own.means[theirs].sum()  # to the last digit, as of one row of numbers
-    few = [f"no interval: {too_few(number)}" for number in range(FEWEST_PARTICIPANTS)]
-    return counts.assign(
-        participants=people,
-        legibility=sums / people,
-        low=low,
-        high=high,
-        pooled=counts["correct"] / counts["presented"],
-        note=np.array([*few, ""], object)[np.minimum(people, FEWEST_PARTICIPANTS)],
-    )
+    counts = counts.assign(pooled=counts["correct"] / counts["presented"])
+    return counts.join(pd.DataFrame(rows, counts.index))
 
 
 def _notes(rows: Sized, places: Places) -> list[str]:

@@ -66,6 +66,7 @@ INFORMATION = Schema(
         Column("high", "to (bits)", "upper end", Kind.NUMBER),
         NOTE_COLUMN,
     ),
+    empty="no answer has as many places as its string",
 )
 
 
@@ -126,7 +127,7 @@ def transmitted(trials: pd.DataFrame, places: Places, *, seed: int) -> ResultTab
         for condition, counts in matrices.items()
         if counts is not None
     ]
-    return INFORMATION.fill(rows, [] if rows else ["no answer has as many places as its string"])
+    return INFORMATION.fill(rows)
 
 
 def _measures(counts: NDArray[np.int64], seed: int) -> Row:
@@ -190,6 +191,7 @@ ERRORS_OWN = Schema(
         Column("count", "places", "how many places", Kind.COUNT),
         Column("share", "of own errors (%)", "their share of the wrong places", Kind.PERCENT),
     ),
+    empty="no place was answered wrongly",
 )
 UNREAD_ERROR = "not read"
 _BITS = np.array([mask.bit_count() for mask in range(256)])
@@ -217,7 +219,7 @@ def errors_of_participants(places: Places) -> ResultTable:
         for whose, own in groups(_wrong(places), "participant")
         for kind, number in own["error"].value_counts().reindex(kinds, fill_value=0).items()
     ]
-    return ERRORS_OWN.fill(rows, [] if rows else ["no place was answered wrongly"])
+    return ERRORS_OWN.fill(rows)
 
 
 def _wrong(places: Places) -> pd.DataFrame:

@@ -55,6 +55,7 @@ SENSITIVITY = Schema(
         *ends(name="criterion_"),
         NOTE_COLUMN,
     ),
+    empty="nothing was looked for",
 )
 _DETECTIONS = {"detect": yes_no, "same-different": same_different, "which": two_alternatives}
 
@@ -77,7 +78,7 @@ def sensitivity(judgements: pd.DataFrame) -> ResultTable:
                     rows.append(row | _told(detection(*counts)))
                 except Unanswerable as reason:
                     rows.append(row | {"note": f"no d′: {reason}"})
-    return SENSITIVITY.fill(rows, () if rows else ("nothing was looked for",))
+    return SENSITIVITY.fill(rows)
 
 
 def _counts(question: str, part: pd.DataFrame, own: pd.DataFrame) -> tuple[int, int, int, int]:
@@ -115,6 +116,7 @@ _WHOSE = (
     PROTOCOL,
     Column("level", "level", "what varies, with its unit: of which, the difference of the two"),
 )
+_NONE = "no level of what was detected or told apart varies"
 THRESHOLDS = Schema(
     "thresholds",
     "Thresholds",
@@ -138,6 +140,7 @@ THRESHOLDS = Schema(
         Column("lapses", "lapses (%)", "share of answers that no level helps", Kind.PERCENT),
         NOTE_COLUMN,
     ),
+    empty=_NONE,
 )  # fmt: skip
 THRESHOLD_LEVELS = Schema(
     "threshold_levels",
@@ -153,6 +156,7 @@ THRESHOLD_LEVELS = Schema(
         Column("fitted", "fitted (%)", "by the psychometric function", Kind.PERCENT),
         NOTE_COLUMN,
     ),
+    empty=_NONE,
 )
 _BLANK = ("false alarm", "correct rejection")
 _TO_ONE = ("contrast", "texture")  # levels from 0 to 1; the others are lengths
@@ -195,10 +199,7 @@ def thresholds(judgements: pd.DataFrame) -> tuple[ResultTable, ResultTable]:
             counts = {"value": value, "positive": yes, "trials": trials, "share": yes / trials}
             counts |= {"fitted": row.get("guesses"), "note": "blank trials, at no level"}
             shares.append(asked.whose | counts)
-    none = () if rows else ("no level of what was detected or told apart varies",)
-    return THRESHOLDS.fill(rows, none), THRESHOLD_LEVELS.fill(
-        shares, () if shares else ("no level of what was detected or told apart varies",)
-    )
+    return THRESHOLDS.fill(rows), THRESHOLD_LEVELS.fill(shares)
 
 
 def _detected(judgements: pd.DataFrame) -> Iterator[LevelAnswers]:

@@ -54,6 +54,7 @@ MEANS = Schema(
         *ends(),
         NOTE_COLUMN,
     ),
+    empty=NOTHING,
 )
 OWN = Schema(
     "level_scores",
@@ -67,6 +68,7 @@ OWN = Schema(
         PARTICIPANT,
         Column("mean", "mean", "in the measure's unit", Kind.NUMBER),
     ),
+    empty=NOTHING,
 )
 T_TESTS = Schema(
     "t_tests",
@@ -93,6 +95,7 @@ T_TESTS = Schema(
         Column("g_z", "g_z", "effect size, corrected", Kind.NUMBER),
         NOTE_COLUMN,
     ),
+    empty=NOTHING,
 )
 ANOVA = Schema(
     "anova",
@@ -122,6 +125,7 @@ ANOVA = Schema(
         Column("generalised_eta2", "generalised eta²", "effect size", Kind.NUMBER),
         NOTE_COLUMN,
     ),
+    empty=NOTHING,
 )
 
 
@@ -154,7 +158,7 @@ def level_means(measures: Sequence[Scores]) -> ResultTable:
             except Unanswerable as reason:
                 notes.append(f"no interval: {reason}")
             rows.append(row | {"note": "; ".join(notes)})
-    return MEANS.fill(rows, [] if rows else [NOTHING])
+    return MEANS.fill(rows)
 
 
 def own_means(measures: Sequence[Scores]) -> ResultTable:
@@ -165,7 +169,7 @@ def own_means(measures: Sequence[Scores]) -> ResultTable:
         for level, every in means.iterrows()
         for who, mean in every.dropna().items()
     ]
-    return OWN.fill(rows, [] if rows else [NOTHING])
+    return OWN.fill(rows)
 
 
 def t_tests(measures: Sequence[Scores], correction: str) -> ResultTable:
@@ -206,7 +210,7 @@ def t_tests(measures: Sequence[Scores], correction: str) -> ResultTable:
             ):
                 row["p_corrected"] = float(p)
             rows += own
-    return T_TESTS.fill(rows, notes if rows or notes else [NOTHING])
+    return T_TESTS.fill(rows, notes)
 
 
 def analyses(measures: Sequence[Scores]) -> tuple[ResultTable, list[LeftOut]]:
@@ -236,7 +240,7 @@ def analyses(measures: Sequence[Scores]) -> tuple[ResultTable, list[LeftOut]]:
             told = asdict(effect)
             row: Row = {"measure": scores.measure, "effect": told.pop("name")}
             rows.append(row | {"participants": len(found.participants)} | told)
-    return ANOVA.fill(rows, notes if rows or notes else [NOTHING]), left_out
+    return ANOVA.fill(rows, notes), left_out
 
 
 def _variance(scores: Scores) -> Anova:

@@ -60,6 +60,7 @@ TRAJECTORIES = Schema(
         Column("pattern", "pattern", ", ".join(PATTERNS)),
         NOTE_COLUMN,
     ),
+    empty="no trial has a trajectory",
 )
 READING_PATTERNS = Schema(
     "patterns",
@@ -76,6 +77,7 @@ READING_PATTERNS = Schema(
         *_SPEEDS,
         NOTE_COLUMN,
     ),
+    empty="no trial has a trajectory",
 )
 CORRELATIONS = Schema(
     "duration_legibility",
@@ -128,7 +130,7 @@ def trajectories(
             elif isinstance(seen, Reading) and told["early"]:
                 seen = "it was answered before it was read to its end"
             rows.append(row | (_described(seen) if isinstance(seen, Reading) else {"note": seen}))
-    return TRAJECTORIES.fill(rows, [] if rows else ["no trial has a trajectory"])
+    return TRAJECTORIES.fill(rows)
 
 
 def patterns(table: ResultTable) -> ResultTable:
@@ -156,7 +158,7 @@ def patterns(table: ResultTable) -> ResultTable:
             if row[column.name] is None:
                 notes.append(f"no stroke to the {way}")
         rows.append(row | {"note": "; ".join(notes)})
-    return READING_PATTERNS.fill(rows, [] if rows else ["no trial has a trajectory"])
+    return READING_PATTERNS.fill(rows)
 
 
 def correlations(trials: pd.DataFrame) -> ResultTable:

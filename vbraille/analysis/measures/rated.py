@@ -55,6 +55,7 @@ RATINGS = Schema(
         Column("high_quartile", "upper quartile", "in steps of the scale", Kind.NUMBER),
         NOTE_COLUMN,
     ),
+    empty="nothing was rated",
 )
 RATING_PAIRS = Schema(
     "rating_pairs",
@@ -70,6 +71,7 @@ RATING_PAIRS = Schema(
         *ends(Kind.PERCENT),
         NOTE_COLUMN,
     ),
+    empty="no two conditions were rated",
 )
 MAGNITUDES = Schema(
     "magnitudes",
@@ -86,6 +88,7 @@ MAGNITUDES = Schema(
         *ends(),
         NOTE_COLUMN,
     ),
+    empty="no magnitude was asked",
 )
 CONFIDENCE = Schema(
     "confidence",
@@ -103,6 +106,7 @@ CONFIDENCE = Schema(
         *ends(),
         NOTE_COLUMN,
     ),
+    empty="no confidence was asked",
 )
 WORDS = Schema(
     "words",
@@ -116,6 +120,7 @@ WORDS = Schema(
         Column("presented", "presented", "what was shown"),
         Column("answered", "answered", "the words"),
     ),
+    empty="nothing was asked in words",
 )
 _UNSCORED = "-"
 
@@ -143,8 +148,8 @@ def ratings(
             row = {"protocol": protocol, "first": first, "second": second}
             pairs.append(row | compared(one, two))
     return (
-        RATINGS.fill(rows, () if rows else ("nothing was rated",)),
-        RATING_PAIRS.fill(pairs, () if pairs else ("no two conditions were rated",)),
+        RATINGS.fill(rows),
+        RATING_PAIRS.fill(pairs),
     )
 
 
@@ -163,7 +168,7 @@ def magnitudes(judgements: pd.DataFrame) -> ResultTable:
             row |= {"participants": len(known), "mean": float(np.exp(known.mean()))}
             even = (known - size[known.index] + size.mean()).to_numpy(np.float64)
             rows.append(row | _ends(even, logarithms=True))
-    return MAGNITUDES.fill(rows, () if rows else ("no magnitude was asked",))
+    return MAGNITUDES.fill(rows)
 
 
 def confidence(
@@ -179,7 +184,7 @@ def confidence(
         row: Row = dict(zip(names, whose, strict=True))
         row |= {"participants": own.size, "answers": len(part), "mean": float(own.mean())}
         rows.append(row | _ends(own, scales.get(str(row["protocol"]))))
-    return CONFIDENCE.fill(rows, () if rows else ("no confidence was asked",))
+    return CONFIDENCE.fill(rows)
 
 
 def words(judgements: pd.DataFrame) -> ResultTable:
@@ -188,7 +193,7 @@ def words(judgements: pd.DataFrame) -> ResultTable:
     frame = said[WORDS.names].assign(
         **{name: said[name].astype(str) for name in WORDS.names if name != "trial"}
     )
-    return WORDS.fill(frame, () if len(frame) else ("nothing was asked in words",))
+    return WORDS.fill(frame)
 
 
 def summarised(rated: pd.DataFrame, scale: Scale | None = None) -> Row:

@@ -12,6 +12,7 @@ import pandas as pd
 from vbraille.analysis.input.trials import chosen, codes, factor
 from vbraille.analysis.measures.levels import MOST_LEVELS
 from vbraille.analysis.schemas import NOTE_COLUMN, PARTICIPANTS, Column, Kind, Schema, ends
+from vbraille.analysis.statistics.anova import orthonormal_contrasts
 from vbraille.analysis.statistics.intervals import (
     FEWEST_PARTICIPANTS,
     LEVEL,
@@ -302,7 +303,7 @@ def _contrasts_of(
         raise Unanswerable("no combination of the other factors has all of its levels")
     apart = np.ones((1, 1))
     for size in sizes:
-        apart = np.kron(apart, _apart(size))
+        apart = np.kron(apart, orthonormal_contrasts(size).T)
     place = np.ravel_multi_index(tuple(levels[:, list(own)].T), sizes)
     contrasts = apart[:, place] / whole.size
     contrasts[:, ~np.isin(at_other, whole)] = 0.0
@@ -312,13 +313,6 @@ def _contrasts_of(
         f"over the {whole.size} of {len(others)} combinations of the other factors that have all "
         "of its levels"
     )
-
-
-def _apart(levels: int) -> NDArray[np.float64]:
-    """Orthonormal contrasts of levels, each against the mean of those before it (Helmert's)."""
-    rows = np.tril(np.ones((levels, levels)), -1)[1:]
-    rows[:, 1:] -= np.diag(np.arange(1.0, levels))
-    return rows / np.linalg.norm(rows, axis=1, keepdims=True)
 
 
 def _contrasts(fit: TrialsFit, counts: Counts, correction: str) -> list[Row]:
@@ -478,16 +472,14 @@ def _single(
     Participants with fewer trials than others have places without one.
     """
     cells = len(counts.names)
-    order = np.argsort(counts.people, kind="stable")
-    own = np.bincount(counts.people)
-    who = counts.people[order]
-    place = np.arange(len(trials)) - np.repeat(np.cumsum(own) - own, own)
-    shape = own.size, int(own.max())
+    who = counts.people
+    place = pd.Series(who).groupby(who).cumcount().to_numpy()
+    shape = int(who.max()) + 1, int(place.max()) + 1
     design = np.zeros((*shape, cells + len(columns)))
-    design[who, place, counts.cells[order]] = 1.0
+    design[who, place, counts.cells] = 1.0
     for at, value in enumerate(columns, cells):
-        design[who, place, at] = (value - value.mean())[order]
+        design[who, place, at] = value - value.mean()
     right, asked = np.zeros(shape), np.zeros(shape)
-    right[who, place] = trials["correct"].to_numpy()[order]
+    right[who, place] = trials["correct"]
     asked[who, place] = 1.0
     return right, asked, design

@@ -23,7 +23,7 @@ from scipy.stats import chi2
 from scipy.stats import f as fisher
 
 from vbraille.analysis.statistics.effectsizes import partial_eta2_interval
-from vbraille.analysis.statistics.intervals import LARGEST, Unanswerable
+from vbraille.analysis.statistics.intervals import Unanswerable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -141,7 +141,7 @@ def anova(
         participants have a score in each, a participant is in two groups, or some combination of
         groups has nobody or no group has two.
     ValueError
-        If there are no or too many factors, columns differ in length, or a score is infinite.
+        If there are no or too many factors.
     """
     cube, complete, dropped, averaged = arrange(participants, within, scores)
     parts: list[tuple[Cell, Floats]] = [((), np.ones((len(complete), 1)))]
@@ -192,7 +192,10 @@ def arrange(
         As of `anova`.
     """
     row = np.asarray(scores, dtype=np.float64)
-    _check(participants, factors, row)
+    if not 1 <= len(factors) <= MOST_FACTORS:
+        raise ValueError(f"{len(factors)} factors; one to {MOST_FACTORS} are needed")
+    if np.isnan(row).all():
+        raise Unanswerable("no scores")
     levels = [tuple(dict.fromkeys(column)) for column in factors.values()]
     for name, seen in zip(factors, levels, strict=True):
         if len(seen) == 1:
@@ -438,20 +441,6 @@ def _columns(names: Sequence[str], groups: Sequence[Cell]) -> list[tuple[Cell, F
                 columns = (columns[:, :, None] * codes[i][:, None, :]).reshape(len(groups), -1)
             parts.append((tuple(names[i] for i in subset), columns))
     return parts
-
-
-def _check(participants: Sequence[str], factors: Levels, row: Floats) -> None:
-    """Raise ValueError for columns that do not make one table of scores."""
-    if not 1 <= len(factors) <= MOST_FACTORS:
-        raise ValueError(f"{len(factors)} factors; one to {MOST_FACTORS} are needed")
-    columns = {"participants": participants, **{f"factor {n!r}": c for n, c in factors.items()}}
-    for name, column in columns.items():
-        if row.shape != (len(column),):
-            raise ValueError(f"{name}: {len(column)} rows beside scores of shape {row.shape}")
-    if (np.abs(row) > LARGEST).any():
-        raise ValueError(f"scores must be within ±{LARGEST:g}, or NaN where missing")
-    if np.isnan(row).all():
-        raise Unanswerable("no scores")
 
 
 def _too_few(

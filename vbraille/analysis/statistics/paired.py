@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import gammaln
-from scipy.stats import t as student
-from scipy.stats import ttest_rel
+from scipy.stats import ttest_1samp, ttest_rel
 
 from vbraille.analysis.statistics.effectsizes import d_z_interval
 from vbraille.analysis.statistics.intervals import LEVEL, ROUNDING, Unanswerable, finite_scores
@@ -138,8 +137,7 @@ def paired_p_values(differences: NDArray[np.float64]) -> NDArray[np.float64]:
     n = differences.shape[1]
     if n < 2:
         raise Unanswerable(f"{'one participant' if n else 'no participants'}; a t-test needs two")
-    mean = differences.mean(axis=1)
     # By their spread, since the sd of equal differences is not quite 0.
     alike = np.ptp(differences, axis=1) <= ROUNDING * np.abs(differences).max(axis=1)
-    sd = np.where(alike, np.nan, differences.std(axis=1, ddof=1))
-    return 2 * student.sf(np.abs(mean) / sd * math.sqrt(n), n - 1)
+    own = np.where(alike[:, None], np.nan, differences)
+    return ttest_1samp(own, 0.0, axis=1).pvalue
