@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille.analysis.findings import interval_words
+from vbraille.analysis.findings import extremes, interval_words, parameter_words
 from vbraille.analysis.input.trials import UNREAD, name_string, times
 from vbraille.analysis.results import ReportFigure
 from vbraille.analysis.schemas import (
@@ -59,16 +59,14 @@ def legibility(table: ResultTable, averages: ResultTable) -> ReportFigure:
         for label, names, scale in panels
     )
     known = [row for row in table.records() if row["trials"]]
-    best, worst = (extreme(known, key=lambda row: row["legibility"]) for extreme in (max, min))
     means = ", ".join(
         f"{row['condition']} {to_print(row['legibility'], Kind.PERCENT)} %"
         for row in averages.records()
         if row["legibility"] is not None
     )
     text = (
-        f"Bars for each participant in each condition, with 95 % intervals of legibility. Most "
-        f"strings were read right by {_whose(best)}, fewest by {_whose(worst)}. Averages over "
-        f"participants: {means}."
+        f"Bars for each participant in each condition, with 95 % intervals of legibility. "
+        f"{extremes(known)} Averages over participants: {means}."
     )
     return ReportFigure(
         "legibility",
@@ -186,7 +184,7 @@ def level_means(table: ResultTable, own: ResultTable) -> Iterator[ReportFigure]:
             label = f"{measure} (%)" if share else measure
             panels.append((label, (Series("mean", *ends, points=points),)))
         said = "; ".join(
-            f"{row['measure']}, {row['level']}: {_printed(row)} ({_interval(row)})"
+            f"{row['measure']}, {row['level']}: {_told(row)}"
             for row in rows
             if row["mean"] is not None
         )
@@ -200,16 +198,11 @@ def level_means(table: ResultTable, own: ResultTable) -> Iterator[ReportFigure]:
         )
 
 
-def _printed(row: Row) -> str:
-    if row["measure"].startswith("legibility"):
-        return f"{to_print(row['mean'], Kind.PERCENT)} %"
-    return to_print(row["mean"], Kind.NUMBER)
-
-
-def _interval(row: Row) -> str:
-    if row["measure"].startswith("legibility"):
-        return interval_words(row, Kind.PERCENT, " %")
-    return interval_words(row, Kind.NUMBER)
+def _told(row: Row) -> str:
+    """Words for a mean with its interval."""
+    share = row["measure"].startswith("legibility")
+    kind, unit = (Kind.PERCENT, " %") if share else (Kind.NUMBER, "")
+    return f"{to_print(row['mean'], kind)}{unit} ({interval_words(row, kind, unit)})"
 
 
 def _points(
@@ -232,16 +225,10 @@ def _scaled(value: float | None, scale: float) -> float | None:
     return None if value is None else scale * value
 
 
-def _whose(row: Row) -> str:
-    return (
-        f"{row['participant']} in {row['condition']}, {to_print(row['legibility'], Kind.PERCENT)} %"
-    )
-
-
 def _in_words(parameter: str) -> str:
     """Words for a parameter with its unit: "dot width (mm)" for dot_width_mm."""
-    unit = " (mm)" if parameter.endswith("_mm") else ""
-    return parameter.removesuffix("_mm").replace("_", " ") + unit
+    words, unit = parameter_words(parameter)
+    return f"{words} ({unit.strip()})" if unit else words
 
 
 def _file_name(name: str) -> str:

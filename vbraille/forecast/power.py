@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, Unanswerable, wilson
-from vbraille.errors import InputError, VbrailleError
+from vbraille.errors import InputError, VbrailleError, check_range
 from vbraille.forecast.studies import (
     ALPHA,
     StudyPlan,
@@ -151,21 +151,18 @@ class PowerQuestion:
     seed: int = SEED
 
     def __post_init__(self) -> None:
-        for size in self.sizes:
-            if not FEWEST_PARTICIPANTS <= size <= MOST_PARTICIPANTS:
-                raise InputError(
-                    f"{setting('participants')} has {size}; it must be {FEWEST_PARTICIPANTS} to "
-                    f"{MOST_PARTICIPANTS}"
-                )
         if not 1 <= self.studies <= MOST_STUDIES:
             raise InputError(
                 f"{setting('studies')} is {self.studies}; it must be 1 to {MOST_STUDIES}"
             )
-        for name, spread in (("between", self.between), ("differing", self.differing)):
-            if not 0 <= spread <= MOST_SPREAD:
-                raise InputError(
-                    f"{setting(name)} is {spread:g}; it must be 0 to {MOST_SPREAD:g} log odds"
-                )
+        try:
+            for size in self.sizes:
+                name = f"{setting('participants')}: one"
+                check_range(name, size, FEWEST_PARTICIPANTS, MOST_PARTICIPANTS)
+            for name in ("between", "differing"):
+                check_range(setting(name), getattr(self, name), 0, MOST_SPREAD, " log odds")
+        except ValueError as error:
+            raise InputError(str(error)) from None
         if self.protocol.adaptive:
             raise InputError(
                 f"{self.protocol.name} chooses its trials by the answers, and power is of a fixed "

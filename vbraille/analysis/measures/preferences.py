@@ -93,14 +93,14 @@ def tuning(comparisons: pd.DataFrame, *, seed: int) -> tuple[ResultTable, Result
     seed
         Seed of the bootstrap's random draws.
     """
-    rows: list[Row] = []
+    choices: list[pd.DataFrame] = []
     liked: list[Row] = []
     for parameter in comparisons["parameter"].cat.categories:
         part = chosen(comparisons, comparisons["parameter"] == parameter)
         values, at = np.unique(part[["first", "second"]], return_inverse=True)
         first, second = at.T
         choice, who = part["chosen"].to_numpy(), codes(part["participant"])
-        rows += _choices(parameter, values, first, second, choice)
+        choices.append(_choices(parameter, values, first, second, choice))
         row: Row = {
             "parameter": parameter,
             "participants": part["participant"].nunique(),
@@ -126,7 +126,7 @@ def tuning(comparisons: pd.DataFrame, *, seed: int) -> tuple[ResultTable, Result
                 ends = found.interval
                 row |= {"low": ends.low, "high": ends.high, "how": found.how}
         liked.append(row | {"note": "; ".join(notes)})
-    return CHOICES.fill(rows), PREFERRED.fill(liked)
+    return CHOICES.fill(pd.concat(choices)), PREFERRED.fill(liked)
 
 
 def choices_of_participants(comparisons: pd.DataFrame) -> ResultTable:
@@ -142,36 +142,18 @@ def choices_of_participants(comparisons: pd.DataFrame) -> ResultTable:
 
 def _choices(
     parameter: str, values: NDArray, first: NDArray, second: NDArray, choice: NDArray
-) -> list[Row]:
+) -> pd.DataFrame:
     """Rows of choices, one for each value."""
-    won = np.where(choice == 0, first, second)
-    lost = np.where(choice == 0, second, first)
     wins = np.zeros((values.size, values.size), np.int64)
-    np.add.at(wins, (won, lost), 1)
+    np.add.at(wins, (np.where(choice, second, first), np.where(choice, first, second)), 1)
+    often, presented = wins.sum(axis=1), wins.sum(axis=1) + wins.sum(axis=0)
+    rows = pd.DataFrame({"parameter": parameter, "value": values, "presented": presented})
+    rows = rows.assign(chosen=often, share=often / presented)
     try:
         scale = bradley_terry(wins)
-        strengths = [
-            {"strength": strength, "error": error}
-            for strength, error in zip(
-                scale.strengths.tolist(), np.sqrt(np.diag(scale.covariance)).tolist(), strict=True
-            )
-        ]
     except Unanswerable as reason:
-        strengths = [{"note": f"no strength: {reason}"}] * values.size
-    often, presented = wins.sum(axis=1), wins.sum(axis=1) + wins.sum(axis=0)
-    return [
-        {
-            "parameter": parameter,
-            "value": value,
-            "presented": shown,
-            "chosen": times,
-            "share": times / shown,
-        }
-        | strength
-        for value, shown, times, strength in zip(
-            values.tolist(), presented.tolist(), often.tolist(), strengths, strict=True
-        )
-    ]
+        return rows.assign(note=f"no strength: {reason}")
+    return rows.assign(strength=scale.strengths, error=np.sqrt(np.diag(scale.covariance)))
 
 
 LIKED = Schema(
