@@ -5,7 +5,6 @@ from vbraille.analysis.input.scoretable import of_trials
 from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.input.trials import Places
 from vbraille.analysis.measures import (
-    characters,
     confusion,
     legibility,
     movement,
@@ -73,9 +72,9 @@ def all_tables(trials, places):
     return [
         by_participant,
         legibility.averages(by_participant),
-        characters.characters(places),
-        characters.strings(trials),
-        characters.dots(places),
+        legibility.characters(places),
+        legibility.strings(trials),
+        legibility.dots(places),
         *(confusion.to_table(*of, places) for of in matrices if of[1] is not None),
         confusion.transmitted(trials, places, seed=1),
         confusion.errors(places),

@@ -10,16 +10,16 @@ from scipy.special import expit, logit
 
 from tests.benchmarks.coverage_people import Found, centre_of, mean_of
 from tests.conftest import SEED
-from vbraille.analysis.statistics.intervals import LEVEL
-from vbraille.analysis.statistics.marginalmeans import (
+from vbraille.analysis.statistics.intervals import LEVEL, MEANS, SPREADS, log_likelihood, quantiles
+from vbraille.analysis.statistics.trialsmodel import (
+    combine,
     compare,
     compare_all,
     difference,
+    fit_trials,
     separate_cells,
     tells_difference,
 )
-from vbraille.analysis.statistics.shares import MEANS, SPREADS, log_likelihood, quantiles
-from vbraille.analysis.statistics.trialsmodel import combine, fit_trials
 
 TRIALS = 78  # of each participant, as in the source's sessions
 APART = 0.5  # log odds that conditions, and groups, differ by where they do

@@ -11,9 +11,15 @@ from scipy.special import expit, logit
 
 from tests.conftest import SEED
 from vbraille.analysis.statistics.bradleyterry import preferred
-from vbraille.analysis.statistics.intervals import Unanswerable, mean_duration
+from vbraille.analysis.statistics.intervals import (
+    MEANS,
+    SPREADS,
+    Unanswerable,
+    log_likelihood,
+    mean_duration,
+    quantiles,
+)
 from vbraille.analysis.statistics.paired import paired_t
-from vbraille.analysis.statistics.shares import MEANS, SPREADS, log_likelihood, quantiles
 
 PEOPLE = (3, 5, 6, 10, 20)
 SPREAD = (0.5, 1.0, 1.5)

@@ -10,7 +10,6 @@ from vbraille.analysis.findings import findings
 from vbraille.analysis.input.scoretable import of_trials
 from vbraille.analysis.input.trials import Places, written
 from vbraille.analysis.measures import (
-    characters,
     confusion,
     discrimination,
     legibility,
@@ -169,7 +168,7 @@ def _of_trials(
     places = Places.of(trials)
     own = legibility.legibility(trials, places)
     averages = legibility.averages(own)
-    by_dots, dots_own = characters.dots(places), characters.dots_of_participants(places)
+    by_dots, dots_own = legibility.dots(places), legibility.dots_of_participants(places)
     errors, errors_own = confusion.errors(places), confusion.errors_of_participants(places)
     runs, slopes = overtime.over_time(trials), overtime.slopes(trials)
     ways = movement.trajectories(study.sittings, trials)
@@ -185,7 +184,7 @@ def _of_trials(
         Chapter(
             "Characters and strings",
             "What is easy to read, and what is not.",
-            (characters.characters(places), by_dots, dots_own, characters.strings(trials)),
+            (legibility.characters(places), by_dots, dots_own, legibility.strings(trials)),
             (figures.dots(by_dots, dots_own),) if len(by_dots) else (),
         ),
         _confusions(trials, places, options),

@@ -388,7 +388,7 @@ def examples(sittings: Sequence[SessionTrials]) -> tuple[ResultTable, ReportFigu
     said = "; ".join(
         f"{example.pattern}: participant {example.participant} read "
         f"{name_string(example.presented)} in "
-        f"{to_print(example.end_s - example.start_s, Kind.SECONDS)} s (trial {example.trial} of "
+        f"{to_print(example.end_s - example.start_s, Kind.TENTHS)} s (trial {example.trial} of "
         f"{session})"
         for session, example in chosen
     )

@@ -102,7 +102,7 @@ def _averages(of: Mapping[str, ResultTable]) -> Iterator[str]:
     timed = [row for row in rows if row["duration_mean_s"] is not None]
     if timed:
         told = [
-            f"{to_print(row['duration_mean_s'], Kind.SECONDS)} s in {row['condition']}"
+            f"{to_print(row['duration_mean_s'], Kind.TENTHS)} s in {row['condition']}"
             for row in timed[:_MOST]
         ]
         yield f"On average a string took {_and(told)}."

@@ -41,9 +41,8 @@ class Kind(Enum):
     COUNT = "count"
     VALUE = "value"  # a number as short as it can be: the value of a parameter
     PERCENT = "percent"
-    SECONDS = "seconds"
     NUMBER = "number"
-    SPEED = "speed"
+    TENTHS = "tenths"
     P = "p"
 
 
@@ -52,8 +51,7 @@ _DTYPES = {Kind.TEXT: pd.StringDtype("python", na_value=np.nan), Kind.COUNT: pd.
 _FACTORS = {Kind.PERCENT: 100}
 _DECIMALS = {
     Kind.PERCENT: 1,
-    Kind.SECONDS: 1,
-    Kind.SPEED: 1,
+    Kind.TENTHS: 1,
     Kind.NUMBER: 3,
     Kind.P: 3,
 }

@@ -25,9 +25,8 @@ from scipy.optimize import brentq
 from scipy.special import expit, ndtri
 
 from vbraille.analysis.statistics.intervals import adjust
-from vbraille.analysis.statistics.marginalmeans import compare, separate_cells
 from vbraille.analysis.statistics.paired import paired_p_values
-from vbraille.analysis.statistics.trialsmodel import fit_trials
+from vbraille.analysis.statistics.trialsmodel import compare, fit_trials, separate_cells
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,8 +6,17 @@ import numpy as np
 import pytest
 
 from tests.sessions.sittings import COMPARED, MINI, Session
-from vbraille.analysis.input.sittings import MOST_PICKED, Example, _examples, pick, read_sitting
-from vbraille.analysis.input.strokes import IN_PART, ONE_PASS, PATTERNS, Reading
+from vbraille.analysis.input.sittings import (
+    IN_PART,
+    MOST_PICKED,
+    ONE_PASS,
+    PATTERNS,
+    Example,
+    Reading,
+    _examples,
+    pick,
+    read_sitting,
+)
 from vbraille.errors import InputError
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Run

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tests.analysis.making import answers, record
 from vbraille.analysis.input.trials import UNREAD_MASK
-from vbraille.analysis.measures.characters import (
+from vbraille.analysis.measures.legibility import (
     cell_order,
     characters,
     dots,
@@ -18,8 +18,7 @@ from vbraille.analysis.measures.characters import (
     strings,
 )
 from vbraille.analysis.schemas import mean_or_none
-from vbraille.analysis.statistics.intervals import wilson
-from vbraille.analysis.statistics.shares import mean_share
+from vbraille.analysis.statistics.intervals import mean_share, wilson
 
 # P1 has a right in 3 of 4 trials of T0 and in none of one of T25, P2 in one of one.
 UNEQUAL = ["P1 T0 a a", "P1 T0 a a", "P1 T0 a a", "P1 T0 a c", "P1 T25 a ?", "P2 T0 a a"]

@@ -15,8 +15,7 @@ from vbraille.analysis.statistics.bradleyterry import (
     position_bias,
     preferred,
 )
-from vbraille.analysis.statistics.intervals import Unanswerable, wilson
-from vbraille.analysis.statistics.shares import mean_share
+from vbraille.analysis.statistics.intervals import Unanswerable, mean_share, wilson
 
 # Citations among Biometrika, Communications in Statistics, JASA and JRSS-B:
 # Stigler 1994; Agresti 2002, p. 448.

@@ -7,8 +7,12 @@ from scipy.stats import f as fisher
 
 from tests.tiers import by_tier
 from vbraille.analysis.statistics.intervals import Unanswerable
-from vbraille.analysis.statistics.marginalmeans import compare, compare_all, separate_cells
-from vbraille.analysis.statistics.trialsmodel import fit_trials
+from vbraille.analysis.statistics.trialsmodel import (
+    compare,
+    compare_all,
+    fit_trials,
+    separate_cells,
+)
 
 STUDIES = by_tier(300, 4000, 10_000)
 THREE = [[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]]

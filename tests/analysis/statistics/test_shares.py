@@ -8,10 +8,10 @@ from scipy.stats import binom, norm
 
 from tests.benchmarks.coverage_people import shares
 from tests.tiers import examples
-from vbraille.analysis.statistics.intervals import Unanswerable
-from vbraille.analysis.statistics.shares import (
+from vbraille.analysis.statistics.intervals import (
     MEANS,
     SPREADS,
+    Unanswerable,
     grid_of_means,
     log_likelihood,
     mean_share,

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vbraille.analysis.input.trials import UNREAD_MASK, groups, masks_of, name_cell, name_string
-from vbraille.analysis.measures.characters import cell_order
-from vbraille.analysis.measures.legibility import unequal_notes
+from vbraille.analysis.measures.legibility import cell_order, unequal_notes
 from vbraille.analysis.schemas import NOTE_COLUMN, PARTICIPANT, Column, Kind, Schema
 from vbraille.analysis.statistics import information
 from vbraille.analysis.statistics.information import transmission

@@ -26,9 +26,9 @@ from vbraille.analysis.statistics.intervals import (
     adjust,
     mean_duration,
     mean_interval,
+    mean_share,
 )
 from vbraille.analysis.statistics.paired import paired_t
-from vbraille.analysis.statistics.shares import mean_share
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy import stats
 
-from vbraille.analysis.input.strokes import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
+from vbraille.analysis.input.sittings import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
 from vbraille.analysis.input.trials import chosen, codes, factor, groups, name_string
 from vbraille.analysis.schemas import (
     CONDITION,
@@ -40,8 +40,8 @@ _WHOSE = (
     CONDITION,
 )
 _SPEEDS = (
-    Column("speed_right_mm_s", "speed to the right (mm/s)", "mean of the strokes", Kind.SPEED),
-    Column("speed_left_mm_s", "speed to the left (mm/s)", "mean of the strokes", Kind.SPEED),
+    Column("speed_right_mm_s", "speed to the right (mm/s)", "mean of the strokes", Kind.TENTHS),
+    Column("speed_left_mm_s", "speed to the left (mm/s)", "mean of the strokes", Kind.TENTHS),
 )
 TRAJECTORIES = Schema(
     "trajectories",
@@ -52,7 +52,7 @@ TRAJECTORIES = Schema(
         SESSION,
         TRIAL,
         Column("presented", "string", "names of its cells"),
-        Column("duration_s", "duration (s)", "by the thesis's rule", Kind.SECONDS),
+        Column("duration_s", "duration (s)", "by the thesis's rule", Kind.TENTHS),
         Column("returned", "returned", "1 if the hand went back over the first dot", Kind.COUNT),
         Column("passes", "passes", "strokes to the right over the whole string", Kind.COUNT),
         Column("rescans", "re-scans", "strokes to the right over a part of it", Kind.COUNT),
@@ -73,7 +73,7 @@ READING_PATTERNS = Schema(
             Column(name.replace("-", "").replace(" ", "_"), name, "trials of it", Kind.COUNT)
             for name in PATTERNS
         ),
-        Column("passes", "mean passes", "of a trial", Kind.SECONDS),
+        Column("passes", "mean passes", "of a trial", Kind.TENTHS),
         *_SPEEDS,
         NOTE_COLUMN,
     ),
@@ -126,7 +126,7 @@ def trajectories(
                 "presented": name_string(told["presented"]),
             }
             if isinstance(seen, Reading) and told["paused_s"] > 0:
-                seen = f"it was paused for {to_print(told['paused_s'], Kind.SECONDS)} s"
+                seen = f"it was paused for {to_print(told['paused_s'], Kind.TENTHS)} s"
             elif isinstance(seen, Reading) and told["early"]:
                 seen = "it was answered before it was read to its end"
             rows.append(row | (_described(seen) if isinstance(seen, Reading) else {"note": seen}))

@@ -18,18 +18,19 @@ from vbraille.analysis.statistics.intervals import (
     LEVEL,
     Unanswerable,
     adjust,
+    mean_share,
     too_few,
 )
-from vbraille.analysis.statistics.marginalmeans import (
+from vbraille.analysis.statistics.trialsmodel import (
     TO_D,
+    combine,
     compare,
     compare_all,
     difference,
+    fit_trials,
     separate_cells,
     tells_difference,
 )
-from vbraille.analysis.statistics.shares import mean_share
-from vbraille.analysis.statistics.trialsmodel import combine, fit_trials
 from vbraille.braille.cells import UNICODE_BLANK
 
 if TYPE_CHECKING:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 PAGE, TEXT, NUMBERS = "report.html", "report.md", "results.json"
 TRIALS = "trials.csv"
 CODEBOOK = "codebook.csv"
-_UNITS = {Kind.PERCENT: "share, 1 = 100 %", Kind.SECONDS: "s", Kind.COUNT: "count"}
+_UNITS = {Kind.PERCENT: "share, 1 = 100 %", Kind.COUNT: "count"}
 _FEW = 12  # values of a column of text that are listed
 _DPI = 300  # dots per inch of the PNGs, as journals ask for
 

@@ -1,16 +1,15 @@
 """What is worked out of legibility sessions: intervals, tests, scales, information.
 
 `intervals`
-    Intervals of proportions, means and correlations; corrections of p; the error of a question
-    that the scores cannot answer.
+    Intervals of proportions, means, shares and correlations; corrections of p; the error of a
+    question that the scores cannot answer.
 `paired`, `anova`, `effectsizes`
     Tests between conditions, and between groups beside them.
-`shares`
-    Where a population's mean share lies.
 `bradleyterry`
     Scales and preferred values of paired comparisons.
-`trialsmodel`, `marginalmeans`
-    Logistic models of single trials, with participants as clusters, of many studies at once.
+`trialsmodel`
+    Logistic models of single trials, with participants as clusters, of many studies at once; and
+    the shares and tests that come from them.
 `psychometric`, `detection`
     Thresholds of a reader, d′ and criterion.
 `information`

@@ -15,9 +15,9 @@ from vbraille.analysis.statistics.intervals import (
     Interval,
     Unanswerable,
     mean_interval,
+    mean_share,
     wilson,
 )
-from vbraille.analysis.statistics.shares import mean_share
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
