@@ -8,6 +8,7 @@ import numpy as np
 
 from vbraille.analysis.findings import extremes, interval_words, parameter_words
 from vbraille.analysis.input.trials import UNREAD, name_string, times
+from vbraille.analysis.measures.discrimination import SHAPE_OF
 from vbraille.analysis.results import ReportFigure
 from vbraille.analysis.schemas import (
     OTHER,
@@ -414,7 +415,6 @@ def _chosen(sittings: Sequence[SessionTrials]) -> Iterator[tuple[str, Example]]:
 
 MOST_RISES = 12  # in one figure
 _POINTS = 80  # of a curve
-_SHAPE = {"detect": "logistic", "which": "weibull"}
 _WHOSE = ("question", "participant", "protocol", "level")
 _TOLD = 6  # thresholds that the text tells; the table has all
 
@@ -479,7 +479,7 @@ def _panel(row: Row, answers: list[Row]) -> Rise:
     threshold = None
     if row["threshold"] is not None:
         x = np.linspace(min(levels), max(levels), _POINTS)
-        rising = SHAPES[_SHAPE[row["question"]]](
+        rising = SHAPES[SHAPE_OF[row["question"]]](
             x, np.array(row["threshold"]), np.array(row["spread"])
         )
         shares = row["guesses"] + (1 - row["guesses"] - row["lapses"]) * rising

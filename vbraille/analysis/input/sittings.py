@@ -96,8 +96,6 @@ class Reading:
         `vbraille.sessions.record.trajectory.Duration`.
     passes, rescans
         Numbers of strokes to the right of either kind; short strokes are of neither.
-    strokes_right, strokes_left
-        Numbers of all strokes, by direction.
     speed_right_mm_s, speed_left_mm_s
         Speeds by `SPEED_RULE`; None if there is no stroke in that direction.
     """
@@ -107,8 +105,6 @@ class Reading:
     returned: bool
     passes: int
     rescans: int
-    strokes_right: int
-    strokes_left: int
     speed_right_mm_s: float | None
     speed_left_mm_s: float | None
 
@@ -140,8 +136,6 @@ def read(trajectory: Trajectory) -> Reading:
         found.returned,
         passes,
         rescans,
-        len(right),
-        len(left),
         _speed_mm_s(right),
         _speed_mm_s(left),
     )
@@ -350,7 +344,7 @@ def read_sitting(folder: Path) -> SessionTrials:
     readings: dict[int, Reading | str] = {}
     examples: list[tuple[float, Example]] = []
     planned = [told.trial for told in progress.trials.values()]
-    for trial, (row, seen) in zip(planned, walk(record, traces), strict=True):
+    for trial, (row, seen) in zip(planned, walk(record, traces, progress), strict=True):
         rows.append(row)
         if isinstance(seen, Trajectory):
             reading = read(seen)

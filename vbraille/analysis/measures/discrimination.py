@@ -160,7 +160,7 @@ THRESHOLD_LEVELS = Schema(
 )
 _BLANK = ("false alarm", "correct rejection")
 _TO_ONE = ("contrast", "texture")  # levels from 0 to 1; the others are lengths
-_SHAPES = {"detect": "logistic", "which": "weibull"}
+SHAPE_OF = {"detect": "logistic", "which": "weibull"}
 _GUESSES = {"detect": None, "which": 0.5}
 
 
@@ -266,7 +266,7 @@ def _fitted(asked: LevelAnswers) -> tuple[Row, NDArray[np.float64] | None]:
             asked.levels,
             asked.positive,
             asked.trials,
-            shape=_SHAPES[question],
+            shape=SHAPE_OF[question],
             guess=_GUESSES[question],
             blanks=asked.blanks,
             scale=(0.0, most),

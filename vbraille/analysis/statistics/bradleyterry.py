@@ -149,7 +149,8 @@ def preferred(
     wins = _wins_of_each(values.size, first, second, chosen, groups)
     order = np.argsort(values)
     values, wins = values[order], wins[:, order][:, :, order]
-    _check_all(wins.sum(axis=0))
+    if np.ptp(bradley_terry(wins.sum(axis=0)).strengths) <= SAME:
+        raise Unanswerable("all values were chosen equally often; none is preferred")
     own = _own_peaks(values, wins.astype(np.float64))
     notes = []
     if own.size < len(wins):
@@ -235,12 +236,6 @@ def _wins_of_each(
     wins = np.zeros((len(names), k, k), dtype=np.int64)
     np.add.at(wins, (index, np.where(choice, two, one), np.where(choice, one, two)), 1)
     return wins
-
-
-def _check_all(wins: NDArray[np.int64]) -> None:
-    """Refuse comparisons of all participants that prefer nothing."""
-    if np.ptp(bradley_terry(wins).strengths) <= SAME:
-        raise Unanswerable("all values were chosen equally often; none is preferred")
 
 
 def _own_peaks(values: NDArray[np.float64], wins: NDArray[np.float64]) -> NDArray[np.float64]:

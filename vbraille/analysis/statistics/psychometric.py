@@ -257,18 +257,14 @@ def _best(asked: LevelCounts, start: list[float], within: list[tuple[float, floa
         found = at.tolist()
         guess = found[3] if asked.guess is None else 0.0
         prior = (_FEW - 1) * math.log1p(-found[2])
-        return -_likelihood(asked, _shares(asked, found)) - prior - _of_blanks(asked, guess)
+        share, no = _shares(asked, found), asked.trials - asked.positive
+        likely = float((xlogy(asked.positive, share) + xlog1py(no, -share)).sum())
+        return -likely - prior - _of_blanks(asked, guess)
 
     found = minimize(
         lost, start, method="L-BFGS-B", bounds=within, options={"ftol": 1e-14, "gtol": 1e-8}
     )
     return [float(value) for value in found.x]
-
-
-def _likelihood(asked: LevelCounts, share: NDArray[np.float64]) -> float:
-    """Log likelihood of the answers at the levels."""
-    no = asked.trials - asked.positive
-    return float((xlogy(asked.positive, share) + xlog1py(no, -share)).sum())
 
 
 def _beyond(asked: LevelCounts, threshold: float, interval: Interval) -> Iterator[str]:

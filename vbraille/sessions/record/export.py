@@ -119,7 +119,7 @@ def rows(record: Record, traces: Traces | None = None) -> list[dict[str, Any]]:
 
 
 def walk(
-    record: Record, traces: Traces | None = None
+    record: Record, traces: Traces | None = None, progress: Progress | None = None
 ) -> Iterator[tuple[dict[str, Any], Trajectory | str | None]]:
     """Go through a session trial by trial.
 
@@ -127,6 +127,8 @@ def walk(
     ----------
     record, traces
         These are described at `rows`.
+    progress
+        Course of the session, if it is known already.
 
     Yields
     ------
@@ -137,7 +139,8 @@ def walk(
         for trials whose trace is not read: comparisons, trials on paper or on a conventional
         display, and trials without an answer.
     """
-    progress = Progress(record.plan, record.told.events, record.procedure)
+    if progress is None:
+        progress = Progress(record.plan, record.told.events, record.procedure)
     traces = Traces(record) if traces is None else traces
     fields = {f"field_{name}": value for name, value in record.head["fields"].items()}
     notes = read_notes(record.told.events)
