@@ -44,7 +44,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise, product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -86,8 +86,7 @@ class GridAxis:
             raise ValueError(f"{self.name} has values that do not increase; sort them")
 
 
-@dataclass(frozen=True, slots=True)
-class GridEstimate:
+class GridEstimate(NamedTuple):
     """What is known about a parameter after some answers.
 
     Parameters

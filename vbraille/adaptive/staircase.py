@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from hashlib import sha256
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -209,8 +209,7 @@ class StaircaseRule:
         climb.level = min(max(moved, self.least), self.most)
 
 
-@dataclass(frozen=True, slots=True)
-class TurnEstimate:
+class TurnEstimate(NamedTuple):
     """What the reversals of staircases say of the level that they converge to.
 
     Parameters

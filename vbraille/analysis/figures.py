@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.schemas import ResultTable, Row
     from vbraille.pictures.charts import Chart, Numbers
 
+_SHARE = ("legibility", "low", "high")  # columns of a share with its interval
 MOST_ERRORS = 12  # kinds of errors that are drawn
 
 
@@ -38,7 +39,8 @@ def legibility(table: ResultTable, averages: ResultTable) -> ReportFigure:
     """Bars of legibility by participant and condition: Lévesque 2009, figs. 4.7 and 4.9."""
     people, conditions = _distinct(table, "participant"), _distinct(table, "condition")
     at = {(row["participant"], row["condition"]): row for row in table.records()}
-    panels = [("strings read right (%)", ("legibility", "low", "high"), 100.0)]
+    strings = ("strings read right (%)", _SHARE, 100.0)
+    panels: list[tuple[str, tuple[str, ...], float]] = [strings]
     if any(row["characters"] >= 2 * row["trials"] for row in at.values() if row["trials"]):
         panels.append(("characters read right (%)", ("character_legibility",), 100.0))
     if (table.frame["timed"] > 0).any():
@@ -47,13 +49,7 @@ def legibility(table: ResultTable, averages: ResultTable) -> ReportFigure:
         (
             label,
             tuple(
-                Series(
-                    condition,
-                    *(
-                        tuple(_scaled(at[who, condition][name], scale) for who in people)
-                        for name in names
-                    ),
-                )
+                _series(condition, [at[who, condition] for who in people], names, scale)
                 for condition in conditions
             ),
         )
@@ -81,14 +77,8 @@ def legibility(table: ResultTable, averages: ResultTable) -> ReportFigure:
 def dots(table: ResultTable, own: ResultTable) -> ReportFigure:
     """Bars of legibility by number of dots: Lévesque 2009, fig. 4.8."""
     rows = table.records()
-    series = Series(
-        "all",
-        *(
-            tuple(_scaled(row[name], 100.0) for row in rows)
-            for name in ("legibility", "low", "high")
-        ),
-        points=_points(own.records(), "dots", [row["dots"] for row in rows], "legibility", 100.0),
-    )
+    points = _points(own.records(), "dots", [row["dots"] for row in rows], "legibility", 100.0)
+    series = _series("all", rows, _SHARE, 100.0, points)
     shares = ", ".join(
         f"{row['dots']}: {to_print(row['legibility'], Kind.PERCENT)} %" for row in rows
     )
@@ -111,11 +101,8 @@ def errors(table: ResultTable, own: ResultTable) -> ReportFigure:
     """Bars of the kinds of errors: Lévesque 2009, fig. 4.8."""
     rows = table.records()[:MOST_ERRORS]
     kinds = [row["error"] for row in rows]
-    series = Series(
-        "all",
-        tuple(100 * row["share"] for row in rows),
-        points=_points(own.records(), "error", kinds, "share", 100.0),
-    )
+    points = _points(own.records(), "error", kinds, "share", 100.0)
+    series = _series("all", rows, ("share",), 100.0, points)
     first = rows[0]
     part = "" if len(rows) == len(table.rows) else f", of the {len(rows)} most frequent"
     return ReportFigure(
@@ -143,11 +130,8 @@ def choices(table: ResultTable, preferred: ResultTable, own: ResultTable) -> Ite
             )
         values = [row["value"] for row in rows]
         whose = [row for row in own.records() if row["parameter"] == name]
-        series = Series(
-            "chosen",
-            tuple(100 * row["share"] for row in rows),
-            points=_points(whose, "value", values, "share", 100.0),
-        )
+        points = _points(whose, "value", values, "share", 100.0)
+        series = _series("chosen", rows, ("share",), 100.0, points)
         yield ReportFigure(
             f"choices_{_file_name(name)}",
             f"How often each {_in_words(name)} was chosen",
@@ -175,15 +159,13 @@ def level_means(table: ResultTable, own: ResultTable) -> Iterator[ReportFigure]:
             of = {row["level"]: row for row in rows if row["measure"] == measure}
             share = measure.startswith("legibility")
             scale = 100.0 if share else 1.0
-            ends = (
-                tuple(_scaled(of[level][end], scale) if level in of else None for level in levels)
-                for end in ("mean", "low", "high")
-            )
             points = _points(
                 [row for row in whose if row["measure"] == measure], "level", levels, "mean", scale
             )
             label = f"{measure} (%)" if share else measure
-            panels.append((label, (Series("mean", *ends, points=points),)))
+            found = [of.get(level, {}) for level in levels]
+            series = _series("mean", found, ("mean", "low", "high"), scale, points)
+            panels.append((label, (series,)))
         said = "; ".join(
             f"{row['measure']}, {row['level']}: {_told(row)}"
             for row in rows
@@ -216,6 +198,21 @@ def _points(
     if len(of) < 2:
         return ()
     return tuple(tuple(own.get(each) for each in groups) for own in of.values())
+
+
+def _series(
+    name: str,
+    rows: Sequence[Row],
+    names: Sequence[str],
+    scale: float,
+    points: tuple[Numbers, ...] = (),
+) -> Series:
+    """Values of one kind, a column of rows, and the ends of their intervals, if there are any."""
+    values, lows, highs = (
+        *(tuple(_scaled(row.get(each), scale) for row in rows) for each in names),
+        *((),) * (3 - len(names)),
+    )
+    return Series(name, values, lows, highs, points)
 
 
 def _distinct(table: ResultTable, name: str) -> list[str]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, replace
 from itertools import product
 from math import inf, prod
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import msgspec
 import numpy as np
@@ -140,8 +140,7 @@ def _check_values(name: str, values: tuple[float, ...]) -> None:
         raise ValueError(f"{name} has a value that is no number")
 
 
-@dataclass(frozen=True, slots=True)
-class GridTask:
+class GridTask(NamedTuple):
     """A point of a grid, with its number."""
 
     grid: GridFile

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
@@ -74,8 +74,7 @@ class StudyPlan:
         return list(combinations(range(len(self.log_odds)), 2))
 
 
-@dataclass(frozen=True, slots=True)
-class StudyTask:
+class StudyTask(NamedTuple):
     """Some studies of a plan, numbered from `first` on, drawn by `seed`."""
 
     plan: StudyPlan

@@ -210,4 +210,4 @@ def _no_number(sheet: Sheet, row: object, column: str, text: str) -> InputError:
 def _levels(sheet: Sheet, given: pd.Series) -> pd.Series:
     """Numbers of a column, NaN where it has something else, such as two values."""
     known = {value: sheet.value(str(value)) for value in given.unique()}
-    return given.map(known).astype(np.float64).where(lambda number: number.abs() < np.inf)
+    return given.map(known).astype(np.float64).replace([np.inf, -np.inf], np.nan)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -54,8 +54,7 @@ SPEED_RULE = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class HandStroke:
+class HandStroke(NamedTuple):
     """A motion in one direction.
 
     Parameters

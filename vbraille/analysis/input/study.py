@@ -174,8 +174,10 @@ def _kept(
         )
     left: list[pd.DataFrame | None] = []
     for part in parts:
-        rows = None if part is None else (part[name] == level) == keeps
-        left.append(chosen(part, rows) if part is not None and rows.any() else None)
+        if part is not None:
+            rows = (part[name] == level) == keeps
+            part = chosen(part, rows) if rows.any() else None
+        left.append(part)
     return left, [one for one in sittings if (one.head[name] == level) == keeps]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
@@ -268,7 +268,7 @@ def _between(scores: Scores) -> set[str]:
     return found if len(found) < len(scores.factors) else set()
 
 
-def _each(measures: Sequence[Scores]) -> Iterator[tuple[Scores, str, pd.DataFrame]]:
+def _each(measures: Sequence[Scores]) -> Iterator[tuple[Scores, str, Any]]:
     """Each measure with each factor, and what `_means` gives of it."""
     return ((scores, name, _means(scores, name)) for scores in measures for name in scores.factors)
 
@@ -303,7 +303,7 @@ def _of_groups(means: pd.DataFrame) -> bool:
     return bool((known.sum() <= 1).all() and known.any(axis="columns").sum() > 1)
 
 
-def _trials(scores: Scores, name: str) -> pd.DataFrame | None:
+def _trials(scores: Scores, name: str) -> Any:
     """Number of answers of each participant at each level; None if scores are no shares."""
     if scores.trials is None:
         return None
@@ -311,7 +311,7 @@ def _trials(scores: Scores, name: str) -> pd.DataFrame | None:
     return frame.assign(trials=scores.trials).pivot_table("trials", "level", "who", "sum")
 
 
-def _pair(means: pd.DataFrame, first: str, second: str, shares: bool) -> Row:
+def _pair(means: Any, first: str, second: str, shares: bool) -> Row:
     """Columns of a paired test of two levels, or the note that says why there is none."""
     both = means.loc[[first, second]].dropna(axis="columns")
     row: Row = {"first": first, "second": second, "participants": both.columns.size}
@@ -332,7 +332,7 @@ def _pair(means: pd.DataFrame, first: str, second: str, shares: bool) -> Row:
     return row | {"note": "; ".join(notes)}
 
 
-def _without(means: pd.DataFrame, having: Iterable[object]) -> list[str]:
+def _without(means: Any, having: Iterable[object]) -> list[str]:
     """Note on who is left out of those who have any score; empty if nobody is."""
     without = [who for who in means if who not in set(having)]
     return [f"without {', '.join(without)}: a score is missing"] if without else []

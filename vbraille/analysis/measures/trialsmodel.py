@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -45,8 +44,7 @@ ALIKE = "no interval: participants who have it do not differ, or are too few to 
 MOST_ODDS = 600.0  # logarithm of an odds ratio that a number can still hold
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Counts:
+class Counts(NamedTuple):
     """Answers by participant and condition; a condition is a level of each factor.
 
     Parameters

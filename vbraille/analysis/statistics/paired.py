@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.special import gammaln
@@ -140,4 +140,5 @@ def paired_p_values(differences: NDArray[np.float64]) -> NDArray[np.float64]:
     # By their spread, since the sd of equal differences is not quite 0.
     alike = np.ptp(differences, axis=1) <= ROUNDING * np.abs(differences).max(axis=1)
     own = np.where(alike[:, None], np.nan, differences)
-    return ttest_1samp(own, 0.0, axis=1).pvalue
+    test: Any = ttest_1samp(own, 0.0, axis=1)
+    return test.pvalue

@@ -13,7 +13,6 @@ out on a grid (Schütt et al. 2016). docs/analysis.md has how often they hold th
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -51,8 +50,7 @@ SHAPES: Mapping[str, Curve] = MappingProxyType(
 exponent, and its levels are above 0."""
 
 
-@dataclass(frozen=True, slots=True)
-class PsychometricFit:
+class PsychometricFit(NamedTuple):
     """A psychometric function of one participant.
 
     Parameters
