@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tests.devices.secondversion import Make, SecondVersion
+from tests.devices.pagecontroller import Make, PageController
 from vbraille.devices.wire.messages import TRIPPED
 from vbraille.simulation.firmware import Controller
 
@@ -15,11 +15,10 @@ if TYPE_CHECKING:
     from vbraille.devices.wire.messages import Frame, Info
 
 
-class ControllerOf20261121(Controller):
-    """Built from the protocol's page as it was on 2026-11-21.
+class HastyController(Controller):
+    """Shows each valid FRAME at once, on its ramp to rest and after it too.
 
-    Each valid FRAME is shown at once, on the ramp to rest and after it too, and STATE does not
-    repeat that the watchdog tripped.
+    Its STATEs do not repeat that the watchdog tripped.
     """
 
     def _follow(self, frame: Frame, levels: NDArray[np.uint16]) -> bytes:
@@ -30,7 +29,7 @@ class ControllerOf20261121(Controller):
         return super()._flags() & ~TRIPPED
 
 
-class Alone(SecondVersion):
+class Alone(PageController):
     """The controller that was written from the page alone, made as an INFO says."""
 
     def __init__(self, info: Info) -> None:

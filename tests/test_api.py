@@ -23,7 +23,7 @@ TOLD = (
     "vbraille.analysis",
     "vbraille.files",
     "vbraille.reading.frames",
-    "vbraille.reading.opening",
+    "vbraille.reading.device",
     "vbraille.render.braille.style",
     "vbraille.sessions.session",
     "vbraille.testing.standins",

@@ -9,7 +9,7 @@ is held against the law that nothing jumps, whatever was lost, late, doubled or 
 - The ramp to rest adds a twentieth of the swing to that.
 - What is felt after the host was stopped is of a place that the carriage was at from then on.
 
-A controller of 2026-11-21 shows each FRAME at once, so that it jumps where the line loses FRAMEs or
+A hasty controller shows each FRAME at once, so that it jumps where the line loses FRAMEs or
 holds them up. The same is asked of what it is told: from one FRAME to the next, however late they
 are, and after a rest by nothing.
 
@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tests.controllers import ControllerOf20261121
+from tests.controllers import HastyController
 from tests.troubles import Troubles, troubles_of_host, troubles_of_line
 from vbraille.braille.geometry import Geometry
 from vbraille.devices.serial.conversation import Conversation
@@ -37,7 +37,6 @@ from vbraille.devices.serial.serialdevice import SerialDevice
 from vbraille.devices.wire.codec import Decoder
 from vbraille.devices.wire.messages import (
     RAMP_MS,
-    VERSION,
     WATCHDOG_MS,
     Encoder,
     Frame,
@@ -120,8 +119,6 @@ class Wired:
         Of the picture: 0 is the same everywhere, so that only fades move actuators.
     speed_mm_s
         Speed of the hand to the right, in mm/s.
-    version
-        Version of the protocol that the controller speaks.
     """
 
     def __init__(
@@ -134,14 +131,13 @@ class Wired:
         slew_per_s: int = 0,
         swing: float = 0.0,
         speed_mm_s: float = 60.0,
-        version: int = VERSION,
     ) -> None:
         self.now_us = 0
         self.breaches: list[str] = []
         self.rests = self.shown = 0  # how often the device went to rest, and FRAMEs shown
         self.controller = controller(
             replace(
-                describe(INFO, Encoder.ABSOLUTE, version),
+                describe(INFO, Encoder.ABSOLUTE),
                 inverted=bytes((0, 1, 0)),
                 largest_slew_per_s=slew_per_s,
             )
@@ -168,7 +164,7 @@ class Wired:
         slope_per_mm = swing * math.pi / DOT_MM
         asked = slope_per_mm * speed_mm_s * PERIOD_US / 1e6 + PERIOD_US / 1e6 / FADE_S
         self.allowed = CATCH_UP * asked * TOP + 2  # in a millisecond, in levels
-        self._at_once = isinstance(self.controller, ControllerOf20261121)
+        self._at_once = isinstance(self.controller, HastyController)
         self.picture = waves(swing).render(np.full(CELLS, 0b001001, np.uint8), INFO)
         self.port = _Port(self)
         begun = conversation(self.now_ns())
@@ -421,8 +417,6 @@ def reading(
         slew_per_s=chance.choice((0, 0, 8, 40)),
         swing=chance.choice((0.0, 0.5, 1.0)),
         speed_mm_s=chance.choice((0.0, 60.0, 300.0)),
-        # What was built in 2026 speaks version 1.
-        version=1 + seed % 2 if controller is Controller else 1,
     )
     wired.run(0.5)
     wired.leave()

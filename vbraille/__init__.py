@@ -24,19 +24,19 @@ if TYPE_CHECKING:
     from vbraille.errors import InputError as InputError
     from vbraille.errors import VbrailleError as VbrailleError
     from vbraille.pose import Pose as Pose
+    from vbraille.reading.device import OpenDevice as OpenDevice
+    from vbraille.reading.device import open_to_read as open  # noqa: A004
     from vbraille.reading.frames import RenderedLine as RenderedLine
     from vbraille.reading.frames import render_text as render_text
-    from vbraille.reading.opened import OpenDevice as OpenDevice
-    from vbraille.reading.opening import open_to_read as open  # noqa: A004
     from vbraille.render.braille.mappings import MAPPINGS as MAPPINGS
     from vbraille.render.braille.models import LATERO as LATERO
     from vbraille.render.braille.models import STRESS2 as STRESS2
     from vbraille.render.braille.models import STRESS2_8X8 as STRESS2_8X8
     from vbraille.render.braille.models import VBD as VBD
     from vbraille.render.braille.models import Model as Model
+    from vbraille.render.braille.profiles import Tuning as Tuning
     from vbraille.render.braille.straying import Straying as Straying
     from vbraille.render.braille.style import BrailleStyle as BrailleStyle
-    from vbraille.render.braille.tuning import Tuning as Tuning
     from vbraille.scene.reading import open_scene as open_scene
     from vbraille.scene.scene import Canvas as Canvas
     from vbraille.scene.scene import Scene as Scene
@@ -56,7 +56,7 @@ _PLACES = {
     "LATERO": "vbraille.render.braille.models",
     "MAPPINGS": "vbraille.render.braille.mappings",
     "Model": "vbraille.render.braille.models",
-    "OpenDevice": "vbraille.reading.opened",
+    "OpenDevice": "vbraille.reading.device",
     "Pose": "vbraille.pose",
     "RenderedLine": "vbraille.reading.frames",
     "Results": "vbraille.analysis.results",
@@ -65,11 +65,11 @@ _PLACES = {
     "Scene": "vbraille.scene.scene",
     "Session": "vbraille.sessions.session",
     "Straying": "vbraille.render.braille.straying",
-    "Tuning": "vbraille.render.braille.tuning",
+    "Tuning": "vbraille.render.braille.profiles",
     "VBD": "vbraille.render.braille.models",
     "VbrailleError": "vbraille.errors",
     "analyse": "vbraille.analysis",
-    "open": "vbraille.reading.opening:open_to_read",
+    "open": "vbraille.reading.device:open_to_read",
     "open_scene": "vbraille.scene.reading",
     "render_text": "vbraille.reading.frames",
 }

@@ -17,8 +17,7 @@ from vbraille.errors import InputError
 from vbraille.layout.wrapping import breaks_of, wrap
 from vbraille.render.scene.assets import Written
 from vbraille.render.scene.brailleplaces import corners_mm
-from vbraille.scene.labels import Label
-from vbraille.scene.patterns import Tile
+from vbraille.scene.patterns import Label, Tile
 from vbraille.scene.walking import each
 from vbraille.translate.languages import find_table
 from vbraille.translate.liblouis import BrailleTable

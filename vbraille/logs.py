@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 import os
+import traceback
 from contextlib import suppress
 from pathlib import Path
 
@@ -18,6 +19,9 @@ from vbraille.wording import setting
 _FORMAT = "%(asctime)s.%(msecs)03d %(process)d %(levelname)s %(name)s: %(message)s"
 _STDERR = "-"
 _STDERR_DESCRIPTOR = 2
+# If this is set to anything, in the environment, faults print their tracebacks: --verbose sets it,
+# and processes that are started inherit it.
+_TRACEBACKS = "VBRAILLE_TRACEBACK"
 
 
 class LineHandler(logging.Handler):
@@ -86,6 +90,23 @@ def kept() -> str | None:
         if isinstance(handler, LineHandler):
             return handler.where
     return None
+
+
+def want_tracebacks() -> None:
+    """Have faults print their tracebacks from now on, in this process and those it starts."""
+    os.environ[_TRACEBACKS] = "1"
+
+
+def tracebacks_wanted() -> bool:
+    """Tell whether faults print their tracebacks."""
+    return bool(os.environ.get(_TRACEBACKS))
+
+
+def print_traceback(error: BaseException) -> None:
+    """Print the traceback of a fault on standard error, if tracebacks are wanted."""
+    if tracebacks_wanted():
+        with suppress(OSError):
+            traceback.print_exception(error)
 
 
 def stop(handler: LineHandler) -> None:

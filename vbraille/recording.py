@@ -218,35 +218,18 @@ class Recorder:
         self._file.check()
 
 
-class Poses(NamedTuple):
-    """Where the array was at each frame of a recording.
-
-    Parameters
-    ----------
-    t_s : float64[n]
-        Time of each frame, from 0.
-    x_mm, y_mm, theta_rad : float64[n]
-        Pose of the array then; see `vbraille.pose`.
-    """
-
-    t_s: NDArray[np.float64]
-    x_mm: NDArray[np.float64]
-    y_mm: NDArray[np.float64]
-    theta_rad: NDArray[np.float64]
-
-
 def scene_of(file: h5py.File) -> SceneRecorded | None:
     """Read the tactile picture of a recording; None if lines of braille were recorded.
 
     Raises
     ------
     InputError
-        If it is of a newer format.
+        If it is of another format.
     """
-    _format_of(file)
+    check_format(file)
     if "scene" not in file:
         return None
-    text, drawn = (_numbers(file, f"scene/{name}").tobytes() for name in ("text", "map"))
+    text, drawn = (_bytes(file, f"scene/{name}") for name in ("text", "map"))
     told = file["scene"].attrs
     return SceneRecorded(
         text,
@@ -258,54 +241,25 @@ def scene_of(file: h5py.File) -> SceneRecorded | None:
     )
 
 
-def poses_of(file: h5py.File) -> Poses:
-    """Read the poses of a recording of any format.
-
-    A recording of format 1, which has no attribute ``format``, holds places of the array's left
-    column; its poses are made of them.
+def check_format(file: h5py.File) -> None:
+    """Refuse a recording of another format.
 
     Raises
     ------
     InputError
-        If it is of a newer format.
+        If its attribute ``format`` is not `FORMAT`.
+    KeyError
+        If it has none, and is HDF5 of something else.
     """
-    if _format_of(file) > 1:
-        return Poses(*(_numbers(file, name) for name in Poses._fields))
-    left_mm = _numbers(file, "x_mm")
-    nothing = np.zeros(left_mm.size)
-    return Poses(_numbers(file, "t_s"), left_mm + _half_mm(file), nothing, nothing)
+    found = int(np.asarray(file.attrs["format"]))
+    if found != FORMAT:
+        raise InputError(
+            f"{file.filename} is a recording of format {found}, and this vbraille reads format "
+            f"{FORMAT}; play it with the vbraille that wrote it, or render it again"
+        )
 
 
-def anchor_mm(file: h5py.File) -> float:
-    """Tell how far right of the array's left column the places in a recording were taken.
-
-    `vbraille.render.program.Program.with_anchor` with this distance makes a program of the line
-    that gives the same frames for ``x_mm`` as it stands in the file, bit for bit.
-
-    Raises
-    ------
-    InputError
-        If it is of a newer format.
-    """
-    return 0.0 if _format_of(file) == 1 else _half_mm(file)
-
-
-def _numbers(file: h5py.File, name: str) -> NDArray[np.float64]:
+def _bytes(file: h5py.File, name: str) -> bytes:
     dataset = file[name]
     assert isinstance(dataset, h5py.Dataset)
-    return dataset[:]
-
-
-def _half_mm(file: h5py.File) -> float:
-    """Tell the distance from the array's left column to its centre."""
-    return float(np.asarray(file.attrs["column_offset_mm"])[-1]) / 2
-
-
-def _format_of(file: h5py.File) -> int:
-    found = int(np.asarray(file.attrs.get("format", 1)))
-    if found > FORMAT:
-        raise InputError(
-            f"{file.filename} is a recording of format {found}, and this vbraille knows format "
-            f"{FORMAT}; use the vbraille that made it, or a newer one"
-        )
-    return found
+    return dataset[:].tobytes()

@@ -20,8 +20,8 @@ from vbraille.conventional.brlapi import BrlapiDisplay, DisplayGoneError
 from vbraille.conventional.display import ConventionalDisplay
 from vbraille.engine.host import Host
 from vbraille.layout.pages import Layout
-from vbraille.reading.alongside import Alongside
 from vbraille.reading.commands.table import press
+from vbraille.reading.conventionalview import ConventionalView
 from vbraille.reading.reader import Reader
 from vbraille.render import STRESS2
 from vbraille.translate import Book, BrailleTable, Document
@@ -129,7 +129,7 @@ def _ours(brltty: Brltty) -> list[tuple[float, float]]:
     ):
         reader = Reader(layout, host, model=STRESS2, say=lambda _: None, advance=False)
         timed = Timed(display)
-        alongside = Alongside(timed, lambda _: None)  # type: ignore[arg-type]
+        alongside = ConventionalView(timed, lambda _: None)  # type: ignore[arg-type]
         reader.start()
         until(lambda: alongside.attend(reader) or display.standing)
         for _ in range(LINES):
@@ -143,7 +143,7 @@ def _ours(brltty: Brltty) -> list[tuple[float, float]]:
     return taken
 
 
-def _go_on(host: Host, reader: Reader, alongside: Alongside, seconds: float) -> None:
+def _go_on(host: Host, reader: Reader, alongside: ConventionalView, seconds: float) -> None:
     """Read on for a while, as a reading does."""
     end_s = time.monotonic() + seconds
     while time.monotonic() < end_s:

@@ -30,8 +30,8 @@ TIMES = 50
 UNPLUGS = 100
 LIMIT_MS = 71.0
 BACK_S = 1.0
-# What is read on, by the version of the protocol that it speaks.
-DISPLAYS: Final = {1: INFO, 2: replace(INFO, height_mm=200.0, turns=True)}
+# What is read on, by its axes.
+DISPLAYS: Final = {"x": INFO, "xyθ": replace(INFO, height_mm=200.0, turns=True)}
 _PATIENCE_S = 30.0
 
 # Says when the actuators have come to rest, and how long after the last frame that was valid.
@@ -46,10 +46,9 @@ from vbraille.simulation.hand import Sweep
 from vbraille.devices.wire.messages import Encoder
 from vbraille.simulation.pty import Link, Port
 from vbraille.simulation.simulator import Simulator
-version = int(sys.argv[2])
-display = DISPLAYS[version]
+display = DISPLAYS[sys.argv[2]]
 simulator = Simulator(
-    describe(display, Encoder.ABSOLUTE, version),
+    describe(display, Encoder.ABSOLUTE),
     Sweep(60.0),
     Port(Link(sys.argv[1])),
     say=lambda _: None,
@@ -77,20 +76,19 @@ with reading(sys.argv[1]) as host:
 
 def run() -> Iterator[Result]:
     yield _unplugged()
-    for version, display in DISPLAYS.items():
-        what = f"version {version}, axes {display.axes}"
+    for axes in DISPLAYS:
         for who in KILLS:
-            taken = killed_ms(who, TIMES, version)
+            taken = killed_ms(who, TIMES, axes)
             yield Result(
-                f"kill -9 of {who}, {TIMES} times, {what}: last valid frame to rest, at most",
+                f"kill -9 of {who}, {TIMES} times, axes {axes}: last valid frame to rest, at most",
                 f"≤ {LIMIT_MS:g} ms",
                 f"{max(taken):.1f} ms",
                 max(taken) <= LIMIT_MS,
             )
 
 
-def killed_ms(who: str, times: int, version: int) -> list[float]:
-    """Kill "host", "parent" or "both" so often, while they read on a controller of a version.
+def killed_ms(who: str, times: int, axes: str) -> list[float]:
+    """Kill "host", "parent" or "both" so often, while they read on a controller with these axes.
 
     Returns
     -------
@@ -100,7 +98,7 @@ def killed_ms(who: str, times: int, version: int) -> list[float]:
     """
     with tempfile.TemporaryDirectory() as folder:
         link = str(Path(folder) / "vb0")
-        command = [sys.executable, "-c", _CONTROLLER, link, str(version)]
+        command = [sys.executable, "-c", _CONTROLLER, link, axes]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as controller:
             assert controller.stdout is not None
             controller.stdout.readline()

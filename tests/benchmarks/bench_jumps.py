@@ -7,7 +7,7 @@ from itertools import repeat
 from typing import TYPE_CHECKING
 
 from tests.benchmarks.timing import Result
-from tests.controllers import Alone, ControllerOf20261121
+from tests.controllers import Alone, HastyController
 from tests.wired import Wired, reading
 from vbraille.simulation.firmware import Controller
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 SEEDS = 2000
 CASES = (
     ("the host stopped, what the device says lost or late", "host", Controller),
-    ("the same, with a controller of 2026-11-21", "host", ControllerOf20261121),
+    ("the same, with a controller that shows each FRAME at once", "host", HastyController),
     ("the line dead, held up and repeating too", "line", Controller),
     ("the same, with a controller written from the protocol's page", "line", Alone),
 )

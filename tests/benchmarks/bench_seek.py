@@ -15,15 +15,15 @@ import msgspec
 from tests.benchmarks.big_texts import big_text
 from tests.benchmarks.timing import Result
 from vbraille.reading.places import KeptPlace, KeptPlaces
-from vbraille.reading.queries import FindShare, FindText, NotFound, Searched
-from vbraille.reading.seeking import BookOpening, Seeker
-from vbraille.reading.seeking.answering import answer
+from vbraille.reading.search.answering import answer
+from vbraille.reading.search.queries import BookOpening, FindShare, FindText, NotFound, Searched
+from vbraille.reading.search.seeker import Seeker
 from vbraille.translate import Document
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.reading.queries import Query
+    from vbraille.reading.search.queries import Query
 
 _SIZE = 50_000_000
 _COMMITS = 5_000
@@ -69,7 +69,7 @@ def _rate(document: Document, *, accents: bool) -> float:
 def _cancels(path: Path) -> Result:
     """How long a process that works on one question takes to begin with the next."""
     taken = []
-    with Seeker(BookOpening(str(path))) as seeker:
+    with Seeker(BookOpening(str(path).encode())) as seeker:
         _last(seeker, FindText("not there at all", 0))
         for _ in range(_CANCELS):
             seeker.ask(FindShare(1.0))

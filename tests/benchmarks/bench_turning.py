@@ -12,7 +12,7 @@ from tests.conftest import TEXTS
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line
 from vbraille.reading.commands.turning import turn
-from vbraille.reading.opened import OpenDevice
+from vbraille.reading.device import OpenDevice
 from vbraille.render import STRESS2
 from vbraille.translate import Book, BrailleTable, Document
 

@@ -48,7 +48,7 @@ def sent(random: np.random.Generator) -> list:
     for number in range(2000):
         messages.append(Frame(number, random.bytes(75)))
         values = random.integers(0, 1 << 16, 4).tolist()
-        messages.append(State(number, values[0] << 8, values[1], values[2], 1, 0, None))
+        messages.append(State(number, values[0] << 8, values[1], values[2], 1, 0, None, 0, 0, 0))
     return messages
 
 

@@ -8,10 +8,17 @@ from tests.conftest import SEED
 from vbraille.display import Display
 from vbraille.render.scene.assets import Assets
 from vbraille.scene.bitmap import Bitmap
-from vbraille.scene.dots import Dots
-from vbraille.scene.patterns import Circle, Fill, Group, Image, PathShape, Polygon
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Fill,
+    Group,
+    Image,
+    PathShape,
+    Polygon,
+    StraightLine,
+)
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Across, Along, DotStyle, Stroke
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, UniformVibration
 

@@ -9,7 +9,7 @@ import pytest
 from tests.cli import program
 from vbraille.cli.commands.books import describe
 from vbraille.reading.places import KeptPlace, KeptPlaces, ListedBook
-from vbraille.reading.places.database import ENVIRONMENT
+from vbraille.reading.places.store import ENVIRONMENT
 
 
 @pytest.fixture
@@ -93,8 +93,8 @@ def test_what_cannot_be_written_is_not_said_to_be_forgotten():
 )
 def test_days_as_people_say_them(ago, said):
     now = datetime(2026, 5, 11, 12, tzinfo=UTC)
-    book = ListedBook(1, "Title", "", (now - ago).timestamp(), None, missing=False)
-    assert describe(book, now) == f"Title, {said}, from standard input"
+    book = ListedBook("ab", "Title", "/t", (now - ago).timestamp(), None, missing=False)
+    assert describe(book, now) == f"Title, {said}, /t"
 
 
 FAST = ("--hand", "sweep:1000", "--echo", "text")

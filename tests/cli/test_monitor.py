@@ -12,12 +12,13 @@ import pytest
 from websockets.sync.client import connect
 
 from tests.cli import program
-from tests.playback.written import RECORDINGS, WRITTEN
+from tests.playback.written import recorded
+from tests.sessions.written import written
 from tests.tiers import heavy
 from vbraille.live.messages import FRAME
 
-RECORDING = RECORDINGS[-1]
-SESSION = WRITTEN / "0.1.0-2026-11-22/sessions/letters-stopped"
+RECORDING = recorded()
+SESSION = written("stopped")
 
 
 def refused(said, code=2):

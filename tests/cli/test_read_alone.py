@@ -12,7 +12,7 @@ import time
 import numpy as np
 
 from tests.cli import program
-from tests.devices.secondversion import Cable, Make, SecondVersion
+from tests.devices.pagecontroller import Cable, Make, PageController
 from tests.engine.test_page_read import over_dots
 from tests.tiers import heavy
 from vbraille.render import STRESS2
@@ -120,7 +120,7 @@ def test_a_page_is_read_on_a_device_built_from_the_protocol_page_alone(tmp_path)
     text.write_text("\n\n".join(WORDS) + "\n")
     settings.write_text(SETTINGS)
     environment = os.environ | {"VBRAILLE_SETTINGS": str(settings)}
-    device = SecondVersion(make=MAKE)
+    device = PageController(make=MAKE)
     finger = Finger(device)
     with Cable(device, finger) as cable:
         options = ("--rate", MAKE.rate_hz, "--grade", 1, "--texture", 0, "--echo", "text")

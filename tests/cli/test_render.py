@@ -17,7 +17,6 @@ from tests.tiers import by_tier, heavy
 from vbraille import __version__
 from vbraille.braille.geometry import PRESETS, Geometry
 from vbraille.layout.pages import Layout
-from vbraille.recording import anchor_mm, poses_of
 from vbraille.render import MAPPINGS, MODELS, Tuning, single_row
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.wording import count
@@ -36,7 +35,7 @@ def from_the_file_alone(file):
         "mapping": MAPPINGS[name] if name in MAPPINGS else single_row(int(name[-1])),
         "geometry": Geometry(**json.loads(attributes["geometry"])),
         "tuning": Tuning(**json.loads(attributes["tuning"])),
-        "anchor_mm": anchor_mm(file),
+        "anchor_mm": model.display.span_mm / 2,
     }
     np.testing.assert_array_equal(attributes["column_offset_mm"], model.display.column_offsets_mm())
     np.testing.assert_array_equal(attributes["row_offset_mm"], model.display.row_offsets_mm())
@@ -91,12 +90,9 @@ def test_the_file_holds_all_that_was_rendered(
         assert t_s.shape == x_mm.shape == line.shape == file["part"].shape
         assert file.attrs["format"] == 3
         assert not file["part"][:].any()
-        poses = poses_of(file)
-        np.testing.assert_array_equal(poses.t_s, t_s)
-        np.testing.assert_array_equal(poses.x_mm, x_mm)
         pitch_mm = json.loads(file.attrs["geometry"])["line_pitch_mm"]
-        assert set(poses.y_mm) == {pitch_mm / 2}
-        assert not poses.theta_rad.any()
+        assert set(file["y_mm"][:]) == {pitch_mm / 2}
+        assert not file["theta_rad"][:].any()
         np.testing.assert_allclose(t_s, np.arange(t_s.size) / rate, rtol=0, atol=1e-9)
 
         cells, length = file["page/cells"][:], file["page/length"][:]

@@ -11,7 +11,7 @@ import pytest
 from tests.feeling.felt import DISPLAY, SCENE
 from tests.render.scene.twin import deflections
 from vbraille.playback.rendered import Rendered
-from vbraille.recording import poses_of, scene_of
+from vbraille.recording import scene_of
 from vbraille.render.scene.assets import Assets
 from vbraille.scene.reading import open_scene
 
@@ -52,16 +52,17 @@ def test_each_frame_is_what_the_twin_has_at_its_pose_and_time(call, scene, tmp_p
         assert told.text == MOVING.encode()
         assert (told.title, told.width_mm, told.height_mm) == ("A house", 120, 90)
         assert told.map_png.startswith(b"\x89PNG")
-        poses, frames = poses_of(file), file["frames"][:]
+        t_s, theta_rad, frames = (file[n][:] for n in ("t_s", "theta_rad", "frames"))
+        centre_mm = file["x_mm"][:], file["y_mm"][:]
     right, down = DISPLAY.column_offsets_mm(), DISPLAY.row_offsets_mm()
     right, down = np.meshgrid(right - right.mean(), down - down.mean())
     parity = np.add.outer(np.arange(8), np.arange(8)) % 2
     for n in range(0, 301, 23):
-        cos, sin = np.cos(poses.theta_rad[n]), np.sin(poses.theta_rad[n])
-        x_mm = poses.x_mm[n] + right * cos + down * sin
-        y_mm = poses.y_mm[n] + down * cos - right * sin
+        cos, sin = np.cos(theta_rad[n]), np.sin(theta_rad[n])
+        x_mm = centre_mm[0][n] + right * cos + down * sin
+        y_mm = centre_mm[1][n] + down * cos - right * sin
         places = x_mm.ravel(), y_mm.ravel(), parity.ravel()
-        wanted = deflections(resolved, Assets(), *places, time_s=float(poses.t_s[n]))
+        wanted = deflections(resolved, Assets(), *places, time_s=float(t_s[n]))
         np.testing.assert_allclose(frames[n].ravel(), wanted, atol=1e-6)
 
 

@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.scene.keyspage import BEGIN, END, PAGE, keys_text
-from vbraille.scene.including import MOST_BYTES, MOST_FILES
-from vbraille.scene.reading import open_scene
+from vbraille.scene.reading import MOST_BYTES, MOST_FILES, open_scene
 from vbraille.scene.resolving import MOST_DEPTH, MOST_DOTS, MOST_PATTERNS, MOST_POINTS
 from vbraille.scene.stock import stock_textures
 

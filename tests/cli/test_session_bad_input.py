@@ -208,9 +208,12 @@ def test_an_undone_answer_is_not_counted_twice(call, tmp_path):
     assert "4 of 4 have answers" in said.out
 
 
-def of_a_newer_format(room):
-    first = events.Session(format=FORMAT + 1, sha256={}, t_s=0.0)
-    (room / journal.NAME).write_bytes(first_lines(first))
+def of_format(number):
+    def made(room):
+        first = events.Session(format=number, sha256={}, t_s=0.0)
+        (room / journal.NAME).write_bytes(first_lines(first))
+
+    return made
 
 
 def of_something_else(room):
@@ -230,10 +233,13 @@ def without_its_journal(room):
 @pytest.mark.parametrize(
     ("made", "code", "pattern"),
     [
-        (
-            of_a_newer_format,
-            2,
-            f"is a session of format {FORMAT + 1}, and this vbraille knows format {FORMAT}; use",
+        *(
+            (
+                of_format(number),
+                2,
+                f"is a session of format {number}, and this vbraille knows format {FORMAT}; use",
+            )
+            for number in (1, FORMAT - 1, FORMAT + 1)
         ),
         (of_something_else, 2, r"journal\.jsonl is not the journal of a session"),
         (of_no_event, 1, r"is damaged in its first line; there is nothing to go by"),

@@ -2,12 +2,10 @@
 
 import os
 import re
-import shutil
 import signal
 import socket
 import subprocess
 from contextlib import contextmanager
-from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -262,11 +260,3 @@ def test_a_session_that_cannot_be_watched_is_not_begun(call, tmp_path, toml, opt
     assert (said.code, said.out) == (2, "")
     assert says in said.err
     assert not (tmp_path / "s").exists()
-
-
-def test_a_session_of_a_format_that_cannot_say_so_is_not_watched(call, tmp_path):
-    written = Path(__file__).parents[1] / "written-by" / "0.1.0-2026-11-22-format-3" / "sessions"
-    folder = shutil.copytree(written / "letters-stopped", tmp_path / "s")
-    said = call("session", "resume", folder, "--monitor")
-    assert said.code == 2
-    assert "s is a session of format 3, whose journal cannot say that it was watched" in said.err

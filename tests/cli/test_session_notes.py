@@ -84,7 +84,7 @@ def test_a_note_between_trials_and_in_practice_is_tied_to_what_is_beside_it():
     from vbraille.sessions.record.notes import read_notes
 
     def shown(trial, **more):
-        return events.Presented(t_s=0.0, trial=trial, attempt=1, stimulus=0, **more)
+        return events.Presented(t_s=0.0, trial=trial, attempt=1, stimulus=0, shown={}, **more)
 
     def note(text, trial=0, **more):
         return events.Note(t_s=0.0, text=text, trial=trial, **more)

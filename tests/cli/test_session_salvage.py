@@ -21,7 +21,7 @@ from vbraille.wording import spelled
 
 LONG = MINI.replace("length = 1", "length = 2\nrepeats = 2")  # 32 trials
 WHOLE = first_lines(
-    events.Session(format=2, sha256={}, t_s=0.0),
+    events.Session(format=6, sha256={}, t_s=0.0),
     *(events.Note(text="x" * n, t_s=1.0 + n) for n in range(12)),
 )
 

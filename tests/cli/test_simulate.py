@@ -16,7 +16,7 @@ import pytest
 
 from tests.cli import program
 from vbraille.devices.wire.codec import Decoder, Levels, encode
-from vbraille.devices.wire.messages import VERSION, Encoder, Frame, Hello, Info, State, Watchdog
+from vbraille.devices.wire.messages import Encoder, Frame, Hello, Info, State, Watchdog
 
 PATIENCE_S = 30.0
 
@@ -24,9 +24,8 @@ PATIENCE_S = 30.0
 class Host:
     """A host at a port, while what the device prints is read, too."""
 
-    def __init__(self, device, path, version=VERSION):
+    def __init__(self, device, path):
         self.device = device
-        self.version = version
         self.descriptor = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
         self.decoder = Decoder()
         self.heard = []
@@ -62,7 +61,7 @@ class Host:
         def ask():
             if time.monotonic() > asked[0]:
                 asked[0] = time.monotonic() + 0.25
-                self.say(Hello(self.version))
+                self.say(Hello())
 
         self.until(lambda: self.of(Info) and self.of(State), ask)
 
@@ -128,8 +127,8 @@ def simulated(*arguments):
 
 
 @contextmanager
-def host_of(device, path, version=VERSION):
-    host = Host(device, path, version)
+def host_of(device, path):
+    host = Host(device, path)
     try:
         yield host
     finally:
@@ -216,8 +215,7 @@ def test_it_is_unplugged_and_comes_back(tmp_path):
         ("--encoder=odd", "argument --encoder: invalid choice: 'odd'"),
         ("--height=100", "--height is for a carriage of two axes; add --axes xy or --axes xyθ"),
         ("--axes=xy --height=0", "height is 0 mm; it must be above 0"),
-        ("--axes=xy --protocol=1", "version 1 of the protocol knows one axis; leave --axes"),
-        ("--protocol=3", "argument --protocol: invalid choice: '3'"),
+        ("--protocol=1", "--protocol=1 is gone; a simulated controller speaks the one version"),
         ("--axes=yx", "argument --axes: invalid choice: 'yx'"),
         ("--script=none", "the script none cannot be read: No such file or directory; check"),
         ("--script=text", "text, line 1: 'kept' is no event; write a time and what is done then"),
@@ -254,16 +252,6 @@ def test_its_buttons_are_pressed_when_they_are_to_be(tmp_path):
             host.until(lambda: host.of(State)[-1].buttons == 0b100)
             buttons = [state.buttons for state in host.of(State)]
         assert [*dict.fromkeys(buttons)] == [0, 1, 5, 4]
-        device.end()
-
-
-def test_it_is_a_device_of_version_1_when_told_to():
-    with simulated("--protocol", "1") as device:
-        port = device.until("port: .*").removeprefix("port: ")
-        with host_of(device, port, 1) as host:
-            host.greet()
-            assert type(host.of(Info)[0]) is Info
-            assert type(host.of(State)[0]) is State
         device.end()
 
 

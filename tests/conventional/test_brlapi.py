@@ -18,18 +18,16 @@ from tests.conventional.handytech import (
 from tests.tiers import heavy
 from vbraille.conventional.brlapi import (
     BrlapiDisplay,
+    CellsTaken,
+    DisplayAway,
     DisplayGoneError,
+    DisplayStands,
+    KeyPressed,
     host_of,
     load_library,
     typed,
 )
 from vbraille.conventional.display import ConventionalDisplay
-from vbraille.conventional.messages import (
-    CellsTaken,
-    DisplayAway,
-    DisplayStands,
-    KeyPressed,
-)
 from vbraille.errors import InputError
 
 SHOWN = bytes((0x11, 0xFF, 0x00, 0x80))
@@ -114,7 +112,7 @@ def test_what_does_not_answer_is_said_and_found_again(brltty, display):
     assert heard(display, DisplayAway).why.startswith("what drives the display does not answer")
     brltty.process.send_signal(signal.SIGCONT)
     heard(display, DisplayStands)
-    display._process.kill()
+    display._worker.process.kill()
     heard(display, DisplayAway)
     heard(display, DisplayStands)
 

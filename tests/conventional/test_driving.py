@@ -4,16 +4,16 @@ import os
 
 import pytest
 
-from vbraille.conventional.brlapi import DisplayGoneError
-from vbraille.conventional.driving import Driving
-from vbraille.conventional.messages import (
-    TO_JSON,
+from vbraille.conventional.brlapi import (
     CellsTaken,
     CellsWanted,
     DisplayAway,
+    DisplayGoneError,
     DisplayStands,
     KeyPressed,
 )
+from vbraille.conventional.driving import Driving
+from vbraille.workers import Incoming, Outgoing
 
 STANDS = DisplayStands("Made", "of values", 4)
 
@@ -57,7 +57,7 @@ class Pins:
 @pytest.fixture
 def orders():
     reads, writes = os.pipe()
-    yield reads, lambda message: os.write(writes, TO_JSON.encode(message) + b"\n"), writes
+    yield Incoming(reads, CellsWanted), Outgoing(writes).put, writes
     os.close(reads)
 
 

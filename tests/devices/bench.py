@@ -12,7 +12,7 @@ from vbraille.devices.saying import told
 from vbraille.devices.serial.openserial import begin
 from vbraille.devices.serial.ports import parse_address
 from vbraille.devices.wire.codec import Decoder
-from vbraille.devices.wire.messages import VERSION, Encoder
+from vbraille.devices.wire.messages import Encoder
 from vbraille.simulation.described import describe
 from vbraille.simulation.firmware import Controller
 
@@ -34,9 +34,9 @@ AWAY = "device: unplugged; plug it in again and reading goes on"
 DOWN_BYTES, UP_BYTES = 20_000, 4000
 
 
-def shown(encoder=Encoder.ABSOLUTE, version=VERSION, *, axes=None, **changes):
+def shown(encoder=Encoder.ABSOLUTE, *, axes=None, **changes):
     """INFO of the bench's display, with other axes and other fields of INFO."""
-    return replace(describe(replace(info(), **axes or {}), encoder, version), **changes)
+    return replace(describe(replace(info(), **axes or {}), encoder), **changes)
 
 
 class MemoryPort:
@@ -122,8 +122,7 @@ class Bench:
 
     def pump(self) -> None:
         self.hear()
-        across = () if self.controller.info.version == 1 else (self.y_mm, self.theta_rad)
-        self.say(self.controller.tick(self.us, self.way_mm, *across))
+        self.say(self.controller.tick(self.us, self.way_mm, self.y_mm, self.theta_rad))
 
     def hear(self) -> None:
         if not self.deaf:

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from tests.devices.bench import HALF, LINE_LATE, Bench
-from tests.devices.secondversion import (
+from tests.devices.pagecontroller import (
     Make,
+    PageController,
     Pose,
-    SecondVersion,
     body_of,
     line_of,
     stuffed,
@@ -43,7 +43,7 @@ def line_on_the_page(name):
 
 
 def greeted():
-    device = SecondVersion(make=EXAMPLE)
+    device = PageController(make=EXAMPLE)
     said = device.receive(b"\0" + line_on_the_page("Hello"), 0)
     return device, said
 
@@ -54,7 +54,7 @@ def frame(sequence, packed=OF_REST):
 
 def test_its_info_is_that_of_the_page():
     said = greeted()[1]
-    assert said == line_on_the_page("Info2") + line_of(b"\x83" + bytes(8))
+    assert said == line_on_the_page("Info") + line_of(b"\x83" + bytes(8))
 
 
 def test_its_state_is_that_of_the_page():
@@ -64,7 +64,7 @@ def test_its_state_is_that_of_the_page():
     device.buttons, device.knobs = 1, bytes((128, 255, 0, 0))
     x_mm, theta = 22.12, math.radians(-16.875)
     said = device.tick(1_000_000, x_mm + EXAMPLE.before_mm, 130.0, theta)
-    assert said == line_on_the_page("State2")
+    assert said == line_on_the_page("State")
 
 
 def test_it_shows_the_frame_of_the_page_but_not_out_of_rest():
@@ -85,7 +85,7 @@ def test_it_shows_the_frame_of_the_page_but_not_out_of_rest():
     assert device.levels == EXAMPLE.rest
 
 
-@pytest.mark.parametrize("name", ["Info", "Info2", "State", "State2", "Watchdog", "Error"])
+@pytest.mark.parametrize("name", ["Info", "State", "Watchdog", "Error"])
 def test_it_spells_frames_as_the_page_does(name):
     line = line_on_the_page(name)
     body = body_of(line[:-1])
@@ -120,7 +120,7 @@ def test_places_are_those_of_the_page():
     "made_as",
     [
         lambda info: Controller(Decoder().feed(info)[0]),
-        lambda _info: SecondVersion(make=EXAMPLE),
+        lambda _info: PageController(make=EXAMPLE),
     ],
     ids=["simulated", "alone"],
 )
@@ -129,7 +129,7 @@ def test_the_conversation_of_the_page_is_had_byte_for_byte(made_as):
     section = PAGE.split("\n## A conversation to test with\n")[1]
     rows = re.findall(r"^\| (\d+) \| ([←→]) \| .+? \| `(.+?)` \|$", section, re.MULTILINE)
     assert [way for _, way, _ in rows].count("←") == 8
-    info = line_on_the_page("Info2")
+    info = line_on_the_page("Info")
     device = made_as(info)
     now_ms = 0
     for (ms, way, line), (next_ms, next_way, _) in zip(rows, [*rows[1:], rows[0]], strict=True):
@@ -145,7 +145,7 @@ def test_the_conversation_of_the_page_is_had_byte_for_byte(made_as):
 
 
 def test_vbraille_has_its_place_its_buttons_and_its_knob():
-    made = Bench(SecondVersion)
+    made = Bench(PageController)
     device = made.open()
     assert device.display.axes == "xyθ"
     made.settle(device)
@@ -167,7 +167,7 @@ def test_vbraille_has_its_place_its_buttons_and_its_knob():
 
 
 def test_its_watchdog_trips_and_vbraille_begins_again():
-    made = Bench(SecondVersion)
+    made = Bench(PageController)
     device = made.open()
     made.settle(device)
     made.deaf = True

@@ -13,7 +13,7 @@ from vbraille.devices.wire.messages import (
     Frame,
     Hello,
     Rest,
-    State2,
+    State,
     Watchdog,
 )
 from vbraille.simulation.firmware import Controller
@@ -169,7 +169,10 @@ def test_another_version_in_its_place_is_left_alone():
     made.run(device, 510)
     made.put(enframe(b"\x81\x03"))
     made.run(device, 2)
-    assert "a device of version 3 of the protocol came back" in told(device.take_events())[-1]
+    assert (
+        "a device of version 3 of the protocol came back, and this vbraille speaks version 2"
+        in told(device.take_events())[-1]
+    )
     device.close()
 
 
@@ -181,7 +184,7 @@ def test_what_is_left_of_an_earlier_conversation_is_dropped():
     made.run(device, 600)
     made.mute = False
     made.deaf = True
-    sent = State2(1, 2, 3, 4, 0, 0, None, 5, 6, 7), Watchdog(99, 0), Error(3, "old")
+    sent = State(1, 2, 3, 4, 0, 0, None, 5, 6, 7), Watchdog(99, 0), Error(3, "old")
     made.put(b"".join(map(encode, sent)))
     assert made.run(device, 3) is None
     device.close()

@@ -50,8 +50,9 @@ SAID = [
         "again and reading goes on",
     ),
     (
-        Stranger("A", version=2),
-        "device: a device of version 2 of the protocol came back; plug in A again and reading "
+        Stranger("A", version=3),
+        "device: a device of version 3 of the protocol came back, and this vbraille speaks "
+        "version 2; plug in A again and reading "
         "goes on",
     ),
     (

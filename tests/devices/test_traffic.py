@@ -68,7 +68,20 @@ class Traffic:
         self.made.put(
             chance.choice(
                 (
-                    encode(State(9, self.made.us, 7, sequence, flags, chance.randrange(256), None)),
+                    encode(
+                        State(
+                            9,
+                            self.made.us,
+                            7,
+                            sequence,
+                            flags,
+                            chance.randrange(256),
+                            None,
+                            0,
+                            0,
+                            0,
+                        )
+                    ),
                     encode(Watchdog(chance.randrange(3), 0)),
                     encode(Error(chance.choice((3, 200, 200, 200)), "so it is")),
                     encode(shown()),

@@ -26,7 +26,6 @@ from vbraille.devices.wire.codec import (
 )
 from vbraille.devices.wire.fields import (
     Fixed,
-    Message,
     Number,
     OneOf,
     PerActuator,
@@ -36,7 +35,6 @@ from vbraille.devices.wire.fields import (
 from vbraille.devices.wire.messages import (
     FAULTY,
     FIRST_STEP,
-    INFOS,
     KNOB_STEP,
     KNOB_TOP,
     MESSAGES,
@@ -49,11 +47,8 @@ from vbraille.devices.wire.messages import (
     WATCHDOG_MS,
     ErrorCode,
     Frame,
-    Hello,
     Info,
-    Info2,
     State,
-    State2,
     Watchdog,
 )
 from vbraille.engine.checking import _PLACE_SLACK_MM
@@ -61,10 +56,9 @@ from vbraille.engine.constants import CATCH_UP, GAP_PERIODS
 
 PAGE = (Path(__file__).parents[2] / "docs/wire-protocol.md").read_text()
 SECTIONS = dict(re.findall(r"^#{2,3} (.+?)\n(.*?)(?=^#{2,3} |\Z)", PAGE, re.M | re.S))
-KINDS = [*MESSAGES.items(), *((0x81, kind) for kind in INFOS.values() if kind is not Info)]
 EVERY_MESSAGE = pytest.mark.parametrize(
     ("code", "message"),
-    [pytest.param(code, message, id=message.__name__) for code, message in KINDS],
+    [pytest.param(code, message, id=message.__name__) for code, message in MESSAGES.items()],
 )
 TYPES = {"B": "u8", "b": "i8", "H": "u16", "h": "i16", "I": "u32"}
 SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4}
@@ -134,21 +128,17 @@ def type_and_values(field):
 @EVERY_MESSAGE
 def test_byte_tables(code, message):
     at, wanted = 1, [["0", "u8", "`type`", f"0x{code:02x}"]]
-    # A message that goes on where one of an earlier version ended has rows for what is new.
-    goes_on = message.__base__ is not Message
     for name, field in fields_of(message):
         sort, values = type_and_values(field)
-        if not goes_on or name in message.__annotations__:
-            wanted.append([str(at) if at else "", sort, f"`{name}`", values])
+        wanted.append([str(at) if at else "", sort, f"`{name}`", values])
         at = at + SIZES[sort] if at and isinstance(field, Fixed) else 0
-    wanted = wanted[goes_on:]
     table = [row[:4] for row in rows_of(message.__name__.upper()) if len(row) == 5]
     assert table == wanted
 
 
 def test_there_is_a_section_for_each_message_and_no_other():
     capitals = {title for title in SECTIONS if title.isupper()}
-    assert capitals == {message.__name__.upper() for _, message in KINDS}
+    assert capitals == {message.__name__.upper() for message in MESSAGES.values()}
     assert (min(c for c in MESSAGES if c > 0x7F), max(c for c in MESSAGES if c < 0x80)) == (0x81, 3)
 
 
@@ -167,31 +157,27 @@ def test_flags():
 
 
 def test_knobs():
-    text = " ".join(SECTIONS["STATE2"].split())
+    text = " ".join(SECTIONS["STATE"].split())
     assert f"once it has gone {KNOB_STEP} or further, or has come to 0 or {KNOB_TOP}" in text
     assert f"may jitter by {KNOB_STEP - 1}." in text
 
 
-def test_hello_of_version_1():
-    assert f"`{encode(Hello(1)).hex(' ')}`" in SECTIONS["HELLO"]
-
-
 def test_a_device_of_one_axis():
-    info = example_of(Info2)[0]
+    info = example_of(Info)[0]
     signs = {"y_count_sign", "turn_sign"}
-    names = [name for name, _ in fields_of(Info2)]
+    names = [name for name, _ in fields_of(Info)]
     less = dict.fromkeys(names[names.index("buttons") :], 0) | dict.fromkeys(signs, 1)
-    body = BodyCodec(0x81, Info2).encode(replace(info, **less))
-    told = int(re.search(r"ends in `enabled` and (\d+) bytes that are 0", SECTIONS["INFO2"])[1])
+    body = BodyCodec(0x81, Info).encode(replace(info, **less))
+    told = int(re.search(r"ends in `enabled` and (\d+) bytes that are 0", SECTIONS["INFO"])[1])
     assert body[-told - 6 : -told] == info.enabled
     assert len([byte for byte in body[-told:] if byte]) == len(signs)
 
 
 def test_the_place_of_the_example():
     """The equations of the page, executed, give what the host has, and what the page says."""
-    info, state = example_of(Info2)[0], example_of(State2)[0]
+    info, state = example_of(Info)[0], example_of(State)[0]
     place = Place(info).take(state)
-    names = {name: getattr(info, name) for name, _ in fields_of(Info2)}
+    names = {name: getattr(info, name) for name, _ in fields_of(Info)}
     names |= {"π": math.pi, "d0": info.far_stop_count, "e0": info.straight_count}
     names |= {"d": state.y_count, "theta_count": state.theta_count}
     names["h"] = info.counts_per_turn // 2
@@ -202,7 +188,7 @@ def test_the_place_of_the_example():
         names[name] = eval(equation, {}, names)
     assert place.y_mm == pytest.approx(names["y_mm"]) == pytest.approx(130)
     assert place.theta_rad == pytest.approx(names["θ"]) == pytest.approx(math.radians(-16.875))
-    said = SECTIONS["STATE2"]
+    said = SECTIONS["STATE"]
     said = " ".join(said.split())
     assert "22.12 mm right of where lines begin and 130 mm below the far stop" in said
     assert "turned by 16.9° with the clock" in said
@@ -218,7 +204,7 @@ def test_the_place_of_the_example():
 
 def test_places():
     """Those of the table, by the host and by the page's equations."""
-    info, state = example_of(Info2)[0], example_of(State2)[0]
+    info, state = example_of(Info)[0], example_of(State)[0]
     rows = [row for row in rows_of("Place") if row[0].isdecimal()]
     assert len(rows) == 5
     right, down = info.column_pitch_nm * (info.columns - 1), info.row_pitch_nm * (info.rows - 1)
@@ -306,8 +292,8 @@ def test_memory():
     packed = Levels(60, 1023).packed_bytes
     assert f"{line_bytes(3 + packed) - 1} bytes for what is received" in text
     assert f"{4 * 60 * 2} for `levels`, `from`, `goal` and `wanted`" in text
-    sizes = {kind: len(encode(example_of(kind)[0])) for kind in (State2, Watchdog)}
-    assert f"STATE2 ({sizes[State2]}), WATCHDOG" in SECTIONS["A minimal firmware"]
+    sizes = {kind: len(encode(example_of(kind)[0])) for kind in (State, Watchdog)}
+    assert f"STATE ({sizes[State]}), WATCHDOG" in SECTIONS["A minimal firmware"]
     assert f"\n({sizes[Watchdog]})" in SECTIONS["A minimal firmware"]
 
 
@@ -361,9 +347,9 @@ def test_bandwidth():
     told = {row[0]: [cell.strip("*") for cell in row[1:]] for row in rows_of("Bandwidth")}
     levels = Levels(60, 1023)
     frame = Frame(0, levels.pack(np.full(60, 1023)))
-    states = State(0, 0, 0, 0, 0, 0, None), State2(0, 0, 0, 0, 0, 0, None, 0, 0, 0)
-    sizes = [len(encode(message)) for message in (frame, *states)]
-    assert sizes == [line_bytes(3 + levels.packed_bytes), line_bytes(17), line_bytes(29)]
+    state = State(0, 0, 0, 0, 0, 0, None, 0, 0, 0)
+    sizes = [len(encode(message)) for message in (frame, state)]
+    assert sizes == [line_bytes(3 + levels.packed_bytes), line_bytes(29)]
     assert told["**together**"] == [str(size) for size in sizes]
     assert told["bit/s"] == [str(size * 10 * 1000) for size in sizes]
     assert told["of 921600 baud"] == [f"{size * 1e6 / 921600:.1f} %" for size in sizes]

@@ -28,7 +28,7 @@ from vbraille.devices.serial.ports import Address
 from vbraille.devices.serial.serialdevice import SerialDevice
 from vbraille.devices.serial.seriallines import SerialLine
 from vbraille.devices.wire.codec import Decoder, Levels, encode
-from vbraille.devices.wire.messages import VERSION, Encoder, Frame, State
+from vbraille.devices.wire.messages import Encoder, Frame, State
 from vbraille.engine.loop import Loop
 from vbraille.engine.ring import Ring
 from vbraille.simulation.described import describe
@@ -137,16 +137,14 @@ class Rig:
         What the controller said last.
     """
 
-    def __init__(
-        self, ends=None, rate_hz=ONE_AT_A_TIME_HZ, device_hz=1000.0, *, version=VERSION, **axes
-    ):
+    def __init__(self, ends=None, rate_hz=ONE_AT_A_TIME_HZ, device_hz=1000.0, **axes):
         self.ours, self.theirs = ends or sockets()
         for end in (self.ours, self.theirs):
             os.set_blocking(end, False)
         self.us, self.way_mm, self.y_mm, self.theta_rad = 0, 20.0, 0.0, 0.0
         self.asked, self.records, self.sent = [], [], b""
         display = info(rate_hz=device_hz, **axes)
-        self.controller = Controller(describe(display, Encoder.ABSOLUTE, version))
+        self.controller = Controller(describe(display, Encoder.ABSOLUTE))
         self.port = Port(self.ours)
         conversation = Conversation(self.now_ns())
         greet(self.port, conversation, self.now_ns, self.pause)

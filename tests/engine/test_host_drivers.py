@@ -83,14 +83,16 @@ def read(self):
 @pytest.mark.parametrize(
     "body", ["def read(self):\n    return 1 / 0  # mark", "def _release(self):\n    mark"]
 )
-def test_what_a_driver_raises_is_said_by_the_parent_with_file_and_line(driver, tmp_path, body):
+def test_what_a_driver_raises_is_said_by_the_parent(driver, monkeypatch, capfd, tmp_path, body):
     lines = driver(body)
     before = descriptors()
+    monkeypatch.setenv("VBRAILLE_TRACEBACK", "1")
     with pytest.raises(DeviceError) as raised, Host("other:", info(), ROOM) as host:
         until(host, lambda new: new.size and host._mailbox.stop())
     said = str(raised.value)
-    assert said.startswith("the driver other, which is not vbraille's own, has a fault (")
-    assert f"at {tmp_path}/other.py, line {line_of(lines, 'mark')}; tell whoever wrote it" in said
+    assert said.startswith("the driver other (other:open_other), which is not vbraille's own, has")
+    place = f'File "{tmp_path}/other.py", line {line_of(lines, "mark")}'
+    assert place in capfd.readouterr().err
     assert descriptors() == before
 
 

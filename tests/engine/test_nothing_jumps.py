@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from tests.controllers import Alone, ControllerOf20261121
+from tests.controllers import Alone, HastyController
 from tests.tiers import by_tier
 from tests.troubles import Troubles
 from tests.wired import Wired, reading
@@ -27,7 +27,7 @@ def breaches(seeds, kind, *made):
     [
         ("host", Controller),
         ("host", Alone),
-        ("host", ControllerOf20261121),
+        ("host", HastyController),
         ("line", Controller),
         ("line", Alone),
     ],
@@ -79,10 +79,10 @@ class Heedless(Conversation):
 
 @pytest.mark.no_cover
 def test_the_law_misses_a_host_that_does_not_mind_that_it_was_stopped():
-    assert any(breaches(range(40), "host", ControllerOf20261121, Heedless))
+    assert any(breaches(range(40), "host", HastyController, Heedless))
 
 
 @pytest.mark.no_cover
 def test_the_law_misses_a_controller_that_a_frame_cuts_short():
-    found = breaches(range(20), "line", ControllerOf20261121)
+    found = breaches(range(20), "line", HastyController)
     assert any("frame out of rest" in breach for _, breach in found)

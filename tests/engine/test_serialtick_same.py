@@ -125,8 +125,7 @@ class Wrong:
 
 DEVICES = (
     {"height_mm": 200.0, "turns": True},
-    {"version": 1},
-    {"version": 2},
+    {},
 )
 
 

@@ -9,7 +9,7 @@ import time
 import numpy as np
 import pytest
 
-from tests.devices.secondversion import Cable, Make, SecondVersion
+from tests.devices.pagecontroller import Cable, Make, PageController
 from tests.tiers import heavy
 from tests.wired import CATCH_UP, DOT_MM, FADE_S, INFO, TOP, waves
 from vbraille.devices.wire.messages import RAMP_MS
@@ -21,7 +21,7 @@ SPEED_MM_S = 250.0
 ALLOWED = TOP * (CATCH_UP * (SPEED_MM_S * math.pi / DOT_MM + 1 / FADE_S) / 1000 + 1 / RAMP_MS) + 2
 
 
-class Logged(SecondVersion):
+class Logged(PageController):
     """A controller that keeps its levels, tick by tick."""
 
     def __init__(self):

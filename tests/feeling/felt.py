@@ -2,7 +2,7 @@
 
 from tests.engine.planar import Bench
 from vbraille.feeling.commands import BOUND
-from vbraille.feeling.composing import Composer
+from vbraille.feeling.composing import compose
 from vbraille.feeling.feeler import Feeler
 from vbraille.feeling.loading import load_scene
 from vbraille.pose import Pose
@@ -45,12 +45,11 @@ class Felt:
         self.said = []
         style = MODELS["stress2-8x8"].style
         self.loaded = load_scene(path, style)
-        composer = Composer(display, rate_hz=rate_hz)
         self.feeler = Feeler(
             self.loaded,
             self.bench.engine,
             where=lambda: None if self.at is None else Pose(0, *self.at),
-            composer=composer,
+            rate_hz=rate_hz,
             style=style,
             say=self.said.append,
             bound=BOUND,
@@ -58,7 +57,7 @@ class Felt:
             steering=steering,
             entering=entering,
         )
-        self.feeler.start(composer.compose(self.loaded))
+        self.feeler.start(compose(self.loaded, display, rate_hz=rate_hz))
         self.said.clear()
 
     def press(self, *keys):

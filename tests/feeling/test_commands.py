@@ -6,7 +6,7 @@ import pytest
 
 from tests.feeling.felt import SCENE, Felt
 from vbraille.feeling.commands import BOUND, BUTTONS, COMMANDS
-from vbraille.reading.context import Context
+from vbraille.reading.bindings import Context
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "feeling.md"
 

@@ -6,9 +6,8 @@ import pytest
 from tests.render.scene.twin import opacity
 from vbraille.feeling.index import SceneIndex
 from vbraille.render.scene.assets import Assets
-from vbraille.scene.patterns import Circle, Fill, Group, Polygon
+from vbraille.scene.patterns import Circle, Fill, Group, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Stroke
 from vbraille.scene.textures import LinearGrating, Uniform
 

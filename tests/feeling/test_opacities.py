@@ -8,8 +8,7 @@ import pytest
 from tests.render.scene.twin import opacity
 from vbraille.feeling.opacities import Opacities
 from vbraille.render.scene.assets import Assets
-from vbraille.scene.dots import Dots
-from vbraille.scene.patterns import Circle, Fill, Polygon
+from vbraille.scene.patterns import Circle, Dots, Fill, Polygon
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Along, DotStyle, Stroke
 from vbraille.scene.textures import Uniform

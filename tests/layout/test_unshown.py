@@ -3,11 +3,11 @@
 from vbraille.layout.pages import Layout
 from vbraille.layout.unshown import Unshown
 from vbraille.translate import Book, BrailleTable
-from vbraille.translate.documents.parted import PartedSource, Passage
+from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.source import Mark, MarkKind
 
 
-class Made(PartedSource):
+class Made(ChapterSource):
     """A source of these passages."""
 
     def __init__(self, *made: Passage) -> None:

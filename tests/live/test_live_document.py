@@ -12,7 +12,7 @@ from tests.live.canned import canned_frame
 from tests.live.pages import read_frame
 from vbraille.engine.record import Flag
 from vbraille.live import messages, server, talking
-from vbraille.live.pagefiles import HEADERS
+from vbraille.live.server import HEADERS
 
 PAGE = (Path(__file__).parents[2] / "docs/live-view.md").read_text()
 SECTIONS = dict(re.findall(r"^#{2,3} (.+?)\n(.*?)(?=^#{2,3} |\Z)", PAGE, re.M | re.S))

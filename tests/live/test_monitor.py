@@ -18,10 +18,10 @@ from tests.live.canned import canned_state
 from tests.live.pages import get, page, parts_of
 from tests.live.rings import TestRing, frame_of
 from tests.tiers import by_tier
+from vbraille.engine.shared import Extent
 from vbraille.live.channel import MOST_MESSAGE_BYTES, Shares, Tells, encode, open_line, to_server
-from vbraille.live.desktop import has_desktop
 from vbraille.live.messages import PagePress, Turn
-from vbraille.live.monitor import Monitor
+from vbraille.live.monitor import Monitor, has_desktop
 from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.steering import BeAt
 
@@ -222,7 +222,7 @@ def test_blind_is_a_matter_of_the_server():
 
 _PARENT = """
 import sys, time
-from vbraille.live.desktop import has_desktop
+from vbraille.live.monitor import has_desktop
 from vbraille.live.monitor import Monitor
 monitor = Monitor()
 monitor.launch()
@@ -288,7 +288,7 @@ def test_a_monitor_that_was_never_launched_leaves_nothing_open():
 def test_messages_of_the_line_are_what_they_were():
     one, other = open_line()
     with one, other:
-        for message in (Shares(1, 2, 3, 4), Tells(canned_state())):
+        for message in (Shares(Extent(1, 2, 3, 4)), Tells(canned_state())):
             one.send(encode(message))
             assert to_server(other.recv(MOST_MESSAGE_BYTES)) == message
 

@@ -13,8 +13,7 @@ from tests.live.canned import CannedSource
 from tests.live.pages import get, page, parts_of, served
 from tests.tiers import by_tier
 from vbraille.errors import InputError
-from vbraille.live.pagefiles import HEADERS, page_files
-from vbraille.live.server import MOST_CONNECTIONS, MOST_PAGES
+from vbraille.live.server import HEADERS, MOST_CONNECTIONS, MOST_PAGES, page_files
 
 
 @pytest.fixture(scope="module")

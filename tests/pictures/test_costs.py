@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 
 from vbraille.errors import InputError
-from vbraille.pictures.costs import costs_figure, costs_words, draw_costs
+from vbraille.pictures.drawings import costs_figure, costs_words, draw_costs
 
 MEAN_US = np.array([[10.0, 20.0, np.nan], [10.0, 10.0, 30.0]])
 FRAME_US = np.array([1.0, 1.0, 1.0, 5.0])

@@ -4,11 +4,18 @@ import pytest
 
 from vbraille.pictures.scenes import slowest_s
 from vbraille.pictures.scenewords import pattern_words, scene_lines
-from vbraille.scene.dots import Dots
-from vbraille.scene.labels import Label
-from vbraille.scene.patterns import Circle, Fill, Group, Image, Polygon, Tile
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Fill,
+    Group,
+    Image,
+    Label,
+    Polygon,
+    StraightLine,
+    Tile,
+)
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Along, Dotting, Stroke, VertexMarkers, Vibration
 from vbraille.scene.textures import (
     AxialGrating,

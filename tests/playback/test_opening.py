@@ -9,13 +9,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tests.playback.written import RECORDINGS, WRITTEN, asked
+from tests.playback.written import asked, recorded
+from tests.sessions.written import written
 from tests.tiers import by_tier
 from vbraille.errors import InputError, VbrailleError
 from vbraille.live.messages import Map, Next, Turn
 from vbraille.playback import open_recording
 
-STOPPED = WRITTEN / "0.1.0-2026-11-22/sessions/letters-stopped"
+STOPPED = written("stopped")
 _fuzzed = settings(
     max_examples=by_tier(25, 150, 5000),
     suppress_health_check=[HealthCheck.function_scoped_fixture],
@@ -36,7 +37,7 @@ def test_what_is_not_there_or_something_else_is_refused(tmp_path):
         ("empty.h5", b"", "is empty; give"),
         ("text.h5", b"no recording", "is no recording; give"),
         ("a.gz", b"\x1f\x8b\x08", "not the directory of a session"),
-        ("cut.h5", RECORDINGS[0].read_bytes()[:9000], "was not written whole"),
+        ("cut.h5", recorded().read_bytes()[:9000], "was not written whole"),
         ("a\x1bb.txt", b"x", "a<escape>b.txt is no recording"),
     ):
         path = tmp_path / name
@@ -62,7 +63,15 @@ def changed(path, change):
 @pytest.mark.parametrize(
     ("change", "match"),
     [
-        (lambda f: f.attrs.__setitem__("format", 99), "a recording of format 99"),
+        (
+            lambda f: f.attrs.__setitem__("format", 99),
+            "of format 99, and .* reads format 3",
+        ),
+        (
+            lambda f: f.attrs.__setitem__("format", 2),
+            "of format 2, and .* reads format 3",
+        ),
+        (lambda f: f.attrs.__delitem__("format"), "HDF5 of something else"),
         (lambda f: f.attrs.__setitem__("format", "new"), "HDF5 of something else"),
         (lambda f: f.__delitem__("frames"), "HDF5 of something else"),
         (lambda f: f.move("frames", "page/frames"), "HDF5 of something else"),
@@ -70,11 +79,11 @@ def changed(path, change):
         (lambda f: f.attrs.__setitem__("geometry", "[]"), "HDF5 of something else"),
         (lambda f: f.attrs.__setitem__("row_offset_mm", np.zeros(3)), "HDF5 of something else"),
         (lambda f: f["x_mm"].resize(3, 0), "HDF5 of something else"),
-        (lambda f: [f[n].resize(0, 0) for n in ("t_s", "x_mm", "line", "frames")], "has no frame"),
+        (lambda f: [f[n].resize(0, 0) for n in f if n != "page"], "has no frame"),
     ],
 )
 def test_a_file_of_something_else_is_refused(tmp_path, change, match):
-    path = shutil.copy(RECORDINGS[0], tmp_path / "a.h5")
+    path = shutil.copy(recorded(), tmp_path / "a.h5")
     changed(path, change)
     refused(path, match)
 
@@ -86,10 +95,10 @@ def test_hdf5_of_something_else_is_refused(tmp_path):
 
 
 def test_a_manner_that_is_not_known_leaves_frames_alone(tmp_path):
-    path = shutil.copy(RECORDINGS[0], tmp_path / "a.h5")
+    path = shutil.copy(recorded(), tmp_path / "a.h5")
     changed(path, lambda f: f.attrs.__setitem__("mapping", "of-tomorrow"))
     source = open_recording(path)
-    one, other = asked(source.viewer(), 0.3), asked(open_recording(RECORDINGS[0]).viewer(), 0.3)
+    one, other = asked(source.viewer(), 0.3), asked(open_recording(recorded()).viewer(), 0.3)
     assert one[1].tobytes() == other[1].tobytes()
     assert one[1].any()
     with pytest.raises(InputError, match="there is no map"):
@@ -98,7 +107,7 @@ def test_a_manner_that_is_not_known_leaves_frames_alone(tmp_path):
 
 def test_nothing_in_a_recording_can_be_turned():
     with pytest.raises(InputError, match="nothing in it can be changed"):
-        open_recording(RECORDINGS[0]).ask(Turn("texture", 0.5))
+        open_recording(recorded()).ask(Turn("texture", 0.5))
 
 
 def played(path):
@@ -122,7 +131,7 @@ def played(path):
 @_fuzzed
 @given(at=st.integers(0, 27_000), byte=st.integers(1, 255))
 def test_a_damaged_recording_plays_or_is_refused(tmp_path, at, byte):
-    content = bytearray(RECORDINGS[-1].read_bytes())
+    content = bytearray(recorded().read_bytes())
     content[at % len(content)] ^= byte
     (tmp_path / "a.h5").write_bytes(content)
     played(tmp_path / "a.h5")

@@ -8,66 +8,38 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.playback.written import RECORDINGS, asked, each
+from tests.playback.written import LINES, MODELS, asked, record, recorded
 from vbraille.braille.geometry import Geometry
 from vbraille.errors import InputError
 from vbraille.live.messages import Map, Next
-from vbraille.newfile import new_file
 from vbraille.playback import open_recording
-from vbraille.recording import Recorder, poses_of
 from vbraille.render import STRESS2
 
 
-def record(path, lines, x_mm, *, pages=False, rate_hz=1000.0):
-    """A recording of lines that are read one after the other, or of two pages of them."""
-    style, display = STRESS2.style, STRESS2.display
-    with new_file(path) as file:
-        recorder = Recorder(file, display, 4)
-        recorder.describe(model=STRESS2, rate_hz=rate_hz, first_line=7, source="a.txt", sha256="0")
-        done = 0
-        for masks in lines if not pages else (lines[:2], lines[2:]):
-            t_s = (done + np.arange(x_mm.size)) / rate_hz
-            if pages:
-                rows = [recorder.add_line(line) for line in masks]
-                program = style.render_page(masks, display)
-                y_mm = np.linspace(-5, 14 * len(masks) + 5, x_mm.size)
-                part, frames = program.poses(x_mm, y_mm)
-                at = rows[0] + np.clip(part, 0, len(masks) - 1)
-                recorder.add_frames(t_s, x_mm, at, frames, y_mm=y_mm, part=part)
-            else:
-                row = recorder.add_line(masks)
-                frames = style.render(masks, display).path(x_mm)
-                recorder.add_frames(t_s, x_mm, row, frames, y_mm=7.0)
-            done += x_mm.size
-    return path
-
-
-LINES = [np.array(cells, np.uint8) for cells in ([1, 3, 9], [63], [5, 8, 1, 2], [0, 7])]
-
-
-@pytest.mark.parametrize("path", each(RECORDINGS))
-def test_each_frame_is_the_recorded_one_forwards_and_backwards(path):
+@pytest.mark.parametrize("name", MODELS)
+def test_each_frame_is_the_recorded_one_forwards_and_backwards(name):
+    path = recorded(name)
     with h5py.File(path) as file:
-        frames, poses, rows = file["frames"][:], poses_of(file), file["line"][:]
+        frames, t_s, x_mm, rows = (file[n][:] for n in ("frames", "t_s", "x_mm", "line"))
     source = open_recording(path)
     viewer = source.viewer()
     assert source.playback
-    assert source.length_s == poses.t_s[-1]
+    assert source.length_s == t_s[-1]
     for n in [*range(0, len(frames), 3), *range(len(frames) - 1, 0, -5), 0]:
-        request = Next(at_s=float(poses.t_s[n]))
+        request = Next(at_s=float(t_s[n]))
         number, state = viewer.state(request)
-        header, frame, _ = asked(viewer, float(poses.t_s[n]))
+        header, frame, _ = asked(viewer, float(t_s[n]))
         assert frame.tobytes() == frames[n].tobytes()
         assert header["tick"] == n
-        assert header["time_s"] == poses.t_s[n]
-        assert header["x_mm"] == np.float32(poses.x_mm[n])
+        assert header["time_s"] == t_s[n]
+        assert header["x_mm"] == np.float32(x_mm[n])
         assert header["state"] == number == json.loads(state)["number"]
-        assert header["line"] == rows[n] + 1
+        assert header["line"] == rows[n] + 7
         (under,) = [line for line in json.loads(state)["lines"] if line["under"]]
-        assert under["number"] == rows[n] + 1
+        assert under["number"] == rows[n] + 7
     assert [moment.kind for moment in source.moments] == ["line"] * (rows.max() + 1)
     for moment in source.moments:
-        first = int(np.flatnonzero(poses.t_s >= moment.at_s - 1e-9)[0])
+        first = int(np.flatnonzero(t_s >= moment.at_s - 1e-9)[0])
         assert first == 0 or rows[first - 1] != rows[first]
 
 

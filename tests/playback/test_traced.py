@@ -6,7 +6,8 @@ import shutil
 import numpy as np
 import pytest
 
-from tests.playback.written import ON_PAPER, SESSIONS, WRITTEN, asked, each
+from tests.playback.written import asked
+from tests.sessions.written import ON_DEVICE, written
 from vbraille.errors import InputError, VbrailleError
 from vbraille.live.messages import Map, Next
 from vbraille.playback import open_recording
@@ -16,8 +17,7 @@ from vbraille.sessions.record import replay
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.journal import Journal
 
-RESUMED = WRITTEN / "0.1.0-2026-11-22/sessions/letters-resumed"
-STOPPED = WRITTEN / "0.1.0-2026-11-22/sessions/letters-stopped"
+RESUMED, STOPPED = written("resumed"), written("stopped")
 
 
 def sent(folder):
@@ -30,8 +30,9 @@ def sent(folder):
     return ticks, np.concatenate([frames for *_, frames in found]).astype(np.float32)
 
 
-@pytest.mark.parametrize("path", each(SESSIONS))
-def test_each_frame_is_what_the_actuators_had_forwards_and_backwards(path):
+@pytest.mark.parametrize("name", ON_DEVICE)
+def test_each_frame_is_what_the_actuators_had_forwards_and_backwards(name):
+    path = written(name)
     ticks, frames = sent(path)
     reel = Traced(path)
     pieces = [reel.piece(number).ticks for number in range(reel.find(1e9) + 1)]
@@ -51,8 +52,9 @@ def test_each_frame_is_what_the_actuators_had_forwards_and_backwards(path):
         assert header["state"] == number == json.loads(state)["number"]
 
 
-@pytest.mark.parametrize("path", each(SESSIONS))
-def test_moments_are_the_journals_on_the_clock_of_the_traces(path):
+@pytest.mark.parametrize("name", ON_DEVICE)
+def test_moments_are_the_journals_on_the_clock_of_the_traces(name):
+    path = written(name)
     record = load(path)
     source = open_recording(path)
     viewer = source.viewer()
@@ -134,10 +136,9 @@ def test_a_session_that_runs_is_refused(tmp_path):
     open_recording(folder)
 
 
-@pytest.mark.parametrize("path", ON_PAPER[:1], ids=["control-ended"])
-def test_a_session_on_paper_has_nothing_to_play(path):
+def test_a_session_on_paper_has_nothing_to_play():
     with pytest.raises(InputError, match="read on paper"):
-        open_recording(path)
+        open_recording(written("on-paper"))
 
 
 def test_a_trace_that_was_cut_short_is_played_up_to_there(tmp_path):

@@ -1,34 +1,58 @@
-"""Recordings and sessions that earlier versions wrote, and what is played of them."""
+"""Recordings of lines and pages, and what is played of them."""
 
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
+from tempfile import mkdtemp
 
 import numpy as np
-import pytest
 
-from tests.tiers import heavy
 from vbraille.live.messages import FRAME, Next
+from vbraille.newfile import new_file
+from vbraille.recording import Recorder
+from vbraille.render import MAPPINGS, STRESS2, VBD, single_row
 
-WRITTEN = Path(__file__).parent.parent / "written-by"
-RECORDINGS = sorted(WRITTEN.glob("*/recordings/*.h5"))
-SESSIONS = sorted(path for path in WRITTEN.glob("*/sessions/*") if any(path.glob("trace-*.gz")))
-ON_PAPER = sorted(path for path in WRITTEN.glob("*/sessions/*") if not any(path.glob("trace-*")))
-# One of each kind that differs in what has to be done; the others are as these.
-_ALWAYS = (
-    "0.1.0-2026-11-21/recordings/vbd-row-1.h5",
-    "0.1.0-2026-11-22/recordings/stress2-row-sheared.h5",
-    "0.1.0-2026-11-21/sessions/words-host-died",
-    "0.1.0-2026-11-22-format-3/sessions/words-host-died",
-    "0.1.0-2026-11-22/sessions/letters-stopped",
-)
+LINES = [np.array(cells, np.uint8) for cells in ([1, 3, 9], [63], [5, 8, 1, 2], [0, 7])]
+MODELS = {
+    "stress2-alternate": (STRESS2, MAPPINGS["alternate"]),
+    "stress2-compact": (STRESS2, MAPPINGS["compact"]),
+    "stress2-row-sheared": (STRESS2, MAPPINGS["sheared"]),
+    "vbd-row-1": (VBD, single_row(1)),
+    "vbd-row-3": (VBD, single_row(3)),
+}
 
 
-def each(paths):
-    """Paths as parameters of tests; some of them for the heavier tiers alone."""
-    names = [str(path.relative_to(WRITTEN)) for path in paths]
-    return [
-        pytest.param(path, id=name, marks=() if name in _ALWAYS else heavy)
-        for path, name in zip(paths, names, strict=True)
-    ]
+def record(path, lines, x_mm, *, pages=False, rate_hz=1000.0, model=STRESS2):
+    """Write a recording of lines that are read one after the other, or of two pages of them."""
+    style, display = model.style, model.display
+    with new_file(path) as file:
+        recorder = Recorder(file, display, 4)
+        recorder.describe(model=model, rate_hz=rate_hz, first_line=7, source="a.txt", sha256="0")
+        done = 0
+        for masks in lines if not pages else (lines[:2], lines[2:]):
+            t_s = (done + np.arange(x_mm.size)) / rate_hz
+            if pages:
+                rows = [recorder.add_line(line) for line in masks]
+                program = style.render_page(masks, display)
+                y_mm = np.linspace(-5, 14 * len(masks) + 5, x_mm.size)
+                part, frames = program.poses(x_mm, y_mm)
+                at = rows[0] + np.clip(part, 0, len(masks) - 1)
+                recorder.add_frames(t_s, x_mm, at, frames, y_mm=y_mm, part=part)
+            else:
+                row = recorder.add_line(masks)
+                frames = style.render(masks, display).path(x_mm)
+                recorder.add_frames(t_s, x_mm, row, frames, y_mm=7.0)
+            done += x_mm.size
+    return path
+
+
+@cache
+def recorded(name="stress2-alternate"):
+    """Give the file of a recording by one of `MODELS`, which no test may change."""
+    model, mapping = MODELS[name]
+    model = replace(model, style=replace(model.style, mapping=mapping))
+    path = Path(mkdtemp(prefix="vbraille-recording-")) / f"{name}.h5"
+    return record(path, LINES, np.linspace(-12, 60, 700), model=model)
 
 
 def asked(viewer, at_s, since_s=None, **more):

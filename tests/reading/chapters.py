@@ -1,6 +1,6 @@
 """A source with all kinds of structure, of passages in parts."""
 
-from vbraille.translate.documents.parted import PartedSource, Passage
+from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.source import BlockKind, Mark, MarkKind
 
 HEADING, ITEM, ROW, PAGE, NOTE = (
@@ -12,7 +12,7 @@ HEADING, ITEM, ROW, PAGE, NOTE = (
 )
 
 
-class Chapters(PartedSource):
+class Chapters(ChapterSource):
     """A source of these parts."""
 
     def __init__(self, *parts, language="en"):

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from tests.engine.planar import Planar
 from vbraille.engine.clock import ManualClock
-from vbraille.reading.opened import OpenDevice
+from vbraille.reading.device import OpenDevice
 from vbraille.render import model_of
 
 RATE_HZ = 100.0

@@ -9,13 +9,11 @@ from tests.reading.commands.test_choosing import Scroll
 from tests.reading.test_reader import TEXT, Bench
 from vbraille.cli.options import groups
 from vbraille.errors import InputError
-from vbraille.reading.beside import Beside
-from vbraille.reading.bindings import Bindings
+from vbraille.reading.bindings import Bindings, Context
 from vbraille.reading.commands.table import KEY_SETS, bound_by, press_button, turn_knob
-from vbraille.reading.context import Context
-from vbraille.reading.echo import Echo
-from vbraille.reading.knobturns import SETTLED_S, KnobTurns
-from vbraille.settings.parsing import parse_settings
+from vbraille.reading.device import SETTLED_S, KnobTurns
+from vbraille.reading.outputs import Echo
+from vbraille.settings.tables import parse_settings
 from vbraille.translate import Book, BrailleTable
 from vbraille.translate.documents.html import HtmlBook
 
@@ -26,7 +24,7 @@ alt="A picture"><p><a href="#x">A link</a><p><a href="#x">Another link</a>"""
 
 def bench_with(keys=None, buttons=None, **options):
     bound = bound_by(Bindings(keys or {}, buttons or {}))
-    return Bench(TEXT, beside=Beside(bound=bound, scroll=Scroll()), **options)
+    return Bench(TEXT, bound=bound, scroll=Scroll(), **options)
 
 
 def test_a_key_is_moved_to_another_command_and_help_says_so():
@@ -155,7 +153,7 @@ def test_every_key_has_a_name_that_speech_says_and_settings_take(keys):
 def test_nvda_s_letters_go_where_its_users_expect():
     book = Book(HtmlBook(io.BytesIO(NVDA.encode()), "book.html"), BrailleTable("en-ueb-g1.ctb"))
     bound = bound_by(Bindings(), "nvda")
-    bench = Bench(book=book, width=40, echo=Echo.TEXT, beside=Beside(bound=bound))
+    bench = Bench(book=book, width=40, echo=Echo.TEXT, bound=bound)
     for keys, text in {
         "h": "A heading",
         "2": "A lower heading",

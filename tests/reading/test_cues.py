@@ -10,10 +10,10 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-from vbraille.reading.attendant import Attendant
 from vbraille.reading.cueing import MELODIES, give
 from vbraille.reading.cues import Cue, CueKind, Cues, choose_cues
 from vbraille.sounds import melody
+from vbraille.workers import Incoming, Outgoing
 
 
 class Loudspeaker:
@@ -63,11 +63,11 @@ def given(cues, kind, speaker=None):
         return speaker
 
     read, write = os.pipe()
-    thread = threading.Thread(target=give, args=(read, kind, open_tones))
+    thread = threading.Thread(target=give, args=(Incoming(read, Cue), kind, open_tones))
     thread.start()
-    with os.fdopen(write, "wb", buffering=0) as orders:
+    with os.fdopen(write, "wb", buffering=0):
         for cue in cues:
-            orders.write(f"{cue.name}\n".encode())
+            Outgoing(write).put(cue)
             yield cue
     thread.join()
     os.close(read)
@@ -117,14 +117,14 @@ def test_bells_come_from_a_process_of_its_own_ten_a_second_at_most():
 def test_no_cues_start_no_process():
     with Cues(CueKind.NONE) as cues:
         cues.give(Cue.LIMIT)
-        assert cues._attendant is None
+        assert cues._worker is None
 
 
 def test_a_process_that_ends_is_no_fault():
     with Cues(CueKind.BELL, iter(range(100)).__next__) as cues:
         cues.give(Cue.LIMIT)
-        cues._attendant._process.kill()
-        cues._attendant._process.wait(30.0)
+        cues._worker.process.kill()
+        cues._worker.process.wait(30.0)
         for _ in range(3):
             cues.give(Cue.LIMIT)
 
@@ -136,15 +136,3 @@ def test_who_is_at_no_terminal_hears_none_and_who_is_far_away_the_bell(monkeypat
     assert choose_cues(None, attended=True) is CueKind.BELL
     assert choose_cues(None, attended=False) is CueKind.NONE
     assert choose_cues("sound", attended=False) is CueKind.SOUND
-
-
-def test_a_process_that_reads_nothing_keeps_nobody_waiting():
-    attendant = Attendant("vbraille.reading.cueing", "bell")
-    os.kill(attendant._process.pid, 19)  # SIGSTOP
-    for number in range(300):
-        assert attendant.tell(b"%d" % number * 500)
-    assert len(attendant._waiting) == 50
-    attendant.tell(b"newest" * 250, alone=True)
-    assert list(attendant._waiting) == [b"newest" * 250 + b"\n"]
-    attendant._process.kill()
-    attendant.close()

@@ -12,9 +12,8 @@ from tests.tiers import heavy
 from vbraille.feeling.bookfigures import BookFigures
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import choose_table
-from vbraille.reading.beside import Beside
 from vbraille.reading.commands.table import press
-from vbraille.reading.opened import OpenDevice
+from vbraille.reading.device import OpenDevice
 from vbraille.render import STRESS2, STRESS2_8X8, model_of
 from vbraille.render.braille.straying import Straying
 from vbraille.scene.reading import open_scene
@@ -67,7 +66,7 @@ class Bench(Held):
             source, folder, self.opened, self.notes.append, rate_hz=1000.0, room=1 << 21
         )
         layout = Layout(Book(source, choose_table("en", 1, None)), 17)
-        self.opened.show(layout, beside=Beside(figures=lambda: self.figures))
+        self.opened.show(layout, figures=lambda: self.figures)
         while rows and any(self.surface.kept) and not self.under.figured.placed:
             self.run(0.02)  # until the compiler is loaded, which real time does meanwhile
 
@@ -291,7 +290,7 @@ def test_a_host_sends_its_frames(tmp_path):
         opened.start(model_of(display), 1 << 21)
         figures = BookFigures(source, tmp_path, opened, notes.append, rate_hz=1000.0, room=1 << 21)
         layout = Layout(Book(source, choose_table("en", 1, None)), 10)
-        opened.show(layout, beside=Beside(figures=lambda: figures))
+        opened.show(layout, figures=lambda: figures)
         while not opened.done:
             opened.poll()
             placed, tick = opened.reader.under.figured.placed, opened._newest

@@ -1,8 +1,7 @@
 """The place of a reading is kept, at most once a second, and at its end."""
 
 from tests.reading.test_reader import TEXT, Bench
-from vbraille.reading.beside import Beside
-from vbraille.reading.keeping import Unkept
+from vbraille.reading.reader import Unkept
 
 
 class Kept(Unkept):
@@ -17,7 +16,7 @@ class Kept(Unkept):
 
 def test_a_place_is_kept_once_a_second_and_at_the_end():
     kept = Kept()
-    bench = Bench(TEXT, beside=Beside(kept=kept))
+    bench = Bench(TEXT, kept=kept)
     starts = [TEXT.index(word) for word in ("one", "four", "seven")]
     bench.run(0.05)
     assert kept.places == starts[:1]

@@ -8,18 +8,19 @@ from hypothesis import strategies as st
 
 from tests.reading.chapters import linked
 from tests.tiers import examples
-from vbraille.reading.nearby import look, look_everywhere, within
-from vbraille.reading.queries import CountLines, FindKind, FindPage, FindShare, FindText
-from vbraille.reading.seeking.steps import steps
+from vbraille.reading.search.answering import steps
+from vbraille.reading.search.queries import CountLines, FindKind, FindPage, FindShare, FindText
+from vbraille.reading.search.seeker import look, look_everywhere
+from vbraille.reading.search.structure import within
 from vbraille.translate import Document
-from vbraille.translate.documents.parted import PartedSource, Passage
+from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.source import BlockKind
 
 WORDS = ("one", "two", "One  two", "caf\u00e9", "cafe\u0301", "Stra\u00dfe", "x" * 9_000)
 KINDS = [kind.value for kind in BlockKind] + ["link", "image", "each item", "start"]
 
 
-class Pages(PartedSource):
+class Pages(ChapterSource):
     """A book of these parts."""
 
     def __init__(self, parts):

@@ -12,13 +12,12 @@ from vbraille.devices.events import Button
 from vbraille.engine.constants import IDLE_S
 from vbraille.engine.record import Flag
 from vbraille.layout.pages import Layout
-from vbraille.reading.beside import Beside
 from vbraille.reading.bindings import Bindings
 from vbraille.reading.commands.table import bound_by, press
 from vbraille.reading.cues import Cue
-from vbraille.reading.echo import Echo
-from vbraille.reading.foot import STAY_S
-from vbraille.reading.viewed import Said, Viewed
+from vbraille.reading.handwatch import STAY_S
+from vbraille.reading.outputs import Echo
+from vbraille.reading.viewed import ReadView, Said
 from vbraille.render import LATERO, STRESS2_8X8
 from vbraille.render.braille.straying import MOST_TILT_RAD
 from vbraille.translate import Book
@@ -39,9 +38,8 @@ class Bench(Held):
         self.opened.start(replace(self.own, style=model.style))
         text = "".join(f"{letter * letters}\n" for letter in LETTERS[:lines])
         bound = bound_by(Bindings(buttons={"button 3": "WINDN"}))
-        beside = Beside(cue=self.cues.append, bound=bound)
         layout = Layout(Book(open_brf(io.BytesIO(text.encode()), "text.brf")), width)
-        self.opened.show(layout, beside=beside, **how)
+        self.opened.show(layout, cue=self.cues.append, bound=bound, **how)
 
     @property
     def line(self):
@@ -357,7 +355,7 @@ def test_lines_that_are_longer_than_the_surface_are_panned_together():
 
 def test_pages_of_the_live_view_see_all_lines_of_the_page():
     bench = Bench()
-    viewed = Viewed(bench.opened, "A title", bench.said)
+    viewed = ReadView(bench.opened, "A title", bench.said)
     bench.to_row(2)
     state = viewed.changed()
     assert [line.number for line in state.lines] == [1, 2, 3, 4]

@@ -11,7 +11,7 @@ from vbraille.engine.clock import ManualClock
 from vbraille.engine.local import LocalEngine
 from vbraille.layout.pages import Layout
 from vbraille.reading.commands.table import press
-from vbraille.reading.echo import Echo
+from vbraille.reading.outputs import Echo
 from vbraille.reading.reader import Reader
 from vbraille.render import STRESS2, Tuning
 from vbraille.simulation.hand import Sweep

@@ -7,9 +7,9 @@ from itertools import count
 import pytest
 
 from tests.reading.ssipserver import SsipServer
-from vbraille.reading.speaking import newest, speak
-from vbraille.reading.speech import Speech
-from vbraille.reading.ssip import SpeechError, SpeechServer, address
+from vbraille.reading.speaking import SpeechError, SpeechServer, address, newest, speak
+from vbraille.reading.speech import Speech, Spoken
+from vbraille.workers import Incoming, Outgoing
 
 
 @pytest.fixture
@@ -82,8 +82,7 @@ def test_a_long_sentence_is_said_whole(at):
 @pytest.mark.usefixtures("at")
 def test_without_a_server_that_is_said_once_and_nothing_else_happens(capfd):
     with Speech("en", count().__next__) as speech:
-        assert speech._attendant is not None
-        speech._attendant._process.wait(30.0)
+        speech._worker.process.wait(30.0)
         for _ in range(3):
             speech.say("line: 1")
     assert capfd.readouterr() == (
@@ -128,12 +127,13 @@ def test_a_server_that_takes_nothing_is_told_of_in_a_sentence(at):
 def test_a_server_that_was_started_anew_goes_on(at):
     read, write = os.pipe()
     with SsipServer(at) as server, os.fdopen(write, "wb", buffering=0) as orders:
-        orders.write(b"!one\n")
-        speaker = threading.Thread(target=speak, args=(read, "en"))
+        sent = Outgoing(write)
+        sent.put(Spoken("one", instead=True))
+        speaker = threading.Thread(target=speak, args=(Incoming(read, Spoken), "en"))
         speaker.start()
         server.until(lambda it: it.said == ["one"])
         server.hang_up()
-        orders.write(b"!two\n")
+        sent.put(Spoken("two", instead=True))
         server.until(lambda it: it.said[-1] == "two")
         orders.close()
         speaker.join()
@@ -141,8 +141,9 @@ def test_a_server_that_was_started_anew_goes_on(at):
 
 
 def test_of_what_waits_only_the_newest_is_said():
-    assert newest(["+a", "!b", "+c", "!d", "+e", "+f"]) == ["!d", "+e", "+f"]
-    assert newest(["+a", "+b"]) == ["+a", "+b"]
+    a, b, c, d, e, f = (Spoken(text, text in "bd") for text in "abcdef")
+    assert newest([a, b, c, d, e, f]) == [d, e, f]
+    assert newest([a, c]) == [a, c]
 
 
 @pytest.mark.parametrize(

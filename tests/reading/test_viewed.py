@@ -10,8 +10,8 @@ from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Silent
 from vbraille.engine.clock import ManualClock
 from vbraille.layout.pages import Layout
-from vbraille.reading.opened import OpenDevice
-from vbraille.reading.viewed import MOST_SAID, Said, Viewed
+from vbraille.reading.device import OpenDevice
+from vbraille.reading.viewed import MOST_SAID, ReadView, Said
 from vbraille.render import STRESS2, VBD
 from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.steering import BeAt
@@ -42,7 +42,7 @@ class Watch:
         if book is None:
             book = Book(Document.from_text(TEXT), BrailleTable(f"en-ueb-g{table}.ctb"))
         self.device.show(Layout(book, width or 20), **how)
-        self.viewed = Viewed(self.device, "A title", self.said, [("hand", hand)])
+        self.viewed = ReadView(self.device, "A title", self.said, [("hand", hand)])
 
     @property
     def reader(self):
@@ -94,7 +94,7 @@ def test_nothing_is_translated_or_laid_out_for_a_page():
     watch = Watch(width=40)
     watch.viewed.changed()
     layout = watch.reader.layout
-    last = max(line.number for line in watch.viewed._state().lines)
+    last = max(line.number for line in watch.viewed._parts()["lines"])
     assert layout.lines_to(last + 1) == 1  # the next paragraph is not there yet
     assert last < layout.count()
 
@@ -224,8 +224,8 @@ def test_a_person_s_device_has_no_hand_to_be():
     clock = ManualClock()
     device = OpenDevice(simulated_device(clock=clock), STRESS2.display, clock=clock)
     device.start(STRESS2)
-    device.show("one two", beside=None)
-    state = Viewed(device, "", Said()).changed()
+    device.show("one two")
+    state = ReadView(device, "", Said()).changed()
     assert not state.simulated
     assert not state.held
 

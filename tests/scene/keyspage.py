@@ -6,7 +6,7 @@
 from pathlib import Path
 
 from vbraille.scene.pattern import Pattern
-from vbraille.scene.scenefile import SceneFile
+from vbraille.scene.reading import SceneFile
 from vbraille.scene.schema import scene_schema, summary, tables_of, told
 
 PAGE = Path(__file__).parents[2] / "docs" / "scenes.md"

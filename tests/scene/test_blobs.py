@@ -8,8 +8,7 @@ from PIL import Image as Pillow
 
 from vbraille.errors import InputError
 from vbraille.scene.blobs import dots_of
-from vbraille.scene.dots import Dots, ImageDots
-from vbraille.scene.patterns import Group
+from vbraille.scene.patterns import Dots, Group, ImageDots
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import DotStyle, Vibration

@@ -9,12 +9,21 @@ from hypothesis import given
 from tests.render.scene import twin as reference
 from tests.render.scene.scenes import examples, patterns, seeds
 from tests.render.scene.showing import assets_of, bitmap_of, known_boxes
-from vbraille.scene.bitmap import WHOLE, Bitmap
+from vbraille.scene.bitmap import WHOLE, Bitmap, bitmap_box, opaque
 from vbraille.scene.bounds import EMPTY, Box, bounds
-from vbraille.scene.dots import Dots, ImageDots
-from vbraille.scene.opaque import bitmap_box, opaque
-from vbraille.scene.patterns import Circle, Fill, Group, Image, PathShape, Polygon, Tile, Use
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Fill,
+    Group,
+    Image,
+    ImageDots,
+    PathShape,
+    Polygon,
+    StraightLine,
+    Tile,
+    Use,
+)
 from vbraille.scene.strokes import DotStyle, Dotting, Stroke, Vibration
 from vbraille.scene.textures import Uniform
 

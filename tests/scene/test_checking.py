@@ -7,13 +7,20 @@ import pytest
 
 from vbraille.scene import checking
 from vbraille.scene.checking import check_scene
-from vbraille.scene.dots import Dots
-from vbraille.scene.labels import Label
 from vbraille.scene.opened import OpenedScene, Origins
-from vbraille.scene.patterns import Circle, Fill, Group, Polygon, Tile, Use
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Fill,
+    Group,
+    Label,
+    Polygon,
+    StraightLine,
+    Tile,
+    Use,
+)
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Along, DotStyle, Dotting, Stroke, VertexMarkers, Vibration
 from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
 

@@ -11,8 +11,7 @@ from msgspec.structs import replace
 from tests.tiers import examples
 from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.dotting import dots_of, most_dots_of
-from vbraille.scene.patterns import Circle, PathShape, Polygon
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 from vbraille.scene.strokes import DotStyle, Dotting, Stroke
 
 DOTTING = Dotting()  # a radius of 1 mm, and 1 mm between: m = 3 mm

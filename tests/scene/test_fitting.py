@@ -6,9 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vbraille.scene.fitting import Cycle, axial_cycle, fitted, path_lengths_mm, stroke_cycles
-from vbraille.scene.patterns import Circle, PathShape, Polygon
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.joints import Cycle, axial_cycle, fitted, path_lengths_mm, stroke_cycles
+from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 from vbraille.scene.strokes import Along, Stroke
 from vbraille.scene.textures import AxialGrating, TurnPeak
 

@@ -12,8 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vbraille.errors import InputError
-from vbraille.scene.including import MOST_BYTES
-from vbraille.scene.reading import open_scene
+from vbraille.scene.reading import MOST_BYTES, open_scene
 
 CANVAS = "[canvas]\nwidth_mm = 200\nheight_mm = 100\n"
 CIRCLE = '[[elements]]\nkind = "circle"\ncenter_mm = [10, 20]\nradius_mm = 5\n'

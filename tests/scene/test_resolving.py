@@ -8,27 +8,26 @@ import pytest
 
 from tests.tiers import heavy
 from vbraille.errors import InputError
-from vbraille.scene import moving, naming, walking
-from vbraille.scene.dots import Dots
-from vbraille.scene.labels import Label
-from vbraille.scene.moving import LISTS, ONE, SEVERAL, moved
+from vbraille.scene import opened, walking
 from vbraille.scene.patterns import (
     AnyPattern,
     Circle,
+    Dots,
     Fill,
     Group,
     Image,
+    Label,
     PathShape,
     Polygon,
+    StraightLine,
     Tile,
     Use,
 )
 from vbraille.scene.resolving import MOST_DEPTH, resolve
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Stroke, Vibration
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, Uniform
-from vbraille.scene.walking import with_children
+from vbraille.scene.walking import LISTS, ONE, SEVERAL, moved, with_children
 
 CANVAS = Canvas(width_mm=200, height_mm=100)
 
@@ -213,7 +212,7 @@ def test_what_is_moved_too_far_is_refused():
     )
 
 
-@pytest.mark.parametrize("module", [moving, naming, walking], ids=lambda module: module.__name__)
+@pytest.mark.parametrize("module", [opened, walking], ids=lambda module: module.__name__)
 def test_examples(module):
     tried = doctest.testmod(module)
     assert tried.attempted

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.scene.test_reading import REFUSED
-from vbraille.scene.including import gather
-from vbraille.scene.scenefile import SceneFile
+from vbraille.scene.reading import SceneFile, gather
 from vbraille.scene.schema import scene_schema, schema_text, summary, tables_of, told
 from vbraille.scene.stock import stock_text
 

@@ -9,13 +9,12 @@ from hypothesis import given
 from tests.render.scene.scenes import scenes
 from tests.tiers import examples
 from vbraille.errors import InputError
-from vbraille.scene.patterns import Circle, Group, Image, PathShape, Polygon, Use
+from vbraille.scene.converting import LONGEST, write_scene
+from vbraille.scene.patterns import Circle, Group, Image, PathShape, Polygon, StraightLine, Use
 from vbraille.scene.reading import open_scene
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Stroke, VertexMarkers, Vibration
 from vbraille.scene.textures import LinearGrating, Peak, Uniform
-from vbraille.scene.writing import LONGEST, write_scene
 from vbraille.toml.tomlfile import TomlFile
 
 CANVAS = Canvas(width_mm=100, height_mm=80)

@@ -5,16 +5,17 @@ from pathlib import Path
 
 import pytest
 
+from vbraille.cli.parser import parse
 from vbraille.errors import InputError
 from vbraille.render import STRESS2, VBD
 from vbraille.render.braille.knobs import kept_values
-from vbraille.settings.applying import with_profile
 from vbraille.settings.origins import USUAL, say_settings, say_tuning
-from vbraille.settings.parsing import parse_settings
-from vbraille.settings.tables import ProfileTable, ReadTable
+from vbraille.settings.tables import ProfileTable, ReadTable, parse_settings
+from vbraille.settings.values import with_profile
 
 PAGE = (Path(__file__).parents[2] / "docs/settings.md").read_text(encoding="utf-8")
 FILE = Path("settings.toml")
+OPTIONS = parse(["settings"]).usual
 (TOML,) = re.findall(r"^```toml\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
 
 
@@ -23,7 +24,7 @@ def test_the_file_of_the_page_is_read_as_the_page_says():
     model = with_profile(settings, settings.profile, STRESS2)
     said = [
         *say_tuning(settings, settings.profile, STRESS2, model.style),
-        *say_settings(settings, {}),
+        *say_settings(settings, {}, OPTIONS),
     ]
     shown, faulty = re.findall(r"^```text\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
     for line in shown.splitlines():
@@ -39,4 +40,5 @@ def test_the_tables_of_the_page_have_all_keys():
     assert set(re.findall(r"`([a-z_]+)`", rows["profile"])) == set(ProfileTable.__struct_fields__)
     kept = {*kept_values(STRESS2.style), *kept_values(VBD.style)}
     assert kept == set(ProfileTable.__struct_fields__)
-    assert set(USUAL) == set(ReadTable.__struct_fields__) - {"profile"}
+    assert set(OPTIONS) == set(ReadTable.__struct_fields__) - {"profile"}
+    assert set(USUAL) == {name for name, value in OPTIONS.items() if value is None}

@@ -4,16 +4,20 @@ from pathlib import Path
 
 import pytest
 
+from vbraille.cli.parser import parse
 from vbraille.errors import InputError
 from vbraille.files import settings_path
 from vbraille.reading.bindings import Bindings
 from vbraille.reading.commands.table import bound_by
 from vbraille.render import STRESS2, VBD
-from vbraille.settings.applying import missing_profile, with_profile
-from vbraille.settings.chosen import display_name
 from vbraille.settings.loading import load_settings
 from vbraille.settings.origins import say_bindings, say_settings, say_tuning
-from vbraille.settings.parsing import parse_settings
+from vbraille.settings.tables import parse_settings
+from vbraille.settings.values import (
+    display_name,
+    missing_profile,
+    with_profile,
+)
 
 FILE = Path("settings.toml")
 TEXT = """# mine
@@ -69,7 +73,9 @@ def test_each_setting_is_one_line_with_where_it_comes_from():
     ]
     given = list(say_tuning(settings, "evening", STRESS2, style, ("texture",)))
     assert given[0] == "texture: 0.8 (option)"
-    said = list(say_settings(settings, {"device": "sim:", "grade": None}))
+    said = list(
+        say_settings(settings, {"device": "sim:", "grade": None}, parse(["settings"]).usual)
+    )
     assert said[:3] == [
         "device: sim: (option)",
         "language: fr (settings.toml line 3)",

@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.render import STRESS2, VBD, model_of
-from vbraille.settings.applying import with_profile
 from vbraille.settings.loading import load_settings
-from vbraille.settings.parsing import parse_settings
 from vbraille.settings.saving import save_profile
+from vbraille.settings.tables import parse_settings
+from vbraille.settings.values import with_profile
 
 TEXT = """# mine
 [read]

@@ -1,14 +1,15 @@
-"""A simulated controller of each version of the protocol, on a bench."""
+"""A simulated controller on a bench."""
 
 import pytest
 
-from tests.simulation.controlled import INFO, INFO2, Bench
+from tests.simulation.controlled import Bench
+from vbraille.devices.wire.messages import Hello
 
 
-@pytest.fixture(params=[INFO, INFO2], ids=["version 1", "version 2"])
-def bench(request):
+@pytest.fixture
+def bench():
     """A controller whose timer has begun."""
-    bench = Bench(request.param)
+    bench = Bench()
     bench.tick()
     return bench
 
@@ -16,5 +17,5 @@ def bench(request):
 @pytest.fixture
 def greeted(bench):
     """A controller that was greeted."""
-    bench.send(bench.hello)
+    bench.send(Hello())
     return bench

@@ -1,17 +1,14 @@
 """A simulated controller on a bench: what is sent to it, what it says, and its timer."""
 
-from dataclasses import fields
-
 import numpy as np
 
 from vbraille.devices.wire.codec import Decoder, Levels, encode
 from vbraille.devices.wire.messages import (
+    VERSION,
     CountSign,
     Encoder,
     Frame,
-    Hello,
     Info,
-    Info2,
     RestSide,
     State,
     TurnSign,
@@ -21,7 +18,7 @@ from vbraille.simulation.firmware import Controller
 
 TOP = 1000  # 10 bits could say more
 INFO = Info(
-    version=1,
+    version=VERSION,
     rows=2,
     columns=3,
     column_pitch_nm=1_200_000,
@@ -41,9 +38,6 @@ INFO = Info(
     inverted=bytes((0, 0, 0, 1, 1, 1)),
     gain=b"\xff" * 6,
     enabled=b"\1" * 6,
-)
-INFO2 = Info2(
-    **{field.name: getattr(INFO, field.name) for field in fields(INFO)} | {"version": 2},
     buttons=8,
     knobs=2,
     contactor_width_nm=0,
@@ -70,7 +64,6 @@ class Bench:
 
     def __init__(self, info=INFO, now_us=10_000_000, made=Controller):
         self.controller = made(info)
-        self.hello = Hello(info.version)
         self.decoder = Decoder()
         self.now_us = now_us
         self.way_mm = 0.0
@@ -110,10 +103,6 @@ class Bench:
     @property
     def levels(self):
         return self.controller.levels.tolist()
-
-
-def in_its_version(bench, message):
-    return bench.hello if isinstance(message, Hello) else message
 
 
 def without_states(heard):

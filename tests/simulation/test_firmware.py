@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.simulation.controlled import INFO, INFO2, REST, SWING, TOP, Bench, packed, without_states
+from tests.simulation.controlled import INFO, REST, SWING, TOP, Bench, packed, without_states
 from vbraille.devices.wire.codec import DELIMITER, Decoder, Levels, OtherVersion, encode, enframe
 from vbraille.devices.wire.messages import (
     FAULTY,
@@ -20,7 +20,6 @@ from vbraille.devices.wire.messages import (
     Hello,
     RestSide,
     State,
-    State2,
     Watchdog,
 )
 from vbraille.display import Display
@@ -38,15 +37,14 @@ def test_before_hello_it_is_silent_and_at_rest(bench):
 
 
 def test_it_answers_hello_and_then_says_where_it_is(bench):
-    assert bench.send(bench.hello) == [bench.controller.info, Watchdog(trips=0, dropped=0)]
+    assert bench.send(Hello()) == [bench.controller.info, Watchdog(trips=0, dropped=0)]
     assert bench.controller.greeted
-    kind = State if bench.hello.version == 1 else State2
-    assert [type(message) for message in bench.tick(5)] == [kind] * 5
+    assert [type(message) for message in bench.tick(5)] == [State] * 5
 
 
 def test_hello_in_any_chunks(bench):
     heard = []
-    for byte in DELIMITER + encode(bench.hello):
+    for byte in DELIMITER + encode(Hello()):
         heard += bench.send_bytes(bytes((byte,)))
     assert heard == [bench.controller.info, Watchdog(0, 0)]
 
@@ -57,7 +55,7 @@ def test_another_version_is_told_this_one_and_nothing_else(greeted):
     assert greeted.tick(30) == []
     assert greeted.frame() == []
     assert (greeted.levels, greeted.controller.frames) == (REST, 2)
-    assert greeted.send(greeted.hello) == [greeted.controller.info, Watchdog(0, 0)]
+    assert greeted.send(Hello()) == [greeted.controller.info, Watchdog(0, 0)]
     assert greeted.state().resting
 
 
@@ -91,7 +89,7 @@ def test_of_several_frames_the_last_is_shown(greeted):
         enframe(b"\x01\x00"),
         encode(Watchdog(1, 1)),
         encode(INFO),
-        enframe(b"\x81\x02"),
+        enframe(b"\x81\x01"),
         b"\xff\1\0",
         b"\1" * 5000 + b"\0",
     ],
@@ -99,7 +97,7 @@ def test_of_several_frames_the_last_is_shown(greeted):
 def test_what_does_not_fit_is_dropped_and_counted(greeted, line):
     assert greeted.send_bytes(line) == []
     assert (greeted.levels, greeted.controller.frames, greeted.controller.dropped) == (REST, 0, 1)
-    assert greeted.send(greeted.hello) == [greeted.controller.info, Watchdog(trips=0, dropped=1)]
+    assert greeted.send(Hello()) == [greeted.controller.info, Watchdog(trips=0, dropped=1)]
 
 
 def test_it_says_another_version_s_info_is_another_s():
@@ -120,7 +118,7 @@ def test_an_error_rests_it_until_hello(greeted):
     assert (greeted.levels, greeted.controller.frames) == (REST, 2)
     assert greeted.controller.dropped == 0
     assert without_states(greeted.tick(100)) == []
-    greeted.send(greeted.hello)
+    greeted.send(Hello())
     greeted.show()
     assert greeted.levels == SWING
     assert greeted.state().flags == PLACED
@@ -136,7 +134,7 @@ def test_a_notice_changes_nothing(greeted):
 
 def test_states_count_on_whoever_hears_them(bench):
     bench.tick(3)
-    bench.send(bench.hello)
+    bench.send(Hello())
     first = bench.state()
     assert first.sequence == 5
     bench.controller.skip(10)
@@ -147,21 +145,21 @@ def test_states_count_on_whoever_hears_them(bench):
 
 def test_a_state_is_of_its_time_and_place():
     bench = Bench(now_us=(1 << 32) - 2000)
-    bench.send(bench.hello)
+    bench.send(Hello())
     bench.controller.buttons = 5
     bench.controller.force_mn = -70
     bench.way_mm = 20.0
     first, second = bench.tick(2)
     assert (first.time_us, second.time_us) == ((1 << 32) - 1000, 0)
-    assert first == State(1, first.time_us, 64_000, 0, PLACED | RESTING, 5, -70)
+    assert first == State(1, first.time_us, 64_000, 0, PLACED | RESTING, 5, -70, 10, 4090, 0)
     bench.controller.force_mn = None
     bench.send(Frame(513, packed(REST)))
-    assert bench.state() == State(3, 1000, 64_000, 513, PLACED, 5, None)
+    assert bench.state() == State(3, 1000, 64_000, 513, PLACED, 5, None, 10, 4090, 0)
 
 
-def test_a_state_of_version_2_has_both_axes_the_angle_and_the_knobs():
-    bench = Bench(INFO2)
-    bench.send(bench.hello)
+def test_a_state_has_both_axes_the_angle_and_the_knobs():
+    bench = Bench()
+    bench.send(Hello())
     bench.controller.knobs = [1.0, 0.5]
     *_, first = bench.decoder.feed(bench.controller.tick(0, 20.0, 50.0, -math.pi / 2))
     assert first.count == 64_000
@@ -171,8 +169,8 @@ def test_a_state_of_version_2_has_both_axes_the_angle_and_the_knobs():
 
 
 def test_a_controller_of_one_axis_says_nothing_of_others():
-    bench = Bench(replace(INFO2, height_um=0, counts_per_turn=0))
-    bench.send(bench.hello)
+    bench = Bench(replace(INFO, height_um=0, counts_per_turn=0))
+    bench.send(Hello())
     *_, state = bench.decoder.feed(bench.controller.tick(0, 20.0, 50.0, 1.0))
     assert (state.y_count, state.theta_count) == (0, 0)
 
@@ -180,7 +178,7 @@ def test_a_controller_of_one_axis_says_nothing_of_others():
 @pytest.mark.parametrize("sign", CountSign)
 def test_an_absolute_encoder_counts_from_the_left_stop_and_wraps(sign):
     bench = Bench(replace(INFO, count_sign=sign))
-    bench.send(bench.hello)
+    bench.send(Hello())
     for way_mm in (0.0, 0.004, 27.68, 300.0, 301.5, 5.0):
         bench.way_mm = way_mm
         state = bench.state()
@@ -193,7 +191,7 @@ def test_an_absolute_encoder_counts_from_the_left_stop_and_wraps(sign):
 def test_an_index_encoder_is_right_from_its_mark_on(sign, bits):
     info = replace(INFO, encoder=Encoder.INDEX, count_sign=sign, count_bits=bits)
     bench = Bench(info)
-    bench.send(bench.hello)
+    bench.send(Hello())
 
     def true():
         return (60_000 + sign * round(bench.way_mm * 200)) % (1 << bits)
@@ -208,13 +206,13 @@ def test_an_index_encoder_is_right_from_its_mark_on(sign, bits):
     for bench.way_mm in (MARK_MM + 0.1, 3.0, 200.0):
         state = bench.state()
         assert (state.placed, state.count) == (True, true())
-    bench.send(bench.hello)
+    bench.send(Hello())
     assert bench.state().placed
 
 
 def test_its_mark_is_felt_on_the_way_back_too_and_lies_on_a_short_carriage():
     bench = Bench(replace(INFO, encoder=Encoder.INDEX))
-    bench.send(bench.hello)
+    bench.send(Hello())
     bench.way_mm = MARK_MM + 50
     assert not bench.state().placed  # where it was when it started
     bench.way_mm = MARK_MM - 0.1
@@ -225,7 +223,7 @@ def test_its_mark_is_felt_on_the_way_back_too_and_lies_on_a_short_carriage():
 @pytest.mark.parametrize("sign", CountSign)
 def test_an_incremental_encoder_is_never_placed(sign):
     bench = Bench(replace(INFO, encoder=Encoder.INCREMENTAL, count_sign=sign, left_stop_count=0))
-    bench.send(bench.hello)
+    bench.send(Hello())
     at_stop = bench.state()
     assert at_stop.count != 0
     for bench.way_mm in (0.1, MARK_MM, 300.0, 50.0):
@@ -244,7 +242,7 @@ def test_unplugged_it_is_silent_and_its_watchdog_goes_on(greeted):
     assert greeted.levels == REST
     greeted.show()
     assert greeted.levels == REST
-    assert greeted.send(greeted.hello) == [greeted.controller.info, Watchdog(trips=1, dropped=0)]
+    assert greeted.send(Hello()) == [greeted.controller.info, Watchdog(trips=1, dropped=0)]
 
 
 def test_a_device_is_described_to_the_host():

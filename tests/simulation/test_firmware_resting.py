@@ -5,14 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.controllers import ControllerOf20261121
+from tests.controllers import HastyController
 from tests.simulation.controlled import (
     INFO,
     REST,
     SWING,
     TOP,
     Bench,
-    in_its_version,
     packed,
     without_states,
 )
@@ -107,7 +106,7 @@ def test_nothing_else_does(greeted, line):
 def test_rest_and_hello_bring_it_to_rest_by_the_ramp_and_disarm_it(greeted, message):
     greeted.show()
     greeted.tick(10)
-    greeted.send(in_its_version(greeted, message))
+    greeted.send(message)
     greeted.tick(5)
     assert greeted.levels == ramp(SWING, 5)
     assert greeted.state().resting
@@ -123,7 +122,7 @@ def test_a_ramp_on_its_way_is_not_begun_anew(greeted):
     greeted.tick(60)
     greeted.send(Rest())
     greeted.tick(5)
-    greeted.send(greeted.hello)
+    greeted.send(Hello())
     greeted.tick(5)
     assert greeted.controller.at_rest
     assert greeted.controller.rest_after_us == 70_000
@@ -152,7 +151,7 @@ def test_a_frame_does_not_cut_the_ramp_after_a_trip_and_the_first_taken_has_it_r
 def test_a_frame_does_not_cut_the_ramp_after_rest_and_hello(greeted, message):
     greeted.show()
     greeted.tick(10)
-    greeted.send(in_its_version(greeted, message))
+    greeted.send(message)
     greeted.frame()
     for milliseconds in range(1, 20):
         greeted.tick()
@@ -175,7 +174,7 @@ def test_rest_is_left_by_a_twentieth_of_the_swing_at_most(greeted, to_rest):
     if to_rest == "rest":
         greeted.send(Rest())
     if to_rest == "hello":
-        greeted.send(greeted.hello)
+        greeted.send(Hello())
     greeted.tick(100)
     frames = greeted.controller.frames
     for levels in (SWING, next_to_rest(TOP // 20 + 1)):
@@ -199,7 +198,7 @@ def test_at_rest_only_the_last_frame_that_waits_is_looked_at(greeted):
     assert greeted.state().resting
     assert (greeted.levels, greeted.controller.frames) == (REST, 0)
     greeted.frame(near)
-    greeted.send(in_its_version(greeted, Rest()))
+    greeted.send(Rest())
     assert greeted.state().resting
 
 
@@ -235,7 +234,7 @@ def test_frames_that_were_held_up_do_not_move_it_all_together(greeted):
 
 def test_a_device_of_two_levels_leaves_rest_by_a_frame_of_rest():
     bench = Bench(replace(INFO, top_level=1))
-    bench.send(bench.hello)
+    bench.send(Hello())
     rest, swing = (Levels(6, 1).pack(np.array(levels)) for levels in ([0, 0, 0, 1, 1, 1], [1] * 6))
     bench.send(Frame(1, swing))
     assert bench.controller.frames == 0
@@ -279,13 +278,13 @@ def test_a_lost_report_of_a_trip_is_repeated_in_the_states_until_a_frame_is_take
 def test_whoever_says_rest_or_hello_needs_no_report_of_a_trip_any_more(greeted, message):
     greeted.show()
     greeted.tick(100)
-    greeted.send(in_its_version(greeted, message))
+    greeted.send(message)
     assert greeted.state().flags == PLACED | RESTING
 
 
-def test_the_controller_of_2026_11_21_is_cut_short_and_does_not_repeat():
-    old = Bench(made=ControllerOf20261121)
-    old.send(old.hello)
+def test_a_hasty_controller_s_ramp_is_cut_short_and_it_does_not_repeat():
+    old = Bench(made=HastyController)
+    old.send(Hello())
     old.frame()  # from rest
     assert old.levels == SWING
     *_, tripped = old.tick(60)

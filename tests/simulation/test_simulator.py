@@ -17,7 +17,8 @@ from vbraille.simulation.pty import Link, Port
 from vbraille.simulation.simulator import Defect, Faults, Simulator, Spoiler
 
 PATIENCE_S = 30.0
-SLOW = replace(INFO, rate_hz=500, travel_um=40_000)  # leaves the test's machine some time
+# Of one axis, and slow, which leaves the machine of the test some time.
+SLOW = replace(INFO, rate_hz=500, travel_um=40_000, height_um=0, counts_per_turn=0)
 
 
 class Host:
@@ -89,7 +90,7 @@ class Bench:
         self.simulator.run(stopped)
 
     def greet(self):
-        self.host.say(Hello(1))
+        self.host.say(Hello())
         self.run(lambda: self.host.states)
 
     def feel(self):
@@ -188,7 +189,7 @@ def test_with_an_index_the_hand_crosses_the_mark_once_greeted(make):
     bench.run(lambda: bench.host.states[-1].placed, lambda: bench.way_mm() == 0, ticks(20))
     assert bench.way_mm() == 0
     bench.run(lambda: bench.show() or bench.way_mm() > 20)
-    bench.host.say(Hello(1))
+    bench.host.say(Hello())
     bench.run(lambda: bench.said.count("greeted by a host") == 2, ticks(5))
     assert bench.way_mm() > 20  # on its way it stays
 
@@ -199,7 +200,7 @@ def test_with_an_incremental_encoder_it_goes_back_at_each_greeting(make):
     stop = bench.host.states[-1].count
     bench.run(lambda: bench.show() or bench.host.states[-1].count != stop, ticks(10))
     for _ in range(2):
-        bench.host.say(Hello(1))
+        bench.host.say(Hello())
         bench.run(lambda: bench.host.states[-1].count == stop, ticks(20))
         assert bench.host.states[-1].count == stop
     bench.run(lambda: bench.show() or bench.host.states[-1].count != stop)
@@ -207,7 +208,7 @@ def test_with_an_incremental_encoder_it_goes_back_at_each_greeting(make):
 
 def test_a_host_that_does_not_read_loses_states_and_nothing_waits(make):
     bench = make(info=replace(SLOW, rate_hz=2000))
-    bench.host.say(Hello(1))
+    bench.host.say(Hello())
     end = time.monotonic() + PATIENCE_S
     sent = []
 
@@ -240,14 +241,14 @@ def test_hosts_come_and_go_and_it_stays(bench):
         bench.host.close()
         bench.simulator.run(ticks(5))
         bench.host = Host(bench.port.path)
-        bench.host.say(Hello(1))
+        bench.host.say(Hello())
         bench.run(lambda: any(isinstance(message, Info) for message in bench.host.heard))
         assert bench.said == ["greeted by a host"] * greetings
 
 
 def test_messages_are_dropped_and_corrupted_both_ways(make):
     bench = make(faults=Faults(drop=0.2, corrupt=0.2, seed=3))
-    bench.run(lambda: bench.host.say(Hello(1)) or bench.controller.greeted, ticks(1))
+    bench.run(lambda: bench.host.say(Hello()) or bench.controller.greeted, ticks(1))
     sent = [0]
 
     def show():

@@ -82,11 +82,6 @@ class TakingByAMethod(SimulatedDevice):
         return False
 
 
-class ZeroAtAPlace(SimulatedDevice):
-    def set_zero(self, x_mm):
-        del x_mm
-
-
 class OneNote(SimulatedDevice):
     def take_events(self):
         return ["too hot"]
@@ -110,7 +105,6 @@ class RestedOrNot(SimulatedDevice):
     [
         (CountsInAProperty, check_members),
         (TakingByAMethod, check_members),
-        (ZeroAtAPlace, check_members),
         (OneNote, check_members),
         (CountsInHalves, check_members),
         (PlacedByANumber, check_members),

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text
-from vbraille.toml import tomllines
-from vbraille.toml.tomllines import lines_of
+from vbraille.toml import tomlfile
+from vbraille.toml.tomlfile import lines_of
 
 NASTY = (
     r"""# first = 0
@@ -92,7 +92,7 @@ def first_lines(text):
 
 class TestLines:
     def test_the_example(self):
-        assert doctest.testmod(tomllines) == (0, 1)
+        assert doctest.testmod(tomlfile) == (0, 1)
 
     @pytest.mark.parametrize("text", [NASTY, NASTY.replace("\n", "\r\n"), ""])
     def test_keys_and_tables(self, text):

@@ -3,7 +3,7 @@
 import io
 
 from vbraille.translate.braillefiles.lines import open_brf
-from vbraille.translate.documents.parted import PartedSource, Passage
+from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.outline import outline
 from vbraille.translate.source import BlockKind as K
 from vbraille.translate.source import Mark, MarkKind
@@ -37,7 +37,7 @@ MARKS = (
 )
 
 
-class Made(PartedSource):
+class Made(ChapterSource):
     """A source of these passages."""
 
     def __init__(self, *made: Passage) -> None:

@@ -3,31 +3,38 @@
 from __future__ import annotations
 
 import signal
+import sys
 from abc import ABC, abstractmethod
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from vbraille.cli.stoppable import POLL_S, STOPPED
+from vbraille.caching import compiling_note
+from vbraille.cli.stoppable import POLL_S, STOPPED, StoppableKeyboard
+from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import opened_device
 from vbraille.devices.saying import placing_sentence
 from vbraille.engine.host import OPEN_S, OPENING, HostDiedError, too_slow
 from vbraille.errors import InputError
-from vbraille.reading.bindings import spoken
+from vbraille.reading.bindings import Context, spoken
 from vbraille.reading.commands.table import press
-from vbraille.reading.context import Context
-from vbraille.reading.keyed import Keyed
+from vbraille.reading.cues import Cues, choose_cues
+from vbraille.reading.device import OpenDevice
+from vbraille.reading.outputs import Echo, Outputs
+from vbraille.simulation.specs import has_hand
 
 if TYPE_CHECKING:
+    import argparse
     from collections.abc import Iterable, Iterator
 
     from vbraille.cli.live import LiveView
-    from vbraille.cli.stoppable import StoppableKeyboard
     from vbraille.devices.base import Device
     from vbraille.devices.events import Event
     from vbraille.display import Display
-    from vbraille.reading.opened import OpenDevice
+    from vbraille.reading.activity import Activity
+    from vbraille.reading.keyboard import Keyboard
 
 
 @contextmanager
@@ -55,38 +62,117 @@ def opened_in_time(spec: str, wanted: Display | None) -> Iterator[Device]:
             signal.signal(signal.SIGALRM, before)
 
 
-class Occupied(Keyed, Protocol):
-    """Somebody who is told what to do by keys, until there is no more to do.
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """A device with all that somebody at it hears, presses and shows.
 
-    Attributes
+    Parameters
     ----------
-    done : bool
-        Whether there is no more to do.
+    device
+        The device, which is not driven yet.
+    outputs
+        Sentences, speech and cues.
+    live
+        Live view; None if there is none.
+    keyboard
+        Keyboard of the terminal.
+    closing
+        Stack of what is closed once the device is.
     """
 
-    done: bool
+    device: OpenDevice
+    outputs: Outputs
+    live: LiveView | None
+    keyboard: Keyboard
+    closing: ExitStack
 
-    def quit(self) -> None:
-        """Do no more."""
-        ...
+    def keys(self) -> StoppableKeyboard:
+        """Take the keys; till now Ctrl-Z may do what it does elsewhere."""
+        return self.closing.enter_context(StoppableKeyboard(self.keyboard))
 
 
-def say_faults(device: OpenDevice) -> None:
-    """Say what went wrong with a device that is closed, and how often; nothing if nothing did."""
+@contextmanager
+def surrounded(
+    arguments: argparse.Namespace,
+    keyboard: Keyboard,
+    wanted: Display,
+    hand: str,
+    language: str,
+    *,
+    echo: Echo = Echo.NONE,
+    often: bool = True,
+) -> Iterator[Surroundings]:
+    """Set up a device with speech, cues and live view; at the end it goes to rest.
+
+    Parameters
+    ----------
+    arguments
+        Options of the command.
+    keyboard
+        Keyboard of the terminal.
+    wanted, hand, often
+        As for an `OpenDevice`.
+    language
+        Language that is spoken if speech was asked for.
+    echo
+        How much is said of each line.
+    """
+    with ExitStack() as closing:
+        if (note := compiling_note()) is not None:
+            print(note, file=sys.stderr, flush=True)
+        live = None
+        if arguments.monitor:
+            # Only who has a live view waits for what it needs.
+            from vbraille.cli.live import LiveView
+
+            live = closing.enter_context(LiveView(arguments))
+        cues = Cues(choose_cues(arguments.cues, attended=keyboard.attached))
+        say = say_line if live is None else live.say
+        outputs = closing.enter_context(Outputs(say, cues, echo=echo))
+        if arguments.speech:
+            outputs.speak(language)
+        device = OpenDevice(
+            arguments.device,
+            wanted,
+            often=often,
+            hand=hand,
+            seed=1 if arguments.seed is None else arguments.seed,
+            say=outputs.say,
+            attended=keyboard.attached,
+            begun=arguments.begun,
+            pointer=arguments.pointer if has_hand(arguments.device) else None,
+            on_share=None if live is None else live.share,
+        )
+        try:
+            yield Surroundings(device, outputs, live, keyboard, closing)
+        finally:
+            EAR.close()  # so that the array goes to rest
+            device.close()
     faults = ", ".join(f"{name} {count}" for name, count in device.counts.items() if count)
     if faults:
         say_line(f"device: {faults}")
 
 
-def seconds_of(device: OpenDevice, rate_hz: float) -> str:
-    """Words for how long a device was driven, at a rate."""
-    return f"seconds {(device.tally.ticks + device.tally.late) / rate_hz:.1f}"
+def say_summary(device: OpenDevice, *parts: str, rate_hz: float, speed: str = "") -> None:
+    """Say how long a device was driven at a rate, and what else is told at the end.
 
-
-def ticks_of(device: OpenDevice) -> tuple[str, ...]:
-    """Words for the number of ticks and of late ones; none for a device that is not there."""
+    Parameters
+    ----------
+    device
+        The device, which is closed.
+    parts
+        Words that come first.
+    rate_hz
+        Frames a second.
+    speed
+        Words on the speed of the hand; empty for none.
+    """
     tally = device.tally
-    return () if device.has_hand else (f"ticks {tally.ticks}", f"late ticks {tally.late}")
+    seconds = f"seconds {(tally.ticks + tally.late) / rate_hz:.1f}"
+    # That ticks come late does not matter to a device that is not there.
+    ticks = (f"ticks {tally.ticks}", f"late ticks {tally.late}") if device.steering is None else ()
+    said = (*parts, seconds, *((speed,) if speed else ()), *ticks)
+    say_line(f"summary: {', '.join(said)}")
 
 
 class AtDevice(ABC):
@@ -96,35 +182,20 @@ class AtDevice(ABC):
 
     Parameters
     ----------
-    device
-        Device, which has something under the hand.
+    around
+        Surroundings of the device, which has something under the hand.
     who
         Reader or feeler, who is told what to do.
     keys
         Keyboard, whose keys are taken.
-    live
-        Live view; None if there is none.
-
-    Attributes
-    ----------
-    does, doing : str
-        Words for what somebody does here, such as "read" and "reading".
     """
 
-    does: ClassVar[str]
-    doing: ClassVar[str]
-
-    def __init__(
-        self,
-        device: OpenDevice,
-        who: Occupied,
-        keys: StoppableKeyboard,
-        live: LiveView | None,
-    ) -> None:
-        self._device = device
+    def __init__(self, around: Surroundings, who: Activity, keys: StoppableKeyboard) -> None:
+        self._device = around.device
+        self._outputs = around.outputs
         self._who = who
         self._keys = keys
-        self._live = live
+        self._live = around.live
 
     def run(self) -> None:
         """Go on until there is no more to do.
@@ -163,7 +234,7 @@ class AtDevice(ABC):
         self._tell(events)
 
     @property
-    def _keyed(self) -> Keyed:
+    def _keyed(self) -> Activity:
         """Whoever keys are for at the moment."""
         return self._who
 
@@ -214,7 +285,7 @@ class AtDevice(ABC):
         self._rest()
         self._keys.stop()
         device.paused = paused
-        self._who.say("paused" if paused else self.doing)
+        self._who.say("paused" if paused else self._who.doing)
         self._tell(standing="")
 
     def _set_context(self) -> None:
@@ -229,7 +300,7 @@ class AtDevice(ABC):
         if self._device.placing is Placing.STOP and not self._keys.attached:
             raise InputError(
                 "the device must be shown its place, such as its left stop; "
-                f"{self.does} at a terminal"
+                f"{self._who.does} at a terminal"
             )
         self._who.say(placing_sentence(self._device.placing, self._device.engine.display))
 
@@ -261,5 +332,5 @@ class AtDevice(ABC):
         if self._who.done:
             return
         self._device.start_again()
-        self._who.say(self.doing)
+        self._who.say(self._who.doing)
         self._tell(standing="")

@@ -121,8 +121,9 @@ def _run(argv: Sequence[str] | None) -> tuple[str, int]:
     except OSError as error:
         return error.strerror or str(error), 1
     except Exception as error:
-        if os.environ.get("VBRAILLE_TRACEBACK"):
-            raise
+        from vbraille.logs import print_traceback
+
+        print_traceback(error)
         what = f"{type(error).__name__}: {error}"
         return f"a fault of vbraille's own, which its authors want to hear of: {what}", 1
     return "", code
@@ -137,10 +138,13 @@ def _call(argv: Sequence[str] | None) -> int:
             arguments = read_instead(arguments)
     except SystemExit:  # --help and --version have been printed
         return 0
-    if arguments.log is not None:
-        from vbraille.logs import keep
+    if arguments.log is not None or arguments.verbose:
+        from vbraille.logs import keep, want_tracebacks
 
-        keep(arguments.log)
+        if arguments.log is not None:
+            keep(arguments.log)
+        if arguments.verbose:
+            want_tracebacks()
     with ExitStack() as begun:
         if arguments.command in ("read", "feel"):
             # A hand on a picture may stand still, and waits for somebody.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 
-from vbraille.cli.options import feeling, forecast, lab, live, pictures, reading, scenes
+from vbraille.cli.options import forecast, lab, live, pictures, reading
 from vbraille.errors import InputError
 from vbraille.version import __version__
 
@@ -25,7 +25,7 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
     ),
     "feel": (
         "Feel a tactile picture on a device, or with a simulated hand.",
-        feeling.feel,
+        pictures.feel,
         "vbraille feel house.scene --device latero:192.168.1.10",
     ),
     "books": (
@@ -65,7 +65,7 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
     ),
     "profile": (
         "Say what a frame of a tactile picture costs, place by place.",
-        feeling.profile,
+        pictures.profile,
         "vbraille profile house.scene --path wide --out cost.csv",
     ),
     "monitor": (
@@ -128,12 +128,12 @@ SCENE_ACTIONS: dict[str, tuple[str, Options, str]] = {
     "check": (
         "Say what a tactile picture holds, what is ignored of its file, what will vibrate against "
         "what, and what is hard to feel.",
-        scenes.check,
+        pictures.check,
         "vbraille scene check texts/scenes/house.scene",
     ),
     "convert": (
         "Make a scene file of a file of OpenLatero's or a drawing, and say what differs.",
-        scenes.convert,
+        pictures.convert,
         "vbraille scene convert umbrella.gen --out umbrella.scene",
     ),
     "schema": (
@@ -234,6 +234,7 @@ _GONE = {
     "--mapping": "docs/analysis.md shows how pandas makes a table of trials",
     "--workers": "one process translates",
     "--cluster": "--workers shares the work between the processors of one machine",
+    "--protocol": "a simulated controller speaks the one version of the wire protocol",
 }
 
 
@@ -314,10 +315,15 @@ def _add(
         command.add_argument("-h", "--help", action="help", help="Print this help.")
         add_options(command)
         if add_options.__name__ != "<lambda>":  # one whose actions have options of their own
-            _add_log(command)
+            _add_common(command)
 
 
-def _add_log(command: argparse.ArgumentParser) -> None:
+def _add_common(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--verbose",
+        action="store_true",
+        help="Say more, such as how far a search has come, and print the traceback of a fault.",
+    )
     command.add_argument(
         "--log",
         metavar="FILE",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -13,9 +14,10 @@ from vbraille.cli.settled import TRANSLATION
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.reading.places import BookOptions, book_to_open, last_book, resume
-from vbraille.reading.seeking import BookOpening, Seeker
+from vbraille.reading.search.queries import BookOpening
+from vbraille.reading.search.seeker import Seeker
 from vbraille.render.braille.knobs import kept_values, with_values
-from vbraille.settings.chosen import display_name
+from vbraille.settings.values import display_name
 from vbraille.translate import Document
 
 if TYPE_CHECKING:
@@ -67,7 +69,7 @@ class BookToRead:
             descriptor = source.descriptor
         return Seeker(
             BookOpening(
-                file="" if descriptor is not None else arguments.file,
+                file=b"" if descriptor is not None else os.fsencode(arguments.file),
                 descriptor=descriptor,
                 name=source.name,
                 encoding=arguments.encoding,
@@ -156,10 +158,10 @@ def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToR
         keep_lines=bool(arguments.keep_lines),
         turned=turned,
     )
-    resumed = resume(source, kept, options)
-    if resumed.note is not None:
-        say_line(resumed.note, aside=True)
-    return BookToRead(book, resumed.kept, resumed.place)
+    place, note = resume(source, kept, options)
+    if note is not None:
+        say_line(note, aside=True)
+    return BookToRead(book, kept, place)
 
 
 def _said(arguments: argparse.Namespace) -> frozenset[str]:

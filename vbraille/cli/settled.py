@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli.options.groups import SETTLED
 from vbraille.cli.terminal import say_line
+from vbraille.logs import want_tracebacks
 from vbraille.reading.bindings import Bindings, Bound
 from vbraille.reading.commands.table import bound_by
 from vbraille.settings.loading import load_settings
@@ -13,7 +14,7 @@ from vbraille.settings.loading import load_settings
 if TYPE_CHECKING:
     import argparse
 
-    from vbraille.settings.chosen import Settings
+    from vbraille.settings.values import Settings
 
 TRANSLATION = ("language", "grade", "table")
 
@@ -47,12 +48,14 @@ def settle(arguments: argparse.Namespace, names: tuple[str, ...] = SETTLED) -> S
             else:
                 setattr(arguments, name, usual.get(name))
     arguments.settled = frozenset(settled)
+    if arguments.verbose:
+        want_tracebacks()
     return settings
 
 
 def chosen_profile(arguments: argparse.Namespace, settings: Settings) -> str:
     """Name of the profile in use; one that an option names and is not there is said on stderr."""
-    from vbraille.settings.applying import missing_profile
+    from vbraille.settings.values import missing_profile
 
     if arguments.profile is None:
         return settings.profile

@@ -1,35 +1,33 @@
-"""The process that drives a conventional display: cells on standard input, its keys on output.
+"""The process that drives a conventional display: cells come, and its keys go out.
 
 It looks for the display as long as it is not there, shows again what should stand on it when it
-comes back, and ends with its standard input.
+comes back, and ends with its orders.
 """
 
 from __future__ import annotations
 
-import os
 import select
 import sys
 import time
-from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from vbraille.conventional.brlapi import BrlapiDisplay, DisplayGoneError
-from vbraille.conventional.messages import (
-    TO_JSON,
-    WANTED_FROM_JSON,
+from vbraille.conventional.brlapi import (
+    BrlapiDisplay,
     CellsTaken,
     CellsWanted,
     DisplayAway,
+    DisplayGoneError,
 )
+from vbraille.workers import begin
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.conventional.messages import FromDisplay
+    from vbraille.conventional.brlapi import FromDisplay
+    from vbraille.workers import Incoming
 
 CHECK_S: Final = 0.5  # from one question whether the display is still there to the next
-_PIPE_BYTES: Final = 1 << 16  # all that a pipe holds
 _URGENT: Final = -10
 
 
@@ -39,7 +37,7 @@ class Driving:
     Parameters
     ----------
     orders
-        Descriptor from which `CellsWanted` come, a line of JSON each.
+        Cells that are wanted.
     tell
         Function that is called with each message.
     open_display
@@ -48,30 +46,29 @@ class Driving:
 
     def __init__(
         self,
-        orders: int,
+        orders: Incoming[CellsWanted],
         tell: Callable[[FromDisplay], None],
         open_display: Callable[[], BrlapiDisplay],
     ) -> None:
         self._orders = orders
         self._tell = tell
         self._open_display = open_display
-        self._begun = b""  # a line that has not come to its end
         self._wanted = CellsWanted(0, b"")
-        self._ended = False
 
     def run(self) -> None:
         """Drive the display until the orders end."""
-        while not self._ended:
+        while not self._orders.ended:
             if self._wanted.cells is None:
+                self._orders.wait()
                 self._take()
                 continue
             try:
                 display = self._open_display()
             except DisplayGoneError as error:
                 self._tell(DisplayAway(str(error)))
-                if select.select([self._orders], [], [], CHECK_S)[0]:
+                if self._orders.wait(CHECK_S):
                     self._take()
-                    time.sleep(0 if self._ended else CHECK_S)
+                    time.sleep(0 if self._orders.ended else CHECK_S)
                 continue
             try:
                 self._drive(display)
@@ -87,10 +84,10 @@ class Driving:
         due_s = time.monotonic() + CHECK_S
         while True:
             wait_s = max(0.0, due_s - time.monotonic())
-            ready = select.select([self._orders, display.descriptor], [], [], wait_s)[0]
-            if self._orders in ready:
+            orders, keys = self._orders.descriptor, display.descriptor
+            if orders in select.select([orders, keys], [], [], wait_s)[0]:
                 changed = self._take()
-                if self._ended or self._wanted.cells is None:
+                if self._orders.ended or self._wanted.cells is None:
                     display.write(b"")
                     return
                 if changed:
@@ -103,12 +100,10 @@ class Driving:
 
     def _take(self) -> bool:
         """Take what is wanted, of several the newest; whether anything new is."""
-        chunk = os.read(self._orders, _PIPE_BYTES)
-        self._ended = not chunk
-        *lines, self._begun = (self._begun + chunk).split(b"\n")
-        if lines:
-            self._wanted = WANTED_FROM_JSON.decode(lines[-1])
-        return bool(lines)
+        wanted = self._orders.take()
+        if wanted:
+            self._wanted = wanted[-1]
+        return bool(wanted)
 
     def _show(self, display: BrlapiDisplay) -> None:
         display.write(self._wanted.cells or b"")
@@ -116,16 +111,11 @@ class Driving:
 
 
 def main() -> int:
-    """Drive the display of the BRLTTY whose address is the first argument; empty: the usual one."""
-
-    def tell(message: FromDisplay) -> None:
-        os.write(1, TO_JSON.encode(message) + b"\n")
-
+    """Drive the display of the BRLTTY whose address is an argument; empty: the usual one."""
     # As BRLTTY itself has it: what is told now is to be felt now, however busy the machine is.
-    with suppress(PermissionError):
-        os.nice(_URGENT)
+    orders, told = begin(CellsWanted, _URGENT)
     try:
-        Driving(sys.stdin.fileno(), tell, partial(BrlapiDisplay, sys.argv[1])).run()
+        Driving(orders, told.put, partial(BrlapiDisplay, sys.argv[2])).run()
     except BrokenPipeError:  # whoever was told is gone
         return 1
     return 0

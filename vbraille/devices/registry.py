@@ -8,14 +8,14 @@ opened `vbraille.devices.Device`. Packages of other builders join the same way.
 from __future__ import annotations
 
 import logging
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from importlib.metadata import entry_points
+from traceback import walk_tb
 from typing import TYPE_CHECKING
 
 from vbraille.devices.base import Device
-from vbraille.devices.blame import naming
-from vbraille.devices.interface import misfits
-from vbraille.errors import DeviceError, InputError
+from vbraille.errors import DeviceError, InputError, VbrailleError
+from vbraille.logs import print_traceback
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -57,9 +57,13 @@ def open_device(
         If the device cannot be opened.
     """
     driver = find_driver(spec)
-    with naming(driver):
+    with _naming(driver, opening=True):
         device = driver.load()(spec.partition(":")[2], wanted)
-        _check_device(driver, device)
+        if not isinstance(device, Device):
+            raise DeviceError(
+                f"the driver {driver.name} ({driver.value}) gives {device!r} where it must give a "
+                f"vbraille.devices.Device; tell whoever wrote it"
+            )
         if wanted is not None:
             try:
                 if fits:
@@ -79,7 +83,7 @@ def opened_device(
 ) -> Iterator[Device]:
     """Open the device of a spec; on leaving, close it.
 
-    An exception of somebody else's driver in between names the driver, its file and its line.
+    An exception of somebody else's driver in between names the driver.
 
     Raises
     ------
@@ -87,7 +91,7 @@ def opened_device(
         In the cases of `open_device`; `DeviceError` also for any exception of somebody else's
         driver.
     """
-    with naming(find_driver(spec)), open_device(spec, wanted, fits=fits, often=often) as device:
+    with _naming(find_driver(spec)), open_device(spec, wanted, fits=fits, often=often) as device:
         yield device
 
 
@@ -107,20 +111,30 @@ def find_driver(spec: str) -> EntryPoint:
     return next(iter(found))
 
 
-def _check_device(driver: EntryPoint, device: object) -> None:
-    """Raise DeviceError if a driver gives something that cannot be read on, and let that go."""
-    if not isinstance(device, Device):
+@contextmanager
+def _naming(driver: EntryPoint, *, opening: bool = False) -> Iterator[None]:
+    """Turn whatever somebody else's driver raises into a `DeviceError` that names the driver.
+
+    Errors that are sentences pass, and so do those of vbraille's own drivers and an OSError in
+    which the driver has no part, such as one of our own output.
+    """
+    try:
+        yield
+    except VbrailleError:
+        raise
+    except (Exception, SystemExit) as error:
+        package = driver.module.partition(".")[0]
+        frames = (frame for frame, _ in walk_tb(error.__traceback__))
+        parts = {str(frame.f_globals.get("__name__")).partition(".")[0] for frame in frames}
+        others = isinstance(error, OSError) and not opening and package not in parts
+        if package == "vbraille" or others:
+            raise
+        print_traceback(error)
+        what = f"{type(error).__name__}: {' '.join(str(error).split())}".removesuffix(": ")
         raise DeviceError(
-            f"the driver {driver.name} ({driver.value}) gives {device!r} where it must give a "
-            f"vbraille.devices.Device; tell whoever wrote it"
-        )
-    for misfit in misfits(device):
-        with suppress(Exception):
-            device._release()
-        raise DeviceError(
-            f"the driver {driver.name} ({driver.value}) cannot be used, for {misfit}; "
-            f"tell whoever wrote it"
-        )
+            f"the driver {driver.name} ({driver.value}), which is not vbraille's own, has a fault "
+            f"({what}); tell whoever wrote it what --verbose prints"
+        ) from error
 
 
 def check_actuators(info: Display, wanted: Display) -> None:

@@ -25,6 +25,7 @@ from vbraille.devices.events import (
     Unplugged,
     WatchdogTripped,
 )
+from vbraille.devices.wire.messages import VERSION
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -137,8 +138,8 @@ def _(_event: Back) -> str:
 def _(event: Stranger) -> str:
     if event.version is not None:
         return (
-            f"device: a device of version {event.version} of the protocol came back; plug in "
-            f"{event.was} again and reading goes on"
+            f"device: a device of version {event.version} of the protocol came back, and this "
+            f"vbraille speaks version {VERSION}; plug in {event.was} again and reading goes on"
         )
     if event.fault:
         return f"device: what came back says in its INFO what cannot be: {event.fault}"

@@ -22,7 +22,7 @@ from vbraille.engine.spawning import spawn
 from vbraille.engine.tally import Tally
 from vbraille.errors import DeviceError, InputError, VbrailleError
 from vbraille.files import settings_path
-from vbraille.logs import kept
+from vbraille.logs import kept, tracebacks_wanted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -204,6 +204,7 @@ class Host:
             fits=self._room is not None,
             often=self._often,
             log=kept(),
+            verbose=tracebacks_wanted(),
             settings=str(settings_path().absolute()),
         )
         if self._room is not None:

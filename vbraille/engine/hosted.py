@@ -26,7 +26,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vbraille.devices import opened_device
-from vbraille.devices.blame import TRACEBACK
 from vbraille.devices.calibrations import correct_by_kept
 from vbraille.devices.events import is_known, shortened, to_json
 from vbraille.devices.serial.notices import EVERY_NS, Notices
@@ -36,7 +35,7 @@ from vbraille.engine.clock import ManualClock, RealClock
 from vbraille.engine.loop import Loop
 from vbraille.engine.realtime import go_real_time
 from vbraille.errors import DeviceError, VbrailleError
-from vbraille.logs import keep
+from vbraille.logs import keep, print_traceback, want_tracebacks
 from vbraille.render.program import nothing
 from vbraille.simulation.simulated import SimulatedDevice
 
@@ -242,6 +241,8 @@ def run(orders: RawIOBase, descriptor: int, parent: int, channel: Channel) -> No
     config = json.loads(told)
     if config["log"] is not None:
         keep(config["log"])
+    if config["verbose"]:
+        want_tracebacks()
     wanted = Display(**config["wanted"])
     _log.info("compiled, or loaded what was, in %.0f ms", compiled_ms)
     how = {name: config[name] for name in ("fits", "often")}
@@ -296,8 +297,7 @@ def main() -> int:
         channel.say(fault=str(error), code=error.exit_code)
         return error.exit_code
     except Exception as error:
-        if os.environ.get(TRACEBACK):
-            raise
+        print_traceback(error)
         what = f"{type(error).__name__}: {error}"
         channel.say(
             fault=f"a fault of vbraille's own, which its authors want to hear of: {what}", code=1

@@ -13,9 +13,9 @@ from urllib.parse import unquote
 import numpy as np
 
 from vbraille.errors import InputError
+from vbraille.feeling.commands import BOUND_FROM_TEXT
 from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import LoadedScene, check_fits, load_scene
-from vbraille.feeling.textcommands import BOUND
 from vbraille.render.scene.figures import FigureAt, page_with_figures
 from vbraille.translate.documents.epub import EpubBook
 from vbraille.wording import count, printable, spelled
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from vbraille.feeling.feeler import Feeler
     from vbraille.reading.cues import Cue
-    from vbraille.reading.opened import OpenDevice
+    from vbraille.reading.device import OpenDevice
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
     from vbraille.translate.source import Source
@@ -184,7 +184,7 @@ class BookFigures:
     def feel(self, address: str, say: Callable[[str], None], cue: Callable[[Cue], None]) -> Feeler:
         """Put a figure alone under the hand, in place of the text; see `FiguresLike`."""
         # As above.
-        from vbraille.feeling.composing import Composer
+        from vbraille.feeling.composing import compose
         from vbraille.feeling.feeler import Feeler
 
         device = self._device
@@ -193,18 +193,17 @@ class BookFigures:
             raise InputError(self._why[address])
         loaded = figure.loaded
         check_fits(loaded.scene, device.display)
-        composer = Composer(device.display, rate_hz=self._rate_hz)
-        program = composer.compose(loaded)
+        program = compose(loaded, device.display, rate_hz=self._rate_hz)
         if program.nbytes > self._room:
             raise InputError(f"{loaded.title} is too large; feel it by vbraille feel")
         feeler = Feeler(
             loaded,
             device.engine,
             where=lambda: device.pose,
-            composer=composer,
+            rate_hz=self._rate_hz,
             style=device.style,
             say=say,
-            bound=BOUND,
+            bound=BOUND_FROM_TEXT,
             room=self._room,
             cue=cue,
             steering=device.steering,

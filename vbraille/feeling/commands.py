@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from vbraille.reading.bindings import ANY, Bindings, Command, bind
+from vbraille.reading.bindings import ANY, Bindings, Command, Context, bind
 from vbraille.reading.commands import control
 from vbraille.reading.commands.table import TYPING, say_keys
-from vbraille.reading.context import Context
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -79,7 +79,7 @@ COMMANDS = (
     Command("CONTRAST_UP", ("c",), "more contrast", _turn(1)),
     Command("CONTRAST_DOWN", ("C",), "less contrast", _turn(-1)),
     Command("RELOAD", ("r",), "read the file of the picture again", _does("reload")),
-    Command("PAUSE", (" ",), "rest the array at once, or go on", _does("pause")),
+    Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
     Command("HELP", ("h", "f1"), "say the keys", say_keys),
     Command(
         "LEARN",
@@ -92,7 +92,7 @@ COMMANDS = (
         "QUIT",
         ("q",),
         "stop feeling",
-        _does("quit"),
+        control.stop,
         (Context.READING, Context.PLACING, Context.LEARNING),
     ),
     *TYPING,
@@ -100,8 +100,21 @@ COMMANDS = (
         "ZERO",
         (ANY,),
         "the carriage is at its corner or stop, when that is asked for",
-        _does("set_zero"),
+        control.set_zero,
         (Context.PLACING,),
     ),
 )
 BOUND = bind(COMMANDS, Bindings(buttons=BUTTONS))
+
+
+def back(feeler: Feeler) -> None:
+    """Go back to the text."""
+    feeler.quit()
+
+
+# In a text Escape leads back; the way to an element is then said until the finger is there.
+_OTHERS = tuple(
+    replace(command, keys=()) if command.name == "CANCEL" else command for command in COMMANDS
+)
+FROM_TEXT = (Command("BACK", ("G", "escape"), "back to the text", back), *_OTHERS)
+BOUND_FROM_TEXT = bind(FROM_TEXT, Bindings(buttons=BUTTONS))

@@ -18,7 +18,7 @@ from msgspec.structs import replace
 from vbraille.feeling.index import label_of
 from vbraille.render import kernels, work
 from vbraille.render.program import scratch_for
-from vbraille.render.scene.compiling import SceneCompiler
+from vbraille.render.scene.compiling import compile_scene
 from vbraille.scene.bounds import bounds
 
 if TYPE_CHECKING:
@@ -285,8 +285,7 @@ def costs_of_elements(
         How often each batch of frames is timed.
     """
     scene, known = loaded.scene, loaded.boxes()
-    compiler = SceneCompiler(display, rate_hz=rate_hz)
-    whole = compiler.compile(scene, loaded.assets)
+    whole = compile_scene(scene, display, loaded.assets, rate_hz=rate_hz)
     reach_mm = float(np.hypot(display.span_mm, display.depth_mm)) / 2
     batches = path.t_s.size // BATCH_FRAMES
     for number, element in enumerate(scene.elements[:_MOST_ELEMENTS]):
@@ -304,6 +303,7 @@ def costs_of_elements(
             yield ElementCost(name, 0.0, 0.0)
             continue
         others = scene.elements[:number] + scene.elements[number + 1 :]
-        without = compiler.compile(replace(scene, elements=others), loaded.assets)
+        less = replace(scene, elements=others)
+        without = compile_scene(less, display, loaded.assets, rate_hz=rate_hz)
         more_us = measure(whole, near, repeats).frame_us - measure(without, near, repeats).frame_us
         yield ElementCost(name, float(more_us.sum()) / batches, float(more_us.max()))

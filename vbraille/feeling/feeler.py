@@ -6,15 +6,13 @@ import math
 from typing import TYPE_CHECKING, Final
 
 from vbraille.errors import InputError
-from vbraille.feeling.composing import at_height
-from vbraille.feeling.guiding import Guide
+from vbraille.feeling.composing import at_height, compose
 from vbraille.feeling.index import SceneIndex
-from vbraille.feeling.loading import check_fits, load_scene, with_known
+from vbraille.feeling.loading import check_fits, load_scene
 from vbraille.feeling.opacities import Opacities
-from vbraille.reading.bindings import spoken
-from vbraille.reading.context import Context
+from vbraille.reading.activity import Activity, Prompt
+from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
-from vbraille.reading.prompt import Prompt
 from vbraille.simulation.steering import GlideTo
 from vbraille.wording import spelled
 
@@ -23,7 +21,6 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.engine.engine import Engine
-    from vbraille.feeling.composing import Composer
     from vbraille.feeling.index import NamedElement
     from vbraille.feeling.loading import LoadedScene
     from vbraille.pose import Pose
@@ -32,6 +29,53 @@ if TYPE_CHECKING:
     from vbraille.render.program import Program
     from vbraille.simulation.steering import Steering
 
+_EVERY_S: Final = 1.0
+_THERE_MM: Final = 3.0
+
+
+class Guide:
+    """Says the way to a place once a second, until the finger is there.
+
+    Parameters
+    ----------
+    name
+        What is there.
+    at_mm
+        The place.
+    down
+        Whether the hand can go up and down.
+
+    Attributes
+    ----------
+    there : bool
+        Whether the finger has come to the place.
+    """
+
+    def __init__(self, name: str, at_mm: tuple[float, float], *, down: bool = True) -> None:
+        self.there = False
+        self._name = name
+        self._at_mm = at_mm
+        self._down = down
+        self._said_s = -math.inf
+
+    def sentence(self, place: tuple[float, float], now_s: float) -> str:
+        """Words for the way from a place in mm; empty if nothing is to be said now."""
+        right_mm = self._at_mm[0] - place[0]
+        down_mm = self._at_mm[1] - place[1] if self._down else 0.0
+        if math.hypot(right_mm, down_mm) <= _THERE_MM:
+            self.there = True
+            return f"there: {self._name}"
+        if now_s - self._said_s < _EVERY_S:
+            return ""
+        self._said_s = now_s
+        ways = (_way(right_mm, "right", "left"), _way(down_mm, "down", "up"))
+        return f"way: {', '.join(way for way in ways if way)}"
+
+
+def _way(mm: float, forward: str, back: str) -> str:
+    return f"{abs(mm):.0f} mm {forward if mm > 0 else back}" if abs(mm) >= 1 else ""
+
+
 # Ours: as a hand that explores goes, and one that is led somewhere.
 KEYED_MM_S: Final = 60.0
 LED_MM_S: Final = 100.0
@@ -39,7 +83,7 @@ _CONTRAST_STEP: Final = 0.1
 _MOVED_MM: Final = 0.2  # a hand that moved less is asked about no more
 
 
-class Feeler:
+class Feeler(Activity):
     """Somebody who feels a scene on a device; `vbraille.feeling.commands` calls its methods.
 
     Parameters
@@ -50,8 +94,8 @@ class Feeler:
         Engine that drives the device, which is started.
     where
         Function that tells where the array is; None before that is known.
-    composer
-        What makes programs of scenes.
+    rate_hz
+        Frames a second.
     style
         How the braille of labels is shown.
     say
@@ -71,13 +115,13 @@ class Feeler:
 
     Attributes
     ----------
-    done : bool
-        Whether the feeler has enough.
     contrast : float
         Factor of all deflections, from 0 to 1.
     under : NamedElement or None
         Element that was under the finger when that was last looked for.
     """
+
+    does, doing = "feel", "feeling"
 
     def __init__(
         self,
@@ -85,7 +129,7 @@ class Feeler:
         engine: Engine,
         *,
         where: Callable[[], Pose | None],
-        composer: Composer,
+        rate_hz: float,
         style: BrailleStyle,
         say: Callable[[str], None],
         bound: Bound,
@@ -95,22 +139,16 @@ class Feeler:
         at_mm: float | None = None,
         entering: bool = False,
     ) -> None:
-        self.engine = engine
+        super().__init__(engine, say, bound, cue)
         self.loaded = loaded
-        self.bound: Bound | None = bound
-        self.cue = cue
-        self.context = Context.READING
-        self.prompt: Prompt | None = None
-        self.done = False
         self.contrast = 1.0
         self.entering = entering
         self.under: NamedElement | None = None
         self.shown = 0  # how many pictures were
-        self._say = say
         self._where = where
         self._style = style
         self._room = room
-        self._composer = composer
+        self._rate_hz = rate_hz
         self._steering = steering
         self._at_mm = loaded.scene.canvas.height_mm / 2 if at_mm is None else at_mm
         self._aim: tuple[float, float] | None = None  # where keys have sent the hand
@@ -129,28 +167,6 @@ class Feeler:
         """Place of the array's centre on the canvas, in mm; None before it is known."""
         pose = self._where()
         return None if pose is None else (pose.x_mm, pose.y_mm)
-
-    def say(self, sentence: str) -> None:
-        """Say a sentence."""
-        self._say(sentence)
-
-    def key(self, name: str, usual: str) -> str:
-        """Name of a key that calls a command, for a sentence."""
-        keys = () if self.bound is None else self.bound.keys_of(name)
-        return keys[0] if keys else spoken(usual)
-
-    def quit(self) -> None:
-        """Stop feeling."""
-        self.done = True
-
-    def pause(self) -> None:
-        """Rest the array at once, or go on."""
-        self.engine.paused = not self.engine.paused
-        self.say("paused" if self.engine.paused else "feeling")
-
-    def set_zero(self) -> None:
-        """Say that the carriage is where it has to be shown."""
-        self.engine.set_zero()
 
     def start(self, program: Program) -> None:
         """Put the scene under the hand, and say what it is."""
@@ -288,7 +304,6 @@ class Feeler:
         """Read the file again, and show what it holds now; what is wrong with it is said."""
         try:
             loaded = load_scene(self.loaded.opened.path, self._style)
-            loaded = with_known(loaded, self.loaded)
             check_fits(loaded.scene, self.display)
             program = self._compose(loaded)
             if program.nbytes > self._room:
@@ -321,7 +336,13 @@ class Feeler:
             self._steering.give(GlideTo(x_mm, y_mm, speed_mm_s))
 
     def _compose(self, loaded: LoadedScene) -> Program:
-        return self._composer.compose(loaded, contrast=self.contrast, own_y_mm=self._at_mm)
+        return compose(
+            loaded,
+            self.display,
+            rate_hz=self._rate_hz,
+            contrast=self.contrast,
+            own_y_mm=self._at_mm,
+        )
 
     def _show(self, program: Program) -> None:
         self._program = program

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.scene.bounds import Box
-    from vbraille.scene.labels import Label
-    from vbraille.scene.patterns import AnyPattern, Image
+    from vbraille.scene.patterns import AnyPattern, Image, Label
     from vbraille.scene.scene import Scene
 
 # Ours: an element is felt where it hides half of what it stands on, or does anything if it is the

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
-
-from msgspec.structs import replace as set_fields
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
 
 from vbraille.errors import InputError
 from vbraille.labelling import label_warnings, write_labels
@@ -13,8 +12,7 @@ from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.brailleplaces import box_of
 from vbraille.scene.bounds import Box
 from vbraille.scene.images import load_bitmaps
-from vbraille.scene.labels import Label
-from vbraille.scene.patterns import Image
+from vbraille.scene.patterns import Image, Label
 from vbraille.scene.reading import open_scene
 from vbraille.scene.walking import each
 
@@ -99,19 +97,6 @@ def load_scene(path: Path | str, style: BrailleStyle) -> LoadedScene:
     return LoadedScene(opened, Assets(bitmaps, written), notes)
 
 
-def with_known(loaded: LoadedScene, before: LoadedScene) -> LoadedScene:
-    """Make the same scene, whose elements are those of another one where they are equal.
-
-    What is the same object need not be compiled again; see `Composer`.
-    """
-    known = {element: element for element in before.scene.elements}
-    elements = tuple(known.get(element, element) for element in loaded.scene.elements)
-    opened = replace(loaded.opened, resolved=set_fields(loaded.scene, elements=elements))
-    bare = not (loaded.assets.bitmaps or loaded.assets.written)
-    same = bare and not (before.assets.bitmaps or before.assets.written)
-    return replace(loaded, opened=opened, assets=before.assets if same else loaded.assets)
-
-
 def check_fits(scene: Scene, display: Display) -> None:
     """Compare a scene's canvas with how far the carriage of a display goes.
 
@@ -132,3 +117,45 @@ def check_fits(scene: Scene, display: Display) -> None:
             f"carriage of {display.name} goes {workspace}; make the canvas smaller, or take "
             f"another device"
         )
+
+
+_Stamp = tuple[int, int, int]
+_QUIET_NS: Final = 10_000_000
+
+
+class FileWatch:
+    """Sees whether a file has changed, by one look at its directory entry each time.
+
+    A change is told once the file has been quiet for 10 ms, or is the same at two looks, and is
+    not empty, so that one which is just being written is read when it is whole.
+
+    Parameters
+    ----------
+    path
+        The file.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._known = self._stamp()
+        self._seen = self._known
+
+    def changed(self) -> bool:
+        """Tell whether the file is another than at the last change that was told."""
+        stamp = self._stamp()
+        same, self._seen = stamp == self._seen, stamp
+        if stamp is None or stamp == self._known:
+            return False
+        written_ns, size, _ = stamp
+        if size == 0 or not (same or time.time_ns() - written_ns > _QUIET_NS):
+            return False
+        self._known = stamp
+        return True
+
+    def _stamp(self) -> _Stamp | None:
+        """What tells one state of the file from another; None if there is no file."""
+        try:
+            found = self._path.stat()
+        except OSError:
+            return None
+        return found.st_mtime_ns, found.st_size, found.st_ino

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import base64
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any
 
-from vbraille.devices.base import Placing
-from vbraille.live.messages import SceneShown, ViewState
-from vbraille.live.states import array_shown
+from vbraille.live.messages import SceneShown
+from vbraille.reading.viewed import View
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -15,18 +14,13 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.feeling.feeler import Feeler
     from vbraille.feeling.loading import LoadedScene
-    from vbraille.reading.opened import OpenDevice
+    from vbraille.live.messages import PagePress, Turn
+    from vbraille.reading.device import OpenDevice
     from vbraille.reading.viewed import Said
 
-_PLACES: Final = {
-    Placing.DONE: "feeling",
-    Placing.MARK: "place: the carriage has to pass its mark",
-    Placing.STOP: "place: the carriage has to be shown its place",
-}
 
-
-class FeltView:
-    """A picture that is felt on a device, as the state of the live view.
+class FeltView(View):
+    """A picture that is felt on a device.
 
     Parameters
     ----------
@@ -34,15 +28,8 @@ class FeltView:
         Device that the picture is felt on.
     feeler
         Who feels it.
-    said
-        What was said.
-    facts
-        Name and value of whatever else is to be shown.
-
-    Attributes
-    ----------
-    standing : str
-        Sentence on why nothing is felt, such as that the program is stopped; empty if it is.
+    said, facts
+        As for a `View`.
     """
 
     def __init__(
@@ -52,50 +39,26 @@ class FeltView:
         said: Said,
         facts: Iterable[tuple[str, str]] = (),
     ) -> None:
-        self.standing = ""
-        self._device = device
+        super().__init__(device, feeler, said, facts)
         self._feeler = feeler
-        self._said = said
-        self._facts = list(facts)
-        self._number = 0
-        self._told: tuple[object, ...] = ()
         self._drawn: tuple[LoadedScene, SceneShown] | None = None
+
+    def obey(self, asked: PagePress | Turn) -> None:
+        """Pass over what a page asks for: it can be the hand, but nothing can be turned."""
 
     def see(self, events: Iterable[Event]) -> None:
         """Take note of events of the device, all of which are said."""
 
-    def changed(self) -> ViewState | None:
-        """State of the picture; None if it is what it was at the last call."""
-        device, feeler = self._device, self._feeler
-        now = (
-            *(id(feeler.loaded), feeler.under, feeler.done, device.paused, device.placing),
-            *(device.held, self._said.count, self.standing),
-        )
-        if now == self._told:
-            return None
-        self._told = now
-        self._number += 1
-        said = self._said.last
-        return ViewState(
-            number=self._number,
-            title=feeler.loaded.title,
-            array=array_shown(device.display),
-            place="" if feeler.under is None else f"here: {feeler.under.name}",
-            paused=device.paused,
-            simulated=device.pointer is not None,
-            held=device.held,
-            device=self.standing or ("feeling is over" if feeler.done else self._placed()),
-            said=said,
-            said_before=self._said.count - len(said),
-            facts=self._facts,
-            done=feeler.done,
-            scene=self._scene(feeler.loaded),
-        )
+    def _compared(self) -> tuple[object, ...]:
+        return self._feeler.loaded, self._feeler.under
 
-    def _placed(self) -> str:
-        if self._device.paused and self._device.placing is Placing.DONE:
-            return "paused"
-        return _PLACES[self._device.placing]
+    def _parts(self) -> dict[str, Any]:
+        under, loaded = self._feeler.under, self._feeler.loaded
+        return {
+            "title": loaded.title,
+            "place": "" if under is None else f"here: {under.name}",
+            "scene": self._scene(loaded),
+        }
 
     def _scene(self, loaded: LoadedScene) -> SceneShown:
         """Picture from above, which is drawn once."""

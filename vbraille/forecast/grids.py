@@ -184,7 +184,7 @@ def read_grid(text: str, where: str) -> GridFile:
     InputError
         If it cannot be used; one sentence says where, and why.
     """
-    return TomlFile(text, where).read(GridFile, spelled(SpellingKeys(), planned=False))
+    return TomlFile(text, where).read(GridFile, spelled(SpellingKeys()))
 
 
 def predict_point(task: GridTask) -> list[int]:

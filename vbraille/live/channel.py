@@ -11,6 +11,7 @@ from typing import Final
 
 import msgspec
 
+from vbraille.engine.shared import Extent
 from vbraille.live.messages import PagePress, Turn, ViewState
 
 # Room that is asked for on the line; the system gives less if its bounds are lower.
@@ -51,18 +52,9 @@ class Begin(msgspec.Struct, frozen=True):
 
 
 class Shares(msgspec.Struct, frozen=True, tag=True):
-    """The memory of a host that was started; its descriptor goes along.
+    """The memory of a host that was started; its descriptor goes along."""
 
-    Parameters
-    ----------
-    rows, columns, room, ticks
-        As in `vbraille.engine.shared.Extent`.
-    """
-
-    rows: int
-    columns: int
-    room: int
-    ticks: int
+    extent: Extent
 
 
 class Tells(msgspec.Struct, frozen=True, tag=True):

@@ -10,24 +10,14 @@ import os
 import socket
 import subprocess
 import sys
-from dataclasses import asdict
+from contextlib import suppress
 from typing import TYPE_CHECKING, Final, Self
 
 import msgspec
 
-from vbraille.devices.blame import TRACEBACK
-from vbraille.live.channel import (
-    Asks,
-    Begin,
-    Shares,
-    Tells,
-    encode,
-    from_server,
-    open_line,
-)
-from vbraille.live.desktop import has_desktop
+from vbraille.live.channel import Asks, Begin, Shares, Tells, encode, from_server, open_line
 from vbraille.live.messages import ViewState
-from vbraille.logs import kept
+from vbraille.logs import kept, tracebacks_wanted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -35,6 +25,15 @@ if TYPE_CHECKING:
     from vbraille.engine.shared import Extent
     from vbraille.live.messages import PagePress, Turn
     from vbraille.simulation.pointing import Pointer
+
+
+def has_desktop() -> bool:
+    """Whether somebody sits here who would see a browser that opens."""
+    desktop = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    with suppress(OSError, ValueError, AttributeError):  # there may be no standard input
+        return bool(desktop) and sys.stdin.isatty()
+    return False
+
 
 _END_S: Final = 2.0
 _HEARD_BYTES: Final = 1 << 16  # the server's messages are short
@@ -88,7 +87,7 @@ class Monitor:
         self._line, other = open_line()
         pointer = None if self._pointer is None else self._pointer.descriptor
         # What a browser writes is not for whoever reads.
-        writes = bool(os.environ.get(TRACEBACK)) or kept() == "-"
+        writes = tracebacks_wanted() or kept() == "-"
         begin = Begin(
             other.fileno(),
             host=self._host,
@@ -185,7 +184,7 @@ class Monitor:
         try:
             if self._unshared is not None:
                 descriptor, extent = self._unshared
-                message = encode(Shares(**asdict(extent)))
+                message = encode(Shares(extent))
                 socket.send_fds(self._line, [message], [descriptor], socket.MSG_NOSIGNAL)
                 self._forget_memory()
             if self._untold is not None:

@@ -1,8 +1,4 @@
-"""The server of the live view: the files of its page, and a WebSocket by which pages pull frames.
-
-What it shows comes from a `LiveSource`, and `Talk` is the talk with one page. Here stands who is
-let in, and how many. `docs/live-view.md` has the rules and limits.
-"""
+"""The server of the live view: the files of its page, and what its pages ask."""
 
 from __future__ import annotations
 
@@ -13,6 +9,7 @@ import logging
 import socket
 from concurrent.futures import ThreadPoolExecutor
 from http import HTTPStatus
+from importlib.resources import files
 from typing import TYPE_CHECKING, Final
 
 from websockets.asyncio.server import Server as Serving
@@ -24,15 +21,61 @@ from websockets.http11 import Response
 from vbraille.errors import InputError
 from vbraille.live.admission import LOOPBACK, Admission, owner_of
 from vbraille.live.messages import MOST_BYTES
-from vbraille.live.pagefiles import HEADERS, page_files
 from vbraille.live.talking import MOST_QUEUED, Held, Talk
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from importlib.resources.abc import Traversable
     from types import TracebackType
     from typing import Self
 
     from vbraille.live.sources import LiveSource
+
+_TYPES: Final = {
+    ".html": "text/html; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".svg": "image/svg+xml",
+    ".png": "image/png",
+    ".json": "application/json",
+}
+HEADERS: Final = (
+    ("Cache-Control", "no-store"),
+    ("X-Content-Type-Options", "nosniff"),
+    ("Referrer-Policy", "no-referrer"),
+    ("Cross-Origin-Resource-Policy", "same-origin"),
+    ("Cross-Origin-Opener-Policy", "same-origin"),
+    (
+        "Content-Security-Policy",
+        "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
+        "img-src 'self' blob: data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    ),
+)
+
+
+def page_files() -> dict[str, tuple[str, bytes]]:
+    """Read the files of the page.
+
+    Returns
+    -------
+    dict[str, tuple[str, bytes]]
+        Content type and bytes of each, by its path; ``/`` is the page itself.
+    """
+    folder = files("vbraille.live") / "page"
+    found = dict(_walk(folder, "/")) if folder.is_dir() else {}
+    if "/index.html" in found:
+        found["/"] = found["/index.html"]
+    return found
+
+
+def _walk(folder: Traversable, path: str) -> Iterator[tuple[str, tuple[str, bytes]]]:
+    for entry in folder.iterdir():
+        if entry.is_dir():
+            yield from _walk(entry, f"{path}{entry.name}/")
+        elif kind := _TYPES.get(entry.name[entry.name.rfind(".") :]):
+            yield path + entry.name, (kind, entry.read_bytes())
+
 
 SOCKET_PATH: Final = "/live"
 # Pages at a time; more are told so.

@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING, Final
 import msgspec
 import uvloop
 
-from vbraille.engine.shared import Extent
 from vbraille.errors import InputError, VbrailleError
 from vbraille.live.channel import (
     MOST_MESSAGE_BYTES,
@@ -116,8 +115,7 @@ def _take(said: bytes, descriptors: list[int], source: Watching) -> None:
         source.show(message.state)
     elif descriptors:
         try:
-            extent = Extent(**msgspec.structs.asdict(message))
-            source.watch(TickViews(descriptors[0], extent))
+            source.watch(TickViews(descriptors[0], message.extent))
         except (OSError, ValueError) as error:
             _log.warning("the host's memory cannot be watched: %s", error)
 

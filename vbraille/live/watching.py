@@ -8,7 +8,7 @@ that happens here can reach the loop.
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final
 
 import msgspec
 
@@ -23,22 +23,11 @@ if TYPE_CHECKING:
     from vbraille.live.messages import Map, Next, PlayedEvent
     from vbraille.live.sources import Steering
     from vbraille.live.ticks import TickViews
+    from vbraille.simulation.pointing import Pointer
 
 # A picture that is just being posted is looked at again; in between the poster needs some µs.
 _TAKES: Final = 20
 _TAKE_S: Final = 0.005
-
-
-class HandHolder(Protocol):
-    """What holds a simulated hand; `vbraille.simulation.pointing.Pointer` is one."""
-
-    def hold(self, at: BeAt) -> None:
-        """Hold the hand at a pose."""
-        ...
-
-    def let_go(self) -> None:
-        """Let the hand go."""
-        ...
 
 
 class Watching:
@@ -71,7 +60,7 @@ class Watching:
     def __init__(
         self,
         forward: Callable[[PagePress | Turn], None],
-        hand: HandHolder | None = None,
+        hand: Pointer | None = None,
         *,
         blind: bool = False,
     ) -> None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from vbraille.pictures.table import FigureTable
+    from vbraille.pictures.series import FigureTable
 
 __all__ = ["draw", "save"]
 

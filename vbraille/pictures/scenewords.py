@@ -5,11 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.pictures.words import plain
-from vbraille.scene.dots import Dots, ImageDots
-from vbraille.scene.labels import Label
 from vbraille.scene.measures import travel_deg
-from vbraille.scene.patterns import Circle, Group, Image, PathShape, Polygon, Tile, Use
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Group,
+    Image,
+    ImageDots,
+    Label,
+    PathShape,
+    Polygon,
+    StraightLine,
+    Tile,
+    Use,
+)
 from vbraille.scene.strokes import Vibration
 from vbraille.scene.textures import (
     AxialGrating,

@@ -6,29 +6,287 @@ columns of actuators count from 0, from the far left.
 
 from __future__ import annotations
 
+import csv
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.braille.dots import PLACES, mask_of
 from vbraille.braille.spelling import to_braille
-from vbraille.pictures.table import FigureTable, contrast_words, tuning_words
-from vbraille.render.braille.mappings import MAPPINGS
+from vbraille.carriers import design, tactograph
+from vbraille.render.braille.mappings import MAPPINGS, NONE
 from vbraille.render.braille.models import STRESS2, VBD
 from vbraille.render.braille.profiles import Profile
 from vbraille.render.braille.reference import SWINGS, deflections
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
+    from typing import TextIO
 
     from numpy.typing import ArrayLike, NDArray
 
     from vbraille.braille.geometry import Geometry
+    from vbraille.layout.pages import Line
     from vbraille.render.braille.mappings import Mapping
     from vbraille.render.braille.models import Model
+    from vbraille.render.braille.profiles import Tuning
     from vbraille.render.braille.style import BrailleStyle
-    from vbraille.render.braille.tuning import Tuning
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FigureTable:
+    """All that one picture draws.
+
+    Parameters
+    ----------
+    kind
+        Which picture it is: profile, mapping, wave, strain, page or resolution.
+    title
+        What the picture shows, in a line.
+    columns
+        Values by name, all of one length; the names tell the units. NaN stands
+        where a row has no such value.
+
+    Raises
+    ------
+    ValueError
+        If the columns differ in length.
+    """
+
+    kind: str
+    title: str
+    columns: dict[str, NDArray]
+
+    def __post_init__(self) -> None:
+        lengths = {name: len(values) for name, values in self.columns.items()}
+        if len(set(lengths.values())) > 1:
+            raise ValueError(f"the columns of a table differ in length: {lengths}")
+
+    def __getitem__(self, name: str) -> NDArray:
+        return self.columns[name]
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values()), ()))
+
+    def where(self, name: str, value: object) -> FigureTable:
+        """Return the rows in which a column has a value."""
+        chosen = self.columns[name] == value
+        return replace(self, columns={n: v[chosen] for n, v in self.columns.items()})
+
+    def rows(self) -> Iterator[tuple]:
+        """Tell the values row by row, as plain Python values."""
+        return zip(*(values.tolist() for values in self.columns.values()), strict=True)
+
+
+def write_csv(table: FigureTable, stream: TextIO) -> None:
+    """Write a table, its column names first, and its numbers to the sixth decimal."""
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(table.columns)
+    writer.writerows(map(_spell, row) for row in table.rows())
+
+
+def tuning_words(tuning: Tuning) -> str:
+    """Name the texture, and the contrast if it is turned down, for the end of a title."""
+    return f", T = {100 * tuning.texture:g} %{contrast_words(tuning)}"
+
+
+def contrast_words(tuning: Tuning) -> str:
+    """Name the contrast for the end of a title; nothing if it is full."""
+    return "" if tuning.contrast == 1 else f", contrast {100 * tuning.contrast:g} %"
+
+
+def _spell(value: str | float) -> str:
+    if isinstance(value, str):
+        return value
+    if math.isnan(value):
+        return ""
+    return f"{round(value, 6) + 0.0:.12g}"  # + 0.0, so that no "-0" is written
+
+
+def page(
+    lines: Sequence[Line],
+    model: Model,
+    *,
+    x_mm: float,
+    line_index: int = 0,
+) -> FigureTable:
+    """Dots of some lines where they stand on the surface, and the array upon one of them.
+
+    Parameters
+    ----------
+    lines
+        The lines from the top; the first dot row of the first line is at y = 0.
+    model
+        The display that shows them, and the style.
+    x_mm
+        Place of the array's centre.
+    line_index
+        The line that the array is on, from 0.
+
+    Returns
+    -------
+    Table
+        A row for each dot, then a row for each actuator; ``what`` tells which. Both have
+        ``line`` (its number), ``x_mm`` and ``y_mm`` (of the centre; y grows to the reader) and
+        ``width_mm`` (of the dot, or the column pitch). Dots have ``cell`` (from 0), ``dot``
+        (1 … 8) and ``raised`` (0 or 1); actuators have ``row``, ``column`` and ``deflection``.
+
+    Raises
+    ------
+    ValueError
+        If there is no line of that index.
+    """
+    if not 0 <= line_index < len(lines):
+        raise ValueError(f"line index is {line_index}; there are {len(lines)} lines, from 0")
+    style, geometry = model.style, model.style.geometry
+    six = not any((line.masks > 0x3F).any() for line in lines)
+    parts = [_dots(line, n * geometry.line_pitch_mm, geometry, six) for n, line in enumerate(lines)]
+    line, array = lines[line_index], model.display
+    row, column = (grid.ravel() for grid in np.indices(array.shape))
+    frame = deflections(x_mm, line.masks, style, array)
+    top = line_index * geometry.line_pitch_mm + _first_row_mm(model)
+    parts.append(
+        {
+            "what": np.full(row.size, "actuator"),
+            "line": np.full(row.size, line.number),
+            "x_mm": x_mm - array.span_mm / 2 + array.column_offsets_mm()[column],
+            "y_mm": top + array.row_offsets_mm()[row],
+            "width_mm": np.full(row.size, array.column_pitch_mm),
+            "row": row,
+            "column": column,
+            "deflection": frame.ravel(),
+        }
+    )
+    names = dict.fromkeys(name for part in (parts[0], parts[-1]) for name in part)
+    columns = {
+        name: np.concatenate([p.get(name, np.full(len(p["what"]), np.nan)) for p in parts])
+        for name in names
+    }
+    title = (
+        f"{model.title}: line {line.number}, left column at {x_mm - array.span_mm / 2:g} mm, "
+        f"{style.mapping.name}{tuning_words(style.tuning)}"
+    )
+    return FigureTable("page", title, columns)
+
+
+def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str, NDArray]:
+    """Tell the places of the dots of a line whose first dot row is at `top_mm`."""
+    dots = list(PLACES)[: 6 if six else 8]
+    bits = [mask_of([dot]) for dot in dots]
+    right, dot_row = np.array([PLACES[dot] for dot in dots]).T
+    cell = np.repeat(np.arange(len(line)), len(dots))
+    centre = right * geometry.dot_spacing_mm + geometry.dot_width_mm / 2
+    return {
+        "what": np.full(cell.size, "dot"),
+        "line": np.full(cell.size, line.number),
+        "x_mm": cell * geometry.cell_pitch_mm + np.tile(centre, len(line)),
+        "y_mm": top_mm + np.tile(dot_row * geometry.row_spacing_mm, len(line)),
+        "width_mm": np.full(cell.size, geometry.dot_width_mm),
+        "cell": cell,
+        "dot": np.tile(dots, len(line)),
+        "raised": (line.masks[:, None] & bits != 0).astype(np.uint8).ravel(),
+    }
+
+
+def _first_row_mm(model: Model) -> float:
+    """Tell where actuator row 0 is when the first row that shows dots is upon these dots."""
+    style = model.style
+    first = style.rows_on(model.display).start
+    pairs = zip(style.mapping.left, style.mapping.right, strict=True)
+    shown = ((row, dot_row) for row, pair in enumerate(pairs, first) for dot_row in pair)
+    row, dot_row = next((place for place in shown if place[1] != NONE), (0, 0))
+    return dot_row * style.geometry.row_spacing_mm - row * model.display.row_pitch_mm
+
+
+# Grid of the map, whose steps are some 5 mm, and ratios b / a for which arms are made.
+_ACROSS, _DOWN = 57, 44
+_RATIOS = np.arange(30, 121) / 100
+_UM_PER_MM = 1000.0
+
+
+def resolution() -> FigureTable:
+    """Compute how finely the Tactograph measures over its page, and how other arms would.
+
+    Lévesque 2009, figs. 7.10 and 7.11 with eqs. 7.4 and A.65-A.74, for counts of 19.8″, as the
+    source rounds them: an error of one count in one or both joints moves the array by so much at
+    most.
+
+    Returns
+    -------
+    Table
+        ``what`` is place or ratio. A place has ``x_mm`` and ``y_mm`` from the first joint (x to the
+        right, y over the tray), ``resolution_um``, and ``on_canvas``, 1 where the array can go
+        with its larger disc. A ratio has ``ratio`` b / a, ``first_arm_mm``, the shortest first
+        arm that reaches the page, and ``best_um`` and ``worst_um``, the resolution at the nearest
+        and the farthest place of the page. What a row does not have is NaN.
+    """
+    width_mm, height_mm = tactograph.PAGE_MM
+    x_mm, y_mm = (
+        places.ravel()
+        for places in np.meshgrid(
+            np.linspace(-width_mm / 2, width_mm / 2, _ACROSS),
+            tactograph.NEAR_MM + np.linspace(0, height_mm, _DOWN),
+        )
+    )
+    error_mm = design.error_mm(tactograph.ARMS, np.hypot(x_mm, y_mm), design.PRINTED_COUNT_RAD)
+    left_mm, far_mm = tactograph.arms_at(0.0, 0.0)
+    right_mm, near_mm = tactograph.arms_at(tactograph.WIDTH_MM, tactograph.HEIGHT_MM)
+    on_canvas = (x_mm >= left_mm) & (x_mm <= right_mm) & (y_mm >= far_mm) & (y_mm <= near_mm)
+    made = [
+        design.span(design.shortest(float(ratio)), count_rad=design.PRINTED_COUNT_RAD)
+        for ratio in _RATIOS
+    ]
+    of_places = {
+        "x_mm": x_mm,
+        "y_mm": y_mm,
+        "resolution_um": error_mm * _UM_PER_MM,
+        "on_canvas": on_canvas.astype(np.float64),
+    }
+    of_ratios = {
+        "ratio": _RATIOS,
+        "first_arm_mm": np.array([span.arms.first_mm for span in made]),
+        "best_um": np.array([span.best_mm for span in made]) * _UM_PER_MM,
+        "worst_um": np.array([span.worst_mm for span in made]) * _UM_PER_MM,
+    }
+    columns: dict[str, NDArray] = {"what": np.repeat(["place", "ratio"], [x_mm.size, len(made)])}
+    for name, values in of_places.items():
+        columns[name] = np.concatenate((values, np.full(len(made), np.nan)))
+    for name, values in of_ratios.items():
+        columns[name] = np.concatenate((np.full(x_mm.size, np.nan), values))
+    arms = tactograph.ARMS
+    title = f"Tactograph: arms of {arms.first_mm:g} and {arms.second_mm:g} mm, counts of 19.8″"
+    return FigureTable("resolution", title, columns)
+
+
+def resolution_words() -> list[str]:
+    """What the map shows, in lines for who does not see it."""
+    arms, count_rad = tactograph.ARMS, design.PRINTED_COUNT_RAD
+    width_mm, height_mm = tactograph.PAGE_MM
+    whole = design.span(arms, count_rad=count_rad)
+    half_mm = tactograph.WIDTH_MM / 2
+    _, near_mm = tactograph.arms_at(0.0, 0.0)
+    far_mm = float(np.hypot(half_mm, near_mm + tactograph.HEIGHT_MM))
+    best_mm, worst_mm = design.error_mm(arms, np.array([near_mm, far_mm]), count_rad)
+    near = design.best_ratio(lambda span: span.best_mm, count_rad=count_rad)
+    far = design.best_ratio(lambda span: span.worst_mm, count_rad=count_rad)
+    return [
+        f"over a page of {width_mm:g} × {height_mm:g} mm: {_um(whole.best_mm)} µm at the middle of "
+        f"its far side, next to the first joint, to {_um(whole.worst_mm)} µm at its near corners",
+        f"over the canvas of {tactograph.WIDTH_MM:g} × {tactograph.HEIGHT_MM:g} mm: "
+        f"{_um(float(best_mm))} to {_um(float(worst_mm))} µm",
+        "where it is alike: on arcs round the first joint, worse with the distance",
+        f"finest at the nearest place: {_um(near.best_mm)} µm, with a second arm "
+        f"{near.arms.ratio:.2f} times as long as a first arm of {near.arms.first_mm:.2f} mm",
+        f"finest at the farthest place: {_um(far.worst_mm)} µm, with a second arm "
+        f"{far.arms.ratio:.2f} times as long as a first arm of {far.arms.first_mm:.2f} mm",
+    ]
+
+
+def _um(error_mm: float) -> str:
+    return f"{error_mm * _UM_PER_MM:.1f}"
+
 
 # Lévesque 2009, fig. 4.3, and the VBD's nominal and textured dots of 3.2.
 LEVELS = {Profile.RAISED_COSINE: (0.0, 0.25, 1.0), Profile.HALF_SINE: (0.0, 1.0)}

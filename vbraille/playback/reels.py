@@ -7,7 +7,11 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from vbraille.live.messages import LineShown
+
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from vbraille.live.messages import PlayedEvent, ViewState
@@ -88,3 +92,11 @@ class Reel(Protocol):
     def program(self, scene: int) -> tuple[Program, str] | None:
         """Compile what is under the hand in a scene, and its title; None if that is not known."""
         ...
+
+
+def line_shown(
+    number: int, masks: Iterable[int], top_mm: float = 0.0, *, under: bool = False
+) -> LineShown:
+    """Describe a recorded line of cells, whose text is not recorded."""
+    cells = [int(mask) for mask in masks]
+    return LineShown(number, "", 0.0, top_mm, cells, [(0, 0)] * len(cells), under)

@@ -16,10 +16,8 @@ from vbraille.display import Display
 from vbraille.errors import InputError
 from vbraille.live.messages import PlayedEvent, SceneShown, ViewState
 from vbraille.live.states import array_shown, geometry_shown, rows_shown
-from vbraille.playback.changes import changes
-from vbraille.playback.reels import PLAYED, Piece
-from vbraille.playback.shown import line_shown
-from vbraille.recording import anchor_mm, scene_of
+from vbraille.playback.reels import PLAYED, Piece, line_shown
+from vbraille.recording import check_format, scene_of
 from vbraille.render import MAPPINGS, MODELS, STRESS2, Tuning, single_row
 
 if TYPE_CHECKING:
@@ -35,9 +33,10 @@ _PIECE_FRAMES: Final = 1024
 # Lines above and below the one under the hand that are told to a page.
 _AROUND: Final = 3
 _MOST_MOMENTS: Final = 4000
+# Numbers that are unpacked at once to find where they change.
+_BLOCK: Final = 1 << 18
 _MAPPINGS: Final = MAPPINGS | {m.name: m for m in map(single_row, (1, 2, 3))}
-_NUMBERS: Final = ("t_s", "x_mm", "line")
-_LATER: Final = ("y_mm", "theta_rad", "part")  # from format 2 on
+_NUMBERS: Final = ("t_s", "x_mm", "y_mm", "theta_rad", "line", "part")
 # What reading a file raises that is HDF5, but not as `vbraille render` writes it.
 _UNLIKE: Final = (
     OSError, KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError,
@@ -46,7 +45,7 @@ _UNLIKE: Final = (
 
 
 class Rendered:
-    """Frames of a file that `vbraille render` wrote, of any format.
+    """Frames of a file that `vbraille render` wrote.
 
     Parameters
     ----------
@@ -56,7 +55,7 @@ class Rendered:
     Raises
     ------
     InputError
-        If it is no such file, has no frames, or is of a newer format.
+        If it is no such file, has no frames, or is of another format.
     """
 
     def __init__(self, path: Path) -> None:
@@ -90,24 +89,19 @@ class Rendered:
             frames = self._numbers["frames"][span].astype(np.float32, copy=False)
             ticks = np.zeros(frames.shape[0], PLAYED)
             times_s = np.nan_to_num(self._numbers["t_s"][span], posinf=0.0)
-            x_mm = self._numbers["x_mm"][span].astype(np.float64) + self._right_mm
             lines = self._numbers["line"][span].astype(np.int64)
-            for name in _LATER:
-                if name in self._numbers:
-                    ticks[name] = self._numbers[name][span]
+            for name in ("x_mm", "y_mm", "theta_rad", "part"):
+                ticks[name] = self._numbers[name][span]
         except OSError:
             return Piece(np.zeros(0, PLAYED), np.zeros((0, *self._display.shape), np.float32))
-        if "y_mm" not in self._numbers and self._style is not None:
-            ticks["y_mm"] = self._style.geometry.line_pitch_mm / 2
         rows = np.where((lines >= 0) & (lines < self._lengths.size), lines, -1)
         ticks["scene"] = rows + 1
         ticks["line"] = np.where(rows >= 0, rows + self._first_line, 0)
         ticks["tick"] = np.arange(span.start, span.start + frames.shape[0])
         ticks["time_s"] = np.maximum.accumulate(times_s)
-        ticks["x_mm"] = x_mm
         steps_s = np.diff(ticks["time_s"], prepend=ticks["time_s"][:1])
         with np.errstate(divide="ignore", invalid="ignore"):
-            ticks["vx_mm_s"] = np.diff(x_mm, prepend=x_mm[:1]) / steps_s
+            ticks["vx_mm_s"] = np.diff(ticks["x_mm"], prepend=ticks["x_mm"][:1]) / steps_s
         ticks["share"] = 1.0
         return Piece(ticks, frames)
 
@@ -133,7 +127,9 @@ class Rendered:
         if self._style is None or not scene:
             return None
         first, stop = self._page(scene - 1)
-        masks = [self._masks(row) for row in range(first, stop)]
+        masks = [found for row in range(first, stop) if (found := self._masks(row)) is not None]
+        if len(masks) < stop - first:
+            return None
         if self._paged:
             title = f"{self._title}, {self._name(first)} to {self._name(stop - 1)}"
             return self._style.render_page(masks, self._display), title
@@ -141,12 +137,11 @@ class Rendered:
 
     def _open(self) -> None:
         file = self._file
-        anchor_mm(file)  # refuses newer formats
+        check_format(file)
         needed = (*_NUMBERS, "frames", "page/cells", "page/length")
-        more = [name for name in _LATER if name in file]
-        self._numbers = found = {name: _dataset(file, name) for name in (*needed, *more)}
+        self._numbers = found = {name: _dataset(file, name) for name in needed}
         count, rows, columns = found["frames"].shape
-        if any(found[name].shape != (count,) for name in (*_NUMBERS, *more)):
+        if any(found[name].shape != (count,) for name in _NUMBERS):
             raise ValueError
         if not count:
             raise InputError(f"{self._path} has no frame; there is nothing to play")
@@ -157,7 +152,6 @@ class Rendered:
         self._rate_hz = float(self._told("rate_hz", "nan"))
         self._style, self._display = self._describe(*offsets_mm)
         self._picture = self._find_picture()
-        self._right_mm = 0.0 if "y_mm" in found else self._display.span_mm / 2
         self._first_line = max(int(self._told("first_line", "1")), 0)
         self._lengths = found["page/length"][:].astype(np.int64)
         self._title = self._told("source", self._path.name)
@@ -170,12 +164,12 @@ class Rendered:
         ]
         self._firsts_s: dict[int, float] = {}
         self.length_s = float(self._time_s(count - 1))
-        starts, lines = changes(found["line"])
-        part_starts, parts = changes(found["part"]) if "part" in found else (starts[:1], [0])
+        starts, lines = _changes(found["line"])
+        part_starts, parts = _changes(found["part"])
         self._paged = bool(np.any(parts))
         self._pages = np.arange(self._lengths.size)
         if self._paged:
-            self._pages = self._find_pages(starts, lines, part_starts, np.asarray(parts))
+            self._pages = self._find_pages(starts, lines, part_starts, parts)
         if self._paged and self._style is not None:
             height_mm = self._style.geometry.line_pitch_mm * np.diff(self._page(0)).item()
             self._display = replace(self._display, height_mm=height_mm)
@@ -254,8 +248,12 @@ class Rendered:
         stop = self._pages[page + 1] if page + 1 < len(self._pages) else self._lengths.size
         return int(self._pages[page]), int(stop)
 
-    def _masks(self, row: int) -> NDArray[np.uint8]:
-        cells = self._numbers["page/cells"][row].astype(np.uint8)
+    def _masks(self, row: int) -> NDArray[np.uint8] | None:
+        """Read the cells of a line; None where the file is damaged."""
+        try:
+            cells = self._numbers["page/cells"][row].astype(np.uint8)
+        except OSError:
+            return None
         return cells[: max(int(self._lengths[row]), 0)]
 
     def _lines(self, row: int) -> list[LineShown]:
@@ -266,7 +264,7 @@ class Rendered:
         return [
             line_shown(
                 at + self._first_line,
-                self._masks(at),
+                () if (masks := self._masks(at)) is None else masks,
                 (at - top) * geometry.line_pitch_mm,
                 under=at == row,
             )
@@ -289,6 +287,28 @@ class Rendered:
             )
             for start, row in zip(starts[::every].tolist(), lines[::every].tolist(), strict=True)
         ]
+
+
+def _changes(dataset: h5py.Dataset) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Find where the numbers of a dataset change, without all of them in memory at once.
+
+    Parameters
+    ----------
+    dataset : int64[n]
+        Numbers that seldom change; at least one.
+
+    Returns
+    -------
+    int64[m], int64[m]
+        Indices at which a stretch of equal numbers begins, and the numbers.
+    """
+    starts, values = [0], [int(dataset[0])]
+    for first in range(0, dataset.shape[0], _BLOCK):
+        numbers = dataset[first : first + _BLOCK].astype(np.int64)
+        at = np.flatnonzero(np.diff(numbers, prepend=values[-1]))
+        starts += (at + first).tolist()
+        values += numbers[at].tolist()
+    return np.array(starts), np.array(values)
 
 
 def _dataset(file: h5py.File, name: str) -> h5py.Dataset:

@@ -17,17 +17,15 @@ from vbraille.errors import InputError, VbrailleError
 from vbraille.live.messages import PlayedEvent, ViewState
 from vbraille.live.states import array_shown, geometry_shown, rows_shown
 from vbraille.playback.happened import moments_of
-from vbraille.playback.reels import PLAYED, Piece
-from vbraille.playback.shown import line_shown
+from vbraille.playback.reels import PLAYED, Piece, line_shown
 from vbraille.render import work
 from vbraille.render.program import Program, nothing
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.bidsevents import runs_of
-from vbraille.sessions.record.chunks import ChunkedTrace
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.replay import Pictures, Replay
-from vbraille.sessions.record.traces import posed
+from vbraille.sessions.record.traces import ChunkedTrace
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -86,7 +84,7 @@ class Traced:
     Raises
     ------
     InputError
-        If it is no session, it runs, it is of a newer format, or has no frame.
+        If it is no session, it runs, it is of another format, or has no frame.
     VbrailleError
         If it cannot be read, or is damaged beyond use.
     """
@@ -97,7 +95,6 @@ class Traced:
         self._record = record
         self._progress = Progress(record.plan, record.told.events, record.procedure)
         self._display = record.protocol.model.display
-        self._left_mm = self._display.span_mm / 2
         self._pictures = Pictures(record, self._progress)
         self._firsts_ns: dict[int, int | None] = {}
         self._picture = lru_cache(64)(self._make_picture)
@@ -264,16 +261,12 @@ class Traced:
 
     def _played(self, run: _PlayedRun, ticks: NDArray[np.void]) -> NDArray[np.void]:
         """What is known of ticks beside their deflections."""
-        centred = posed(ticks, self._left_mm)
         made = np.zeros(ticks.size, PLAYED)
         for name in ("flags", "line", "part", "late", "tick", "x_mm", "y_mm", "theta_rad",
                      "vx_mm_s", "share"):  # fmt: skip
-            made[name] = centred[name]
-        if not self._record.centred:  # then y was not kept
-            known = ~np.isnan(made["x_mm"])
-            made["y_mm"][known] = self._record.protocol.geometry.line_pitch_mm / 2
+            made[name] = ticks[name]
         made["time_s"] = np.maximum.accumulate(run.seconds(ticks["time_ns"]))
-        made["scene"] = centred["line"]
+        made["scene"] = ticks["line"]
         return made
 
     def _make_picture(self, line: int) -> Program:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field, replace
+from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
-from vbraille.reading.context import Context
 from vbraille.reading.keys import HELD, NAMED
 from vbraille.wording import nearest
 
@@ -75,6 +75,19 @@ NEARLY = {
     "FWINRTSKIP": "FWINRT",
 }
 _DEVICE_KEY = re.compile(r"(?:(button|knob) )?([1-9][0-9]{0,2})")
+
+
+class Context(Enum):
+    """What a reader is doing, which decides what each key stands for."""
+
+    READING = "reading"
+    """A line is under the hand."""
+    PLACING = "placing"
+    """The device waits to be told that its carriage is at the left stop."""
+    PROMPT = "typing"
+    """A text is being typed, such as what to look for."""
+    LEARNING = "learning"
+    """A key says what it does, and does nothing."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""The process that gives cues: the names of cues on standard input, sounds or bells out of it.
+"""The process that gives cues: cues come, and sounds or bells go out.
 
 It is told whether by "sound" or by "bell". Where there is no audio output, or none any more, it
 rings the bell.
@@ -6,8 +6,6 @@ rings the bell.
 
 from __future__ import annotations
 
-import os
-import select
 import sys
 from contextlib import suppress
 from dataclasses import dataclass
@@ -15,12 +13,14 @@ from typing import TYPE_CHECKING, Final
 
 from vbraille.reading.cues import Cue, CueKind
 from vbraille.sounds import Bell, Tones
+from vbraille.workers import begin
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from vbraille.workers import Incoming
+
 _BELL_S: Final = 0.2  # from one bell to the next, so that two are heard as two
-_PIPE_BYTES: Final = 1 << 16  # all that a pipe holds
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,13 +40,13 @@ MELODIES: Final = {
 }
 
 
-def give(orders: int, kind: CueKind, open_tones: Callable[[], Tones] = Tones) -> None:
+def give(orders: Incoming[Cue], kind: CueKind, open_tones: Callable[[], Tones] = Tones) -> None:
     """Give cues until the orders end.
 
     Parameters
     ----------
     orders
-        Descriptor from which names of cues come, a line each.
+        Cues that come.
     kind
         What cues are given by.
     open_tones
@@ -57,16 +57,16 @@ def give(orders: int, kind: CueKind, open_tones: Callable[[], Tones] = Tones) ->
         with suppress(OSError):
             tones = open_tones()
     bell, rings = Bell(), 0
-    while True:
+    while not orders.ended:
         if rings:
             bell.ring()
             rings -= 1
-            if not select.select([orders], [], [], _BELL_S)[0]:
-                continue
-        names = os.read(orders, _PIPE_BYTES).decode().split()
-        if not names:
-            return
-        cue = Cue[names[-1]]  # of several the newest is what is true
+        if not orders.wait(_BELL_S if rings else None):
+            continue
+        cues = orders.take()
+        if not cues:
+            continue
+        cue = cues[-1]  # of several the newest is what is true
         rings = len(MELODIES[cue])
         if tones is not None:
             try:
@@ -77,4 +77,4 @@ def give(orders: int, kind: CueKind, open_tones: Callable[[], Tones] = Tones) ->
 
 
 if __name__ == "__main__":
-    give(sys.stdin.fileno(), CueKind(sys.argv[1]))
+    give(begin(Cue)[0], CueKind(sys.argv[2]))

@@ -7,7 +7,7 @@ import time
 from enum import Enum
 from typing import TYPE_CHECKING, Final, Self
 
-from vbraille.reading.attendant import Attendant
+from vbraille.workers import Worker
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -69,7 +69,7 @@ class Cues:
         self._now_s = now_s
         self._given_s = float("-inf")
         self._kind = kind
-        self._attendant: Attendant | None = None  # started with the first cue
+        self._worker: Worker | None = None  # started with the first cue
 
     def give(self, cue: Cue) -> None:
         """Give a cue, in place of one that is still heard; one that comes too soon is left out."""
@@ -77,17 +77,17 @@ class Cues:
         if self._kind is CueKind.NONE or now_s - self._given_s < _APART_S:
             return
         self._given_s = now_s
-        if self._attendant is None:
-            self._attendant = Attendant(_MODULE, self._kind.value)
-        if not self._attendant.tell(cue.name.encode(), alone=True):
+        if self._worker is None:
+            self._worker = Worker(_MODULE, self._kind.value)
+        if not self._worker.send(cue, alone=True):
             self.close()  # whatever ended it, the sentences beside the cues are still said
 
     def close(self) -> None:
         """Give no more cues; further calls do nothing."""
         self._kind = CueKind.NONE
-        attendant, self._attendant = self._attendant, None
-        if attendant is not None:
-            attendant.close()
+        worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.close()
 
     def __enter__(self) -> Self:
         return self

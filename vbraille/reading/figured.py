@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from vbraille.translate.source import MarkKind
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
     from vbraille.display import Display
     from vbraille.layout.pages import Line
-    from vbraille.reading.beside import FigureLike, FiguresLike
+    from vbraille.reading.activity import Activity
+    from vbraille.reading.cues import Cue
     from vbraille.reading.surface import Surface
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
@@ -24,10 +25,80 @@ if TYPE_CHECKING:
 _ROUNDING = 1e-9  # of a line pitch
 
 
+class Figure(Protocol):
+    """A tactile picture that stands in a text."""
+
+    @property
+    def title(self) -> str:
+        """Title of the picture."""
+        ...
+
+    @property
+    def width_mm(self) -> float:
+        """Width of its canvas, in mm."""
+        ...
+
+    @property
+    def height_mm(self) -> float:
+        """Height of its canvas, in mm."""
+        ...
+
+    def name_at(self, x_mm: float, y_mm: float) -> str:
+        """Name of the element at a place of its canvas, in mm; empty if none has one there."""
+        ...
+
+
+class Figures(Protocol):
+    """The tactile pictures of a text, which are read when a line comes that stands for one."""
+
+    def find(self, address: str) -> Figure | None:
+        """Give the picture of an address; None if there is none, which is said once."""
+        ...
+
+    @property
+    def ready(self) -> bool:
+        """Whether a page can be made at once."""
+        ...
+
+    def feel(
+        self, address: str, say: Callable[[str], None], cue: Callable[[Cue], None]
+    ) -> Activity:
+        """Put a figure alone under the hand, in place of the text.
+
+        Raises
+        ------
+        InputError
+            If there is none, or it cannot be felt on the device.
+        """
+        ...
+
+    def page(
+        self,
+        lines: Sequence[NDArray[np.uint8]],
+        start_mm: float,
+        style: BrailleStyle,
+        placed: Sequence[tuple[Figure, float]],
+    ) -> Program | None:
+        """Make one picture of a page and its figures; None if it cannot be, which is said.
+
+        Parameters
+        ----------
+        lines : sequence of uint8[cells]
+            Dot masks of each line of the page.
+        start_mm
+            Place at which the lines begin.
+        style
+            How the braille is shown.
+        placed
+            Figures, each with the place of its upper edge on the page, in mm.
+        """
+        ...
+
+
 class PlacedFigure(NamedTuple):
     """A figure that stands on a page, below the line in a row, and its upper edge in mm."""
 
-    figure: FigureLike
+    figure: Figure
     row: int
     top_mm: float
 
@@ -66,21 +137,21 @@ class Figured:
         Display that pages are shown on.
     """
 
-    def __init__(self, figures: Callable[[], FiguresLike] | None, display: Display) -> None:
+    def __init__(self, figures: Callable[[], Figures] | None, display: Display) -> None:
         self._begin = figures
-        self._figures: FiguresLike | None = None
+        self._figures: Figures | None = None
         self._display = display
         self.placed: tuple[PlacedFigure, ...] = ()
         self._row = -1  # of the page, that the finger was in last
 
-    def of(self, line: Line) -> FigureLike | None:
+    def of(self, line: Line) -> Figure | None:
         """Give the figure that a line stands for; None if it stands for none that can be felt."""
         address = figure_address(line)
         figures = self.all if address else None
         return None if figures is None else figures.find(address)
 
     @property
-    def all(self) -> FiguresLike | None:
+    def all(self) -> Figures | None:
         """The figures of the text; None if none is felt."""
         if self._figures is None and self._begin is not None:
             self._figures = self._begin()
@@ -121,7 +192,7 @@ class Figured:
             where = "below this line" if below else f"{key} feels it"
             yield f"figure: {figure.title}, {size}; {where}"
 
-    def on(self, surface: Surface) -> Iterator[tuple[int, FigureLike]]:
+    def on(self, surface: Surface) -> Iterator[tuple[int, Figure]]:
         """Rows of a page below which figures belong, with the figures."""
         for row in surface.kept:
             window = surface.windows[row]

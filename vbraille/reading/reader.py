@@ -2,65 +2,198 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from vbraille.reading.beside import Beside
-from vbraille.reading.context import Context
-from vbraille.reading.keeping import Keeping
-from vbraille.reading.linereader import LineReader
-from vbraille.reading.looking import Looking
-from vbraille.reading.prompt import Prompt
-from vbraille.reading.queries import CountLines
-from vbraille.reading.whereabouts import heading_name
-from vbraille.reading.window import Window
+from vbraille.engine.upright import Upright
+from vbraille.reading.activity import Activity, Prompt
+from vbraille.reading.bindings import Context
+from vbraille.reading.cues import Cue
+from vbraille.reading.outputs import Echo
+from vbraille.reading.search.queries import CountLines
+from vbraille.reading.search.seeker import Search
+from vbraille.reading.surface import LineRange, Surface, Window, around, turned
+from vbraille.reading.textview import TextView
+from vbraille.reading.whereabouts import (
+    LINES_PER_PAGE,
+    first_character,
+    heading_name,
+    is_counted,
+    line_name,
+    page_label,
+    place_sentence,
+)
+from vbraille.translate.source import BlockKind
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.engine.engine import Engine
-    from vbraille.layout.pages import Layout
-    from vbraille.reading.beside import KeptLike, SeekerLike
-    from vbraille.reading.queries import Counted, Query
-    from vbraille.render import BrailleStyle, Model
-    from vbraille.translate import Book
-    from vbraille.translate.source import Mark
+    import numpy as np
+    from numpy.typing import NDArray
 
+    from vbraille.braille.geometry import Geometry
+    from vbraille.engine.engine import Engine
+    from vbraille.layout.pages import Layout, Line
+    from vbraille.reading.bindings import Bound
+    from vbraille.reading.figured import Figures
+    from vbraille.reading.places import Bookmark, KeptBook
+    from vbraille.reading.scrolling import Scroll
+    from vbraille.reading.search.queries import Counted, Query
+    from vbraille.reading.search.seeker import Seeker
+    from vbraille.render import BrailleStyle, Model
+    from vbraille.simulation.steering import Steering
+    from vbraille.translate import Book
+    from vbraille.translate.source import Mark, Source
+
+_NS_PER_S = 1_000_000_000
+_KEPT_EVERY_S = 1.0
 _TRAIL = 100  # places that are kept to go back to
 
 
-class Reader(LineReader):
-    """Somebody who reads a range of lines: what is under the hand, and how far it has come.
+class Unkept:
+    """What is kept of a book no longer than a reading lasts."""
 
+    fault: str | None = None
+
+    def __init__(self) -> None:
+        self._marks: dict[str, Bookmark] = {}
+
+    def bookmarks(self) -> list[Bookmark]:
+        """Give all bookmarks, by their place."""
+        return sorted(self._marks.values(), key=lambda mark: mark.character)
+
+    def set_bookmark(self, bookmark: Bookmark) -> None:
+        """Set a bookmark."""
+        self._marks[bookmark.name] = bookmark
+
+    def delete_bookmark(self, name: str) -> None:
+        """Delete a bookmark."""
+        self._marks.pop(name, None)
+
+    def tend(self) -> None:
+        """Write nothing: all is only remembered."""
+
+    def keep_at(self, source: Source, character: int, **place: Any) -> None:
+        """Keep no place: there is no other time."""
+
+
+class Keeping:
+    """Keep the place of a reading, at most once a second.
+
+    Parameters
+    ----------
+    kept
+        Where it is kept; None for nowhere.
+    """
+
+    def __init__(self, kept: KeptBook | None) -> None:
+        self.kept: KeptBook | Unkept = Unkept() if kept is None else kept
+        self._place: tuple[Layout, Line] | None = None  # one that is not kept yet
+        self._last_s: float | None = None
+
+    def moved(self, layout: Layout, line: Line) -> None:
+        """Take a line at which reading is to go on."""
+        self._place = layout, line
+
+    def step(self, now_s: float) -> None:
+        """Keep the place, and what could not be kept before, if it is time; called all the time."""
+        if self._last_s is None or now_s - self._last_s >= _KEPT_EVERY_S:
+            self._last_s = now_s
+            self.kept.tend()
+            self.leave()
+
+    def start_over(self, layout: Layout) -> None:
+        """Keep the beginning, since the text was read to its end."""
+        self._place = None
+        self._keep(layout, 0, line=1, lines_before=0)
+
+    def leave(self) -> None:
+        """Keep the place now."""
+        if self._place is None:
+            return
+        (layout, line), self._place = self._place, None
+        self._keep(
+            layout,
+            first_character(line),
+            line=layout.number_of(line) if is_counted(layout) else None,
+            lines_before=layout.lines_before(line),
+            page=page_label(layout.book.source, line),
+        )
+
+    def _keep(self, layout: Layout, character: int, **told: Any) -> None:
+        source, table = layout.book.source, layout.book.table
+        name = "" if table is None else table.name
+        self.kept.keep_at(source, character, width=layout.width, table=name, **told)
+
+
+class Reader(Activity):
+    """Somebody who reads one line after the other, each alone or on a page of several.
+
+    The line under the hand is the one that the finger is on: on a page it changes as the finger
+    goes up or down. What is put under the hand there comes into the row that the finger is in.
     It speaks in sentences; `vbraille.reading.commands` calls its methods.
 
     Parameters
     ----------
-    layout, engine, model, say
-        As for a `LineReader`.
+    layout
+        Lines of the book.
+    engine
+        Engine that drives the device.
+    model
+        Display, and style in which lines are shown on it.
+    first, last
+        Numbers of the first and last line to read, from 1; None for the end.
     at
         Place of the source at which to begin; None for the first line.
-    beside
-        What works beside the reader: keys of somebody's own, search, bookmarks, signals.
-    how
-        What else a `LineReader` takes.
+    advance
+        Whether the next line comes when the hand returns; otherwise a key brings it.
+    stay
+        Whether to wait for keys at the end of the text, instead of being done.
+    echo
+        How much is said of each line.
+    steering
+        Steering that tells a simulated hand what to read; None if a person reads.
+    say
+        Function that is called with each thing to be said.
+    bound
+        Keys and buttons of commands; None for the usual ones.
+    seeker
+        Process that looks through the whole book; None to do so here.
+    kept
+        What is kept of the book between two readings; None to keep it while this one lasts.
+    scroll
+        What brings lines by time when the reader asks for that; None if nothing does.
+    cue
+        Function that is called with short signals, beside the sentences.
+    save_style
+        Function that saves how braille feels, and gives a sentence on that; None if nothing does.
+    verbose
+        Whether more is said, such as how far a search has come.
+    figures
+        Function that gives the figures of the text, called when there is one; None if they stay
+        unfelt.
 
     Attributes
     ----------
-    context : Context
-        Meaning of the keys at the moment.
-    prompt : Prompt or None
-        What is being typed.
-    seeker : SeekerLike or None
-        Process that looks through the whole book; None to do so here.
-    looking : Looking
-        What is looked for in the whole book.
+    range : LineRange
+        Lines that are read.
+    under : TextView
+        What is under the hand.
+    search : Search
+        Search in the whole book.
     fold_accents : bool
         Whether a search takes letters with accents and without for the same.
     sought : str
         Text that was looked for last.
     backward : bool
         Whether it was looked for backward.
+    skip_blank : bool
+        Whether lines without a dot are passed over.
+    lines : int
+        Number of lines read so far: those that were under the hand.
     """
+
+    does, doing = "read", "reading"
 
     def __init__(
         self,
@@ -69,24 +202,41 @@ class Reader(LineReader):
         *,
         model: Model,
         say: Callable[[str], None],
+        first: int = 1,
+        last: int | None = None,
         at: int | None = None,
-        beside: Beside | None = None,
-        **how: Any,
+        advance: bool = True,
+        stay: bool = False,
+        echo: Echo = Echo.NONE,
+        steering: Steering | None = None,
+        bound: Bound | None = None,
+        seeker: Seeker | None = None,
+        kept: KeptBook | None = None,
+        scroll: Scroll | None = None,
+        cue: Callable[[Cue], None] = lambda _: None,
+        save_style: Callable[[BrailleStyle], str] | None = None,
+        verbose: bool = False,
+        figures: Callable[[], Figures] | None = None,
     ) -> None:
-        super().__init__(layout, engine, model=model, say=say, beside=beside, **how)
-        beside = Beside() if beside is None else beside
-        self.seeker = beside.seeker
-        self.looking = Looking(say, verbose=beside.verbose, counted=self._take_count)
-        self.keeping = Keeping(beside.kept)
-        self.save_style = beside.save_style
+        super().__init__(engine, say, bound, cue)
+        self.range = LineRange(layout, first, last)
+        self.echo = echo
+        self.scroll = scroll
+        key = self.key("LNDN", "n") if stay else ""
+        self.under = TextView(
+            engine, model, steering, say, by_hand=advance, key=key, figures=figures
+        )
+        self.search = Search(say, seeker, verbose=verbose, counted=self._take_count)
+        self.keeping = Keeping(kept)
+        self.save_style = save_style
         self.styles_before: list[BrailleStyle] = []  # before each turn that was not taken back
-        self.context = Context.READING
-        self.prompt: Prompt | None = None
         # The book as it is read, and as it was before its table was changed last.
         self.book_before: tuple[Book, Book] | None = None
         self.fold_accents, self.backward = True, False
         self.sought = ""
         self.followed: Mark | None = None  # link or reference that was followed last
+        self.skip_blank = False
+        self.lines = 0
         # Whether lines are as wide as somebody says, and not as wide as the hand can go.
         self._fixed = layout.width != self.under.width
         self._book = layout.book  # which is the one that the other process knows
@@ -95,30 +245,144 @@ class Reader(LineReader):
         self._answers: dict[str, list[str]] = {}  # that were typed, by what they were called
         self._trail: list[int] = []
         self._hit: int | None = None
+        self._upright = Upright()
+        self._advance = advance
+        self._stay = stay
+        self._finished = False  # whether the end was said, until a key brings another line
+        self._prefetched = False
+        self._scrolled = 0  # how many times something was shown when scrolling began last
+        self._echoed = False  # whether the line was said when it was put under the hand last
 
     @property
-    def kept(self) -> KeptLike:
+    def layout(self) -> Layout:
+        """Lines of the book."""
+        return self.range.layout
+
+    @property
+    def style(self) -> BrailleStyle:
+        """How lines are shown."""
+        return self.under.style
+
+    @property
+    def window(self) -> Window | None:
+        """Part of a line that is under the hand; None before the first."""
+        return self.under.window
+
+    @property
+    def line(self) -> Line | None:
+        """Line under the hand; None before the first."""
+        return None if self.window is None else self.window.line
+
+    @property
+    def line_number(self) -> int:
+        """Number of the line under the hand; 0 before the first."""
+        return 0 if self.window is None else self.window.line.number
+
+    @property
+    def cell(self) -> int | None:
+        """Number of the line's cell under the middle of the array; None if there is none."""
+        x_mm = self.engine.x_mm
+        if self.window is None or x_mm is None or self.under.figure is not None:
+            return None
+        return self.window.cell_at(x_mm, self.style.geometry)
+
+    @property
+    def character(self) -> int:
+        """Place of the source under the finger; where the line begins if there is none."""
+        return self.character_of(self.cell)
+
+    def character_of(self, cell: int | None) -> int:
+        """Place of the source that a cell of the line stands for; where the line begins if none."""
+        window = self.window
+        if window is None:
+            return 0
+        for known in (cell, max(window.offset, 0)):
+            source = None if known is None else window.line.source(known)
+            if source is not None:
+                return source[0]
+        return first_character(window.line)
+
+    @property
+    def kept(self) -> KeptBook | Unkept:
         """What is kept of the book."""
         return self.keeping.kept
 
-    @kept.setter
-    def kept(self, kept: KeptLike | None) -> None:
-        self.keeping = Keeping(kept)
+    @property
+    def hit(self) -> int | None:
+        """Place of what was found last; None if that is not on the line under the hand."""
+        line, hit = self.line, self._hit
+        if line is None or hit is None or not len(line.cells):
+            return None
+        return hit if int(line.cells.starts[0]) <= hit < line.cells.end else None
 
     def start(self) -> None:
         """Put the first line under the hand, or the one at which to begin."""
         if self._at is None or not self.jump(self._at, back=False):
-            super().start()
+            line = self.range.line(self.range.first)
+            if line is None:
+                self.done = True
+            else:
+                self.put(Window(line, self.under.width))
 
-    def attend(self, now_s: float, *, resting: bool) -> None:
-        """Do what is done by time: take what was found, keep the place, scroll."""
-        if self.seeker is not None:
-            self.looking.poll(self.seeker, self.layout.book.source, now_s)
-            self._count(self.seeker)
+    def step(self, ticks: NDArray[np.void]) -> None:
+        """Look where the hand was in ticks, which are all since the last call."""
+        if not ticks.size:
+            return
+        now_s = float(ticks["time_ns"][-1]) / _NS_PER_S
+        if self.under.alone is not None:
+            self.under.alone.attend(now_s)
+            self.leave_figure()
+            return
+        for sentence in self._upright.watch(ticks[-1]):
+            self.say(sentence)
+        felt = self.under.felt(ticks)
+        if felt.size:
+            self._follow(felt)
+        self.attend(now_s, resting=not felt.size)
+
+    def _follow(self, ticks: NDArray[np.void]) -> None:
+        """Look where the hand was while it felt the line."""
+        if self.under.come_to(ticks, lambda line: line_name(self.layout, line)):
+            self._came(another=True)
+        was_reached = self.under.reached
+        home = self.under.follow(ticks)
+        if self.under.reached and not was_reached:
+            self.cue(self._end_cue())
+        by_hand = self._advance and not (self.scroll is not None and self.scroll.on)
+        if home and by_hand and not self._finished:
+            self.go_on()
+            return
+        if self.under.reached and not self._prefetched:
+            # On the way back to the start there is time for this.
+            self._prefetched = True
+            self._prefetch()
+        self.under.watch(ticks, finished=self._finished)
+
+    def attend(self, now_s: float, *, resting: bool = False) -> None:
+        """Do what is done by time: take what was found, keep the place, scroll.
+
+        Parameters
+        ----------
+        now_s
+            Time in seconds by a clock that does not go back.
+        resting
+            Whether the array rests, so that nothing is read.
+        """
+        if self.search.seeker is not None:
+            self.search.poll(self.layout.book.source, now_s)
+            self._count(self.search.seeker)
         self.keeping.step(now_s)
-        super().attend(now_s, resting=resting)
+        self.under.complete()
+        scroll, window = self.scroll, self.window
+        if scroll is not None and self._scrolled != self.under.shown:
+            self._scrolled = self.under.shown
+            scroll.begin(now_s)
+        if scroll is None or not scroll.on or resting or self._finished or window is None:
+            return
+        if scroll.due(self.under.cells, now_s):
+            self.go_on()
 
-    def _count(self, seeker: SeekerLike) -> None:
+    def _count(self, seeker: Seeker) -> None:
         """Have the lines before this one counted, where their number is not known."""
         layout, line = self.layout, self.line
         if self._counting or layout.counted or line is None or layout.book is not self._book:
@@ -131,10 +395,145 @@ class Reader(LineReader):
         if counted.width == self.layout.width and self.layout.book is self._book:
             self.layout.count_from(counted.block, counted.lines)
 
-    def _came(self, *, another: bool) -> None:
-        super()._came(another=another)
-        if self.line is not None:
-            self.keeping.moved(self.layout, self.line)
+    def _end_cue(self) -> Cue:
+        """Signal for the end of the line: whether it is also that of a page."""
+        following = self.layout.line(self.line_number + 1)
+        if following is None or (self.window is not None and self.window.right is not None):
+            return Cue.LINE_END
+        if following.block.kind is BlockKind.PAGE:
+            return Cue.PAGE_END
+        surface = self.under.surface
+        if surface is not None and surface.paged:
+            return Cue.PAGE_END if self.window is surface.there[-1] else Cue.LINE_END
+        number = 0 if self.line is None else self.layout.number_of(self.line)
+        return Cue.PAGE_END if number % LINES_PER_PAGE == 0 else Cue.LINE_END
+
+    def leave_figure(self) -> None:
+        """Go back to the text, if the reader has enough of the figure that is felt alone."""
+        if self.under.alone is not None and self.under.alone.done:
+            self.under.come_back()
+            self._echoed = False
+            self.announce()
+
+    def go_on(self) -> None:
+        """Put what follows under the hand; if there is nothing, reading is finished."""
+        if self.window is None:
+            return
+        if self.pan(1):
+            if self._paged:
+                self.cue(Cue.PAGE_END)
+        elif not self.turn_page(1):
+            self.finish()
+
+    def pan(self, step: int) -> bool:
+        """Put the next part of the line under the hand, or the one before; False without one.
+
+        On a page the parts of all lines are put there.
+        """
+        here = self._here
+        surface = None if here is None else here.panned(step)
+        if surface is not None:
+            self._put(surface)
+        return surface is not None
+
+    def turn_page(self, step: int) -> bool:
+        """Put the next page under the hand, or the one before; False if there is none.
+
+        It is said which lines a page has. Where one line is shown, that is the page.
+        """
+        here = self.under.surface
+        if here is None:
+            return False
+        if not here.paged:
+            return self.go_by(step)
+        page = self._turned(here, step)
+        if page is None:
+            return False
+        self.cue(Cue.PAGE_END)
+        self.say(self._page_sentence(page))
+        row = self.under.row
+        self._put(replace(page, row=row) if page.has(row) else page)
+        return True
+
+    def _turned(self, here: Surface, step: int) -> Surface | None:
+        """The page after one, or before it; None if there are no lines."""
+        under = self.under
+        skip, rows = self.skip_blank, under.rows
+        return turned(self.range, here, step, rows, skip_blank=skip, keep=under.keep)
+
+    def _page_sentence(self, page: Surface) -> str:
+        """Which lines a page has, or where it begins while lines are not counted."""
+        first, last = page.there[0].line, page.there[-1].line
+        if not is_counted(self.layout):
+            return place_sentence(self.layout, first)
+        numbers = [self.layout.number_of(line) for line in (first, last)]
+        return (
+            f"page: line {numbers[0]}" if first is last else "page: lines {} to {}".format(*numbers)
+        )
+
+    @property
+    def _paged(self) -> bool:
+        return self.under.surface is not None and self.under.surface.paged
+
+    @property
+    def _here(self) -> Surface | None:
+        """What is under the hand, with the row that the finger is in as the one that is meant."""
+        surface, window = self.under.surface, self.window
+        return None if surface is None else replace(surface, row=surface.windows.index(window))
+
+    def _prefetch(self) -> None:
+        """Lay out what comes next."""
+        here = self.under.surface
+        if here is None:
+            return
+        if here.paged:
+            self._turned(here, 1)
+        else:
+            self.layout.line(self.line_number + 1)
+
+    def go_by(self, step: int, *, at_end: bool = False) -> bool:
+        """Put the next line under the hand, or the one before; False if that is not to be read.
+
+        Parameters
+        ----------
+        step
+            1 for the next line, -1 for the one before; lines without dots may be passed over.
+        at_end
+            Whether to show the last part of the line.
+        """
+        line = self.range.following(self.line_number, step, skip_blank=self.skip_blank)
+        if line is None:
+            return False
+        window = Window(line, self.under.width)
+        self.put(window.last if at_end else window)
+        return True
+
+    def go(self, number: int) -> bool:
+        """Put the line of a number under the hand; False if it is none of those to read."""
+        line = self.range.line(number)
+        if line is None:
+            return False
+        self.put(Window(line, self.under.width))
+        return True
+
+    def announce(self, what: str = "") -> None:
+        """Say which line is under the hand, and what it is, unless its echo has just done so."""
+        if not self._echoed and self.line is not None:
+            self.say(place_sentence(self.layout, self.line, what))
+
+    def finish(self) -> None:
+        """Come to the end of the text; another reading begins at its beginning."""
+        self.cue(Cue.LIMIT)
+        if self.scroll is not None:
+            self.scroll.on = False
+        if self._stay:
+            self._finished = True
+            self.say(
+                f"end of text; {self.key('LNUP', 'p')} goes back, {self.key('QUIT', 'q')} stops"
+            )
+        else:
+            self.done = True
+        self.keeping.start_over(self.layout)
 
     def jump(self, character: int, *, back: bool = True) -> bool:
         """Put the line of a place of the source under the hand; False if it is none of those.
@@ -154,10 +553,49 @@ class Reader(LineReader):
         self.put(Window(line, self.under.width).showing(cell))
         return True
 
-    def finish(self) -> None:
-        """Come to the end of the text; another reading begins at its beginning."""
-        super().finish()
-        self.keeping.start_over(self.layout)
+    def arrive(self, place: int | None, what: str = "") -> bool:
+        """Go to what was found, and keep it as `hit`.
+
+        Parameters
+        ----------
+        place
+            Place of the source; None for none.
+        what
+            Words for what was found, which are said with the line; empty for a heading's, if the
+            line is one.
+
+        Returns
+        -------
+        bool
+            Whether it is among the lines that are read.
+        """
+        if place is None or not self.jump(place):
+            return False
+        self._hit = place
+        self.announce_jump(what)
+        return True
+
+    def announce_jump(self, what: str = "") -> None:
+        """Say which line a jump has led to, and which heading, or something else, that is."""
+        line = self.line
+        self.announce(what or ("" if line is None else heading_name(line)))
+
+    def bring_under(self, place: int) -> bool:
+        """Move the line so that a place of it is under the finger, and keep that place as `hit`.
+
+        Returns
+        -------
+        bool
+            False if the place is not on the line under the hand, which then stays as it is.
+        """
+        before, found = self.window, self.range.place(place)
+        if before is None or found is None or found[0].number != before.line.number:
+            return False
+        cell = self.cell
+        self.keep_way_back()
+        self._hit = place
+        self._put_under_finger(*found, before, cell, self.style.geometry)
+        return True
 
     def keep_way_back(self, character: int | None = None) -> None:
         """Have `jump_back` go to a place, the present one if none is given."""
@@ -170,6 +608,46 @@ class Reader(LineReader):
             return False
         self._hit = self._trail.pop()
         return self.jump(self._hit, back=False)
+
+    def find(self, query: Query, then: Callable[[Any], None]) -> None:
+        """Look for something in the book, and call a function with its place, or None.
+
+        What is near comes at once; what is far may come while reading goes on.
+        """
+        self.search.find(self.layout.book.source, query, then)
+
+    def ask(
+        self,
+        what: str,
+        how: str,
+        label: str,
+        then: Callable[[Reader, str], None],
+        *,
+        again: str = "",
+        others: list[str] | None = None,
+        at: int | None = None,
+    ) -> None:
+        """Ask for a text, which is then typed in silence.
+
+        Parameters
+        ----------
+        what, how
+            What it is for, and how it is typed.
+        label
+            What the text is called when it is said.
+        then
+            Function that is called with the reader and the text.
+        again
+            The text if nothing is typed.
+        others, at
+            Texts that can be brought instead of being typed, and which of them is the present one;
+            None for what was typed under the label before.
+        """
+        if others is None:
+            others = self._answers.setdefault(label, [])
+        self.prompt = Prompt(label, lambda text: then(self, text), again, others, at)
+        self.context = Context.PROMPT
+        self.say(f"{what}: {how}")
 
     def tune(self, **turned: Any) -> None:
         """Show this line and those after it in another style, with values as `BrailleStyle` has.
@@ -226,7 +704,7 @@ class Reader(LineReader):
             If there is no room for a cell.
         """
         cell, character, layout = self.cell, self.character, self.layout
-        before, x_mm, geometry = self.window, self.engine.x_mm, self.style.geometry
+        before, geometry = self.window, self.style.geometry
         if style is not None:
             self.under.show_in(style)
         self._fixed = self._fixed or width is not None
@@ -236,112 +714,59 @@ class Reader(LineReader):
         if found is None:  # nothing from here on is shown any more
             self.finish()
             return
-        line, new_cell = found
-        window = Window(line, self.under.width)
-        if before is None or cell is None or x_mm is None:
-            self.put(window.showing(new_cell))
-        else:
-            share = before.share_at(x_mm, geometry)
-            self.put(window.under(new_cell, share, x_mm, self.style.geometry))
+        self._put_under_finger(*found, before, cell, geometry)
 
-    def find(self, query: Query, then: Callable[[Any], None]) -> None:
-        """Look for something in the book, and call a function with its place, or None.
-
-        What is near comes at once; what is far may come while reading goes on.
-        """
-        self.looking.find(self.layout.book.source, query, then, self.seeker)
-
-    def ask(
-        self,
-        what: str,
-        how: str,
-        label: str,
-        then: Callable[[Reader, str], None],
-        *,
-        again: str = "",
-        others: list[str] | None = None,
-        at: int | None = None,
+    def _put_under_finger(
+        self, line: Line, cell: int, before: Window | None, at: int | None, geometry: Geometry
     ) -> None:
-        """Ask for a text, which is then typed in silence.
+        """Put a cell of a line where another one was: under the finger, if that was on one.
 
         Parameters
         ----------
-        what, how
-            What it is for, and how it is typed.
-        label
-            What the text is called when it is said.
-        then
-            Function that is called with the reader and the text.
-        again
-            The text if nothing is typed.
-        others, at
-            Texts that can be brought instead of being typed, and which of them is the present one;
-            None for what was typed under the label before.
+        before, at
+            Part of a line and its cell that were there; None if there was none.
+        geometry
+            Distances in which it was shown.
         """
-        if others is None:
-            others = self._answers.setdefault(label, [])
-        self.prompt = Prompt(label, lambda text: then(self, text), again, others, at)
-        self.context = Context.PROMPT
-        self.say(f"{what}: {how}")
-
-    @property
-    def hit(self) -> int | None:
-        """Place of what was found last; None if that is not on the line under the hand."""
-        line, hit = self.line, self._hit
-        if line is None or hit is None or not len(line.cells):
-            return None
-        return hit if int(line.cells.starts[0]) <= hit < line.cells.end else None
-
-    def arrive(self, place: int | None, what: str = "") -> bool:
-        """Go to what was found, and keep it as `hit`.
-
-        Parameters
-        ----------
-        place
-            Place of the source; None for none.
-        what
-            Words for what was found, which are said with the line; empty for a heading's, if the
-            line is one.
-
-        Returns
-        -------
-        bool
-            Whether it is among the lines that are read.
-        """
-        if place is None or not self.jump(place):
-            return False
-        self._hit = place
-        self.announce_jump(what)
-        return True
-
-    def announce_jump(self, what: str = "") -> None:
-        """Say which line a jump has led to, and which heading, or something else, that is."""
-        line = self.line
-        self.announce(what or ("" if line is None else heading_name(line)))
-
-    def bring_under(self, place: int) -> bool:
-        """Move the line so that a place of it is under the finger, and keep that place as `hit`.
-
-        Returns
-        -------
-        bool
-            False if the place is not on the line under the hand, which then stays as it is.
-        """
-        before, found = self.window, self.range.place(place)
-        if before is None or found is None or found[0].number != before.line.number:
-            return False
-        (line, new_cell), cell, x_mm = found, self.cell, self.engine.x_mm
-        self.keep_way_back()
-        self._hit = place
-        window, geometry = Window(line, self.under.width), self.style.geometry
-        if cell is None or x_mm is None:
-            self.put(window.showing(new_cell))
+        window, x_mm = Window(line, self.under.width), self.engine.x_mm
+        if before is None or at is None or x_mm is None:
+            self.put(window.showing(cell))
         else:
             share = before.share_at(x_mm, geometry)
-            self.put(window.under(new_cell, share, x_mm, geometry))
-        return True
+            self.put(window.under(cell, share, x_mm, self.style.geometry))
+
+    def put(self, window: Window) -> None:
+        """Put a part of a line under the hand; on a page, with the lines before and after it."""
+        rows = self.under.rows
+        if rows:
+            row = self.under.row
+            skip, keep = self.skip_blank, self.under.keep
+            self._put(around(self.range, window, row, rows, skip_blank=skip, keep=keep))
+        else:
+            self._put(Surface((window,)))
+
+    def _put(self, surface: Surface) -> None:
+        another = self.line is None or self.line.number != surface.window.line.number
+        self.under.put(surface, line_name(self.layout, surface.window.line))
+        self._finished = False
+        self._came(another=another)
+
+    def _came(self, *, another: bool) -> None:
+        """Take note that a line is under the hand, which may be the same as before."""
+        line = self.line
+        assert line is not None, "a line is under the hand"
+        self.lines += another
+        self._prefetched = False
+        self._echoed = another and self.echo is not Echo.NONE
+        if another:
+            for sentence in self.echo.sentences(line, self.layout):
+                self.say(sentence)
+            key, below = self.key("FEEL", "G"), self.under.keep(line)
+            for sentence in self.under.figured.sentences(line, key, below):
+                self.say(sentence)
+        self.keeping.moved(self.layout, line)
 
     def leave(self) -> None:
         """Keep the place at which reading goes on another time; nothing is read after this."""
-        self.looking.cancel(self.seeker)
+        self.search.cancel()
         self.keeping.leave()

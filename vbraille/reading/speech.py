@@ -5,8 +5,10 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Final, Self
 
-from vbraille.reading.attendant import Attendant
+import msgspec
+
 from vbraille.wording import printable
+from vbraille.workers import Worker
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -14,11 +16,13 @@ if TYPE_CHECKING:
 _MODULE: Final = "vbraille.reading.speaking"
 # Sentences that follow one another so soon are one answer, such as the list of keys.
 TOGETHER_S: Final = 0.05
-# What a line to the speaking process begins with: whether its sentence is said in place of what is
-# being said, or after it. A line without a sentence only stops what is being said.
-INSTEAD: Final = "!"
-AFTER: Final = "+"
-_MOST: Final = 900  # characters in one line to that process, which is less than a pipe takes whole
+
+
+class Spoken(msgspec.Struct, frozen=True):
+    """A sentence to be said, in place of what is being said or after it; it may be empty."""
+
+    text: str
+    instead: bool
 
 
 class Speech:
@@ -40,33 +44,25 @@ class Speech:
         self._now_s = now_s
         self._said_s = float("-inf")
         # Started now, since a server that must be started first takes half a second.
-        self._attendant: Attendant | None = Attendant(_MODULE, language)
+        self._worker = Worker(_MODULE, language)
 
     def say(self, sentence: str) -> None:
         """Say a sentence; this never waits."""
         now_s = self._now_s()
-        how = AFTER if now_s - self._said_s < TOGETHER_S else INSTEAD
+        instead = now_s - self._said_s >= TOGETHER_S
         self._said_s = now_s
-        text = printable(sentence)
-        for begun in range(0, len(text), _MOST):
-            self._tell(how, text[begun : begun + _MOST])
-            how = AFTER
+        self._tell(Spoken(printable(sentence), instead))
 
     def hush(self) -> None:
         """Say no more of what is being said."""
-        self._tell(INSTEAD, "")
+        self._tell(Spoken("", instead=True))
 
     def close(self) -> None:
         """Speak no more than what was said so far; further calls do nothing."""
-        attendant, self._attendant = self._attendant, None
-        if attendant is not None:
-            attendant.close()
+        self._worker.close()
 
-    def _tell(self, how: str, text: str) -> None:
-        if self._attendant is None:
-            return
-        line = f"{how}{text}".encode()
-        if not self._attendant.tell(line, alone=how == INSTEAD):
+    def _tell(self, spoken: Spoken) -> None:
+        if not self._worker.send(spoken, alone=spoken.instead):
             self.close()  # it has said why
 
     def __enter__(self) -> Self:

@@ -1,4 +1,4 @@
-"""What lies on the surface under the hand: a part of one line, or a page of lines."""
+"""The surface under the hand: a part of one line, or a page of lines, of those that are read."""
 
 from __future__ import annotations
 
@@ -8,17 +8,143 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vbraille.reading.window import Window
+from vbraille.layout.pages import Layout
+from vbraille.reading.whereabouts import first_character
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from numpy.typing import NDArray
 
+    from vbraille.braille.geometry import Geometry
     from vbraille.display import Display
     from vbraille.layout.pages import Line
-    from vbraille.reading.ranged import LineRange
     from vbraille.render import BrailleStyle
+    from vbraille.translate import Book
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Window:
+    """Cells of a line that the hand can cross at once.
+
+    Parameters
+    ----------
+    line : Line
+        The line.
+    width : int
+        Largest number of cells that are shown.
+    offset : int
+        Cell of the line that stands first; below 0 that many blank cells stand before the line.
+    start_mm : float
+        Place on the surface at which that cell begins, a cell's pitch before 0 at most.
+    """
+
+    line: Line
+    width: int
+    offset: int = 0
+    start_mm: float = 0.0
+
+    def __len__(self) -> int:
+        return max(0, min(self.width, len(self.line) - self.offset))
+
+    @property
+    def masks(self) -> NDArray[np.uint8]:
+        """Dot masks of what is shown, uint8[cells]."""
+        before = np.zeros(min(max(-self.offset, 0), len(self)), np.uint8)
+        return np.concatenate((before, self.line.masks[max(self.offset, 0) :]))[: len(self)]
+
+    @property
+    def right(self) -> Window | None:
+        """The part after this one; None if the line ends here."""
+        following = self.offset + self.width
+        return Window(self.line, self.width, following) if following < len(self.line) else None
+
+    @property
+    def left(self) -> Window | None:
+        """The part before this one; None if the line begins here."""
+        before = max(0, self.offset - self.width)
+        return Window(self.line, self.width, before) if self.offset > 0 else None
+
+    @property
+    def last(self) -> Window:
+        """The last part of the line."""
+        return self.showing(max(len(self.line) - 1, 0))
+
+    def showing(self, cell: int) -> Window:
+        """Part of the line with a cell, of the parts into which the line falls from its start."""
+        return Window(self.line, self.width, cell // self.width * self.width)
+
+    def cell_at(self, x_mm: float, geometry: Geometry) -> int | None:
+        """Cell of the line at a place on the surface; None if there is none."""
+        shown = math.floor((x_mm - self.start_mm) / geometry.cell_pitch_mm)
+        cell = shown + self.offset
+        return cell if 0 <= shown < len(self) and cell >= 0 else None
+
+    def share_at(self, x_mm: float, geometry: Geometry) -> float:
+        """How much of its cell is left of a place on the surface, 0 to 1."""
+        return (x_mm - self.start_mm) / geometry.cell_pitch_mm % 1
+
+    def under(self, cell: int, share: float, x_mm: float, geometry: Geometry) -> Window:
+        """Part of the line in which a cell is under a finger that is at a place on the surface.
+
+        Parameters
+        ----------
+        share
+            How much of the cell is to be left of the finger, 0 to 1.
+        """
+        cells = x_mm / geometry.cell_pitch_mm - share  # that stand before it, and a part of one
+        shown = math.ceil(cells - 1e-9)
+        start_mm = min((cells - shown) * geometry.cell_pitch_mm, 0.0)
+        return replace(self, offset=cell - shown, start_mm=start_mm)
+
+
+@dataclass(frozen=True, slots=True)
+class LineRange:
+    """Lines of a layout from one number to another.
+
+    Parameters
+    ----------
+    layout : Layout
+        Lines of the book.
+    first, last : int or None
+        Numbers of the first and last line, from 1; None for the end.
+    """
+
+    layout: Layout
+    first: int = 1
+    last: int | None = None
+
+    def line(self, number: int) -> Line | None:
+        """Line of a number; None if it is none of these."""
+        return self.layout.line(number) if self._has(number) else None
+
+    def place(self, character: int) -> tuple[Line, int] | None:
+        """Line and cell of a place of the source; None if it is on none of these lines."""
+        found = self.layout.place(character)
+        return None if found is None or not self._has(found[0].number) else found
+
+    def following(self, number: int, step: int, *, skip_blank: bool) -> Line | None:
+        """Next line after one, or before it where the step is -1, perhaps one that has dots."""
+        line = self.line(number + step)
+        while skip_blank and line is not None and not line.masks.any():
+            line = self.line(line.number + step)
+        return line
+
+    def relaid(self, book: Book, width: int) -> LineRange:
+        """Lay out the same text in other cells or another width."""
+        layout = Layout(book, width)
+        numbers: list[int | None] = []
+        for number in (self.first, self.last):
+            line = self.layout.line(number) if number is not None and number > 1 else None
+            place = None if line is None else layout.place(first_character(line))
+            numbers.append(number if place is None else place[0].number)
+        return LineRange(layout, numbers[0] or 1, numbers[1])
+
+    def _has(self, number: int) -> bool:
+        if self.first == 1 and self.last is None:
+            return True  # lines may have provisional numbers
+        return self.first <= number and (self.last is None or number <= self.last)
+
 
 MOST_LINES: Final = 64  # of a page on the surface, however high that is
 # Below the last line there is room for a finger that goes on to the next page, in line pitches.

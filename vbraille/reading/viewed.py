@@ -1,9 +1,10 @@
-"""A reading as pages of the live view are told of it, whenever something has changed."""
+"""Readings, and all that is explored, as pages of the live view are told of it."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections import deque
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Changed, Silent, Stalled, Stranger, Unplugged
@@ -16,6 +17,7 @@ from vbraille.live.states import (
     line_shown,
     rows_shown,
 )
+from vbraille.reading.commands.paged import obey
 from vbraille.reading.whereabouts import is_counted, line_name, percent
 from vbraille.render.braille.knobs import say_mapping
 
@@ -24,14 +26,15 @@ if TYPE_CHECKING:
 
     from vbraille.devices.events import Event
     from vbraille.layout.pages import Line
-    from vbraille.reading.opened import OpenDevice
-    from vbraille.reading.window import Window
+    from vbraille.live.messages import PagePress, Turn
+    from vbraille.reading.activity import Activity
+    from vbraille.reading.device import OpenDevice
+    from vbraille.reading.surface import Window
 
 MOST_SAID: Final = 20
 BEFORE, AFTER = 2, 3  # lines around the one under the hand
 _NUMBER: Final = 0xFFFF_FFFF  # as much of a line's number as a frame has room for
 _PLACES: Final = {
-    Placing.DONE: "reading",
     Placing.MARK: "place: the carriage has to pass its mark",
     Placing.STOP: "place: the carriage has to be shown its place",
 }
@@ -63,40 +66,53 @@ class Said:
         return list(self._last)
 
 
-class Viewed:
-    """What is read on a device, as the state of the live view.
-
-    Nothing is translated or laid out for it: of the lines around the one under the hand it shows
-    those that are there already.
+class View(ABC):
+    """What is explored on a device, as the state of the live view.
 
     Parameters
     ----------
     device
-        Device that a text is shown on.
-    title
-        Title of what is read.
+        Device that something is explored on.
+    activity
+        Reader or feeler.
     said
-        What the reader was told.
+        What was said.
     facts
         Name and value of whatever else is to be shown.
 
     Attributes
     ----------
     standing : str
-        Sentence on why nothing is read, such as that the program is stopped; empty if it is.
+        Sentence on why nothing is done, such as that the program is stopped; empty if it is.
     """
 
     def __init__(
-        self, device: OpenDevice, title: str, said: Said, facts: Iterable[tuple[str, str]] = ()
+        self,
+        device: OpenDevice,
+        activity: Activity,
+        said: Said,
+        facts: Iterable[tuple[str, str]] = (),
     ) -> None:
         self.standing = ""
         self._device = device
-        self._title = title
+        self._activity = activity
         self._said = said
         self._facts = list(facts)
         self._gone = ""  # sentence on where the device is
         self._number = 0
         self._told: tuple[object, ...] = ()
+
+    @abstractmethod
+    def _compared(self) -> tuple[object, ...]:
+        """What else may change, which is compared as objects but for plain values."""
+
+    @abstractmethod
+    def _parts(self) -> dict[str, Any]:
+        """Parts of the state that are of one activity alone."""
+
+    @abstractmethod
+    def obey(self, asked: PagePress | Turn) -> None:
+        """Do what a page has asked for."""
 
     def see(self, events: Iterable[Event]) -> None:
         """Take note of events of the device."""
@@ -107,15 +123,14 @@ class Viewed:
                 self._gone = ""
 
     def changed(self) -> ViewState | None:
-        """State of the reading; None if it is what it was at the last call."""
-        device, reader = self._device, self._device.reader
-        under = reader.under
+        """State of the activity; None if it is what it was at the last call."""
+        device, done = self._device, self._activity.done
         # What is compared is small, for this is asked fifty times a second. What cannot change is
         # compared as an object, and kept here, so that no other can take its place in memory.
         now = (
-            *(reader.window, under.style, reader.layout, under.shown, under.reached),
-            *(reader.layout.counted, reader.done, device.paused, device.placing, device.held),
+            *(done, device.paused, device.placing, device.held),
             *(self._said.count, self._gone, self.standing),
+            *self._compared(),
         )
         if len(now) == len(self._told) and all(
             a is b or (isinstance(a, bool | int | str) and a == b)
@@ -123,27 +138,11 @@ class Viewed:
         ):
             return None
         self._told = now
-        return self._state()
-
-    def _state(self) -> ViewState:
-        device, reader = self._device, self._device.reader
-        style, display, layout, line = reader.style, device.display, reader.layout, reader.line
         self._number += 1
         said = self._said.last
-        where = ""
-        if line is not None:
-            counted = f"{line_name(layout, line)}, " if is_counted(layout) else ""
-            where = f"{counted}{percent(layout, line)} %"
         return ViewState(
             number=self._number,
-            title=self._title,
-            array=array_shown(display),
-            geometry=geometry_shown(style.geometry),
-            rows_shown=rows_shown(style, display),
-            lines=[] if line is None else list(self._lines(line)),
-            place=where,
-            knobs=knobs_shown(style),
-            mapping=say_mapping(style.mapping),
+            array=array_shown(device.display),
             paused=device.paused,
             simulated=device.pointer is not None,
             held=device.held,
@@ -151,20 +150,71 @@ class Viewed:
             said=said,
             said_before=self._said.count - len(said),
             facts=self._facts,
-            done=reader.done,
+            done=done,
+            **self._parts(),
         )
 
     def _standing(self) -> str:
         """Sentence on the state of the device."""
+        doing, placing = self._activity.doing, self._device.placing
         if self.standing:
             return self.standing
-        if self._device.reader.done:
-            return "reading is over"
+        if self._activity.done:
+            return f"{doing} is over"
         if self._gone:
             return self._gone
-        if self._device.paused and self._device.placing is Placing.DONE:
-            return "paused"
-        return _PLACES[self._device.placing]
+        if placing is Placing.DONE:
+            return "paused" if self._device.paused else doing
+        return _PLACES[placing]
+
+
+class ReadView(View):
+    """A text that is read.
+
+    Nothing is translated or laid out for it: of the lines around the one under the hand it shows
+    those that are there already.
+
+    Parameters
+    ----------
+    device
+        Device that a text is shown on.
+    title
+        Title of what is read.
+    said, facts
+        As for a `View`.
+    """
+
+    def __init__(
+        self, device: OpenDevice, title: str, said: Said, facts: Iterable[tuple[str, str]] = ()
+    ) -> None:
+        super().__init__(device, device.reader, said, facts)
+        self._title = title
+
+    def obey(self, asked: PagePress | Turn) -> None:
+        """Do what a page has asked for."""
+        obey(self._device.reader, asked)
+
+    def _compared(self) -> tuple[object, ...]:
+        reader = self._device.reader
+        under, layout = reader.under, reader.layout
+        return reader.window, under.style, layout, under.shown, under.reached, layout.counted
+
+    def _parts(self) -> dict[str, Any]:
+        reader = self._device.reader
+        style, layout, line = reader.style, reader.layout, reader.line
+        where = ""
+        if line is not None:
+            counted = f"{line_name(layout, line)}, " if is_counted(layout) else ""
+            where = f"{counted}{percent(layout, line)} %"
+        return {
+            "title": self._title,
+            "geometry": geometry_shown(style.geometry),
+            "rows_shown": rows_shown(style, self._device.display),
+            "lines": [] if line is None else list(self._lines(line)),
+            "place": where,
+            "knobs": knobs_shown(style),
+            "mapping": say_mapping(style.mapping),
+        }
 
     def _lines(self, line: Line) -> Iterable[LineShown]:
         """Lines to be drawn, from top to bottom."""

@@ -15,10 +15,9 @@ from vbraille.render.braille.models import (
     Model,
     model_of,
 )
-from vbraille.render.braille.profiles import Profile
+from vbraille.render.braille.profiles import Profile, Tuning
 from vbraille.render.braille.straying import Straying
 from vbraille.render.braille.style import BrailleStyle
-from vbraille.render.braille.tuning import Tuning
 
 __all__ = [
     "LATERO",

@@ -1,17 +1,21 @@
-"""Intensities of an image over a rectangle of the canvas."""
+"""Intensities of an image over a rectangle of the canvas, and its opacity mask."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vbraille.errors import check_range
+from vbraille.scene.bounds import Box
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from vbraille.scene.measures import Point
+
 
 WHOLE = 65_535  # the intensity 1
 # Images are 0.1 mm to 10 m, and farther with what their blur reaches.
@@ -56,3 +60,77 @@ class Bitmap:
         sizes = {"width": self.width_mm, "height": self.height_mm}
         for what, value in sizes.items():
             check_range(f"{what} of a bitmap", value, _LEAST_MM, _MOST_MM, " mm")
+
+
+_MOST_EDGE_PIXELS, _MOST_EDGE_MM = 5, 1.0
+
+
+def opaque(bitmap: Bitmap) -> Bitmap:
+    """Make the opacity mask of an image: 1 where it is anything but 0, with a soft edge around.
+
+    The source saturates the image and adds a linear gradient around its edges; the later code of
+    its author lets it fall over five pixels. Here it falls over five pixels too, or over 1 mm if
+    that is less, in every direction alike and also beyond the rectangle, so that the mask is
+    nowhere below the image. Each pixel is the largest of 1 - n/N for the pixels n steps away that
+    are not 0, where a step goes to any of the eight neighbours and N is the length of the edge.
+
+    Returns
+    -------
+    Bitmap
+        The mask, which is wider by the edge on every side.
+    """
+    pixel_mm = pixel_size_mm(bitmap)
+    edge = max(1, min(_MOST_EDGE_PIXELS, math.floor(_MOST_EDGE_MM / max(pixel_mm))))
+    reached = np.pad(bitmap.intensities > 0, edge, constant_values=bitmap.outside > 0)
+    mask = np.where(reached, WHOLE, 0).astype(np.uint16)
+    for step in range(1, edge):
+        reached = _with_neighbours(reached)
+        value = round(WHOLE * (1 - step / edge))
+        np.maximum(mask, np.where(reached, value, 0).astype(np.uint16), out=mask)
+    width, height = pixel_mm
+    return Bitmap(
+        mask,
+        (bitmap.place_mm[0] - edge * width, bitmap.place_mm[1] - edge * height),
+        bitmap.width_mm + 2 * edge * width,
+        bitmap.height_mm + 2 * edge * height,
+        1.0 if bitmap.outside > 0 else 0.0,
+    )
+
+
+def pixel_size_mm(bitmap: Bitmap) -> tuple[float, float]:
+    """Width and height of a pixel."""
+    rows, columns = bitmap.intensities.shape
+    return bitmap.width_mm / columns, bitmap.height_mm / rows
+
+
+def bitmap_box(bitmap: Bitmap) -> Box | None:
+    """Compute the rectangle outside which an image and its mask are 0; None for everywhere.
+
+    Half a pixel beyond the last ones there is still something of them, since the image is bilinear.
+    Where there is nothing at all it is a corner.
+    """
+    if bitmap.outside > 0:
+        return None
+    mask = opaque(bitmap)
+    rows, columns = np.nonzero(mask.intensities)
+    width, height = pixel_size_mm(mask)
+    left, top = mask.place_mm
+    if rows.size == 0:
+        return Box(left, top, left, top)
+    return Box(
+        left + (float(columns.min()) - 0.5) * width,
+        top + (float(rows.min()) - 0.5) * height,
+        left + (float(columns.max()) + 1.5) * width,
+        top + (float(rows.max()) + 1.5) * height,
+    )
+
+
+def _with_neighbours(reached: np.ndarray) -> np.ndarray:
+    """Add to the pixels that are set the eight around each of them."""
+    rows = reached.copy()
+    rows[1:] |= reached[:-1]
+    rows[:-1] |= reached[1:]
+    both = rows.copy()
+    both[:, 1:] |= rows[:, :-1]
+    both[:, :-1] |= rows[:, 1:]
+    return both

@@ -12,18 +12,16 @@ from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.scene.bitmap import WHOLE
-from vbraille.scene.dots import Dots
 from vbraille.scene.imagefiles import intensities_of
 from vbraille.scene.images import MOST_PER_MM, named, naming, shape_of, size_mm
-from vbraille.scene.patterns import Group
+from vbraille.scene.patterns import Dots, Group
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.scene.dots import ImageDots
     from vbraille.scene.measures import Point
-    from vbraille.scene.patterns import AnyPattern
+    from vbraille.scene.patterns import AnyPattern, ImageDots
 
 MOST_DOTS = 20_000
 # Dots share a pattern if they look the same: no finger tells these steps, nor does an 8-bit image

@@ -6,10 +6,19 @@ import math
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from vbraille.scene.dots import Dots, ImageDots
-from vbraille.scene.labels import Label
-from vbraille.scene.patterns import AnyPattern, Circle, Group, Image, PathShape, Polygon, Use
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.patterns import (
+    AnyPattern,
+    Circle,
+    Dots,
+    Group,
+    Image,
+    ImageDots,
+    Label,
+    PathShape,
+    Polygon,
+    StraightLine,
+    Use,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -4,20 +4,38 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from vbraille.scene import advising, vibrating
+from msgspec.structs import replace
+
+from vbraille.carriers.carrier import LATERO, PANTOGRAPH, TACTOGRAPH
 from vbraille.scene.bounds import Box, bounds
-from vbraille.scene.labels import Label
-from vbraille.scene.walking import each
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Group,
+    Image,
+    Label,
+    PathShape,
+    Polygon,
+    Shape,
+    Tile,
+)
+from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform, UniformVibration
+from vbraille.scene.walking import ONE, children, each, with_children
 from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from vbraille.scene.opened import OpenedScene
-    from vbraille.scene.patterns import AnyPattern, Image
-    from vbraille.scene.scene import Scene
+    from vbraille.scene.patterns import AnyPattern, Operation
+    from vbraille.scene.scene import Canvas, Scene
+    from vbraille.scene.strokes import Vibration
+
+    Boxes = Mapping[Image | Label, Box]
+
 
 _MOST_PAIRS_SAID = 20
 
@@ -98,7 +116,7 @@ def check_scene(opened: OpenedScene, known: Mapping[Image | Label, Box]) -> Scen
             name=_name(shown),
             place=opened.place(number - 1),
             box=bounds(shown, known),
-            vibration_hz=tuple(sorted(vibrating.frequencies(shown))),
+            vibration_hz=tuple(sorted(frequencies(shown))),
         )
         for number, (wrote, shown) in enumerate(
             zip(written.elements, scene.elements, strict=True), 1
@@ -107,7 +125,7 @@ def check_scene(opened: OpenedScene, known: Mapping[Image | Label, Box]) -> Scen
     return SceneReport(
         kinds=dict(sorted(counts.items(), key=lambda item: (-item[1], item[0]))),
         elements=elements,
-        textures=advising.textures_of(scene),
+        textures=_texture_count(scene),
         vibrations=tuple(_vibrations(scene, elements, known)),
         advice=tuple(_advice(scene, elements)),
     )
@@ -135,38 +153,36 @@ def _vibrations(
     told = [
         (number, sentence)
         for number, element in enumerate(scene.elements)
-        for sentence in vibrating.meetings(element, known)
+        for sentence in _beats_within(element, known)
     ]
     yield from _grouped(told, elements)
-    for sentence in vibrating.between(scene.operation, scene.elements, known):
+    for sentence in _beats_between(scene.operation, scene.elements, known):
         yield f"the scene {sentence}"
-    yield from vibrating.alike(found)
+    yield from _alike(found)
 
 
 def _advice(scene: Scene, elements: Sequence[ElementReport]) -> Iterator[str]:
-    yield from advising.of_canvas(scene.canvas)
+    yield from _canvas_advice(scene.canvas)
     if not elements:
         yield "the scene has no elements, so nothing can be felt; write some under [[elements]]"
     told = [
         (number, sentence)
         for number, element in enumerate(scene.elements)
-        for sentence in dict.fromkeys(
-            advising.of_element(element, elements[number].box, scene.canvas)
-        )
+        for sentence in dict.fromkeys(_element_advice(element, elements[number].box, scene.canvas))
     ]
-    told += advising.hiding(scene, [element.box for element in elements])
+    told += _hidden(scene, [element.box for element in elements])
     yield from _grouped(told, elements)
-    textures = advising.textures_of(scene)
-    if textures > advising.MOST_TEXTURES:
+    textures = _texture_count(scene)
+    if textures > MOST_TEXTURES:
         yield (
-            f"there are {textures} different textures; more than {advising.MOST_TEXTURES} are "
+            f"there are {textures} different textures; more than {MOST_TEXTURES} are "
             "hard to tell apart"
         )
-    pairs, is_all = advising.too_close([element.box for element in elements])
+    pairs, is_all = _too_close([element.box for element in elements])
     close = [
         (
             first,
-            f"stands less than {advising.LEAST_BLANK_MM:g} mm from element {second + 1}, with "
+            f"stands less than {LEAST_BLANK_MM:g} mm from element {second + 1}, with "
             f"{blank:.1f} mm of blank"
             + (", which a vibration fills" if _vibrates(elements, first, second) else ""),
         )
@@ -193,3 +209,274 @@ def _grouped(told: Sequence[tuple[int, str]], elements: Sequence[ElementReport])
         more = len(numbers) - 1
         also = f" (and {count(more, 'other')})" if more else ""
         yield f"{first.place}: {first.said()}{also} {sentence}"
+
+
+LEAST_BLANK_MM = 2.5
+MOST_TEXTURES = 5
+LEAST_WAVE_MM, MOST_WAVE_MM = 2.0, 15.0
+LEAST_STROKE_MM, MOST_STROKE_MM = 2.0, 10.0
+# Size of the largest array of 8 × 8, the Latero's, which reaches beyond its centre's travel.
+_ARRAY_MM = (9.0, 12.7)
+# Pairs of elements that stand side by side, and are looked at.
+_MOST_PAIRS = 50_000
+
+
+def _canvas_advice(canvas: Canvas) -> Iterator[str]:
+    """Sentences about a canvas that no carriage reaches all of."""
+    carriers = [PANTOGRAPH, TACTOGRAPH, LATERO]
+    reaches = [(c.travel_mm + _ARRAY_MM[0], c.height_mm + _ARRAY_MM[1], c.name) for c in carriers]
+    if any(canvas.width_mm <= width and canvas.height_mm <= height for width, height, _ in reaches):
+        return
+    width, height, name = max(reaches)
+    yield (
+        f"canvas is larger than any known carriage reaches; the largest, the {name}, reaches "
+        f"{width:g} × {height:g} mm"
+    )
+
+
+def _element_advice(element: AnyPattern, box: Box | None, canvas: Canvas) -> Iterator[str]:
+    """Sentences about an element by itself: where it stands, its gratings and its strokes."""
+    if box is not None:
+        if box.is_empty:
+            yield "can nowhere be felt; its parts have no place in common"
+        elif box.common(Box(0.0, 0.0, canvas.width_mm, canvas.height_mm)).is_empty:
+            yield "is wholly outside the canvas, and cannot be felt; move it"
+        else:
+            beyond = max(
+                -box.left, -box.top, box.right - canvas.width_mm, box.bottom - canvas.height_mm
+            )
+            if beyond > 1e-6:
+                yield f"reaches {beyond:.1f} mm beyond the canvas"
+    for pattern in each(element):
+        if isinstance(pattern, LinearGrating | RadialGrating):
+            yield from _of_wave("a grating", pattern.ridge_mm + pattern.gap_mm)
+        if isinstance(pattern, Shape) and pattern.stroke is not None:
+            stroke = pattern.stroke
+            if not LEAST_STROKE_MM <= stroke.width_mm <= MOST_STROKE_MM:
+                yield (
+                    f"has a stroke of {stroke.width_mm:g} mm; from {LEAST_STROKE_MM:g} to "
+                    f"{MOST_STROKE_MM:g} mm they are felt best"
+                )
+            if stroke.along is not None:
+                length = stroke.along.ridge_mm + stroke.along.gap_mm
+                yield from _of_wave("a grating along a stroke", length)
+
+
+def _of_wave(what: str, wave_mm: float) -> Iterator[str]:
+    if wave_mm < LEAST_WAVE_MM:
+        yield f"has {what} of {wave_mm:g} mm, which is felt as noise; 2 to 15 mm are felt best"
+    elif wave_mm > MOST_WAVE_MM:
+        yield f"has {what} of {wave_mm:g} mm, which is felt weakly; 2 to 15 mm are felt best"
+
+
+def _texture_count(scene: Scene) -> int:
+    """Number of textures that differ by more than their place, in a resolved scene."""
+    found: set[AnyPattern] = set()
+    for pattern in each(*scene.elements):
+        if isinstance(pattern, Circle | Polygon | PathShape) and pattern.fill is not None:
+            found.add(_nowhere(pattern.fill.texture))
+        elif isinstance(pattern, Image) and pattern.texture is not None:
+            found.add(_nowhere(pattern.texture))
+    for element in scene.elements:
+        if _is_texture(element):
+            found.add(_nowhere(element))
+    return len({one for one in found if not isinstance(one, Uniform)})
+
+
+def _is_texture(element: AnyPattern) -> bool:
+    if isinstance(element, Group):
+        return all(map(_is_texture, element.parts))
+    return bounds(element) is None and not isinstance(element, Image | Label | Shape)
+
+
+def _nowhere(pattern: AnyPattern) -> AnyPattern:
+    """Texture without its name and its place."""
+    bare = replace(pattern, id="", title="", description="")
+    if not isinstance(pattern, Shape | Tile):
+        places = {name: (0.0, 0.0) for name in ONE if hasattr(pattern, name)}
+        bare = replace(bare, **places)
+    return with_children(bare, lambda _, part: _nowhere(part))
+
+
+def _hidden(scene: Scene, boxes: Sequence[Box | None]) -> Iterator[tuple[int, str]]:
+    """Numbers from 0 of elements that hide all that is before them, with what is said of each."""
+    if scene.operation != "overwrite":
+        return
+    for number, (element, box) in enumerate(zip(scene.elements, boxes, strict=True)):
+        if number and box is None and not isinstance(element, Image | Label):
+            yield (
+                number,
+                "is everywhere, and hides all elements before it; write it first, or fill a shape "
+                "with it",
+            )
+
+
+def _too_close(boxes: Sequence[Box | None]) -> tuple[list[tuple[int, int, float]], bool]:
+    """Elements between which there is too little blank, by the rectangles around them.
+
+    Elements that overlap are not meant: one stands on the other.
+
+    Parameters
+    ----------
+    boxes
+        Rectangle around each element; None for one that is everywhere.
+
+    Returns
+    -------
+    pairs
+        Numbers from 0 of two elements, and the blank between them in mm.
+    all_compared
+        Whether all were compared; very many that stand side by side are not.
+    """
+    placed = sorted(
+        (box.left, number, box)
+        for number, box in enumerate(boxes)
+        if box is not None and not box.is_empty
+    )
+    found: list[tuple[int, int, float]] = []
+    left = _MOST_PAIRS
+    active: list[tuple[float, int, Box]] = []
+    for start, number, box in placed:
+        active = [one for one in active if one[2].right + LEAST_BLANK_MM > start]
+        left -= len(active)
+        if left < 0:
+            return found, False
+        for _, other_number, other in active:
+            dx = max(box.left - other.right, other.left - box.right, 0.0)
+            dy = max(box.top - other.bottom, other.top - box.bottom, 0.0)
+            blank = (dx * dx + dy * dy) ** 0.5
+            if 0.0 < blank < LEAST_BLANK_MM - 1e-6:
+                first, second = sorted((number, other_number))
+                found.append((first, second, blank))
+        active.append((start, number, box))
+    return sorted(found), True
+
+
+# Frequencies that differ by less cannot be told apart (8.6).
+LEAST_DIFFERENCE_HZ = 20.0
+# A vibration drowns what is nearer than this (8.6); the distance is that between elements (8.2.1).
+LEAST_GAP_MM = 2.5
+# Parts of a group that are compared with each other.
+_MOST_COMPARED = 200
+
+
+def frequencies(pattern: AnyPattern) -> set[float]:
+    """Frequencies in Hz at which something in a pattern vibrates."""
+    found = _own(pattern) | _changed(pattern)
+    for part in children(pattern):
+        found |= frequencies(part)
+    return found
+
+
+def _beats_within(pattern: AnyPattern, known: Boxes) -> Iterator[str]:
+    """Sentences about vibrations that meet in a pattern, and what becomes of them.
+
+    Parameters
+    ----------
+    pattern
+        A pattern of a resolved scene.
+    known
+        Boxes of images and labels; see `bounds`.
+    """
+    inside = _own(pattern)
+    for part in children(pattern):
+        inside |= frequencies(part)
+    if _changed(pattern) and inside:
+        yield (
+            f"vibrates as a whole at {_hz(_changed(pattern))}, and what is in it at {_hz(inside)}: "
+            f"{_masked(_changed(pattern), inside)}; leave one of them out"
+        )
+    if isinstance(pattern, Circle | Polygon | PathShape) and pattern.fill is not None:
+        fill, stroke = pattern.fill, pattern.stroke
+        drowned = stroke is not None and _of(stroke.vibration) and not frequencies(fill.texture)
+        if drowned and not fill.blended and fill.gap_mm < LEAST_GAP_MM:
+            yield (
+                f"has a fill that begins {fill.gap_mm:g} mm from a stroke that vibrates, which "
+                f"drowns what is near; make the fill's gap {LEAST_GAP_MM:g} mm or more"
+            )
+    if isinstance(pattern, Group):
+        if pattern.by is not None and frequencies(pattern.by):
+            yield (
+                f"blends by a pattern that vibrates at {_hz(frequencies(pattern.by))}; "
+                "blend by one that is still"
+            )
+        yield from _beats_between(pattern.operation, pattern.parts, known)
+    for part in children(pattern):
+        yield from _beats_within(part, known)
+
+
+def _beats_between(
+    operation: Operation, parts: Sequence[AnyPattern], known: Boxes
+) -> Iterator[str]:
+    """Sentences about vibrations of parts that an operation puts together where they overlap."""
+    if operation not in _SAID:
+        return
+    vibrating = [(part, frequencies(part)) for part in parts]
+    vibrating = [(bounds(part, known), hz) for part, hz in vibrating if hz][:_MOST_COMPARED]
+    said: set[str] = set()
+    for number, (box, hz) in enumerate(vibrating):
+        for other_box, other_hz in vibrating[:number]:
+            if box is not None and other_box is not None and box.common(other_box).is_empty:
+                continue
+            said.add(_SAID[operation].format(_hz(other_hz), _hz(hz), _masked(other_hz, hz)))
+    yield from sorted(said)
+
+
+def _alike(found: set[float]) -> Iterator[str]:
+    """Sentences about frequencies of a scene that cannot be told apart."""
+    for low, high in pairwise(sorted(found)):
+        if high - low < LEAST_DIFFERENCE_HZ:
+            yield (
+                f"vibrations of {low:g} and {high:g} Hz cannot be told apart; set them "
+                f"{LEAST_DIFFERENCE_HZ:g} Hz apart or more"
+            )
+
+
+_SAID = {
+    "multiply": "masks a vibration of {0} with one of {1}: {2}; mask by a pattern that is still",
+    "add": (
+        "adds a vibration of {0} to one of {1}, and the sum ends at full deflection; overwrite, "
+        'or write operation = "weighted"'
+    ),
+    "maximum": "takes the larger of vibrations of {0} and {1}, which neither is; overwrite instead",
+}
+
+
+def _own(pattern: AnyPattern) -> set[float]:
+    """Frequencies of what a pattern draws itself."""
+    if isinstance(pattern, UniformVibration):
+        return {pattern.frequency_hz}
+    if isinstance(pattern, Dots):
+        return _of(pattern.dot.vibration)
+    if not isinstance(pattern, Shape):
+        return set()
+    found: set[float] = set()
+    if pattern.stroke is not None:
+        found |= _of(pattern.stroke.vibration)
+        if isinstance(pattern, Polygon) and pattern.markers is not None:
+            found |= _of(pattern.markers.swing)
+    if pattern.dots is not None:
+        found |= _of(pattern.dots.dot.vibration) | _of(pattern.dots.vertex_vibration)
+    return found
+
+
+def _changed(pattern: AnyPattern) -> set[float]:
+    return _of(pattern.vibration)
+
+
+def _of(vibration: Vibration | None) -> set[float]:
+    return {vibration.frequency_hz} if vibration is not None and vibration.amplitude else set()
+
+
+def _masked(one: set[float], other: set[float]) -> str:
+    """What becomes of two vibrations of which one masks the other."""
+    differences = {abs(a - b) for a in one for b in other}
+    if differences == {0.0}:
+        return "their swings are narrower and weaker than either's"
+    if min(differences - {0.0}) < LEAST_DIFFERENCE_HZ:
+        return "they make sharp peaks, which may harm the actuators"
+    return "they beat"
+
+
+def _hz(found: set[float]) -> str:
+    return f"{' and '.join(f'{one:g}' for one in sorted(found))} Hz"

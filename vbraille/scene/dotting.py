@@ -23,8 +23,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from vbraille.scene.joints import edge_lengths_mm
-from vbraille.scene.patterns import Circle, PathShape, Polygon
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

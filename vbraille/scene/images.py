@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.scene.dots import ImageDots
+    from vbraille.scene.patterns import ImageDots
     from vbraille.scene.scene import Scene
 
 # The source asks for 5 to 10 pixels per mm; more than the larger is averaged away.

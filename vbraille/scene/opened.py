@@ -1,12 +1,12 @@
-"""What the reading of a scene's file gives: the scene, where its elements stand, what was said."""
+"""A scene that was read: the values, the file and line of each element, and what was said."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, NoReturn, Protocol
 
 from vbraille.errors import InputError
-from vbraille.scene.naming import about, said
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from vbraille.scene.scene import Scene
     from vbraille.scene.walking import Steps
+    from vbraille.toml.tomlfile import TomlFile
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,3 +134,95 @@ class OpenedScene:
         first: Steps = (*steps, "parts", 0)  # of a group of what another file has
         made_here = self.origins.of(steps) is None and self.origins.of(first) is not None
         return self.origins.place(first if made_here else steps)
+
+
+def said(steps: Steps) -> str:
+    """Words for a place in a scene, which keys and indices lead to.
+
+    >>> said(("elements", 3, "fill", "texture"))
+    'elements, number 4 fill texture'
+    """
+    words = (f", number {step + 1}" if isinstance(step, int) else f" {step}" for step in steps)
+    return "".join(words).strip()
+
+
+def about(steps: Steps, problem: str) -> str:
+    """Sentence about a place in a scene; the problem begins with a colon or a verb.
+
+    >>> about(("elements", 0), "has no place")
+    'elements, number 1 has no place'
+    """
+    return f"{said(steps)}{problem}" if problem.startswith(":") else f"{said(steps)} {problem}"
+
+
+class TomlOrigin:
+    """A scene file in TOML.
+
+    Parameters
+    ----------
+    file
+        The file.
+    """
+
+    def __init__(self, file: TomlFile) -> None:
+        self._file = file
+
+    @property
+    def where(self) -> str:
+        """Name of the file."""
+        return self._file.where
+
+    @cached_property
+    def _lines(self) -> dict[Steps, int]:
+        return self._file.lines()
+
+    def place(self, steps: Steps) -> str:
+        """Name of the file, and the line of a place in it."""
+        return _place(self.where, self._lines, steps)
+
+    def fail(self, steps: Steps, problem: str) -> NoReturn:
+        """Refuse the file for a problem at a place in it.
+
+        Raises
+        ------
+        InputError
+            In any case.
+        """
+        self._file.fail(steps, problem)
+
+
+class ForeignOrigin:
+    """A file of another format, which was read into a scene.
+
+    Parameters
+    ----------
+    path
+        The file.
+    found
+        What was read.
+    """
+
+    def __init__(self, path: Path, found: FoundScene) -> None:
+        self.where, self._found = str(path), found
+
+    def place(self, steps: Steps) -> str:
+        """Name of the file, and the line of a place if it is known."""
+        return _place(self.where, self._found.lines, steps)
+
+    def fail(self, steps: Steps, problem: str) -> NoReturn:
+        """Refuse the file for a problem at a place in the scene that it holds.
+
+        Raises
+        ------
+        InputError
+            In any case.
+        """
+        raise InputError(f"{self.place(steps)}: {about(steps, problem)}")
+
+
+def _place(where: str, lines: Mapping[Steps, int], steps: Steps) -> str:
+    """Name of a file, and the line of the nearest thing around a place that has one."""
+    for depth in range(len(steps), 0, -1):
+        if steps[:depth] in lines:
+            return f"{where} line {lines[steps[:depth]]}"
+    return where

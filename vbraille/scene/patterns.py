@@ -6,22 +6,22 @@ The classes are tables of scene files at the same time: their fields are the key
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 from vbraille.errors import check_range
 from vbraille.scene.crossing import meeting_edges
-from vbraille.scene.dots import Dots, ImageDots
-from vbraille.scene.labels import Label
 from vbraille.scene.measures import (
+    LEAST_APART_MM,
     Point,
+    check_angle,
     check_file,
     check_length,
     check_point,
     check_share,
 )
 from vbraille.scene.pattern import Pattern
-from vbraille.scene.shapes import Shape, StraightLine, check_drawn, check_points
-from vbraille.scene.strokes import VertexMarkers
+from vbraille.scene.strokes import DotStyle, Dotting, Stroke, VertexMarkers
 from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
@@ -30,6 +30,192 @@ from vbraille.scene.textures import (
     UniformVibration,
 )
 from vbraille.toml.tomlfile import Table
+
+
+class Label(Pattern, frozen=True, kw_only=True, tag="label"):
+    """Braille in the picture: a text, translated by the same tables as books are.
+
+    Parameters
+    ----------
+    text
+        The text.
+    place_mm
+        Top left corner of its first cell.
+    width_mm
+        Width at which its lines are broken; None for one line.
+    table
+        Language or table of liblouis; empty for that of the scene.
+    angle_deg
+        Direction of its lines, from +x towards +y.
+
+    Raises
+    ------
+    ValueError
+        If the text is empty, or a number is out of range.
+    """
+
+    text: str
+    place_mm: Point
+    width_mm: float | None = None
+    table: str = ""
+    angle_deg: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.text.strip():
+            raise ValueError("text is empty; a label needs one")
+        check_point("place", self.place_mm)
+        check_length("width", self.width_mm, 1.0)
+        check_angle("angle", self.angle_deg)
+
+
+class Dots(Pattern, frozen=True, kw_only=True, tag="dots"):
+    """Dots at any places, which share their look; where they overlap, the larger counts.
+
+    Parameters
+    ----------
+    centers_mm
+        Middles of the dots.
+    dot
+        How the dots look.
+
+    Raises
+    ------
+    ValueError
+        If there are none, or a number is out of range.
+    """
+
+    centers_mm: tuple[Point, ...]
+    dot: DotStyle = DotStyle()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.centers_mm:
+            raise ValueError("centers are missing; give at least one")
+        for number, center in enumerate(self.centers_mm, 1):
+            check_point(f"centers, number {number}", center)
+
+
+class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
+    """Dots where a grayscale image has blobs: Lévesque 2009, 6.3.1 and eq. 6.1.
+
+    A blob is a connected set of bright pixels. Its dot stands at its centre of mass and has its
+    largest gray as amplitude. How a blob becomes a dot is not in the source; this is ours to
+    choose.
+
+    Parameters
+    ----------
+    file
+        Name of a PNG, GIF, BMP, JPEG or SVG file, seen from the file of the scene.
+    place_mm
+        Place of the top left corner on the canvas.
+    width_mm, height_mm
+        Size on the canvas; if one of them is left out, it follows from the other and from the
+        picture's shape.
+    threshold
+        Gray, from 0 to 1, above which a pixel belongs to a blob.
+    by_area
+        Whether a dot has its blob's area, and not the radius of ``dot``.
+    dot
+        How the dots look.
+    cell_mm
+        Width and height of a cell: there is a dot in the middle of each cell of a grid over the
+        image instead, whose mean gray is its amplitude (5.3, with cells of 1.2 by 1.8 mm). No dot
+        is then larger than its cell. None for blobs.
+
+    Raises
+    ------
+    ValueError
+        If the file is none of this machine, or a number is out of range.
+    """
+
+    file: str
+    place_mm: Point = (0.0, 0.0)
+    width_mm: float | None = None
+    height_mm: float | None = None
+    threshold: float = 0.1
+    by_area: bool = True
+    cell_mm: Point | None = None
+    dot: DotStyle = DotStyle(plateau=0.25)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_file(self.file)
+        check_point("place", self.place_mm)
+        check_length("width", self.width_mm, 0.1)
+        check_length("height", self.height_mm, 0.1)
+        check_share("threshold", self.threshold)
+        for side in self.cell_mm or ():
+            check_length("cell", side, 0.1)
+
+
+class Shape(Pattern, frozen=True, kw_only=True):
+    """What shapes of every kind have in common: a stroke, or dots in its place.
+
+    Parameters
+    ----------
+    stroke
+        Stroke along the shape; None for none.
+    dots
+        Dots along the shape, in place of a stroke; None for none.
+
+    Raises
+    ------
+    ValueError
+        If it has both.
+    """
+
+    stroke: Stroke | None = None
+    dots: Dotting | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.stroke is not None and self.dots is not None:
+            raise ValueError("dots cannot be given beside a stroke; leave one out")
+
+
+class StraightLine(Shape, frozen=True, kw_only=True, tag="line"):
+    """A straight line with round ends: Lévesque 2009, eqs. 8.15-8.17.
+
+    Parameters
+    ----------
+    start_mm, end_mm
+        The two ends; textures along it begin at the first.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or both ends are one place.
+    """
+
+    start_mm: Point
+    end_mm: Point
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_point("start", self.start_mm)
+        check_point("end", self.end_mm)
+        if math.dist(self.start_mm, self.end_mm) < LEAST_APART_MM:
+            raise ValueError("end is where the line starts; a line needs two places")
+        check_drawn(self, None)
+
+
+def check_points(what: str, points_mm: tuple[Point, ...], least: int, *, closed: bool) -> None:
+    """Refuse too few places, and places that follow each other and are one."""
+    if len(points_mm) < least:
+        raise ValueError(f"{what} are {len(points_mm)}; there must be {least} or more")
+    for number, point in enumerate(points_mm, 1):
+        check_point(f"{what}, number {number}", point)
+        if number > 1 and math.dist(point, points_mm[number - 2]) < LEAST_APART_MM:
+            raise ValueError(f"{what}, number {number} is the place before it; leave it out")
+    if closed and math.dist(points_mm[-1], points_mm[0]) < LEAST_APART_MM:
+        raise ValueError(f"{what}, number {len(points_mm)} is the first place; leave it out")
+
+
+def check_drawn(shape: Shape, fill: object) -> None:
+    """Refuse a shape of which nothing can be felt."""
+    if shape.stroke is None and shape.dots is None and fill is None:
+        raise ValueError("a shape needs a stroke, dots or a fill; add one")
 
 
 class Tile(Pattern, frozen=True, kw_only=True, tag="tile"):

@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING, NoReturn
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
-from vbraille.scene.dots import ImageDots
 from vbraille.scene.dotting import most_dots_of
-from vbraille.scene.moving import LISTS, SEVERAL, moved
 from vbraille.scene.opened import Origins
-from vbraille.scene.patterns import Group, Use
+from vbraille.scene.patterns import Group, ImageDots, Use
 from vbraille.scene.stock import STOCK, stock_textures
-from vbraille.scene.walking import each, placed_children, with_children
+from vbraille.scene.walking import LISTS, SEVERAL, each, moved, placed_children, with_children
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:

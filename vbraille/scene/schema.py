@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from vbraille.scene.scenefile import SceneFile
+from vbraille.scene.reading import SceneFile
 from vbraille.toml.tomlfile import Table
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"

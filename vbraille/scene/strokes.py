@@ -89,7 +89,7 @@ class Along(Table, frozen=True, kw_only=True):
         Whether the stroke's edges are left whole (eq. 8.12 instead of 8.11).
     whole_cycles
         Whether the lengths are changed a little so that a closed path has a whole number of
-        cycles; see `vbraille.scene.fitting`.
+        cycles.
     velocity_mm_s
         Speed of the grating along the path, in the order of the path's points (eq. 9.2, with the
         sign that moves ridges towards larger places).

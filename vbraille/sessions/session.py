@@ -22,7 +22,7 @@ from vbraille.sessions.equipment import (
 )
 from vbraille.sessions.planning.choosing import procedure_of
 from vbraille.sessions.record import journal
-from vbraille.sessions.record.folder import WATCHED_FROM, create, load
+from vbraille.sessions.record.folder import create, load
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.markerports import parse_markers
 from vbraille.sessions.running.reader import seed_of
@@ -235,11 +235,6 @@ class Session:
         if changed.get("answers", began.answers) != began.answers:
             changed = {"fast": False, **changed}
         conditions = replace(began, **changed)
-        if conditions.live is not None and record.told.format < WATCHED_FROM:
-            raise InputError(
-                f"{record.folder} is a session of format {record.told.format}, whose journal "
-                f"cannot say that it was watched; leave out {setting('monitor')}"
-            )
         session = cls(record.folder, record.protocol, record.plan, conditions, progress, engine)
         session._begun = True
         return session

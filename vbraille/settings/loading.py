@@ -1,9 +1,9 @@
-"""Reading of the settings file."""
+"""The settings file, read if there is one."""
 
 from __future__ import annotations
 
 from vbraille.files import settings_path
-from vbraille.settings.chosen import Settings
+from vbraille.settings.values import Settings
 
 
 def load_settings(given: str | None = None) -> Settings:
@@ -24,7 +24,7 @@ def load_settings(given: str | None = None) -> Settings:
     if given is None and not path.exists():
         return Settings(path)
     # Imported here, since most have no such file, and need not wait for what reads it.
-    from vbraille.settings.parsing import parse_settings
+    from vbraille.settings.tables import parse_settings
     from vbraille.toml.textfile import read_text
 
     return parse_settings(read_text(path, "settings file"), path)

@@ -6,39 +6,30 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.render.braille.knobs import KNOBS, kept_values
 from vbraille.render.braille.straying import BAND
-from vbraille.settings.applying import with_profile
-from vbraille.settings.chosen import display_name
+from vbraille.settings.values import display_name, with_profile
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
 
     from vbraille.render import BrailleStyle, Model
-    from vbraille.settings.chosen import Settings
+    from vbraille.settings.values import Settings
 
-# Words for what is usual where neither an option nor the file says something else.
+# Words for what is usual where the options of reading have no value that says it.
 USUAL = {
-    "device": "sim",
     "language": "en",
     "grade": "what is usual in the language",
     "table": "by language",
     "encoding": "what the bytes of a file say",
-    "foreign": "switch",
-    "undefined": "mark",
-    "keep_lines": "no",
-    "advance": "return",
     "echo": "none at a terminal, otherwise both",
-    "speech": "no",
     "cues": "none",
     "also": "none",
-    "verbose": "no",
     "straying": "line",
     "band": f"{BAND:g}",
-    "keys": "usual",
 }
 
 
 def say_settings(
-    settings: Settings, options: Mapping[str, Any], usual: Mapping[str, str] = USUAL
+    settings: Settings, options: Mapping[str, Any], usual: Mapping[str, Any]
 ) -> Iterator[str]:
     """Lines on the options of reading, one for each, with where it comes from.
 
@@ -49,16 +40,16 @@ def say_settings(
     options
         Values that options give, by the option's name.
     usual
-        Words for what is usual, by the option's name, in the order of the lines.
+        Values that are usual, by the option's name, in the order of the lines; None for none.
     """
-    for name, words in usual.items():
+    for name, value in usual.items():
         label = name.replace("_", " ")
         if options.get(name) is not None:
             yield f"{label}: {said(options[name])} (option)"
         elif name in settings.read:
             yield f"{label}: {said(settings.read[name])} ({settings.where('read', name)})"
         else:
-            yield f"{label}: {words} (default)"
+            yield f"{label}: {USUAL[name] if value is None else said(value)} (default)"
 
 
 def say_tuning(

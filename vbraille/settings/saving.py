@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_file
 from vbraille.render.braille.knobs import kept_values
-from vbraille.settings.chosen import display_name
-from vbraille.settings.parsing import parse_settings
-from vbraille.settings.tables import check_name
+from vbraille.settings.tables import check_name, parse_settings
+from vbraille.settings.values import display_name
 from vbraille.toml.textfile import read_text
 
 if TYPE_CHECKING:

@@ -29,10 +29,8 @@ from vbraille.devices.wire.messages import (
     Frame,
     Hello,
     Info,
-    Info2,
     Rest,
     State,
-    State2,
     Watchdog,
 )
 
@@ -53,8 +51,7 @@ _U16, _U32 = 0xFFFF, 0xFFFF_FFFF
 class Controller:
     """A device's controller, from the moment it starts.
 
-    It speaks the version of the protocol that its INFO says, and no other. Its clock is given by
-    the caller: plain microseconds, which never wrap or go back.
+    Its clock is given by the caller: plain microseconds, which never wrap or go back.
 
     Parameters
     ----------
@@ -91,7 +88,7 @@ class Controller:
     def __init__(self, info: Info) -> None:
         self.info = info
         self.buttons = 0
-        self.knobs = [0.0] * (info.knobs if isinstance(info, Info2) else 0)
+        self.knobs = [0.0] * info.knobs
         self.force_mn: int | None = None
         self.greeted = self.faulty = False
         self.placed = info.encoder is Encoder.ABSOLUTE
@@ -338,24 +335,19 @@ class Controller:
 
     def _state(self, count: int, y_mm: float, theta_rad: float) -> bytes:
         info = self.info
-        first = (
-            self._sequence,
-            self._now_us & _U32,
-            count,
-            self._frame_sequence if self.acknowledges else 0,
-            self._flags(),
-            self.buttons,
-            self.force_mn,
-        )
-        if not isinstance(info, Info2):
-            return encode(State(*first))
         y_counts = info.y_count_sign * round(y_mm * info.y_counts_per_m / 1000)
         y_count = (info.far_stop_count + self._astray + y_counts) & ((1 << info.count_bits) - 1)
         turn = info.counts_per_turn
         turned = info.turn_sign * round(theta_rad / (2 * math.pi) * turn)
         return encode(
-            State2(
-                *first,
+            State(
+                self._sequence,
+                self._now_us & _U32,
+                count,
+                self._frame_sequence if self.acknowledges else 0,
+                self._flags(),
+                self.buttons,
+                self.force_mn,
                 y_count=y_count if info.height_um else 0,
                 theta_count=(info.straight_count + self._astray + turned) % turn if turn else 0,
                 knobs=sum(

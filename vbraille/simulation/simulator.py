@@ -15,7 +15,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.wire.codec import DELIMITER, MOST_FRAME_BYTES
-from vbraille.devices.wire.messages import Encoder, Info2
+from vbraille.devices.wire.messages import Encoder
 from vbraille.errors import check_range
 from vbraille.simulation.carriage import Carriage
 from vbraille.simulation.firmware import WATCHDOG_US, Controller
@@ -190,11 +190,13 @@ class Simulator:
             self.controller.watchdog_us = _LATE_TIMES * WATCHDOG_US
         self.states_sent = self.states_dropped = 0
         span_mm = (info.columns - 1) * info.column_pitch_nm / 1e6
-        height_mm, turns = 0.0, False
-        if isinstance(info, Info2):
-            height_mm, turns = info.height_um / 1000, info.counts_per_turn > 0
         self._carriage = Carriage(
-            hand, span_mm, info.travel_um / 1000, height_mm=height_mm, turns=turns, area=area
+            hand,
+            span_mm,
+            info.travel_um / 1000,
+            height_mm=info.height_um / 1000,
+            turns=info.counts_per_turn > 0,
+            area=area,
         )
         self._port = port
         self._say = say

@@ -13,12 +13,13 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.devices.base import Device
-from vbraille.devices.interface import misfits, wrong_values
+from vbraille.devices.base import Device, Particulars
+from vbraille.devices.events import Placing, is_known
 from vbraille.display import Display
 from vbraille.engine.advance import HOME_MM
 from vbraille.engine.checkup import NS_PER_S, Watch
@@ -26,7 +27,7 @@ from vbraille.engine.clock import RealClock
 from vbraille.errors import DeviceError, InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -35,6 +36,15 @@ if TYPE_CHECKING:
 # How far a carriage goes before it has turned, and how long and often it is asked where it is.
 _AWAY_MM = 20.0
 _LOOKING_S, _LOOKS = 1.0, 100_000
+_VALUES: dict[str, tuple[type, ...]] = {
+    "rested": (int,),
+    "placing": (Placing,),
+    "taking": (bool,),
+    "acknowledges": (bool,),
+    "acknowledged_ns": (int, type(None)),
+    "watchdog_trips": (int, type(None)),
+    "particulars": (Particulars, type(None)),
+}
 
 
 def check_info(open_device: Open) -> None:
@@ -46,11 +56,11 @@ def check_info(open_device: Open) -> None:
 
 
 def check_members(open_device: Open) -> None:
-    """Methods can be called as they will be, what is to be a value is one, and gives its kind."""
+    """What is to be a value is one, of its kind; a method there would always count as true."""
     with _opened(open_device) as device:
-        for misfit in misfits(device):
-            raise AssertionError(misfit)
-        for wrong in wrong_values(device):
+        for name in ("read", "write", "set_zero", "take_events", "counts"):
+            assert callable(getattr(device, name)), f"{name} must be a method"
+        for wrong in _wrong_values(device):
             raise AssertionError(wrong)
 
 
@@ -178,3 +188,22 @@ def _refused(device: Device, frame: NDArray[np.float64], what: str) -> None:
     except DeviceError:
         return
     raise AssertionError(f"{what} must be refused with a DeviceError")
+
+
+def _wrong_values(device: Device) -> Iterator[str]:
+    """Values of an opened device that differ in kind from what `Device` says, a sentence each."""
+    for name, kinds in _VALUES.items():
+        value = getattr(device, name)
+        if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
+            wanted = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds)
+            yield f"{name} must be {wanted}, and is {value!r}"
+    events = device.take_events()
+    if not isinstance(events, Sequence):
+        yield f"take_events must give a list of events, and gives {events!r}"
+    elif wrong := next((each for each in events if not is_known(each)), None):
+        yield f"take_events must give events of vbraille.devices.events, and gives {wrong!r}"
+    counts = device.counts()
+    if not isinstance(counts, Mapping) or not all(
+        isinstance(name, str) and isinstance(count, int) for name, count in counts.items()
+    ):
+        yield f"counts must give whole numbers by name, and gives {counts!r}"

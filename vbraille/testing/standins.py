@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from threading import Event, Thread
 from typing import TYPE_CHECKING
 
-from vbraille.devices.wire.messages import VERSION, Encoder
+from vbraille.devices.wire.messages import Encoder
 from vbraille.engine.clock import RealClock
 from vbraille.render.braille.models import STRESS2, Model, model_of
 from vbraille.simulation.carriage import area_of
@@ -79,7 +79,6 @@ def simulated_controller(
     faults: Faults | None = None,
     presses: Sequence[str] = (),
     script: str = "",
-    version: int = VERSION,
     say: Callable[[str], None] = lambda _: None,
 ) -> Iterator[str]:
     """Run a controller at a port, in a thread, in real time; give the spec that opens it.
@@ -100,8 +99,6 @@ def simulated_controller(
     script
         Lines of times and what is then done to buttons and knobs, such as "2.5s press 1",
         "3s release 1" and "4s knob 1 0.8".
-    version
-        Version of the protocol that it speaks; version 1 knows one axis and no knobs.
     say
         Function that is told what happens, a sentence at a time.
 
@@ -123,7 +120,7 @@ def simulated_controller(
     info = display.display if isinstance(display, Model) else display
     port, stopped = Port(), Event()
     try:
-        described = describe(info, Encoder[encoder.upper()], version)
+        described = describe(info, Encoder[encoder.upper()])
         simulator = Simulator(
             described,
             parse_hand(hand, seed),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections import Counter
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
@@ -11,13 +12,100 @@ import msgspec
 from msgspec import inspect
 
 from vbraille.errors import InputError
-from vbraille.toml.tomllines import lines_of
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator
 
-    from vbraille.toml.tomllines import Path
+# The keys of tables and the indices of items that lead from the whole file to one value.
+Path = tuple[str | int, ...]
+
+_TOKEN = re.compile(
+    r"""
+    (?P<nothing>[ \t\r]+|\#[^\n]*)
+    |"{3}(?:[^\\]|\\.)*?"{3}"{0,2}|'{3}.*?'{3}'{0,2}  # of several lines
+    |"(?:[^"\\\n]|\\.)*"|'[^'\n]*'
+    |[\n\[\]{},=.]
+    |[^\s\[\]{},=.\#"']+
+    """,
+    re.VERBOSE | re.DOTALL,
+)
+
+
+def lines_of(text: str, about: Path | None = None) -> dict[Path, int]:
+    r"""Line numbers, from 1, of keys, tables and items by their paths; braces are not looked into.
+
+    Parameters
+    ----------
+    text
+        A TOML text that `tomllib` can read; for other texts the result means nothing.
+    about
+        Path that is asked for: items of other keys' lists are left out then. None for all.
+
+    Examples
+    --------
+    >>> lines_of('size = 3\n[[box]]\nnames = [\n  "a",\n  "b",\n]')["box", 0, "names", 1]
+    5
+    """
+    lines: dict[Path, int] = {}
+    tables: Counter[Path] = Counter()  # number of tables under each [[name]] so far
+    table: Path = ()
+    for statement in _statements(text):
+        tokens = [token for token, _ in statement]
+        header = tokens[0] == "["
+        path: Path = () if header else table
+        for token in tokens[: len(tokens) if header else tokens.index("=")]:
+            if token in "[].":
+                continue
+            if path in tables:
+                path = (*path, tables[path] - 1)
+            path = (*path, _unquoted(token))
+            lines.setdefault(path, statement[0][1])
+        if not header:
+            if about is None or path == about[: len(path)]:
+                _add_items(lines, path, statement[tokens.index("=") + 1 :])
+            continue
+        if tokens[1] == "[":
+            tables[path] += 1
+            path = (*path, tables[path] - 1)
+        lines[path] = statement[0][1]
+        table = path
+    return lines
+
+
+def _statements(text: str) -> Iterator[list[tuple[str, int]]]:
+    """Tokens, with their lines, of each header and of each key with its value."""
+    statement: list[tuple[str, int]] = []
+    depth, line = 0, 1
+    for match in _TOKEN.finditer(f"{text}\n"):
+        token = match[0]
+        if token == "\n":
+            if statement and not depth:
+                yield statement
+                statement = []
+        elif match["nothing"] is None:
+            statement.append((token, line))
+            depth += (token in "[{") - (token in "]}")
+        line += token.count("\n")
+
+
+def _add_items(lines: dict[Path, int], path: Path, value: list[tuple[str, int]]) -> None:
+    """Add the lines of the items of a list, and of the lists in it."""
+    places: list[int] = []  # indices of the items that are open, outermost first
+    for token, line in value:
+        if token in "]}":
+            places.pop()
+        elif token == "," and places:
+            places[-1] += 1
+        else:
+            lines.setdefault((*path, *places), line)
+        if token in "[{":
+            places.append(0)
+
+
+def _unquoted(key: str) -> str:
+    return tomllib.loads(f"key = {key}")["key"] if key[0] in "\"'" else key
+
 
 _Value = TypeVar("_Value")
 
@@ -92,13 +180,11 @@ class TomlFile:
         if _levels(self._tree) > _MOST_LEVELS:
             raise InputError(f"{where} nests its tables too deep; make it flatter")
         spaces = {**_SPACES, 0x0A: " "} if several_lines else _SPACES
-        if all(_is_good(value, spaces) for value in _values(self._tree)):
-            return
-        path, value = next(leaf for leaf in _leaves(self._tree) if not _is_good(leaf[1], spaces))
-        if isinstance(value, str):
-            lines = "text" if several_lines else "one line"
-            self._refuse(path, f"{lines} without control characters")
-        self._refuse(path, "a smaller number")
+        for path, value in _leaves(self._tree):
+            if not _is_good(value, spaces):
+                lines = "text" if several_lines else "one line"
+                what = f"{lines} without control characters"
+                self._refuse(path, what if isinstance(value, str) else "a smaller number")
 
     def read(
         self,
@@ -132,7 +218,7 @@ class TomlFile:
             path = (*under, *found)
             if isinstance(error.__cause__, ValueError):
                 colon = "" if isinstance(self._at(path), dict) else ": "
-                self._fail(path, f"{colon}{error.__cause__}")
+                self.fail(path, f"{colon}{error.__cause__}")
             self._explain(path, message, _types_at(kind, found))
 
     def names(self, *path: str | int) -> tuple[str, ...]:
@@ -161,23 +247,6 @@ class TomlFile:
         """Lines of keys, tables and items, from 1, by the keys that lead to them."""
         return lines_of(self._text)
 
-    def fail(self, path: Path, problem: str) -> NoReturn:
-        """Refuse the file for a problem at a place in it.
-
-        Parameters
-        ----------
-        path
-            Keys that lead to the place.
-        problem
-            Rest of a sentence that begins with the name of the place.
-
-        Raises
-        ------
-        InputError
-            In any case.
-        """
-        self._fail(path, problem)
-
     @contextmanager
     def checking(self) -> Iterator[None]:
         """Add the file and the line to the message of a `ValueError` about the file as a whole.
@@ -203,26 +272,26 @@ class TomlFile:
         value = self._at(path)
         expected = _EXPECTED.match(message)
         if message.startswith("Object missing"):
-            self._fail(path, f"lacks {message.split('`')[1]}; add it")
+            self.fail(path, f"lacks {message.split('`')[1]}; add it")
         if message.startswith("Object contains unknown") and isinstance(value, dict):
             self._fail_unknown(path, value, [t for t in types if isinstance(t, inspect.StructType)])
         literals = dict.fromkeys(t.values for t in types if isinstance(t, inspect.LiteralType))
         names = [str(name) for values in literals for name in values]
         if message.startswith("Invalid"):
-            self._fail(path, f"is {quote(value)}{which(str(value), names)}")
+            self.fail(path, f"is {quote(value)}{which(str(value), names)}")
         if expected and expected[2]:
             items = [f.name for t in types if isinstance(t, inspect.StructType) for f in t.fields]
             which_items = f": {', '.join(items)}" if items else ""
-            self._fail(path, f"has {len(value)} items; give {expected[2]}{which_items}")
+            self.fail(path, f"has {len(value)} items; give {expected[2]}{which_items}")
         if expected and any(map(_is_tables, types)):
-            self._fail(path, f"must be tables; write each under [[{path[-1]}]]")
+            self.fail(path, f"must be tables; write each under [[{path[-1]}]]")
         if expected:
             # Words of one list are few; those that tell kinds of tables apart are many.
             few = len(literals) == 1
             words = {**_WANTED, "str": " or ".join(map(quote, names))} if few else _WANTED
             wanted = [words.get(name) for name in expected[1].split(" | ")]
             self._refuse(path, " or ".join(filter(None, wanted)))
-        self._fail(path, f"cannot be used: {message}")
+        self.fail(path, f"cannot be used: {message}")
 
     def _fail_unknown(
         self, path: Path, table: dict[str, Any], kinds: list[inspect.StructType]
@@ -234,18 +303,33 @@ class TomlFile:
         others = [repr(kind.tag) for kind in kinds if key in _keys(kind)]
         if others:
             (kind,) = own
-            self._fail(
+            self.fail(
                 (*path, key),
                 f"is of {kind.tag_field} = {' or '.join(others)}; "
                 f"leave it out of {kind.tag_field} = {kind.tag!r}",
             )
-        self._fail(path, f"has no key {quote(key)}{which(key, known)}", key)
+        self.fail(path, f"has no key {quote(key)}{which(key, known)}", key)
 
     def _refuse(self, path: Path, wanted: str) -> NoReturn:
-        self._fail(path, f"is {quote(self._at(path))}; it must be {wanted}")
+        self.fail(path, f"is {quote(self._at(path))}; it must be {wanted}")
 
-    def _fail(self, path: Path, problem: str, key: str = "") -> NoReturn:
-        """Raise a sentence that names the line, the table, the key and the problem."""
+    def fail(self, path: Path, problem: str, key: str = "") -> NoReturn:
+        """Refuse the file for a problem at a place in it, by a sentence that names its line.
+
+        Parameters
+        ----------
+        path
+            Keys that lead to the place.
+        problem
+            Rest of a sentence that begins with the name of the place.
+        key
+            Key whose line is named in place of the place's; empty for none.
+
+        Raises
+        ------
+        InputError
+            In any case.
+        """
         named = self._named(path)
         if named and not problem.startswith(":"):
             is_item = isinstance(path[-1], int) and not isinstance(self._at(path), dict)
@@ -327,19 +411,6 @@ def _levels(tree: object) -> int:
         level = [v for values in inner for v in values if isinstance(v, dict | list)]
         number += 1
     return number
-
-
-def _values(tree: object) -> Iterator[object]:
-    """All values of a file that contain no other values, at any depth."""
-    left: list[object] = [tree]
-    while left:
-        value = left.pop()
-        if isinstance(value, dict):
-            left += value.values()
-        elif isinstance(value, list):
-            left += value
-        else:
-            yield value
 
 
 def _leaves(tree: object) -> Iterator[tuple[Path, object]]:

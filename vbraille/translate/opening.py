@@ -173,9 +173,9 @@ def _read(
 
             return EpubBook.open(stream, name)
         case Form.DTBOOK:
-            from vbraille.translate.documents.dtbook import DtbookBook
+            from vbraille.translate.documents.html import HtmlBook
 
-            return DtbookBook.open(stream, name)
+            return HtmlBook.open(stream, name, is_dtbook=True)
         case Form.DOCX | Form.ODT | Form.RTF:
             from vbraille.translate.documents.office.officebook import open_office
 

@@ -22,7 +22,7 @@ from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Run
 from vbraille.sessions.record.export import NEVER_CAME, rows
 from vbraille.sessions.record.folder import load, versions
-from vbraille.sessions.record.journal import Journal
+from vbraille.sessions.record.journal import Journal, Tie
 from vbraille.sessions.record.traces import TRACE, TraceWriter, read_trace
 
 PAPER = MINI.replace('model = "vbd"', 'model = "vbd"\nmedium = "paper"')
@@ -204,7 +204,7 @@ def test_a_hand_that_never_came_to_the_string_has_not_read(folder, tmp_path):
     ticks = read_trace(copy / "trace-001.gz").ticks
     ticks["x_mm"][ticks["line"] == 2] = -7.7 / 2
     (copy / "trace-001.gz").unlink()
-    trace = TraceWriter(copy / "trace-001.gz")
+    trace = TraceWriter(copy / "trace-001.gz", lambda: Tie(0, 0))
     trace.add(ticks)
     trace.close()
     sitting = read_sitting(copy)
@@ -256,7 +256,7 @@ def test_only_the_last_attempt_up_to_its_answer_is_read(folder, tmp_path):
     after["time_ns"] = first["time_ns"][-1] + np.arange(1, 3001) * 1_000_000
     until = int(np.flatnonzero(ticks["line"] == 1)[-1]) + 1
     (copy / "trace-001.gz").unlink()
-    trace = TraceWriter(copy / "trace-001.gz")
+    trace = TraceWriter(copy / "trace-001.gz", lambda: Tie(0, 0))
     trace.add(np.concatenate([ticks[:until], after, ticks[until:]]))
     trace.close()
     assert read_sitting(copy).readings[1] == plain

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.controllers import ControllerOf20261121
+from tests.controllers import HastyController
 from tests.devices.bench import DEVICE_LATE, HALF, HOME_MM, HOST_LATE, LINE_LATE, REST, Bench
 from vbraille.devices.saying import told
 from vbraille.devices.wire.codec import Levels, encode
@@ -12,7 +12,7 @@ from vbraille.errors import DeviceError
 from vbraille.simulation.firmware import Controller
 from vbraille.simulation.simulator import split
 
-OLD_AND_NEW = pytest.mark.parametrize("made_as", [Controller, ControllerOf20261121])
+OLD_AND_NEW = pytest.mark.parametrize("made_as", [Controller, HastyController])
 
 
 def test_a_peer_that_does_not_read_stops_nobody_and_gets_nothing_late():
@@ -99,7 +99,11 @@ def test_what_a_stopped_host_has_not_read_is_not_taken_for_the_place(made_as):
         made.way_mm = way_mm
         made.controller.tick(made.us, way_mm)
         made.us += 1000
-        made.say(encode(State(way_mm, made.us, 0, device.conversation.frames.sequence, 1, 0, None)))
+        made.say(
+            encode(
+                State(way_mm, made.us, 0, device.conversation.frames.sequence, 1, 0, None, 0, 0, 0)
+            )
+        )
     made.way_mm = 120.0
     made.run(device, 1)
     assert not device.taking
@@ -113,7 +117,7 @@ def test_what_a_stopped_host_has_not_read_is_not_taken_for_the_place(made_as):
 
 
 def test_an_old_controller_that_a_late_frame_holds_is_told_to_rest():
-    made = Bench(made_as=ControllerOf20261121)
+    made = Bench(made_as=HastyController)
     device = made.open()
     made.settle(device)
     made.deaf = True

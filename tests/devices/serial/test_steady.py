@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.controllers import ControllerOf20261121
+from tests.controllers import HastyController
 from tests.tiers import by_tier
 from tests.troubles import Troubles
 from tests.wired import Wired, reading
@@ -31,7 +31,6 @@ from vbraille.devices.wire.messages import (
     TRIPPED,
     Error,
     State,
-    State2,
     Watchdog,
 )
 from vbraille.simulation.firmware import Controller
@@ -142,7 +141,7 @@ def test_undisturbed_nothing_is_left_to_python_once_frames_are_taken():
     assert after[3] - before[3] >= 499
 
 
-@pytest.mark.parametrize("controller", [Controller, ControllerOf20261121])
+@pytest.mark.parametrize("controller", [Controller, HastyController])
 @pytest.mark.parametrize("kind", ["host", "line"])
 @pytest.mark.parametrize("seed", range(by_tier(2, 8, 400)))
 def test_beside_python_over_traffic_with_troubles(seed, kind, controller):
@@ -160,7 +159,6 @@ def conversation(**changes):
     talk.count_bits, talk.mm_per_count = 24, 0.005
     talk.slew_per_ns, talk.period_ns = math.inf, 1e6
     talk.bits, talk.idle_ns = 10, IDLE_MS * NS_PER_MS
-    talk.state_type, talk.state_bytes = steady.STATE2, steady.STATE2_BYTES
     talk.button_mask, talk.knobs_fitted, talk.knobs = 0xFF, 3, 0x80_8080
     for name, value in changes.items():
         setattr(talk, name, value)
@@ -170,10 +168,7 @@ def conversation(**changes):
 def state(sequence=11, flags=PLACED, **changes):
     numbers = {"time_us": 6_000, "count": 200, "frame_sequence": 7, "buttons": 0, "force_mn": None}
     numbers |= {"y_count": 40, "theta_count": 4000, "knobs": 0x80_8080}
-    return encode(State2(sequence=sequence, flags=flags, **(numbers | changes)))
-
-
-OF_VERSION_1 = encode(State(11, 6_000, 200, 7, PLACED, 0, None))
+    return encode(State(sequence=sequence, flags=flags, **(numbers | changes)))
 
 
 def taken(received, talk, now_ns=1_001_000_000):
@@ -191,7 +186,6 @@ def taken(received, talk, now_ns=1_001_000_000):
         state(buttons=1),
         state(knobs=0x80_8083),
         state(knobs=0x7D_8080),
-        OF_VERSION_1,
         encode(Watchdog(0, 0)),
         encode(Error(200, "warm")),
         b"\x05garbage\0",
@@ -203,14 +197,6 @@ def test_what_is_no_good_state_leaves_all_of_it_to_python(received):
         talk = conversation()
         assert taken(stream, talk) == (steady.SOMETHING_ELSE, 0)
         assert talk == conversation()
-
-
-def test_a_state_of_version_1_in_a_conversation_of_version_1():
-    talk = conversation(state_type=steady.STATE, state_bytes=steady.STATE_BYTES)
-    assert taken(OF_VERSION_1, talk) == (len(OF_VERSION_1), 1)
-    assert (talk.count, talk.x_mm) == (200, pytest.approx(1.0))
-    assert (talk.y_mm, talk.theta_rad) == (0.0, 0.0)
-    assert taken(state(sequence=12), talk) == (steady.SOMETHING_ELSE, 0)
 
 
 def test_both_axes_and_the_angle():

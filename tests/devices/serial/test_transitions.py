@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from tests.devices.bench import DOWN_BYTES, HALF, REST, Bench, shown
+from tests.devices.bench import DOWN_BYTES, HALF, REST, Bench
 from vbraille.devices.serial.conversation import Conversation
 from vbraille.devices.serial.openserial import greet
 from vbraille.devices.serial.serialdevice import SerialDevice
 from vbraille.devices.serial.transitions import TALKING, TRANSITIONS, Cause, Stage
 from vbraille.devices.wire.codec import Decoder, encode, enframe
-from vbraille.devices.wire.messages import PLACED, RESTING, Encoder, Error, Frame, State2
+from vbraille.devices.wire.messages import PLACED, RESTING, Encoder, Error, Frame, State
 from vbraille.errors import DeviceError
 
 ROWS = [(stage, cause) for stage, row in TRANSITIONS.items() for cause in row]
@@ -60,7 +60,7 @@ def watched(made):
 def say_state(made, *, flags, frame_sequence):
     """Have this STATE come, and none of the controller's."""
     sequence = made.controller._sequence + 1
-    made.put(encode(State2(sequence, made.us, 0, frame_sequence, flags, 0, None, 0, 0, 0)))
+    made.put(encode(State(sequence, made.us, 0, frame_sequence, flags, 0, None, 0, 0, 0)))
 
 
 def in_silence(made, device, frame=HALF):
@@ -154,11 +154,6 @@ class Done:
     @staticmethod
     def turned_away(made, device):
         made.put(enframe(b"\x81\x03"))
-        made.run(device, 1)
-
-    @staticmethod
-    def other_version(made, device):
-        made.put(encode(shown(version=1)))
         made.run(device, 1)
 
     @staticmethod

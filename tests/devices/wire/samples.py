@@ -1,7 +1,5 @@
 """Messages of the protocol: one of each kind, and any that can be."""
 
-from dataclasses import fields as dataclass_fields
-
 import pytest
 from hypothesis import strategies as st
 
@@ -10,30 +8,27 @@ from vbraille.devices.wire.fields import Number, OneOf, Packed, PerActuator, Sho
 from vbraille.devices.wire.messages import (
     MESSAGES,
     PLACED,
+    VERSION,
     CountSign,
     Encoder,
     Error,
     Frame,
     Hello,
     Info,
-    Info2,
     Rest,
     RestSide,
     State,
-    State2,
     TurnSign,
     Watchdog,
     YCountSign,
 )
 
-# INFO of version 2 has the type of INFO.
-CODES = {message: code for code, message in MESSAGES.items()} | {Info2: 0x81}
+CODES = {message: code for code, message in MESSAGES.items()}
 EVERY_MESSAGE = pytest.mark.parametrize("kind", CODES, ids=lambda k: k.__name__)
 CODECS = {message: BodyCodec(code, message) for message, code in CODES.items()}
 PRINTABLE = st.characters(exclude_categories=("C", "Z")) | st.just(" ")
-STATE = State(1, 2_000_000, 3, 4, PLACED, 0, -5)
 INFO = Info(
-    version=1,
+    version=VERSION,
     rows=2,
     columns=3,
     column_pitch_nm=1_200_000,
@@ -53,9 +48,6 @@ INFO = Info(
     inverted=bytes(6),
     gain=bytes([255] * 6),
     enabled=bytes([1] * 6),
-)
-INFO2 = Info2(
-    **{field.name: getattr(INFO, field.name) for field in dataclass_fields(INFO)} | {"version": 2},
     buttons=2,
     knobs=1,
     contactor_width_nm=500_000,
@@ -68,15 +60,13 @@ INFO2 = Info2(
     turn_sign=TurnSign.CLOCKWISE,
     straight_count=7,
 )
-STATE2 = State2(1, 2_000_000, 3, 4, PLACED, 0, -5, 6, 7, 0x010203FF)
+STATE = State(1, 2_000_000, 3, 4, PLACED, 0, -5, 6, 7, 0x010203FF)
 SAMPLES = [
     Hello(),
     Frame(1, b"\x00\xff\x80"),
     Rest(),
     INFO,
-    INFO2,
     STATE,
-    STATE2,
     Watchdog(0, 0),
     Error(255, "It rattles."),
 ]

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from vbraille.devices.wire import wirekernels
 from vbraille.devices.wire.codec import CRC_BYTES, Decoder, Drop, encode, frame_head, line_bytes
 from vbraille.devices.wire.codec import enframe as enframe_in_python
-from vbraille.devices.wire.fields import places_of
+from vbraille.devices.wire.fields import fields_of, places_of
 from vbraille.devices.wire.messages import Error, Frame, State
 
 GUARD = 16
@@ -182,6 +182,7 @@ states = st.builds(
     flags=st.integers(0, 0xFF),
     buttons=st.integers(0, 0xFF),
     force_mn=st.one_of(st.none(), st.integers(-0x7FFF, 0x7FFF)),
+    **dict.fromkeys(("y_count", "theta_count", "knobs"), st.integers(0, 0xFFFF_FFFF)),
 )
 
 
@@ -190,8 +191,8 @@ def test_the_numbers_of_a_message_are_read_and_written_where_the_table_says(stat
     body = cobs.decode(encode(state)[:-1])[:-CRC_BYTES]
     source = np.frombuffer(body, np.uint8)
     numbers = [wirekernels.number(source, *place) for place in places_of(State)]
-    want = [getattr(state, name) for name in State.__slots__]
-    want[-1] = -0x8000 if want[-1] is None else want[-1]
+    want = [getattr(state, name) for name, _ in fields_of(State)]
+    want = [-0x8000 if value is None else value for value in want]
     assert numbers == want
     written = source.copy()
     written[1:] = 0xA5

@@ -7,7 +7,7 @@ from tests.live.page.showing import settled, until
 from tests.live.page.test_colours import STEPS, palette, paper, ramp
 from tests.live.scenes import SWING_MM, Scene
 from tests.tiers import heavy
-from vbraille.live.pagefiles import page_files
+from vbraille.live.server import page_files
 
 SHOWN = """[...document.querySelectorAll("#deflection [data-deflection]")].map((actuator) => ({
   deflection: Number(actuator.dataset.deflection), row: Number(actuator.dataset.row),

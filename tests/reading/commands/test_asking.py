@@ -2,7 +2,7 @@
 
 from tests.reading.commands.test_moving import finger_at
 from tests.reading.test_reader import Bench
-from vbraille.reading.echo import Echo
+from vbraille.reading.outputs import Echo
 
 
 def test_a_cell_is_told_by_its_dots_its_text_and_its_word():

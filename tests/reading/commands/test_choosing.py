@@ -6,7 +6,6 @@ import pytest
 
 from tests.reading.commands.test_moving import finger_at
 from tests.reading.test_reader import TEXT, Bench
-from vbraille.reading.beside import Beside
 from vbraille.reading.cues import Cue
 from vbraille.translate import Book, BrailleTable
 from vbraille.translate.braillefiles.lines import open_brf
@@ -79,7 +78,7 @@ def test_braille_that_is_read_as_it_is_has_no_table():
 
 def test_lines_come_by_time_while_the_reader_wants_it_and_does_not_rest():
     scroll, cues = Scroll(), []
-    bench = Bench(TEXT, beside=Beside(scroll=scroll, cue=cues.append), stay=True)
+    bench = Bench(TEXT, scroll=scroll, cue=cues.append, stay=True)
     bench.run(1.5)
     assert bench.reader.line_number == 1
     assert bench.press("v") == ["autoscroll: 8 cells a second"]

@@ -5,9 +5,8 @@ import pytest
 from tests.engine.test_loop import straight
 from tests.reading.test_reader import Bench
 from vbraille.layout.pages import Layout
-from vbraille.reading.beside import Beside
 from vbraille.reading.cues import Cue
-from vbraille.reading.echo import Echo
+from vbraille.reading.outputs import Echo
 from vbraille.render import STRESS2
 
 LONG = " ".join(f"w{n:02}" for n in range(40))  # many more cells than the hand can cross
@@ -122,7 +121,7 @@ def test_blank_lines_are_passed_over_when_that_is_wanted():
 def test_cues_for_the_end_of_a_line_of_a_page_and_for_limits():
     cues = []
     text = "\n".join("abcdefgh" for _ in range(60))
-    bench = Bench(text, keep_lines=True, beside=Beside(cue=cues.append), advance=False, first=24)
+    bench = Bench(text, keep_lines=True, cue=cues.append, advance=False, first=24)
     end_mm = STRESS2.style.geometry.extent_mm(8) + 1
 
     def read_a_line():

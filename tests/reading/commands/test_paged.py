@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from tests.reading.commands.test_turning import bench
 from tests.tiers import examples
 from vbraille.live.messages import PagePress, Turn
+from vbraille.reading.bindings import Context
 from vbraille.reading.commands.paged import ALLOWED, obey
 from vbraille.reading.commands.table import COMMANDS
-from vbraille.reading.context import Context
 from vbraille.render.braille.knobs import KNOBS
 
 KEYS = {

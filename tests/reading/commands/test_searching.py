@@ -3,12 +3,10 @@
 import pytest
 
 from tests.reading.test_reader import Bench
-from vbraille.reading.beside import Beside
-from vbraille.reading.context import Context
+from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
-from vbraille.reading.echo import Echo
-from vbraille.reading.nearby import look, look_everywhere
-from vbraille.reading.queries import (
+from vbraille.reading.outputs import Echo
+from vbraille.reading.search.queries import (
     Counted,
     CountLines,
     Failed,
@@ -17,6 +15,7 @@ from vbraille.reading.queries import (
     NotFound,
     Searched,
 )
+from vbraille.reading.search.seeker import look, look_everywhere
 from vbraille.translate import Document
 
 TEXT = "The Café is here.\n\nno\n\nA cafe, two\ncafés, and THE\nstreet Straße.\n"
@@ -65,7 +64,7 @@ def test_case_and_blanks_do_not_matter_and_accents_only_if_asked(bench):
 
 def test_a_search_goes_backward_again_and_with_the_last_text():
     cues = []
-    bench = Bench(TEXT, width=30, beside=Beside(cue=cues.append))
+    bench = Bench(TEXT, width=30, cue=cues.append)
     assert bench.press(".") == ["search: nothing was searched yet; slash asks what"]
     bench.press(">")
     assert bench.press("\\the\n") == ["search backward: type the text, Enter", "text: the",
@@ -88,7 +87,7 @@ def test_escape_forgets_and_an_empty_text_searches_nothing(bench):
 def far(seeker, verbose=False):
     """A reader of a book whose end is far away."""
     text = "\n\n".join(["nothing here"] * 5_000 + ["the needle"])
-    bench = Bench(text, beside=Beside(seeker=seeker, verbose=verbose))
+    bench = Bench(text, seeker=seeker, verbose=verbose)
     document = bench.layout.book.source
     return bench, document, text
 
@@ -113,7 +112,7 @@ def test_what_is_far_is_looked_for_while_reading_goes_on():
     assert bench.press("b") == ["line: 5001"]
     assert bench.press("p") == ["line: 5000"]
     assert bench.press("b") == ["line: 2"]
-    assert not bench.reader.looking.busy
+    assert not bench.reader.search.busy
 
 
 def test_progress_is_said_every_two_seconds_and_only_if_asked_for():

@@ -9,16 +9,15 @@ from tests.reading.commands.test_moving import finger_at
 from tests.reading.commands.test_searching import Seeker
 from tests.reading.test_reader import Bench
 from vbraille.layout.braillepages import Imprint, pef
-from vbraille.reading.beside import Beside
 from vbraille.reading.cues import Cue
-from vbraille.reading.echo import Echo
-from vbraille.reading.seeking.answering import Answering
+from vbraille.reading.outputs import Echo
+from vbraille.reading.search.answering import Answering
 from vbraille.translate import Book, BrailleTable, Cells
 from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.braillefiles.pef import PefBook
+from vbraille.translate.documents.chapters import Passage
 from vbraille.translate.documents.html import HtmlBook
 from vbraille.translate.documents.markdown import read_markdown
-from vbraille.translate.documents.parted import Passage
 from vbraille.translate.source import Mark, MarkKind
 
 TABLE = BrailleTable("en-ueb-g1.ctb")
@@ -67,7 +66,7 @@ def test_a_key_goes_to_the_next_of_its_kind_or_to_the_one_before(bench, keys, th
 
 def test_what_is_not_there_is_said_and_given_as_a_cue():
     cues = []
-    bench = Bench("one", beside=Beside(cue=cues.append))
+    bench = Bench("one", cue=cues.append)
     assert bench.press("elrk") == [
         f"{k}: none after this" for k in ["heading", "list", "table", "link"]
     ]
@@ -224,7 +223,7 @@ def test_words_left_of_a_long_book_are_told_by_those_that_are_near():
 def test_a_page_that_is_far_is_looked_for_while_reading_goes_on():
     text = "\n\n".join(f"line {n}" for n in range(1, 12_000))
     seeker = Seeker()
-    bench = Bench(text, beside=Beside(seeker=seeker))
+    bench = Bench(text, seeker=seeker)
     assert bench.press("g3\n")[-1] == "line: 51"
     assert bench.press("g400\n")[1:] == ["page: 400", "searching"]
     asked = seeker.asked[-1]
@@ -342,7 +341,7 @@ href="#n1">1</a>.</p><p>The end.</p>
     ],
 )
 def test_enter_on_a_note_goes_back_to_its_reference(keys, last):
-    source = HtmlBook(io.BytesIO(NOTES.encode()), "book.html")
+    source = HtmlBook.open(io.BytesIO(NOTES.encode()), "book.html")
     bench = Bench(book=Book(source, TABLE), width=60)
     assert bench.press(keys)[-1] == last
 
@@ -427,7 +426,7 @@ def test_of_many_headings_those_of_the_upper_levels_are_said_and_words_find_the_
 def test_the_headings_of_a_long_book_come_when_they_are_found():
     part = [Passage("A part", HEADING, 1), *[Passage("Text.")] * 5_000]
     seeker = Seeker()
-    bench = Bench(book=Book(Chapters(part, part), TABLE), beside=Beside(seeker=seeker))
+    bench = Bench(book=Book(Chapters(part, part), TABLE), seeker=seeker)
     assert bench.press("O") == ["searching"]
     assert bench.press("n") == ["line: 2"]
     seeker.answers = list(Answering(bench.layout.book).answer(seeker.asked[-1]))[-1:]

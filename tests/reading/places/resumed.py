@@ -1,5 +1,7 @@
 """Plain texts that are opened where they were left."""
 
+from types import SimpleNamespace
+
 from vbraille.reading.places import last_book, resume
 from vbraille.translate import Document
 
@@ -12,4 +14,6 @@ def open_kept(places, file, options=None):
     options = kept.options if options is None else options
     path = str(kept.path) if file is None else file
     source = Document.open(path, options.encoding, keep_lines=options.keep_lines)
-    return resume(source, kept or places.book(path), options)
+    kept = kept or places.book(path)
+    place, note = resume(source, kept, options)
+    return SimpleNamespace(source=source, kept=kept, options=options, place=place, note=note)

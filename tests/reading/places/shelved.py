@@ -19,7 +19,7 @@ def keep(folder, name="book.txt", place=None, **more):
         for method, value in more.items():
             getattr(kept, method)(value)
         assert places.note() is None
-        return kept.number
+        return kept.digest
 
 
 def kept_place(folder, name="book.txt"):

@@ -2,10 +2,10 @@
 
 from tests.reading.places.resumed import open_kept
 from vbraille.layout.pages import Layout
-from vbraille.reading.keeping import Keeping
 from vbraille.reading.places import BookOptions, KeptPlaces
+from vbraille.reading.reader import Keeping
 from vbraille.translate import Book, BrailleTable, Document
-from vbraille.translate.documents.parted import PartedSource, Passage
+from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.source import BlockKind
 
 TEXT = "\n\n".join(f"Paragraph number {n} says {n * n} and no more." for n in range(3000))
@@ -64,7 +64,7 @@ def test_a_place_whose_line_nobody_counted(tmp_path):
     assert 0.9 < place.share < 1
 
 
-class Paged(PartedSource):
+class Paged(ChapterSource):
     """A book with pages of print."""
 
     def __init__(self):
@@ -81,7 +81,7 @@ def test_the_page_of_print(tmp_path):
     source = Paged()
     layout = Layout(Book(source, BrailleTable("en-ueb-g2.ctb")), 20)
     with KeptPlaces.open(tmp_path / "places.sqlite") as places:
-        book = places.book(None, source.sha256())
+        book = places.book(tmp_path / "book.txt")
         keeping = Keeping(book)
         pages = []
         for number in (1, 2, 4, 5):

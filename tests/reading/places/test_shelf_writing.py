@@ -16,7 +16,7 @@ from vbraille.reading.places import (
     KeptPlace,
     KeptPlaces,
 )
-from vbraille.reading.places.anchoring import place_in
+from vbraille.reading.places.place import place_in
 from vbraille.translate import Document
 
 
@@ -111,7 +111,7 @@ class TestWriting:
         with opened(folder) as places, opened(folder) as other:
             kept = places.book(folder / "book.txt")
             kept.keep(KeptPlace(1))
-            assert other.forget(kept.number)
+            assert other.forget(kept.digest)
             kept.keep(KeptPlace(2))
         assert kept_place(folder) == 2
 
@@ -268,7 +268,7 @@ class TestNoFile:
         connection.execute("PRAGMA user_version = 99")
         connection.close()
         before = path.read_bytes()
-        assert "a newer vbraille has written it" in self.reads(path, folder)
+        assert "another version of vbraille has written it" in self.reads(path, folder)
         assert path.read_bytes() == before
 
     @pytest.mark.parametrize(

@@ -13,11 +13,19 @@ from msgspec.structs import replace
 from tests.render.scene.showing import SIDE_MM
 from tests.tiers import by_tier
 from vbraille.scene.crossing import meeting_edges
-from vbraille.scene.dots import Dots
-from vbraille.scene.labels import Label
-from vbraille.scene.patterns import Circle, Fill, Group, Image, PathShape, Polygon, Tile
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Fill,
+    Group,
+    Image,
+    Label,
+    PathShape,
+    Polygon,
+    StraightLine,
+    Tile,
+)
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import (
     Across,
     Along,

@@ -13,10 +13,8 @@ from vbraille.render import STRESS2_8X8
 from vbraille.render.scene.assets import Assets, Written
 from vbraille.render.scene.brailleplaces import box_of
 from vbraille.render.scene.compiling import compile_scene
-from vbraille.scene.bitmap import WHOLE, Bitmap
-from vbraille.scene.labels import Label
-from vbraille.scene.opaque import bitmap_box
-from vbraille.scene.patterns import Image
+from vbraille.scene.bitmap import WHOLE, Bitmap, bitmap_box
+from vbraille.scene.patterns import Image, Label
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.walking import each
 

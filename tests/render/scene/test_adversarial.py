@@ -8,10 +8,18 @@ import pytest
 from tests.render.scene import twin as reference
 from tests.render.scene.showing import STRESS2_8X8_ARRAY, At, assets_of, poses, scene_of, shown
 from tests.tiers import by_tier, heavy
-from vbraille.scene.dots import Dots
-from vbraille.scene.labels import Label
-from vbraille.scene.patterns import Circle, Fill, Group, Image, PathShape, Polygon, Tile
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Fill,
+    Group,
+    Image,
+    Label,
+    PathShape,
+    Polygon,
+    StraightLine,
+    Tile,
+)
 from vbraille.scene.strokes import (
     Across,
     Along,

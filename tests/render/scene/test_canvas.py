@@ -7,9 +7,8 @@ import numpy as np
 from vbraille.display import Display
 from vbraille.render.scene.canvas import SceneMap
 from vbraille.render.scene.compiling import compile_scene
-from vbraille.scene.patterns import Circle, Group
+from vbraille.scene.patterns import Circle, Group, StraightLine
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Stroke, Vibration
 from vbraille.scene.textures import LinearGrating, UniformVibration
 

@@ -2,14 +2,13 @@
 
 import numpy as np
 from hypothesis import given
-from hypothesis import strategies as st
 
 from tests.render.scene import twin as reference
 from tests.render.scene.scenes import examples, patterns, scenes, seeds
 from tests.render.scene.showing import STRESS2_8X8_ARRAY, assets_of, poses, scene_of
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.canvas import SceneMap
-from vbraille.render.scene.compiling import SceneCompiler, compile_scene
+from vbraille.render.scene.compiling import compile_scene
 
 
 def frame(program, pose):
@@ -26,21 +25,6 @@ def test_pruning_changes_nothing(scene, seed):
     whole = compile_scene(scene, STRESS2_8X8_ARRAY, assets, pruned=False)
     for pose in poses(np.random.default_rng(seed), 6):
         np.testing.assert_allclose(frame(pruned, pose), frame(whole, pose), rtol=0, atol=1e-9)
-
-
-@examples(40)
-@given(st.lists(patterns, min_size=2, max_size=4), st.permutations(range(4)), seeds)
-def test_a_scene_after_another_is_as_if_it_were_the_first(parts, order, seed):
-    assets = assets_of(*parts)
-    compiler = SceneCompiler(STRESS2_8X8_ARRAY)
-    compiler.compile(scene_of(*parts), assets)
-    changed = scene_of(*(parts[n] for n in order if n < len(parts)), operation="maximum")
-    later, anew = (
-        compiler.compile(changed, assets),
-        compile_scene(changed, STRESS2_8X8_ARRAY, assets),
-    )
-    for pose in poses(np.random.default_rng(seed), 2):
-        np.testing.assert_array_equal(frame(later, pose), frame(anew, pose))
 
 
 @examples(60)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import msgspec
 import numpy as np
 import pytest
 
@@ -13,12 +12,11 @@ from vbraille.display import Display
 from vbraille.render import kernels, work
 from vbraille.render.machine import words
 from vbraille.render.scene.assets import Assets
-from vbraille.render.scene.compiling import SceneCompiler, compile_scene
+from vbraille.render.scene.compiling import compile_scene
 from vbraille.scene.bitmap import Bitmap
-from vbraille.scene.patterns import Circle, Fill, Group, Image, Tile
+from vbraille.scene.patterns import Circle, Group, Image, StraightLine, Tile
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
-from vbraille.scene.strokes import Along, Stroke, Vibration
+from vbraille.scene.strokes import Stroke, Vibration
 from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
 
 if TYPE_CHECKING:
@@ -136,67 +134,6 @@ def test_poses_are_frames(dtype):
         out = np.empty((8, 8), dtype)
         program.frame(x[k], out, y_mm=30.0, theta_rad=0.2, time_s=times[k])
         assert np.array_equal(frames[k], out.astype(np.float32))
-
-
-def test_a_change_gives_what_compiling_anew_gives():
-    elements = [
-        StraightLine(
-            start_mm=(5.0 * n, 10.0),
-            end_mm=(5.0 * n + 8, 60.0),
-            stroke=Stroke(width_mm=2.0, along=Along() if n % 2 else None),
-        )
-        for n in range(15)
-    ]
-    compiler = SceneCompiler(DISPLAY)
-    compiler.compile(Scene(canvas=CANVAS, elements=tuple(elements)))
-    smaller = msgspec.structs.replace(elements[7], amplitude=0.5)
-    filled = Circle(center_mm=(40.0, 40.0), radius_mm=9.0, fill=Fill(texture=Uniform(level=0.3)))
-    for place, new in ((7, smaller), (3, filled), (0, elements[4]), (7, elements[7])):
-        elements[place] = new
-        scene = Scene(canvas=CANVAS, elements=tuple(elements))
-        changed, anew = compiler.compile(scene), compile_scene(scene, DISPLAY)
-        assert np.array_equal(changed.numbers, anew.numbers)
-        assert np.array_equal(changed.table, anew.table)
-
-
-def test_elements_come_and_go_and_change_places():
-    """Pictures and labels keep their places in the table, whatever comes before them."""
-    image, other = Image(file="a.png", amplitude=0.5), Image(file="b.png")
-    bitmaps = {
-        one: Bitmap(np.full((4, 4), level, np.uint16), (10.0, 10.0), 50.0, 40.0)
-        for one, level in ((image, 30_000), (other, 50_000))
-    }
-    assets = Assets(bitmaps)
-    lines = [
-        StraightLine(start_mm=(5.0 * n, 10.0), end_mm=(5.0 * n, 60.0), stroke=Stroke(width_mm=2.0))
-        for n in range(9)
-    ]
-    grating = LinearGrating(ridge_mm=3.0, velocity_mm_s=9.0, amplitude=0.5)
-    compiler = SceneCompiler(DISPLAY)
-    for elements in (
-        [*lines[:4], image],
-        [*lines[:3], image],
-        [grating, *lines[:3], image, *lines[3:]],
-        [*lines[:3], other, image, *lines[5:]],
-        [image, *lines[3:], other],
-        [*reversed(lines)],
-        lines,
-        [other],
-    ):
-        scene = Scene(canvas=CANVAS, operation="maximum", elements=tuple(elements))
-        changed, anew = compiler.compile(scene, assets), compile_scene(scene, DISPLAY, assets)
-        assert np.array_equal(changed.numbers, anew.numbers)
-        assert np.array_equal(changed.table, anew.table)
-
-
-def test_a_change_keeps_pictures_of_elements_that_stay():
-    image = Image(file="a.png")
-    bitmap = Bitmap(np.full((4, 4), 65_535, np.uint16), (0.0, 0.0), 100.0, 80.0)
-    compiler = SceneCompiler(DISPLAY)
-    scene = Scene(canvas=CANVAS, operation="add", elements=(image, Uniform(level=0.0)))
-    compiler.compile(scene, Assets({image: bitmap}))
-    dark = Bitmap(np.zeros((4, 4), np.uint16), (0.0, 0.0), 100.0, 80.0)
-    assert not frame(compiler.compile(scene, Assets({image: dark}))).any()
 
 
 def test_the_head_tells_what_moves():

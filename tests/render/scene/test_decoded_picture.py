@@ -15,10 +15,8 @@ from vbraille.labelling import write_labels
 from vbraille.render import LATERO, STRESS2_8X8
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import compile_scene
-from vbraille.scene.labels import Label
-from vbraille.scene.patterns import Circle, Fill, Polygon
+from vbraille.scene.patterns import Circle, Fill, Label, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Stroke
 from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import msgspec
 import numpy as np
 import pytest
 
 from tests.benchmarks.scenes import DISPLAY, nested, shapes, short_lines
-from vbraille.render.machine import words
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import compile_scene
-from vbraille.scene.patterns import Circle, Fill, Group, Polygon
+from vbraille.scene.patterns import Circle, Fill, Group, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Stroke
 from vbraille.scene.textures import LinearGrating, Uniform
 
@@ -78,24 +75,3 @@ def test_where_nothing_can_be_touched_nothing_is_said():
     out = np.ones((8, 8))
     program.frame(48.0, out, y_mm=50.0)
     assert not out.any()
-
-
-@pytest.mark.parametrize("top", [_DISC, _RECTANGLE])
-def test_what_a_filled_shape_hides_costs_nothing(top):
-    """In the middle of it words call nothing but the shape."""
-    hidden = tuple(msgspec.structs.replace(_LINE, amplitude=n / 40) for n in range(1, 40))
-    covered, alone = (compile_scene(_scene(*under, top), DISPLAY) for under in (hidden, ()))
-    assert _calls(covered, 40.0, 30.0) == _calls(alone, 40.0, 30.0) == 1
-    assert _calls(covered, 12.0, 12.0) == 40
-
-
-def _calls(program, x_mm, y_mm):
-    numbers = program.numbers
-    column = int((x_mm - numbers[words.GRID_LEFT_MM]) * numbers[words.TILES_PER_MM])
-    row = int((y_mm - numbers[words.GRID_TOP_MM]) * numbers[words.TILES_PER_MM])
-    at = int(numbers[words.GRID + row * int(numbers[words.GRID_COLUMNS]) + column])
-    calls = 0
-    while (operation := int(numbers[at]) % words.OPERATIONS) != words.END:
-        calls += operation in (words.CALL, words.CALL_PARTS)
-        at += 1 + (1 + int(numbers[at + 1]) if operation == words.CALL_PARTS else 0)
-    return calls

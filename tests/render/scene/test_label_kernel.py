@@ -21,7 +21,7 @@ from vbraille.render.scene.brailleplaces import (
     pack_label,
     size_mm,
 )
-from vbraille.scene.labels import Label
+from vbraille.scene.patterns import Label
 
 _FIRST, _WORDS = 7, 11  # a label's numbers and words stand anywhere in those of a program
 

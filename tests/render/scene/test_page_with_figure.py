@@ -12,8 +12,7 @@ from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import compile_scene
 from vbraille.render.scene.figures import FIGURE, PAGE, page_with_figure
 from vbraille.scene.bitmap import Bitmap
-from vbraille.scene.labels import Label
-from vbraille.scene.patterns import Circle, Group, Image, LinearGrating, Tile, Uniform
+from vbraille.scene.patterns import Circle, Group, Image, Label, LinearGrating, Tile, Uniform
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke
 

@@ -15,9 +15,7 @@ from tests.render.scene.twinstrokes import (
     profile,
     textured,
 )
-from vbraille.scene.dots import Dots
-from vbraille.scene.patterns import Circle, Fill, PathShape, Polygon
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.patterns import Circle, Dots, Fill, PathShape, Polygon, StraightLine
 from vbraille.scene.strokes import (
     Across,
     Along,

@@ -22,7 +22,7 @@ from tests.render.scene.twinwaves import (
     vibrated,
     vibration,
 )
-from vbraille.scene.fitting import Cycle
+from vbraille.scene.joints import Cycle
 from vbraille.scene.patterns import Image, Tile
 from vbraille.scene.strokes import Vibration
 from vbraille.scene.textures import (

@@ -31,13 +31,20 @@ from tests.render.scene.twinwaves import (
     vibrated,
     vibration,
 )
+from vbraille.scene.bitmap import opaque
 from vbraille.scene.bounds import drawn_radius_mm, is_everywhere
-from vbraille.scene.dots import Dots
 from vbraille.scene.dotting import PlacedDot
-from vbraille.scene.labels import Label
-from vbraille.scene.opaque import opaque
-from vbraille.scene.patterns import Circle, Group, Image, PathShape, Polygon, Tile
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Group,
+    Image,
+    Label,
+    PathShape,
+    Polygon,
+    StraightLine,
+    Tile,
+)
 from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,

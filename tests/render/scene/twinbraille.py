@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.render.scene.assets import Written
-    from vbraille.scene.labels import Label
+    from vbraille.scene.patterns import Label
 
 
 def label_deflections(

@@ -20,23 +20,22 @@ from tests.render.scene.twinwaves import (
     vibrated,
 )
 from vbraille.scene.dotting import PlacedDot, dots_of
-from vbraille.scene.fitting import stroke_cycles
 from vbraille.scene.joints import (
     Joint,
     joints,
     marker_half_angle_rad,
     places_along_mm,
     rounding_radius_mm,
+    stroke_cycles,
 )
-from vbraille.scene.patterns import Circle, PathShape, Polygon
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from vbraille.scene.fitting import Cycle
+    from vbraille.scene.joints import Cycle
     from vbraille.scene.measures import Point
     from vbraille.scene.strokes import Across, Along, DotStyle, Stroke, VertexMarkers, Vibration
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vbraille.scene.bitmap import WHOLE
-from vbraille.scene.fitting import Cycle, axial_cycle
+from vbraille.scene.joints import Cycle, axial_cycle
 from vbraille.scene.measures import travel_deg
 from vbraille.scene.textures import Gradual, Peak
 

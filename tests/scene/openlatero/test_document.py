@@ -6,10 +6,10 @@ from typing import get_args
 
 from tests.scene.openlatero.files import scene, texture
 from vbraille.scene.openlatero import read_gen
+from vbraille.scene.openlatero.elements import MOST_BYTES, MOST_ELEMENTS
 from vbraille.scene.openlatero.groups import OPERATIONS
 from vbraille.scene.openlatero.reading import TYPES
 from vbraille.scene.openlatero.textures import SUBTYPES
-from vbraille.scene.openlatero.tree import MOST_BYTES, MOST_ELEMENTS
 from vbraille.scene.patterns import AnyPattern
 
 PAGE = Path(__file__).parents[3] / "docs" / "converting.md"

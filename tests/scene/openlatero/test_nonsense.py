@@ -8,12 +8,12 @@ from tests.render.scene.twin import deflections
 from tests.scene.openlatero.files import scene
 from tests.tiers import examples
 from vbraille.render.scene.assets import Assets
+from vbraille.scene.converting import write_scene
 from vbraille.scene.openlatero import read_gen
 from vbraille.scene.openlatero.reading import TYPES
 from vbraille.scene.openlatero.textures import SUBTYPES
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Scene
-from vbraille.scene.writing import write_scene
 from vbraille.toml.tomlfile import TomlFile
 
 TEXTS = (

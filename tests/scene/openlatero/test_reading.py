@@ -15,8 +15,7 @@ from tests.scene.openlatero.files import (
 )
 from vbraille.errors import InputError
 from vbraille.scene.openlatero import read_gen
-from vbraille.scene.patterns import Circle, Group, PathShape, Tile
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.patterns import Circle, Group, PathShape, StraightLine, Tile
 from vbraille.scene.strokes import Along, Stroke, Vibration
 from vbraille.scene.textures import AxialGrating, LinearGrating, Uniform
 

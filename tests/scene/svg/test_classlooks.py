@@ -4,9 +4,8 @@ import pytest
 
 from tests.scene.svg.plans import NS, element_of
 from vbraille.errors import InputError
-from vbraille.scene.patterns import Fill, LinearGrating, UniformVibration
+from vbraille.scene.patterns import Fill, LinearGrating, StraightLine, UniformVibration
 from vbraille.scene.reading import open_scene
-from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Dotting, Stroke
 from vbraille.scene.svg.looks import ClassLook
 

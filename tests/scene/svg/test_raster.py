@@ -6,9 +6,8 @@ import pytest
 from tests.tiers import heavy
 from vbraille.errors import InputError
 from vbraille.scene.blobs import dots_of
-from vbraille.scene.dots import ImageDots
 from vbraille.scene.images import load_bitmaps
-from vbraille.scene.patterns import Image
+from vbraille.scene.patterns import Image, ImageDots
 from vbraille.scene.scene import Canvas, Scene
 
 NS = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'

@@ -10,16 +10,12 @@ from hypothesis import strategies as st
 from tests.scene.svg.plans import element_of, warned
 from tests.tiers import examples
 from vbraille.errors import InputError
-from vbraille.scene.labels import Label
-from vbraille.scene.patterns import Circle, Fill, Group, Polygon, Uniform, Use
+from vbraille.scene.patterns import Circle, Fill, Group, Label, Polygon, StraightLine, Uniform, Use
 from vbraille.scene.patterns import PathShape as Lines
-from vbraille.scene.reading import open_scene
-from vbraille.scene.scenefile import SceneFile
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.reading import SceneFile, open_scene
 from vbraille.scene.stock import stock_textures
 from vbraille.scene.strokes import Along, Stroke
-from vbraille.scene.svg.colors import color_of, hue_of
-from vbraille.scene.svg.looks import BY_HUE
+from vbraille.scene.svg.looks import BY_HUE, color_of, hue_of
 from vbraille.scene.svg.reading import read_svg
 from vbraille.scene.walking import each
 from vbraille.toml.tomlfile import TomlFile

@@ -143,17 +143,6 @@ class TestBuiltIns:
 
 
 class TestParsing:
-    def test_that_of_a_session_is_read_as_it_was_when_it_was_planned(self):
-        text = (
-            f'{STRESS2_HEAD}[design]\nkind = "list"\nstrings = ["le chat", "12 3"]\n'
-            f"[practice]\ntrials = 2\n"
-        )
-        with pytest.raises(InputError, match="'le chat' has a blank"):
-            parse(text)
-        protocol = parse_protocol(text, "s/protocol.toml", planned=True)
-        assert protocol.design.strings == (spell("lechat", {}), (3, 4))
-        assert protocol.practice == Practice(2)
-
     def test_what_is_left_out(self):
         protocol = parse(VBD_HEAD + PAIRS)
         assert protocol.geometry == VBD

@@ -8,7 +8,7 @@ from msgspec import structs
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.making import make_plan
-from vbraille.sessions.planning.protocolfiles import builtin_text, load_protocol, parse_protocol
+from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol
 from vbraille.sessions.planning.rules import check_plan
 from vbraille.sessions.planning.ruletable import Rules
 
@@ -136,21 +136,6 @@ class TestChecking:
         practised = structs.replace(plan.practice[0], number=2)
         twice = structs.replace(plan, practice=(plan.practice[0], practised, *plan.practice[2:]))
         self.refuse(LEGIBILITY, twice, "practice trials 1 and 2 show the same")
-
-    def test_a_plan_of_version_1_is_checked_by_its_own_rules(self):
-        """It was drawn from the test, and nothing kept equal strings apart."""
-        lines = builtin_text("legibility").splitlines()
-        kept = [n for n in lines if not n.startswith(("never_twice_running", "strings = "))]
-        protocol = parse_protocol("\n".join(kept), "p", planned=True)
-        plan = make_plan(LEGIBILITY, "P07", 42)
-        practised = [
-            structs.replace(t, number=n, block=0) for n, t in enumerate(plan.trials[76:84], 1)
-        ]
-        old = structs.replace(plan, practice=tuple(practised), version=1)
-        check_plan(protocol, old)
-        self.refuse(
-            protocol, structs.replace(old, version=2), "trial 1 of practice shows what is not"
-        )
 
     def test_another_order_of_conditions(self):
         plan = make_plan(LEGIBILITY, "P07", 42)

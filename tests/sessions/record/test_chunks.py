@@ -3,20 +3,19 @@
 import numpy as np
 import pytest
 
-from tests.playback.written import SESSIONS, each
+from tests.sessions.written import ON_DEVICE, written
 from vbraille.errors import VbrailleError
-from vbraille.sessions.record.chunks import ChunkedTrace
-from vbraille.sessions.record.traces import read_trace
+from vbraille.sessions.record.traces import TRACE, ChunkedTrace, read_trace
 
 
 def all_ticks(trace):
     found = [trace.ticks(n) for n in reversed(range(len(trace)))][::-1]
-    return np.concatenate([np.zeros(0, trace.record), *found])
+    return np.concatenate([np.zeros(0, TRACE), *found])
 
 
-@pytest.mark.parametrize("folder", each(SESSIONS))
-def test_chunks_have_the_ticks_of_the_trace(folder):
-    for path in folder.glob("trace-*.gz"):
+@pytest.mark.parametrize("name", ON_DEVICE)
+def test_chunks_have_the_ticks_of_the_trace(name):
+    for path in written(name).glob("trace-*.gz"):
         trace = ChunkedTrace(path)
         assert all_ticks(trace).tobytes() == read_trace(path).ticks.tobytes()
         assert trace.damage == []
@@ -27,7 +26,7 @@ def test_chunks_have_the_ticks_of_the_trace(folder):
 @pytest.mark.parametrize("at", [0.0, 0.3, 0.6, 0.999])
 @pytest.mark.parametrize("cut", [True, False])
 def test_what_is_whole_is_read_as_salvage_reads_it(tmp_path, at, cut):
-    (source,) = SESSIONS[4].glob("trace-*.gz")
+    (source,) = written("ended").glob("trace-*.gz")
     content = bytearray(source.read_bytes())
     place = int(at * len(content))
     if cut:

@@ -24,7 +24,8 @@ RUN = (events.Run, {"why": "start", "trace": "trace-001.gz"})
 
 def shown(trial, attempt=1, line=1, stimulus=0, **more):
     return events.Presented, {
-        "trial": trial, "attempt": attempt, "stimulus": stimulus, "line": line, **more,
+        "trial": trial, "attempt": attempt, "stimulus": stimulus, "line": line, "shown": {},
+        **more,
     }  # fmt: skip
 
 

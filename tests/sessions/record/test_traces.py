@@ -11,11 +11,8 @@ from vbraille.errors import VbrailleError
 from vbraille.sessions.record.journal import NAME, Tie
 from vbraille.sessions.record.traces import (
     CHUNK_TICKS,
-    LEFT_TRACE,
     TRACE,
     TraceWriter,
-    left_places_mm,
-    posed,
     read_last_tie,
     read_trace,
 )
@@ -35,7 +32,7 @@ def ticks(first, count):
 
 
 def written(path, *counts):
-    writer = TraceWriter(path)
+    writer = TraceWriter(path, lambda: TIE)
     first = 0
     for count in counts:
         writer.add(ticks(first, count))
@@ -63,7 +60,7 @@ def test_gzip_reads_a_trace(tmp_path):
 
 def test_a_chunk_is_on_the_disk_when_it_is_full(tmp_path):
     path = tmp_path / "trace-001.gz"
-    writer = TraceWriter(path)
+    writer = TraceWriter(path, lambda: TIE)
     writer.add(ticks(0, CHUNK_TICKS - 1))
     assert read_trace(path).ticks.size == 0
     writer.add(ticks(CHUNK_TICKS - 1, 1))
@@ -76,7 +73,7 @@ def test_a_chunk_is_on_the_disk_when_it_is_full(tmp_path):
 
 def test_a_trace_that_was_synced_is_whole_on_the_disk_and_so_is_its_name(tmp_path, synced):
     path = tmp_path / "trace-001.gz"
-    writer = TraceWriter(path)
+    writer = TraceWriter(path, lambda: TIE)
     assert synced == [("", {path.name: 0})]
     writer.add(ticks(0, 5))
     writer.sync()
@@ -132,7 +129,7 @@ def test_a_trace_is_never_written_over(tmp_path):
     path = tmp_path / "trace-001.gz"
     before = written(path, 10)
     with pytest.raises(VbrailleError, match="File exists"):
-        TraceWriter(path)
+        TraceWriter(path, lambda: TIE)
     assert path.read_bytes() == before
 
 
@@ -141,52 +138,14 @@ def test_a_trace_that_is_not_there_is_one_sentence(tmp_path):
         read_trace(tmp_path / "trace-001.gz")
 
 
-@pytest.mark.parametrize("tie", [None, lambda: TIE])
-def test_a_session_of_an_older_format_has_places_of_the_left_column(tmp_path, tie):
+def test_a_chunk_is_tied_to_the_line_of_the_journal_that_was_on_the_disk(tmp_path):
     path = tmp_path / "trace-001.gz"
-    writer = TraceWriter(path, tie, 3.85)
+    line = [TIE]
+    writer = TraceWriter(path, lambda: line[-1])
     writer.add(ticks(0, 1200))
+    writer.add(ticks(1200, 1200))
+    assert read_last_tie(path) == TIE
+    line.append(Tie(9, 10))
     writer.close()
-    trace, want = read_trace(path), ticks(0, 1200)
-    assert trace.ticks.dtype == LEFT_TRACE
-    assert LEFT_TRACE.itemsize == 72  # as it was written since format 1
-    np.testing.assert_array_equal(trace.ticks["x_mm"], want["x_mm"] - 3.85)
-    np.testing.assert_array_equal(trace.ticks["speed_mm_s"], want["vx_mm_s"])
-    assert trace.loose == (tie is None)
-    assert read_last_tie(path) == (None if tie is None else TIE)
-
-
-def test_traces_of_all_formats_are_read_as_one(tmp_path):
-    of = {}
-    for name, left_mm in (("now", None), ("then", 3.85)):
-        writer = TraceWriter(tmp_path / name, lambda: TIE, left_mm)
-        writer.add(ticks(0, 1200))
-        writer.close()
-        of[name] = read_trace(tmp_path / name).ticks
-    # To the bit, since frames were made of these places.
-    np.testing.assert_array_equal(left_places_mm(of["then"], 3.85), of["then"]["x_mm"])
-    np.testing.assert_array_equal(left_places_mm(of["now"], 3.85), of["then"]["x_mm"])
-    assert posed(of["now"], 3.85) is of["now"]
-    then = posed(of["then"], 3.85)
-    for name in ("tick", "time_ns", "device_ns", "late", "line", "flags", "share", "vx_mm_s"):
-        np.testing.assert_array_equal(then[name], of["now"][name])
-    np.testing.assert_allclose(then["x_mm"], of["now"]["x_mm"], rtol=0, atol=1e-14)
-    for name in ("y_mm", "theta_rad"):
-        assert np.isnan(then[name][:3]).all()
-        assert not then[name][3:].any()
-    for name in ("vy_mm_s", "part", "shown_s"):
-        assert not then[name].any()
-
-
-def test_a_chunk_of_another_format_is_damage(tmp_path):
-    chunks = []
-    for name, left_mm in (("now", None), ("then", 3.85)):
-        writer = TraceWriter(tmp_path / name, lambda: TIE, left_mm)
-        writer.add(ticks(0, 1200))
-        writer.close()
-        chunks.append((tmp_path / name).read_bytes())
-    path = tmp_path / "trace-001.gz"
-    path.write_bytes(b"".join(chunks))
-    trace = read_trace(path)
-    assert trace.damage == "chunk 2 of trace-001.gz does not match its checksum"
-    assert trace.ticks.size == 1200
+    assert read_trace(path).ties == (TIE, Tie(9, 10))
+    assert read_last_tie(path) == Tie(9, 10)

@@ -93,10 +93,10 @@ def test_what_moves_the_carriage_follows_from_the_device(tmp_path, run, moved_by
     plan = Session(tmp_path / "s", MINI).plan
     told = [
         events.Run(t_s=0.0, why="start", **run),
-        events.Presented(t_s=1.0, trial=1, attempt=1, stimulus=0, line=1),
+        events.Presented(t_s=1.0, trial=1, attempt=1, stimulus=0, line=1, shown={}),
         events.Closed(t_s=2.0),
         events.Run(t_s=2.0, why="fault", trace=run.get("trace", "")),
-        events.Presented(t_s=3.0, trial=2, attempt=1, stimulus=0, line=2),
+        events.Presented(t_s=3.0, trial=2, attempt=1, stimulus=0, line=2, shown={}),
     ]
     trials = Progress(plan, told).trials
     assert [trials[number].moved_by for number in (1, 2, 3)] == [moved_by, moved_by, ""]

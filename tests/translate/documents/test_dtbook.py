@@ -3,7 +3,7 @@
 import io
 
 from tests.translate.documents.epubs import blocks, epub, opened
-from vbraille.translate.documents.dtbook import DtbookBook
+from vbraille.translate.documents.html import HtmlBook
 
 BOOK = """<?xml version="1.0" encoding="UTF-8"?>
 <!DOCTYPE dtbook PUBLIC "-//NISO//DTD dtbook 2005-3//EN"
@@ -49,12 +49,16 @@ EXPECTED = [
 ]
 
 
+def opened_dtbook(text):
+    return HtmlBook.open(io.BytesIO(text.encode()), "b.xml", is_dtbook=True)
+
+
 def outline(source):
     return [(f"{b.kind.value}{b.level or ''}", str(b.text)) for b in blocks(source)]
 
 
 def test_a_book():
-    book = DtbookBook.open(io.BytesIO(BOOK.encode()), "b.xml")
+    book = opened_dtbook(BOOK)
     assert (book.title, book.language) == ("The book", "en")
     assert outline(book) == EXPECTED
     found = blocks(book)
@@ -66,7 +70,7 @@ def test_a_book():
 
 
 def test_a_book_that_is_no_whole_xml():
-    book = DtbookBook.open(io.BytesIO(BOOK.replace("</bodymatter>", "").encode()), "b.xml")
+    book = opened_dtbook(BOOK.replace("</bodymatter>", ""))
     assert outline(book) == EXPECTED
 
 

@@ -1,12 +1,10 @@
 """Files of HTML as sources: encodings, parts, hostile files, files that show nothing."""
 
-import gc
 import hashlib
 import io
 import os
 import subprocess
 import sys
-import warnings
 from contextlib import suppress
 from pathlib import Path
 from random import Random
@@ -16,8 +14,8 @@ import pytest
 from tests.tiers import by_tier, heavy
 from tests.translate.documents.epubs import blocks, texts
 from vbraille.errors import InputError
+from vbraille.translate.documents import html
 from vbraille.translate.documents.html import HtmlBook
-from vbraille.translate.documents.markup.pieces import PART_BYTES
 from vbraille.translate.source import BlockKind, MarkKind
 
 FILES = Path(__file__).parent / "files" / "small"
@@ -86,10 +84,10 @@ def test_an_unknown_encoding():
 LONG = "".join(f"<h2 id=h{n}>T {n}</h2><p>{'word ' * 100}<ul><li>x{n}</ul>" for n in range(900))
 
 
-def test_a_long_file_is_read_in_parts_in_any_order():
+def test_a_long_file_is_read_in_chapters_in_any_order():
     content = LONG.encode()
     first = opened(content)
-    assert first.parts == len(content) // PART_BYTES + 1 > 3
+    assert first.chapters > 3
     expected = texts(first)
     assert len(expected) == 2700
     book = opened(content)
@@ -104,41 +102,45 @@ def test_a_long_file_is_read_in_parts_in_any_order():
 
 
 def test_a_long_file_without_text_is_an_error():
-    book = opened(b"<!--" + b"x" * 3 * PART_BYTES + b"-->")
     with pytest.raises(InputError, match="no text"):
-        texts(book)
+        opened(b"<!--" + b"x" * 400_000 + b"-->")
 
 
-def test_a_forgotten_book_closes_its_file(tmp_path):
-    path = tmp_path / "b.html"
-    path.write_text(LONG)
-    gc.disable()  # nothing of a book refers to the book itself
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            book = HtmlBook.open(path.open("rb"), "b.html")
-            book.block(500)
-            stream = book._stream
-            del book
-            assert stream.closed
-    finally:
-        gc.enable()
+@pytest.mark.parametrize("around", ["", "<div lang=en><section>", "<article><div><div>"])
+@pytest.mark.parametrize("between", ["", "<hr>", "<a name=z></a>", "z<br>", "<p><a id=z></a></p>"])
+def test_where_chapters_are_cut_makes_no_difference(around, between, monkeypatch):
+    parts = [
+        f"<h2 id=h{n}>T {n}</h2>{between}<p lang=fr>{'word ' * 30}<ol start=3><li>x{n}<li>y</ol>"
+        "<div><p>a<table><tr><th>b<th>c<tr><td>d<td>e</table><b>f</div>"
+        for n in range(40)
+    ]
+    content = (f"<html><title>t</title><body>{around}" + "".join(parts)).encode()
+    whole = opened(content)
+    assert whole.chapters == 1
+    monkeypatch.setattr(html, "_CHAPTER_CHARACTERS", 200)
+    cut = opened(content)
+    assert cut.chapters > 10
+    for one, other in zip(blocks(whole), blocks(cut), strict=True):
+        assert str(one.text) == str(other.text)
+        for what in ("kind", "level", "marks", "language", "anchors", "group", "headers"):
+            assert getattr(one, what) == getattr(other, what)
+        assert one.text.places.tolist() == other.text.places.tolist()
 
 
 N = by_tier(20_000, 200_000, 1_000_000)
-HOSTILE = {  # what makes each, and how many characters of text it has
-    "nested": (lambda: b"<div>" * N + b"end", 3),
-    "nested emphasis": (lambda: b"<b><i>" * (N // 2) + b"end", 3),
-    "nested tables": (lambda: b"<table><tr><td>" * (N // 3) + b"end", 3),
+HOSTILE = {  # what makes each, and how many characters of text it has; 0 if it may be refused
+    "nested": (lambda: b"<div>" * N + b"end", 0),
+    "nested emphasis": (lambda: b"<b><i>" * (N // 2) + b"end", 0),
+    "nested tables": (lambda: b"<table><tr><td>" * (N // 3) + b"end", 0),
     "nested lists": (lambda: b"<ol><li>" * (N // 3) + b"end", 0),
-    "nested quotations": (lambda: b"<blockquote>x" * (N // 8) + b"end", N // 8 + 3),
-    "nested languages": (lambda: b"<i lang=fr><a href=x>" * (N // 8) + b"end", 3),
+    "nested quotations": (lambda: b"<blockquote>x" * (N // 8) + b"end", 0),
+    "nested languages": (lambda: b"<i lang=fr><a href=x>" * (N // 8) + b"end", 0),
     "nested drawings": (lambda: b"<svg><p>" * (N // 10) + b"end", 0),
-    "nested and hidden": (lambda: b"end" + b"<p hidden><b>" * (N // 2), 3),
+    "nested and hidden": (lambda: b"end" + b"<p hidden><b>" * (N // 2), 0),
     "misnested": (lambda: b"<b><p>" * (N // 50) + b"end", 3),
-    "misnested, quadratic": (lambda: b"<b>" * 3_000 + b"<i>" * 3_000 + b"x</b>" * 3_000, 3_000),
+    "misnested, quadratic": (lambda: b"<b>" * 3_000 + b"<i>" * 3_000 + b"x</b>" * 3_000, 0),
     "attributes": (lambda: b"<p " + b" ".join(b"a%d=1" % n for n in range(N * 3 // 10)) + b">x", 1),
-    "names": (lambda: b"<a id=x>" * (N // 3) + b"end", 3),
+    "names": (lambda: b"<a id=x>" * (N // 3) + b"end", 0),
     "cells": (lambda: b"<table><tr>" + b"<td>x" * (N // 10) + b"</table>end", 0),
     "a paragraph": (lambda: b"<p>" + b"words and " * (N * 5) + b"end", N * 50 + 3),
     "a word": (lambda: b"<p>" + b"x" * (N * 50) + b"end", N * 50 + 3),
@@ -150,8 +152,11 @@ HOSTILE = {  # what makes each, and how many characters of text it has
 
 
 def read_hostile(case):
-    """Read a hostile file, and tell its number of characters and its last text."""
-    book = opened(HOSTILE[case][0]())
+    """Read a hostile file, and tell its number of characters and its last text, or the refusal."""
+    try:
+        book = opened(HOSTILE[case][0]())
+    except InputError as error:
+        return 0, str(error)
     number = found = 0
     last = ""
     while (block := book.block(number)) is not None:
@@ -162,10 +167,14 @@ def read_hostile(case):
 
 
 @pytest.mark.parametrize("case", HOSTILE)
-def test_hostile_files_give_all_their_text(case):
+def test_hostile_files_give_all_their_text_or_none(case):
     found, last = read_hostile(case)
-    assert found == HOSTILE[case][1] or not HOSTILE[case][1]
-    assert last.endswith(("end", "x", "[drawing]"))
+    if last.startswith("b.html has "):
+        assert not HOSTILE[case][1]
+        assert "which no book has; " in last
+    else:
+        assert found == HOSTILE[case][1] or not HOSTILE[case][1]
+        assert last.endswith(("end", "x", "[drawing]"))
 
 
 @heavy  # a process for each file, since memory once taken is not given back

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.input.sheets import Sheet
     from vbraille.analysis.input.sittings import SessionTrials
 
-_TOLD_VERSIONS = ("numpy", "scipy", "statsmodels", "matplotlib")  # numbers and bytes hang on them
+_TOLD_VERSIONS = ("numpy", "scipy", "matplotlib")  # numbers and bytes hang on them
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy import stats
 from scipy.special import expit
-from statsmodels.stats.multitest import multipletests
-from statsmodels.stats.proportion import proportion_confint
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -92,8 +90,8 @@ def wilson(correct: int, trials: int) -> Interval:
         raise ValueError(f"{correct} correct of {trials} trials")
     if trials == 0:
         raise Unanswerable("no trials")
-    ends = proportion_confint(correct, trials, alpha=1 - LEVEL, method="wilson")
-    return Interval(*np.clip(np.asarray(ends, np.float64), 0.0, 1.0).tolist())
+    ends = stats.binomtest(correct, trials).proportion_ci(LEVEL, "wilson")
+    return Interval(float(ends.low), float(ends.high))
 
 
 def mean_interval(values: ArrayLike) -> Interval:
@@ -186,7 +184,7 @@ def correlation_interval(first: ArrayLike, second: ArrayLike) -> Interval:
 def adjust(p_values: ArrayLike, method: str) -> NDArray[np.float64]:
     """P-values adjusted for their number: each can be held against the level for a single test.
 
-    The methods are Holm's (1979) and Benjamini and Hochberg's (1995), as statsmodels has them.
+    The step-down is Holm's (1979), the false discovery rate Benjamini and Hochberg's (1995).
 
     Parameters
     ----------
@@ -207,8 +205,15 @@ def adjust(p_values: ArrayLike, method: str) -> NDArray[np.float64]:
         raise ValueError(f"p-values {p.tolist()} are not all in 0…1")
     if method == "none" or p.size == 0:
         return p.copy()
-    named = "fdr_bh" if method == "fdr" else method
-    return np.asarray(multipletests(p, method=named)[1], dtype=np.float64)
+    if method == "bonferroni":
+        return np.minimum(p * p.size, 1.0)
+    if method == "fdr":
+        return stats.false_discovery_control(p)
+    order = np.argsort(p)
+    steps = np.maximum.accumulate(p[order] * np.arange(p.size, 0, -1))
+    adjusted = np.empty_like(p)
+    adjusted[order] = np.minimum(steps, 1.0)
+    return adjusted
 
 
 def too_few(participants: int) -> str:

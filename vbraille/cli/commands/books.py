@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli.terminal import say_line
 from vbraille.errors import VbrailleError
-from vbraille.reading.places.resuming import numbered_book
-from vbraille.reading.places.shelf import KeptPlaces
+from vbraille.reading.places.shelf import KeptPlaces, numbered_book
 
 if TYPE_CHECKING:
     import argparse
 
-    from vbraille.reading.places.values import ListedBook
+    from vbraille.reading.places.place import ListedBook
 
 _A_WEEK = 7  # days; what is older is told by its date
 
@@ -49,7 +48,7 @@ def describe(book: ListedBook, now: datetime) -> str:
         if book.place.page:
             parts.append(f"page {book.place.page}")
     parts.append(_when(datetime.fromtimestamp(book.read_s, now.tzinfo), now))
-    parts.append(book.path or "from standard input")
+    parts.append(book.path)
     if book.missing:
         parts.append("missing")
     return ", ".join(parts)
@@ -80,7 +79,7 @@ def _fields(number: int, book: ListedBook) -> dict[str, object]:
 
 def _forget(places: KeptPlaces, number: int) -> None:
     book = numbered_book(places, number)
-    if not places.forget(book.number):
+    if not places.forget(book.digest):
         why = places.fault or "another program is writing"
         raise VbrailleError(f"{book.title} could not be forgotten: {why}; try again")
     say_line(f"forgotten: {book.title}")

@@ -2,33 +2,24 @@
 
 from __future__ import annotations
 
-import sys
 import time
-from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.caching import compiling_note
-from vbraille.cli.atdevice import AtDevice, say_faults, seconds_of, ticks_of
+from vbraille.cli.atdevice import AtDevice, say_summary, surrounded
 from vbraille.cli.options.live import check_live_options
-from vbraille.cli.stoppable import StoppableKeyboard
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.events import Button
 from vbraille.devices.registry import check_actuators, find_driver
 from vbraille.display import check_rate
 from vbraille.errors import InputError
 from vbraille.feeling.commands import BOUND
-from vbraille.feeling.composing import Composer
+from vbraille.feeling.composing import compose
 from vbraille.feeling.feeler import Feeler
-from vbraille.feeling.filewatch import FileWatch
-from vbraille.feeling.loading import check_fits, load_scene
+from vbraille.feeling.loading import FileWatch, check_fits, load_scene
 from vbraille.reading.commands.table import press_button
-from vbraille.reading.cues import Cues, choose_cues
-from vbraille.reading.hearing import Hearing
 from vbraille.reading.keyboard import Keyboard
-from vbraille.reading.opened import OpenDevice
 from vbraille.render import MODELS, model_of
 from vbraille.simulation.hand import Still
 from vbraille.simulation.specs import (
@@ -44,11 +35,15 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterable
 
-    from vbraille.cli.live import FeltLiveView
+    from vbraille.cli.atdevice import Surroundings
+    from vbraille.cli.stoppable import StoppableKeyboard
     from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.engine.host import HostDiedError
     from vbraille.feeling.loading import LoadedScene
+    from vbraille.feeling.viewed import FeltView
+    from vbraille.reading.device import OpenDevice
+    from vbraille.reading.viewed import Said
 
 _MODEL = "stress2-8x8"
 _LINE_MM = 10.0  # between the lines that a hand goes along which reads
@@ -62,61 +57,40 @@ def run(arguments: argparse.Namespace) -> int:
     rate_hz = check_rate(arguments.rate)
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
     hand = STILL if arguments.hand is None else arguments.hand
-    seed = 1 if arguments.seed is None else arguments.seed
-    moved = parse_hand(hand, seed, pointed=True)
+    moved = parse_hand(hand, pointed=True)
     wanted = replace(MODELS[arguments.model or _MODEL].display, rate_hz=rate_hz)
     find_driver(arguments.device)
     loaded = load_scene(arguments.file, model_of(wanted).style)
     if is_simulated(arguments.device):
         _check(loaded, wanted, arguments.at)
-    with ExitStack() as listening, Keyboard() as keyboard:
+    with Keyboard() as keyboard:
         still = isinstance(moved, Still) and has_hand(arguments.device)
         if still and not (keyboard.attached or arguments.monitor):
             raise InputError(
                 "nothing would move the hand: start vbraille feel at a terminal, with --monitor, "
                 "or with a hand such as --hand wide"
             )
-        if (note := compiling_note()) is not None:
-            print(note, file=sys.stderr, flush=True)
-        cues = Cues(choose_cues(arguments.cues, attended=keyboard.attached))
-        live = _live(arguments)
-        if live is not None:
-            listening.enter_context(live)
-        hearing = listening.enter_context(Hearing(say_line if live is None else live.say, cues))
-        if arguments.speech:
-            hearing.speak(loaded.scene.language)
-        device = OpenDevice(
-            arguments.device,
-            wanted,
-            hand=hand,
-            seed=seed,
-            say=hearing.say,
-            attended=keyboard.attached,
-            begun=arguments.begun,
-            pointer=arguments.pointer if has_hand(arguments.device) else None,
-            on_share=None if live is None else live.share,
-        )
-        try:
+        with surrounded(arguments, keyboard, wanted, hand, loaded.scene.language) as around:
+            device, outputs = around.device, around.outputs
             display = device.find()
             if arguments.model is not None:
                 check_actuators(display, wanted)
             _check(loaded, display, arguments.at)
             model = model_of(display)
-            composer = Composer(display, rate_hz=rate_hz)
-            program = composer.compose(loaded, own_y_mm=arguments.at)
+            program = compose(loaded, display, rate_hz=rate_hz, own_y_mm=arguments.at)
             room = max(_SPARE * program.nbytes, _LEAST_ROOM)
             device.start(model, room)
-            keys = listening.enter_context(StoppableKeyboard(keyboard))
+            keys = around.keys()
             feeler = Feeler(
                 loaded,
                 device.engine,
                 where=lambda: device.pose,
-                composer=composer,
+                rate_hz=rate_hz,
                 style=model.style,
-                say=hearing.say,
+                say=outputs.say,
                 bound=BOUND,
                 room=room,
-                cue=hearing.cue,
+                cue=outputs.cue,
                 steering=device.steering,
                 at_mm=arguments.at,
                 entering=arguments.say_entering,
@@ -124,14 +98,10 @@ def run(arguments: argparse.Namespace) -> int:
             feeler.start(program)
             for warning in loaded.notes:
                 say_line(f"note: {warning}", aside=True)
-            if live is not None:
-                live.feel(device, feeler, hand)
-            _Feeling(device, feeler, keys, live, goes=not still).run()
-        finally:
-            EAR.close()  # so that the array goes to rest
-            device.close()
-    say_faults(device)
-    say_line(f"summary: {', '.join((seconds_of(device, rate_hz), *ticks_of(device)))}")
+            if around.live is not None:
+                around.live.show(lambda said, facts: _view(device, feeler, said, facts), hand)
+            _Feeling(around, feeler, keys, goes=not still).run()
+    say_summary(device, rate_hz=rate_hz)
     return 0
 
 
@@ -147,14 +117,12 @@ def _check(loaded: LoadedScene, display: Display, at_mm: float | None) -> None:
         raise InputError(f"--at is {at_mm:g} mm; it must be 0 to {height_mm:g} mm")
 
 
-def _live(arguments: argparse.Namespace) -> FeltLiveView | None:
-    """Live view that was asked for; None if none was."""
-    if not arguments.monitor:
-        return None
+def _view(device: OpenDevice, feeler: Feeler, said: Said, facts: list[tuple[str, str]]) -> FeltView:
+    """What is felt, as the state of the live view."""
     # Only who has a live view waits for what it needs.
-    from vbraille.cli.live import FeltLiveView
+    from vbraille.feeling.viewed import FeltView
 
-    return FeltLiveView(arguments)
+    return FeltView(device, feeler, said, facts)
 
 
 class _Feeling(AtDevice):
@@ -163,20 +131,12 @@ class _Feeling(AtDevice):
     A simulated hand that goes by itself sets out, and without anybody at keys ends the feeling.
     """
 
-    does, doing = "feel", "feeling"
-
     def __init__(
-        self,
-        device: OpenDevice,
-        feeler: Feeler,
-        keys: StoppableKeyboard,
-        live: FeltLiveView | None,
-        *,
-        goes: bool,
+        self, around: Surroundings, feeler: Feeler, keys: StoppableKeyboard, *, goes: bool
     ) -> None:
-        super().__init__(device, feeler, keys, live)
+        super().__init__(around, feeler, keys)
         self._feeler = feeler
-        self._goes = goes and device.steering is not None
+        self._goes = goes and self._device.steering is not None
         self._watch = FileWatch(Path(feeler.loaded.opened.path))
 
     def run(self) -> None:

@@ -12,7 +12,7 @@ from vbraille.cli.options.live import check_live_options
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
-from vbraille.live.desktop import has_desktop
+from vbraille.live.monitor import has_desktop
 from vbraille.live.server import LiveServer
 from vbraille.playback import open_recording
 from vbraille.wording import setting

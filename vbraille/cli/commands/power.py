@@ -9,8 +9,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli.progress import WorkProgress
-from vbraille.cli.terminal import say_line
+from vbraille.cli.terminal import WorkProgress, say_line
 from vbraille.forecast.power import ENOUGH, SEED, PowerQuestion, PowerRow, power
 from vbraille.forecast.workers import Workers
 from vbraille.sessions.planning.protocolfiles import load_protocol

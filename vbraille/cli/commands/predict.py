@@ -9,8 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli.progress import WorkProgress
-from vbraille.cli.terminal import say_line
+from vbraille.cli.terminal import WorkProgress, say_line
 from vbraille.files import check_free, write_folder
 from vbraille.forecast.grids import predict, to_json
 from vbraille.forecast.workers import Workers

@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
         say_line(f"written: {arguments.out}")
     if arguments.map is not None:
         # Only who wants a picture waits for what draws it.
-        from vbraille.pictures.costs import draw_costs
+        from vbraille.pictures.drawings import draw_costs
 
         drawn = cost_map(costs, loaded.scene.canvas)
         draw_costs(

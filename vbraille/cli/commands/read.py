@@ -5,31 +5,25 @@ from __future__ import annotations
 import sys
 from contextlib import ExitStack
 from dataclasses import replace
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
-from vbraille.caching import compiling_note
-from vbraille.cli.atdevice import AtDevice, say_faults, seconds_of, ticks_of
+from vbraille.cli.atdevice import AtDevice, say_summary, surrounded
 from vbraille.cli.build import build_lengths, build_page, build_show, lay_out, note_unseen_dots
 from vbraille.cli.options.live import check_live_options
 from vbraille.cli.resuming import open_to_resume
 from vbraille.cli.settled import bind_settings, chosen_profile, settle
-from vbraille.cli.stoppable import StoppableKeyboard
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.registry import check_actuators, check_height, check_travel, find_driver
 from vbraille.display import USUAL_RATE_HZ, check_rate
 from vbraille.errors import InputError
-from vbraille.reading.beside import Beside
-from vbraille.reading.cues import Cues, choose_cues
-from vbraille.reading.echo import Echo
-from vbraille.reading.hearing import Hearing, language_of
+from vbraille.reading.device import HAND
 from vbraille.reading.keyboard import Keyboard
-from vbraille.reading.opened import HAND, OpenDevice
+from vbraille.reading.outputs import Echo, language_of
 from vbraille.reading.places import KeptPlaces
 from vbraille.reading.scrolling import Scroll
 from vbraille.render import MODELS, model_of
-from vbraille.settings.applying import with_profile
+from vbraille.settings.values import with_profile
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
 from vbraille.translate.documents.document import Document
 from vbraille.wording import spelled
@@ -38,12 +32,15 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterable
 
+    from vbraille.cli.atdevice import Surroundings
     from vbraille.cli.build import Page
-    from vbraille.cli.live import LiveView
+    from vbraille.cli.stoppable import StoppableKeyboard
     from vbraille.devices.events import Event
-    from vbraille.reading.alongside import Alongside
-    from vbraille.reading.beside import FiguresLike
-    from vbraille.reading.keyed import Keyed
+    from vbraille.reading.activity import Activity
+    from vbraille.reading.conventionalview import ConventionalView
+    from vbraille.reading.device import OpenDevice
+    from vbraille.reading.figured import Figures
+    from vbraille.reading.viewed import ReadView, Said
     from vbraille.render import Model
 
 _FIGURE_ROOM = 1 << 21  # bytes of the largest page with figures, or of a figure
@@ -60,9 +57,9 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(f"--cells is {arguments.cells}; it must be 1 or more")
     bound = bind_settings(settings, arguments.keys)
     hand = HAND if arguments.hand is None else arguments.hand
-    seed = 1 if arguments.seed is None else arguments.seed
     # An unknown hand is refused before anything is opened.
-    parse_hand(hand, seed, pointed=arguments.monitor)
+    parse_hand(hand, pointed=arguments.monitor)
+    echo = _echo(arguments.echo)
     # Display that the options ask for: a simulated device is like it, a real device is what it is.
     asked = build_lengths(arguments, MODELS[arguments.model or "stress2"])
     wanted = build_page(arguments, replace(asked, display=asked.on(asked.style.geometry, rate_hz)))
@@ -70,38 +67,24 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.model is not None or is_simulated(arguments.device):
         build_show(arguments, asked)
     find_driver(arguments.device)
-    with ExitStack() as listening, Keyboard(beside=arguments.file == "-") as keyboard:
+    with ExitStack() as closing, Keyboard(beside=arguments.file == "-") as keyboard:
         if arguments.advance == "key" and not keyboard.attached:
             raise InputError("--advance key needs a terminal to type at; leave it out without one")
-        cues = Cues(choose_cues(arguments.cues, attended=keyboard.attached))
-        echo = _echo(arguments.echo)
-        live = _live(arguments)
-        if live is not None:
-            listening.enter_context(live)
-        say = say_line if live is None else live.say
-        hearing = listening.enter_context(Hearing(say, cues, echo=echo))
-        also = _also(arguments, listening, hearing)
         # A text or a table that is not there is refused before anything is begun or compiled.
-        places = listening.enter_context(KeptPlaces.open())
+        places = closing.enter_context(KeptPlaces.open())
         opened = open_to_resume(arguments, places)
-        listening.callback(opened.book.source.close)
-        if (note := compiling_note()) is not None:
-            print(note, file=sys.stderr, flush=True)
-        device = OpenDevice(
-            arguments.device,
+        closing.callback(opened.book.source.close)
+        with surrounded(
+            arguments,
+            keyboard,
             wanted,
+            hand,
+            language_of(opened.book, arguments.language),
+            echo=echo,
             often=arguments.rate is not None,
-            hand=hand,
-            seed=seed,
-            say=hearing.say,
-            attended=keyboard.attached,
-            begun=arguments.begun,
-            pointer=None if live is None else live.pointer,
-            on_share=None if live is None else live.share,
-        )
-        try:
-            if arguments.speech:
-                hearing.speak(language_of(opened.book, arguments.language))
+        ) as around:
+            device, outputs = around.device, around.outputs
+            also = _also(arguments, around)
             display = device.find()
             rate_hz = min(rate_hz, display.rate_hz)
             if arguments.model is not None:
@@ -115,11 +98,10 @@ def run(arguments: argparse.Namespace) -> int:
             page = lay_out(arguments, opened.book, model, arguments.cells, opened.place)
             note_unseen_dots(page)
             device.start(page.model, None if isinstance(page.source, Document) else _FIGURE_ROOM)
-            # Till now Ctrl-Z may do what it does elsewhere.
-            keys = listening.enter_context(StoppableKeyboard(keyboard))
+            keys = around.keys()
             seeker = opened.seeker(arguments)
             if seeker is not None:
-                listening.enter_context(seeker)
+                around.closing.enter_context(seeker)
             device.show(
                 page.layout,
                 first=page.first,
@@ -127,54 +109,42 @@ def run(arguments: argparse.Namespace) -> int:
                 at=None if opened.place is None else opened.place.character,
                 advance=arguments.advance == "return",
                 echo=echo,
-                beside=Beside(
-                    bound=bound,
-                    seeker=seeker,
-                    kept=opened.kept,
-                    scroll=Scroll(),
-                    cue=hearing.cue,
-                    save_style=lambda style: _save(
-                        settings.path, profile, replace(model, style=style)
-                    ),
-                    verbose=arguments.verbose,
-                    figures=lambda: _figures(page, Path(arguments.file).parent, device, rate_hz),
-                ),
+                bound=bound,
+                seeker=seeker,
+                kept=opened.kept,
+                scroll=Scroll(),
+                cue=outputs.cue,
+                save_style=lambda style: _save(settings.path, profile, replace(model, style=style)),
+                verbose=arguments.verbose,
+                figures=lambda: _figures(page, Path(arguments.file).parent, device, rate_hz),
             )
             if opened.place is not None:
-                hearing.say(f"book: {opened.book.source.title or opened.book.source.name}")
+                outputs.say(f"book: {opened.book.source.title or opened.book.source.name}")
                 device.reader.announce()
-            if live is not None:
-                live.show(device, hand)
+            if around.live is not None:
+                around.live.show(lambda said, facts: _view(device, said, facts), hand)
             try:
-                _Reading(page, device, keys, hearing, live, also).run()
+                _Reading(page, around, keys, also).run()
             finally:
                 opened.leave(device.reader, model, page.model.style)
-        finally:
-            EAR.close()  # so that the array goes to rest
-            device.close()
-    say_faults(device)
     page.say_unknown()
-    say_line(_summary(device, rate_hz))
+    speed = f"mean scanning speed {device.tally.scanning_mm_s:.1f} mm/s"
+    say_summary(device, f"lines {device.reader.lines}", rate_hz=rate_hz, speed=speed)
     return 0
 
 
 class _Reading(AtDevice):
     """One reading, to the end of the text."""
 
-    does, doing = "read", "reading"
-
     def __init__(
         self,
         page: Page,
-        device: OpenDevice,
+        around: Surroundings,
         keys: StoppableKeyboard,
-        hearing: Hearing,
-        live: LiveView | None,
-        also: Alongside | None,
+        also: ConventionalView | None,
     ) -> None:
-        super().__init__(device, device.reader, keys, live)
+        super().__init__(around, around.device.reader, keys)
         self._page = page
-        self._hearing = hearing
         self._also = also
 
     def run(self) -> None:
@@ -187,13 +157,13 @@ class _Reading(AtDevice):
 
     def _see(self, events: Iterable[Event]) -> None:  # noqa: ARG002 - the device obeys them
         device = self._device
-        self._hearing.see(device.line)
+        self._outputs.see(device.line)
         if device.reader.layout is self._page.layout:
             self._page.see(device.reader.line_number)
         self._say_notes()
 
     @property
-    def _keyed(self) -> Keyed:
+    def _keyed(self) -> Activity:
         """Whoever feels a figure alone, or the reader."""
         return self._device.reader.under.alone or self._device.reader
 
@@ -216,31 +186,29 @@ class _Reading(AtDevice):
             say_line(spelled(note), aside=True)
 
 
-def _live(arguments: argparse.Namespace) -> LiveView | None:
-    """Live view that was asked for; None if none was."""
-    if not arguments.monitor:
-        return None
+def _view(device: OpenDevice, said: Said, facts: list[tuple[str, str]]) -> ReadView:
+    """What is read, as the state of the live view."""
     # Only a reading that has a live view waits for what it needs.
-    from vbraille.cli.live import LiveView
+    from vbraille.reading.viewed import ReadView
 
-    return LiveView(arguments)
+    source, table = device.reader.layout.book.source, device.reader.layout.book.table
+    tables = [] if table is None else [("table", table.name)]
+    return ReadView(device, source.title or PurePath(source.name).name, said, [*tables, *facts])
 
 
-def _also(
-    arguments: argparse.Namespace, listening: ExitStack, hearing: Hearing
-) -> Alongside | None:
+def _also(arguments: argparse.Namespace, around: Surroundings) -> ConventionalView | None:
     """Conventional display that was asked for, which comes while the text is laid out."""
     if arguments.also is None:
         return None
     # Only a reading that has such a display needs what drives it.
     from vbraille.conventional.display import ConventionalDisplay
-    from vbraille.reading.alongside import Alongside
+    from vbraille.reading.conventionalview import ConventionalView
 
-    display = listening.enter_context(ConventionalDisplay(arguments.also))
-    return Alongside(display, hearing.say)
+    display = around.closing.enter_context(ConventionalDisplay(arguments.also))
+    return ConventionalView(display, around.outputs.say)
 
 
-def _figures(page: Page, folder: Path, device: OpenDevice, rate_hz: float) -> FiguresLike:
+def _figures(page: Page, folder: Path, device: OpenDevice, rate_hz: float) -> Figures:
     """Figures of the text; a text without any does not wait for what reads them."""
     from vbraille.feeling.bookfigures import BookFigures
 
@@ -263,9 +231,3 @@ def _echo(chosen: str | None) -> Echo:
     if chosen is not None:
         return Echo(chosen)
     return Echo.NONE if sys.stdout.isatty() else Echo.BOTH
-
-
-def _summary(device: OpenDevice, rate_hz: float) -> str:
-    speed = f"mean scanning speed {device.tally.scanning_mm_s:.1f} mm/s"
-    parts = (f"lines {device.reader.lines}", seconds_of(device, rate_hz), speed)
-    return f"summary: {', '.join((*parts, *ticks_of(device)))}"

@@ -20,15 +20,15 @@ from vbraille.cli.build import (
     lay_out,
     note_unseen_dots,
 )
-from vbraille.cli.options.feeling import PATH_OPTIONS
-from vbraille.cli.progress import WorkProgress
+from vbraille.cli.options.pictures import PATH_OPTIONS
 from vbraille.cli.settled import TRANSLATION, settle
 from vbraille.cli.stopping import EAR
+from vbraille.cli.terminal import WorkProgress
 from vbraille.display import check_rate
 from vbraille.engine.advance import EndOfLine
 from vbraille.errors import InputError
 from vbraille.newfile import new_file
-from vbraille.reading.speed import too_fast_note
+from vbraille.reading.handwatch import too_fast_note
 from vbraille.recording import Recorder
 from vbraille.render import MODELS
 from vbraille.simulation.motion import SLACK

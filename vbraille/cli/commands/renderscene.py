@@ -7,10 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli.options.feeling import PATH_OPTIONS
-from vbraille.cli.progress import WorkProgress
+from vbraille.cli.options.pictures import PATH_OPTIONS
 from vbraille.cli.stopping import EAR
-from vbraille.cli.terminal import say_line
+from vbraille.cli.terminal import WorkProgress, say_line
 from vbraille.display import check_rate
 from vbraille.errors import InputError
 from vbraille.feeling.composing import compose

@@ -158,7 +158,7 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _pilot(arguments: argparse.Namespace) -> int:
-    from vbraille.cli.progress import WorkProgress
+    from vbraille.cli.terminal import WorkProgress
     from vbraille.forecast.pilots import MARK, pilot
     from vbraille.forecast.workers import Workers
 

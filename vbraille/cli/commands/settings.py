@@ -10,9 +10,9 @@ from vbraille.cli.terminal import say_line
 from vbraille.files import settings_path
 from vbraille.render import MODELS
 from vbraille.render.braille.knobs import KNOBS
-from vbraille.settings.applying import with_profile
 from vbraille.settings.loading import load_settings
-from vbraille.settings.origins import USUAL, said, say_bindings, say_settings, say_tuning
+from vbraille.settings.origins import say_bindings, say_settings, say_tuning
+from vbraille.settings.values import with_profile
 
 if TYPE_CHECKING:
     import argparse
@@ -37,10 +37,9 @@ def run(arguments: argparse.Namespace) -> int:
     say_line(f"display: {model.title} ({'default' if arguments.model is None else 'option'})")
     shown = build_show(arguments, with_profile(settings, profile, model))
     shown = build_lengths(arguments, shown)
-    usual = {name: said(value) for name, value in arguments.usual.items() if value is not None}
     for sentence in (
         *say_tuning(settings, profile, model, shown.style, _given(arguments)),
-        *say_settings(settings, vars(arguments), USUAL | usual),
+        *say_settings(settings, vars(arguments), arguments.usual),
         *say_bindings(settings),
     ):
         say_line(sentence)

@@ -44,7 +44,6 @@ SERIAL_ONLY: Final[dict[str, object]] = {
     "travel": None,
     "axes": "x",
     "height": None,
-    "protocol": "2",
     "corrupt": 0.0,
     "stall": 0.0,
     "unplug_every": 0.0,
@@ -149,11 +148,8 @@ def _height_mm(arguments: argparse.Namespace) -> float:
 
 
 def _info(arguments: argparse.Namespace, display: Display) -> Info:
-    version = int(arguments.protocol)
-    if version == 1 and display.axes != "x":
-        raise InputError("version 1 of the protocol knows one axis; leave --axes or --protocol out")
     try:
-        return describe(display, Encoder[arguments.encoder.upper()], version)
+        return describe(display, Encoder[arguments.encoder.upper()])
     except ValueError as error:
         raise InputError(str(error)) from None
 

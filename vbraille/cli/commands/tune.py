@@ -19,14 +19,12 @@ from vbraille.files import write_file
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line, choose_table
 from vbraille.reading.bindings import spoken
+from vbraille.reading.device import HAND, OpenDevice
 from vbraille.reading.keyboard import Keyboard
-from vbraille.reading.opened import HAND, OpenDevice
-from vbraille.reading.practice import practice_text
-from vbraille.reading.tuning_course import TuningCourse, from_json, to_json
+from vbraille.reading.tuning_course import TuningCourse, from_json, practice_text, to_json
 from vbraille.render import MODELS, model_of
-from vbraille.settings.applying import with_profile
-from vbraille.settings.chosen import display_name
 from vbraille.settings.saving import save_profile
+from vbraille.settings.values import display_name, with_profile
 from vbraille.simulation.specs import is_simulated, refuse_hand
 from vbraille.toml.textfile import read_text
 from vbraille.translate import Book, Document
@@ -36,7 +34,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.render import Model
-    from vbraille.settings.chosen import Settings
+    from vbraille.settings.values import Settings
 
 _KEYS = {
     "space": "feel the other one",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 
-from vbraille.cli.options.values import number, seed, whole
+from vbraille.cli.options.groups import number, seed, whole
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:

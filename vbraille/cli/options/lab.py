@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
-from vbraille.cli.options.groups import HANDS, SPEC
+from vbraille.cli.options.groups import (
+    HANDS,
+    SPEC,
+    Pairs,
+    checksum,
+    marks,
+    names,
+    number,
+    seed,
+    whole,
+)
 from vbraille.cli.options.live import add_live_options
-from vbraille.cli.options.values import Pairs, checksum, marks, names, number, seed, whole
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:

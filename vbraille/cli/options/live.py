@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from vbraille.cli.options.values import whole
+from vbraille.cli.options.groups import whole
 from vbraille.errors import InputError
 from vbraille.wording import setting
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from vbraille.cli.options import feeling, groups
-from vbraille.cli.options.groups import MODELS, SPEC
+from vbraille.cli.options import groups, pictures
+from vbraille.cli.options.groups import MODELS, SPEC, duration, number, whole
 from vbraille.cli.options.live import add_live_options
-from vbraille.cli.options.values import duration, number, whole
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
@@ -109,9 +108,6 @@ def _reading(parser: ArgumentParser) -> None:
         help="Lay out lines of so many cells; the hand goes along a longer one part by part "
         "(default: as many as the hand can cross).",
     )
-    parser.add_argument(
-        "--verbose", action="store_true", help="Say more, such as how far a search has come."
-    )
     groups.page(parser)
     groups.hand(parser, _OWN_RATE)
     # The model is the device's own, and only a simulated one has a hand.
@@ -197,7 +193,7 @@ def render(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--force", action="store_true", help="Replace the file if it is there already."
     )
-    feeling.path(parser)
+    pictures.path(parser)
     parser.set_defaults(model=None)  # which is another one for lines than for pictures
     parser.add_argument(
         "--plain", action="store_true", help="Print progress as lines, without a bar."
@@ -283,13 +279,6 @@ def simulate(parser: ArgumentParser) -> None:
         metavar="MM",
         help="Let a carriage of two axes go so far across the lines (default: as the "
         "display's own does, or 200 mm).",
-    )
-    parser.add_argument(
-        "--protocol",
-        choices=("1", "2"),
-        default="2",
-        help="Speak this version of the wire protocol and no other; version 1 has one axis and no "
-        "knobs (default: 2).",
     )
     parser.add_argument(
         "--script",

@@ -24,8 +24,23 @@ _OF_DISPLAY: Final = (
     "turns",
     "rate_hz",
 )
-# Fields of INFO about y and θ, which version 1 has not.
-_OF_AXES: Final = ("y_counts_per_m", "y_count_sign", "counts_per_turn", "turn_sign")
+# Fields of INFO that may change, and those of them that are the reader's to show where encoders are
+# incremental.
+_OF_INFO: Final = (
+    "name",
+    "counts_per_m",
+    "count_sign",
+    "encoder",
+    "y_counts_per_m",
+    "y_count_sign",
+    "counts_per_turn",
+    "turn_sign",
+    "left_stop_count",
+    "far_stop_count",
+    "straight_count",
+    "largest_slew_per_s",
+)
+_SHOWN: Final = ("left_stop_count", "far_stop_count", "straight_count")
 PLACING: Final = {
     Encoder.ABSOLUTE: Placing.DONE,
     Encoder.INDEX: Placing.MARK,
@@ -44,24 +59,14 @@ def differences(was: Display, now: Display) -> tuple[Difference, ...]:
 
 def changes(was: Info, now: Info) -> Changed | None:
     """What has changed in a device that can be read on, since the conversation before."""
-    what = [
-        Difference("name", was.name, now.name),
-        Difference("counts_per_m", was.counts_per_m, now.counts_per_m),
-        Difference("count_sign", was.count_sign.name.lower(), now.count_sign.name.lower()),
-        Difference("encoder", was.encoder.name.lower(), now.encoder.name.lower()),
-    ]
-    for name in _OF_AXES:
-        old, new = (getattr(info, name, None) for info in (was, now))
-        if old is not None and new is not None:  # of one version, or both have it
-            what.append(Difference(name, _said(old), _said(new)))
-    if now.encoder is not Encoder.INCREMENTAL:  # the reader shows where its stops are
-        for name in ("left_stop_count", "far_stop_count", "straight_count"):
-            old, new = (getattr(info, name, None) for info in (was, now))
-            if old is not None and new is not None:
-                what.append(Difference(name, old, new))
-    what.append(Difference("largest_slew_per_s", was.largest_slew_per_s, now.largest_slew_per_s))
+    shown = _SHOWN if now.encoder is Encoder.INCREMENTAL else ()
+    both = (
+        (name, _said(getattr(was, name)), _said(getattr(now, name)))
+        for name in _OF_INFO
+        if name not in shown
+    )
     changed = Changed(
-        tuple(each for each in what if each.was != each.now),
+        tuple(Difference(name, old, new) for name, old, new in both if old != new),
         _others(was.gain, now.gain),
         _others(was.inverted, now.inverted),
         _others(was.enabled, now.enabled),
@@ -71,8 +76,8 @@ def changes(was: Info, now: Info) -> Changed | None:
     return None if changed == none else changed
 
 
-def _said(value: int) -> int | str:
-    """Name of a sign; any other number as it is."""
+def _said(value: int | str) -> int | str:
+    """Name of a member of an enumeration; any other value as it is."""
     return value.name.lower() if isinstance(value, IntEnum) else value
 
 

@@ -18,11 +18,10 @@ from enum import Enum, auto
 from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.events import Unplugged
-from vbraille.devices.serial.greeting import HELLOS
 from vbraille.devices.serial.listening import Listening
 from vbraille.devices.serial.transitions import TALKING, UNTOLD, Cause, Stage
 from vbraille.devices.wire.codec import DELIMITER, encode
-from vbraille.devices.wire.messages import HELLO_PERIOD_MS, Rest
+from vbraille.devices.wire.messages import HELLO_PERIOD_MS, Hello, Rest
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,6 +32,7 @@ if TYPE_CHECKING:
 # If frames have had nothing to feel for so long, nothing is shown: gaps between words are shorter.
 IDLE_MS: Final = 5000
 _NS_PER_MS: Final = 1_000_000
+_HELLO: Final = DELIMITER + encode(Hello())  # the zero ends whatever was on the line before
 _REST: Final = encode(Rest())
 _U16: Final = 0xFFFF
 _GREETING: Final = frozenset({Stage.GREETING, Stage.ASKED})
@@ -83,7 +83,7 @@ class Conversation(Listening):
         """Note that the port is back; nothing that was said before goes on."""
         if self._go(Cause.PLUGGED_IN):
             self.decoder.feed(DELIMITER)  # what was begun will not be ended
-            self._greet_anew(now_ns)
+            self._hello_ns = now_ns
 
     def mind_stall(self, now_ns: int) -> bool:
         """Have the device rest if the host was stopped for so long that it may rest; tell whether.
@@ -168,7 +168,7 @@ class Conversation(Listening):
             return _REST
         if self.stage in _GREETING and self._now_ns >= self._hello_ns:
             self._offer = _Wish.HELLO
-            return HELLOS[self.version]
+            return _HELLO
         return None
 
     @property

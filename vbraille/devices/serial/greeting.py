@@ -5,18 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.base import Particulars
-from vbraille.devices.wire.codec import DELIMITER, encode
-from vbraille.devices.wire.messages import INFOS, MOST_BUTTONS, Encoder, Hello, Info2
+from vbraille.devices.wire.messages import Encoder
 from vbraille.display import Display
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from vbraille.devices.wire.messages import Info
-
-# HELLO in each version that the host speaks. The zero ends whatever was on the line before.
-HELLOS: Final = {version: DELIMITER + encode(Hello(version)) for version in INFOS}
-
 
 # How far the carriage goes, and how finely that is counted, by the fields of INFO.
 _AXES: Final = (("travel_um", "counts_per_m"), ("height_um", "y_counts_per_m"))
@@ -27,7 +22,7 @@ def misfit(info: Info) -> str:
     # One count alone tells where the carriage is when the conversation begins.
     told = 1 << (info.count_bits - 1)
     for way, per_m in _AXES:
-        way_um, counts_per_m = getattr(info, way, 0), getattr(info, per_m, 1)
+        way_um, counts_per_m = getattr(info, way), getattr(info, per_m)
         if way_um and not counts_per_m:
             return f"{way} is {way_um}, and {per_m} is 0; a carriage that goes there counts it"
         counts = way_um * counts_per_m // 1_000_000
@@ -42,11 +37,9 @@ def misfit(info: Info) -> str:
 
 def info_of(info: Info) -> Display:
     """Display of a device, in mm, from what it says of itself."""
-    height_mm, turns, contactor_mm = 0.0, False, None
-    if isinstance(info, Info2):
-        height_mm, turns = info.height_um / 1e3, info.counts_per_turn > 0
-        if info.contactor_width_nm and info.contactor_height_nm:
-            contactor_mm = info.contactor_width_nm / 1e6, info.contactor_height_nm / 1e6
+    contactor_mm = None
+    if info.contactor_width_nm and info.contactor_height_nm:
+        contactor_mm = info.contactor_width_nm / 1e6, info.contactor_height_nm / 1e6
     return Display(
         name=info.name,
         rows=info.rows,
@@ -58,15 +51,10 @@ def info_of(info: Info) -> Display:
         travel_mm=info.travel_um / 1e3,
         counts_per_mm=info.counts_per_m / 1e3,
         rate_hz=float(info.rate_hz),
-        height_mm=height_mm,
-        turns=turns,
+        height_mm=info.height_um / 1e3,
+        turns=info.counts_per_turn > 0,
         contactor_mm=contactor_mm,
     )
-
-
-def fitted(info: Info) -> tuple[int, int]:
-    """Numbers of buttons and knobs that a device may have; version 1 has room for buttons only."""
-    return (info.buttons, info.knobs) if isinstance(info, Info2) else (MOST_BUTTONS, 0)
 
 
 _ENCODERS: Final = {
@@ -89,6 +77,6 @@ def particulars_of(info: Info) -> Particulars:
         disabled=where(not (on and gain) for on, gain in zip(info.enabled, info.gain, strict=True)),
         inverted=where(map(bool, info.inverted)),
         protocol=f"serial, version {info.version}",
-        buttons=info.buttons if isinstance(info, Info2) else None,
-        knobs=info.knobs if isinstance(info, Info2) else None,
+        buttons=info.buttons,
+        knobs=info.knobs,
     )

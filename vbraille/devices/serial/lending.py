@@ -16,14 +16,9 @@ from vbraille.devices.serial.conversation import IDLE_MS
 from vbraille.devices.serial.steady import (
     CONVERSATION,
     NEVER,
-    STATE,
-    STATE2,
-    STATE2_BYTES,
-    STATE_BYTES,
     WORK_BYTES,
 )
 from vbraille.devices.wire.codec import CRC_BYTES, frame_head, line_bytes
-from vbraille.devices.wire.messages import Info2
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -143,10 +138,8 @@ class Lending:
 
 
 def _lend_panel(talk: np.void, conversation: Conversation) -> None:
-    """Fill in what STATEs are, and the buttons and knobs in them."""
-    newer, panel = isinstance(conversation.info, Info2), conversation.panel
-    talk["state_type"] = STATE2 if newer else STATE
-    talk["state_bytes"] = STATE2_BYTES if newer else STATE_BYTES
+    """Fill in the buttons and knobs."""
+    panel = conversation.panel
     talk["buttons"], talk["button_mask"] = panel.buttons or 0, (1 << panel.buttons_fitted) - 1
     talk["knobs"], talk["knobs_fitted"] = panel.knobs or 0, panel.knobs_fitted
 

@@ -25,7 +25,7 @@ from vbraille.devices.events import (
 from vbraille.devices.serial.changes import changes, differences
 from vbraille.devices.serial.delivery import Delivery, Trips
 from vbraille.devices.serial.drive import Drive
-from vbraille.devices.serial.greeting import fitted, info_of, misfit, particulars_of
+from vbraille.devices.serial.greeting import info_of, misfit, particulars_of
 from vbraille.devices.serial.notices import Notices
 from vbraille.devices.serial.panel import Panel
 from vbraille.devices.serial.place import DeviceTime, Place
@@ -33,16 +33,12 @@ from vbraille.devices.serial.transitions import RESTING, TALKING, TRANSITIONS, C
 from vbraille.devices.wire.codec import Decoder, OtherVersion, unwrap
 from vbraille.devices.wire.messages import (
     ANSWER_MS,
-    HELLO_PERIOD_MS,
     LOST_MS,
     NOTICES,
     SILENCE_MS,
-    VERSION,
     Error,
     Info,
-    Info2,
     State,
-    State2,
     Watchdog,
 )
 from vbraille.pose import Pose
@@ -120,8 +116,6 @@ class Listening:
     ----------
     stage : Stage
         Stage of the conversation.
-    version : int
-        Version of the protocol in which the device is greeted.
     display, info, particulars : Display, Info, Particulars, or None
         What the device said of itself first, and what it says in this conversation; None before.
     failure : Fault, Stranger or None
@@ -147,11 +141,9 @@ class Listening:
     drive: Drive
     place: Place
     delivery: Delivery
-    _kind_of_state: type[State]
 
     def __init__(self, now_ns: int, rate_hz: float | None = None) -> None:
         self.stage = Stage.GREETING
-        self.version = VERSION
         self.display: Display | None = None
         self.info: Info | None = None
         self.particulars: Particulars | None = None
@@ -185,7 +177,7 @@ class Listening:
             for message in self.decoder.feed(chunk):
                 if isinstance(message, State):
                     self.speaks = True
-                    if self.stage in TALKING and type(message) is self._kind_of_state:
+                    if self.stage in TALKING:
                         pose = self._take_state(message, now_ns)
                 else:
                     self._take(message, now_ns)
@@ -227,8 +219,6 @@ class Listening:
         if isinstance(message, Info):
             if self.stage is not Stage.ASKED:
                 pass  # it answers a HELLO from before
-            elif message.version != self.version:
-                self._greet_in(message.version, now_ns)
             else:
                 self._take_info(message, now_ns)
         elif isinstance(message, OtherVersion):
@@ -307,24 +297,6 @@ class Listening:
             self._placing = self.place.placing
             self._tell(Placed(self._placing), now_ns)
 
-    def _greet_in(self, version: int, now_ns: int) -> None:
-        """Greet again in the version that the device speaks.
-
-        An older one is what the newest HELLO is meant to find out, and is greeted at once. One that
-        is newer than the host has just been told waits its turn: two devices at one port, or one
-        that changes its mind, must not be greeted without a pause.
-        """
-        older = version < self.version
-        if self._go(Cause.OTHER_VERSION):
-            _log.debug("the device speaks version %d", version)
-            self.version = version
-            self._hello_ns = now_ns + (0 if older else HELLO_PERIOD_MS * _NS_PER_MS)
-
-    def _greet_anew(self, now_ns: int) -> None:
-        """Greet whatever may be there now, in the newest version first."""
-        self.version = VERSION
-        self._hello_ns = now_ns
-
     def _take_info(self, info: Info, now_ns: int) -> None:
         display, fault = info_of(info), misfit(info)
         others = () if self.display is None else differences(self.display, display)
@@ -353,8 +325,7 @@ class Listening:
         self.time.restart()
         self.delivery = Delivery(info.rate_hz)
         self.place = Place(info)
-        self.panel.fit(*fitted(info))
-        self._kind_of_state = State2 if isinstance(info, Info2) else State
+        self.panel.fit(info.buttons, info.knobs)
         if before is None:
             self._placing = self.place.placing
         self._mind_placing(now_ns)
@@ -391,7 +362,7 @@ class Listening:
             self._stop(tell=True)
             self._tell_away(Silent(silent_ns / _NS_PER_MS), now_ns)
         if silent_ns >= _LOST_NS and self._go(Cause.LOST):
-            self._greet_anew(now_ns)
+            self._hello_ns = now_ns
 
     def _fall(self, cause: Cause, now_ns: int) -> None:
         """Note that the device went to rest, or may have."""

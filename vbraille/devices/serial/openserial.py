@@ -14,7 +14,7 @@ from vbraille.devices.serial.serialdevice import SerialDevice, send_due
 from vbraille.devices.serial.serialport import LOOK_S, SerialPort
 from vbraille.devices.serial.transitions import Stage
 from vbraille.devices.wire.codec import Levels, line_bytes
-from vbraille.devices.wire.messages import INFOS, STALL_MS
+from vbraille.devices.wire.messages import STALL_MS, VERSION
 from vbraille.errors import DeviceError, InputError
 from vbraille.wording import setting
 
@@ -128,8 +128,7 @@ def _turned_away(stranger: Stranger, address: Address) -> DeviceError:
     if stranger.version is not None:
         return DeviceError(
             f"the device at {address.url} speaks version {stranger.version} of the "
-            f"protocol and this vbraille versions {' and '.join(map(str, INFOS))}; update the "
-            f"older of the two"
+            f"protocol and this vbraille version {VERSION}; update the older of the two"
         )
     return DeviceError(
         f"the device at {address.url} says in its INFO what cannot be: {stranger.fault}; "

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.events import Button, Knob
-from vbraille.devices.wire.messages import KNOB_STEP, KNOB_TOP, State2
+from vbraille.devices.wire.messages import KNOB_STEP, KNOB_TOP
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -43,8 +43,7 @@ class Panel:
     def take(self, state: State, now_ns: int) -> Iterator[Button | Knob]:
         """Tell what has changed by a new STATE; the first of all changes nothing."""
         yield from self._press(state.buttons, now_ns)
-        if isinstance(state, State2):
-            yield from self._turn(state.knobs)
+        yield from self._turn(state.knobs)
 
     def let_go(self, now_ns: int) -> Iterator[Button]:
         """Tell the buttons that were pressed: nobody holds those of a device that is not there."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from vbraille.devices.events import Placing
 from vbraille.devices.wire.codec import unwrap
-from vbraille.devices.wire.messages import Encoder, Info2, State2
+from vbraille.devices.wire.messages import Encoder
 
 if TYPE_CHECKING:
     from vbraille.devices.wire.messages import Info, State
@@ -131,10 +131,10 @@ class Place:
         self.x = CountedAxis(bits, stop, home_mm, info.count_sign * 1000 / info.counts_per_m)
         self.y: CountedAxis | None = None
         self.turn: CountedTurn | None = None
-        if isinstance(info, Info2) and info.height_um:
+        if info.height_um:
             mm_per_count = info.y_count_sign * 1000 / info.y_counts_per_m
             self.y = CountedAxis(bits, shown(info.far_stop_count), 0.0, mm_per_count)
-        if isinstance(info, Info2) and info.counts_per_turn:
+        if info.counts_per_turn:
             straight = shown(info.straight_count)
             self.turn = CountedTurn(info.counts_per_turn, straight, info.turn_sign)
         self.known = False
@@ -158,11 +158,10 @@ class Place:
                 y.count = None
             return None
         x.take(state.count)
-        if isinstance(state, State2):
-            if y is not None:
-                y.take(state.y_count)
-            if turn is not None:
-                turn.count = state.theta_count
+        if y is not None:
+            y.take(state.y_count)
+        if turn is not None:
+            turn.count = state.theta_count
         x_mm, y_mm = x.place_mm, 0.0 if y is None else y.place_mm
         if x_mm is None or y_mm is None:
             return None

@@ -28,7 +28,6 @@ from vbraille.devices.wire.messages import (
     TRIPPED,
     Frame,
     State,
-    State2,
 )
 from vbraille.devices.wire.wirekernels import delimiter, enframe, number, put_number, unframe
 
@@ -49,8 +48,6 @@ CONVERSATION = np.dtype(
         ("zero", "<i8"),  # count at the left stop
         ("home_mm", "<f8"),  # where the array's centre is then
         ("mm_per_count", "<f8"),
-        ("state_type", "<i8"),  # what STATEs are in the conversation's version
-        ("state_bytes", "<i8"),  # how many bytes one has at least
         ("buttons", "<i8"),  # that are pressed, a bit each
         ("button_mask", "<i8"),  # bits of those that are there
         ("knobs", "<i8"),  # where they were last told to stand, a byte each
@@ -86,15 +83,11 @@ CONVERSATION = np.dtype(
 )
 
 
-_CODES = {message: code for code, message in MESSAGES.items()}
-# Types of a STATE in either version, and number of bytes in one.
-STATE, STATE2 = _CODES[State], _CODES[State2]
-STATE_BYTES, STATE2_BYTES = (
-    places_of(kind)[-1][0] + places_of(kind)[-1][1] for kind in (State, State2)
-)
-_NAMES = [name for name, _ in fields_of(State2)]
-_PLACES = places_of(State2)
-# Place of each field, as `number` takes it; those of version 1 are the first of version 2.
+_STATE = next(code for code, message in MESSAGES.items() if message is State)
+_NAMES = [name for name, _ in fields_of(State)]
+_PLACES = places_of(State)
+_STATE_BYTES = _PLACES[-1][0] + _PLACES[-1][1]
+# Place of each field, as `number` takes it.
 _SEQUENCE, _TIME_US, _COUNT, _FRAME_SEQUENCE, _FLAGS, _BUTTONS = (
     _PLACES[_NAMES.index(name)]
     for name in ("sequence", "time_us", "count", "frame_sequence", "flags", "buttons")
@@ -191,18 +184,17 @@ def take(received, size, now_ns, talk, work):
             begun += 1
             continue
         body_bytes = unframe(received, begun, end, work)
-        if body_bytes < talk.state_bytes or work[0] != talk.state_type:
+        if body_bytes < _STATE_BYTES or work[0] != _STATE:
             return SOMETHING_ELSE, 0
         flags = number(work, *_FLAGS)
         if flags & _UNSTEADY != 0 or (talk.must_be_placed != 0 and flags & PLACED == 0):
             return SOMETHING_ELSE, 0
         if number(work, *_BUTTONS) & talk.button_mask != talk.buttons:
             return SOMETHING_ELSE, 0
-        if talk.state_type == STATE2:
-            if _turned(talk.knobs, number(work, *_KNOBS), talk.knobs_fitted):
-                return SOMETHING_ELSE, 0
-            y_count = _unwrap(number(work, *_Y_COUNT), y_count, talk.count_bits)
-            theta_count = number(work, *_THETA_COUNT)
+        if _turned(talk.knobs, number(work, *_KNOBS), talk.knobs_fitted):
+            return SOMETHING_ELSE, 0
+        y_count = _unwrap(number(work, *_Y_COUNT), y_count, talk.count_bits)
+        theta_count = number(work, *_THETA_COUNT)
         sequence = _unwrap(number(work, *_SEQUENCE), state_sequence, _SEQUENCE_BITS)
         if sequence <= state_sequence:  # an old one, or one that came twice
             return SOMETHING_ELSE, 0

@@ -32,8 +32,7 @@ class Cause(Enum):
 
     ASKED = "HELLO has gone out"
     ANSWERED = "INFO came of a device that can be read on"
-    OTHER_VERSION = "INFO came of another version that the host speaks as well"
-    TURNED_AWAY = "INFO came of another device, of an unknown version, or one that cannot be"
+    TURNED_AWAY = "INFO came of another device, of another version, or one that cannot be"
     NO_ANSWER = "at the start, no INFO came for 3000 ms"
     HEARD = "STATE came"
     RAMPS = "STATE says *resting*, but not for long enough yet"
@@ -72,7 +71,6 @@ TRANSITIONS: Final[dict[Stage, dict[Cause, Stage]]] = {
     },
     Stage.ASKED: {
         Cause.ANSWERED: Stage.RAMPING,
-        Cause.OTHER_VERSION: Stage.GREETING,
         Cause.TURNED_AWAY: Stage.STRANGER,
         Cause.NO_ANSWER: Stage.FAILED,
         Cause.REST_WANTED: Stage.ASKED,

@@ -27,7 +27,7 @@ from vbraille.devices.wire.fields import (
     head_of,
     to_wire,
 )
-from vbraille.devices.wire.messages import INFOS, MESSAGES, Frame, Info
+from vbraille.devices.wire.messages import MESSAGES, VERSION, Frame, Info
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -139,10 +139,8 @@ class BodyCodec:
 
 
 _CODECS = {code: BodyCodec(code, message) for code, message in MESSAGES.items()}
-_INFO = next(code for code, message in MESSAGES.items() if message is Info)
-_INFOS = {version: BodyCodec(_INFO, message) for version, message in INFOS.items()}
-_CODEC_OF = {codec.message: codec for codec in (*_CODECS.values(), *_INFOS.values())}
-_FRAME = _CODEC_OF[Frame]
+_CODEC_OF = {codec.message: codec for codec in _CODECS.values()}
+_INFO, _FRAME = _CODEC_OF[Info], _CODEC_OF[Frame]
 
 
 def encode(message: Message) -> bytes:
@@ -251,10 +249,8 @@ class Decoder:
         if codec is None:
             return Drop.UNKNOWN_TYPE
         body = body[:-CRC_BYTES]
-        if codec.code == _INFO and len(body) > 1:
-            codec = _INFOS.get(body[1])
-            if codec is None:
-                return OtherVersion(body[1])
+        if codec is _INFO and len(body) > 1 and body[1] != VERSION:
+            return OtherVersion(body[1])
         try:
             message = codec.decode(body)
             if self._levels is not None and isinstance(message, Frame):
@@ -268,7 +264,7 @@ class Decoder:
         return message
 
     def _mind_info(self, codec: BodyCodec, fault: str) -> None:
-        if codec.code == _INFO:
+        if codec is _INFO:
             self.bad_info = fault
 
 

@@ -129,14 +129,16 @@ class Rest(Message):
 
 @dataclass(frozen=True, slots=True)
 class Info(Message):
-    """Device of version 1: what it is. Row 0 is far from the reader, column 0 is the left one.
+    """Device: a description of itself. Row 0 is far from the reader, column 0 is the left one.
 
     A level of 0 is rest and `top_level` is full swing, or the other way round
     where `inverted` is 1. `left_stop_count` has no meaning where the encoder is
-    incremental; a `largest_slew_per_s` of 0 is no limit.
+    incremental; a `largest_slew_per_s` of 0 is no limit. A contactor of 0 × 0 is one whose size is
+    not known, a `height_um` of 0 a carriage of one axis, and `counts_per_turn` is 0 where no angle
+    is measured. Fields of an axis that is not there have no meaning.
     """
 
-    version: Annotated[int, Number("B", 1, 1)]
+    version: Annotated[int, Number("B", VERSION, VERSION)]
     rows: Annotated[int, Number("B", 1, 16)]
     columns: Annotated[int, Number("B", 1, 64)]
     column_pitch_nm: Annotated[int, PITCH]
@@ -156,18 +158,6 @@ class Info(Message):
     inverted: Annotated[bytes, PerActuator(high=1)]
     gain: Annotated[bytes, PerActuator(high=0xFF)]
     enabled: Annotated[bytes, PerActuator(high=1)]
-
-
-@dataclass(frozen=True, slots=True)
-class Info2(Info):
-    """Device of version 2: what `Info` says, and axes, contactors, buttons and knobs.
-
-    A contactor of 0 × 0 is one whose size is not known, a `height_um` of 0 a carriage of one axis,
-    and `counts_per_turn` is 0 where no angle is measured. What belongs to an axis that is not there
-    has no meaning.
-    """
-
-    version: Annotated[int, Number("B", 2, 2)]
     buttons: Annotated[int, Number("B", 0, MOST_BUTTONS)]
     knobs: Annotated[int, Number("B", 0, MOST_KNOBS)]
     contactor_width_nm: Annotated[int, CONTACTOR]
@@ -183,7 +173,10 @@ class Info2(Info):
 
 @dataclass(frozen=True, slots=True)
 class State(Message):
-    """Device of version 1: where its carriage is, and what else it feels; `rate_hz` a second."""
+    """Device: where its carriage is, and what else it feels; `rate_hz` a second.
+
+    The knobs are a byte each, that of knob 1 the lowest.
+    """
 
     sequence: Annotated[int, U16]
     time_us: Annotated[int, MICROSECONDS]
@@ -192,6 +185,9 @@ class State(Message):
     flags: Annotated[int, U8]
     buttons: Annotated[int, U8]
     force_mn: Annotated[int | None, FORCE]
+    y_count: Annotated[int, U32]
+    theta_count: Annotated[int, U32]
+    knobs: Annotated[int, U32]
 
     @property
     def placed(self) -> bool:
@@ -210,20 +206,8 @@ class State(Message):
 
     @property
     def tripped(self) -> bool:
-        """Whether the watchdog has tripped and no FRAME was taken since; older devices say no."""
+        """Whether the watchdog has tripped and no FRAME was taken since."""
         return bool(self.flags & TRIPPED)
-
-
-@dataclass(frozen=True, slots=True)
-class State2(State):
-    """Device of version 2: what `State` says, and y, θ and the knobs.
-
-    The knobs are a byte each, that of knob 1 the lowest.
-    """
-
-    y_count: Annotated[int, U32]
-    theta_count: Annotated[int, U32]
-    knobs: Annotated[int, U32]
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,16 +226,13 @@ class Error(Message):
     text: Annotated[str, ShortText(fewest=0)]
 
 
-# Types from 0x80 on are a device's. INFO has one type in all versions, and its version says which
-# it is: see `INFOS`.
+# Types from 0x80 on are a device's. INFO has one type in all versions.
 MESSAGES: Final[dict[int, type[Message]]] = {
     0x01: Hello,
     0x02: Frame,
     0x03: Rest,
     0x81: Info,
-    0x82: State,
     0x83: Watchdog,
     0x84: Error,
-    0x85: State2,
+    0x85: State,
 }
-INFOS: Final[dict[int, type[Info]]] = {1: Info, 2: Info2}

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.braille.dots import dots_of
-from vbraille.reading.echo import Echo
-from vbraille.reading.nearby import within
+from vbraille.reading.outputs import Echo
+from vbraille.reading.search.structure import within
 from vbraille.reading.whereabouts import block_of, whereabouts
 from vbraille.translate.documents.markup.tables import BETWEEN
 from vbraille.translate.source import BlockKind

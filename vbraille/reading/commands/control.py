@@ -4,47 +4,44 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.reading.bindings import spoken
-from vbraille.reading.context import Context
+from vbraille.reading.bindings import Context, spoken
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.reading.keyed import Keyed
-    from vbraille.reading.prompt import Prompt
-    from vbraille.reading.reader import Reader
+    from vbraille.reading.activity import Activity, Prompt
 
 
-def pause(reader: Reader) -> None:
+def pause(reader: Activity) -> None:
     """Rest the array at once, or go on."""
     reader.engine.paused = not reader.engine.paused
-    reader.say("paused" if reader.engine.paused else "reading")
+    reader.say("paused" if reader.engine.paused else reader.doing)
 
 
-def set_zero(reader: Reader) -> None:
+def set_zero(reader: Activity) -> None:
     """Tell the device that its carriage is at the left stop."""
     reader.engine.set_zero()
 
 
-def stop(reader: Reader) -> None:
+def stop(reader: Activity) -> None:
     """Stop reading; or, when keys are learnt, stop learning."""
     reader.quit()
 
 
-def learn(reader: Keyed) -> None:
+def learn(reader: Activity) -> None:
     """Have keys say what they do, and do nothing."""
     reader.context = Context.LEARNING
     ends = reader.key("QUIT", "q")
     reader.say(f"learn: a key says what it does; this key again or {ends} ends it")
 
 
-def end_learning(reader: Keyed) -> None:
+def end_learning(reader: Activity) -> None:
     """Have keys do what they do again."""
     reader.context = Context.READING
     reader.say("learn: off")
 
 
-def enter(reader: Keyed) -> None:
+def enter(reader: Activity) -> None:
     """Take what was typed, and say it."""
     prompt = reader.prompt
     reader.prompt, reader.context = None, Context.READING
@@ -59,42 +56,42 @@ def enter(reader: Keyed) -> None:
     prompt.then(typed)
 
 
-def give_up(reader: Keyed) -> None:
+def give_up(reader: Activity) -> None:
     """Forget what was typed."""
     prompt = reader.prompt
     reader.prompt, reader.context = None, Context.READING
     reader.say(f"{'text' if prompt is None else prompt.label}: given up")
 
 
-def erase(reader: Keyed) -> None:
+def erase(reader: Activity) -> None:
     """Erase the character before the cursor, without a word."""
     if reader.prompt is not None:
         reader.prompt.erase(reader.prompt.cursor - 1)
 
 
-def erase_next(reader: Keyed) -> None:
+def erase_next(reader: Activity) -> None:
     """Erase the character at the cursor, and say the one that is there then."""
     if reader.prompt is not None:
         reader.prompt.erase(reader.prompt.cursor, reader.prompt.cursor + 1)
         _say_here(reader, reader.prompt)
 
 
-def erase_word(reader: Keyed) -> None:
+def erase_word(reader: Activity) -> None:
     """Erase the word before the cursor, and say it."""
     if reader.prompt is not None:
         _say_erased(reader, reader.prompt.erase(reader.prompt.word_start))
 
 
-def erase_start(reader: Keyed) -> None:
+def erase_start(reader: Activity) -> None:
     """Erase all before the cursor, and say it."""
     if reader.prompt is not None:
         _say_erased(reader, reader.prompt.erase(0))
 
 
-def move(steps: int) -> Callable[[Keyed], None]:
+def move(steps: int) -> Callable[[Activity], None]:
     """Make a command that moves the cursor, as far as there is text, and says what is there."""
 
-    def handler(reader: Keyed) -> None:
+    def handler(reader: Activity) -> None:
         if reader.prompt is not None:
             reader.prompt.move(steps)
             _say_here(reader, reader.prompt)
@@ -102,10 +99,10 @@ def move(steps: int) -> Callable[[Keyed], None]:
     return handler
 
 
-def bring(step: int) -> Callable[[Keyed], None]:
+def bring(step: int) -> Callable[[Activity], None]:
     """Make a command that brings another text to be typed, and says it."""
 
-    def handler(reader: Keyed) -> None:
+    def handler(reader: Activity) -> None:
         prompt = reader.prompt
         if prompt is None:
             return
@@ -117,15 +114,15 @@ def bring(step: int) -> Callable[[Keyed], None]:
     return handler
 
 
-def say_typed(reader: Keyed) -> None:
+def say_typed(reader: Activity) -> None:
     """Say what is typed so far."""
     if reader.prompt is not None:
         reader.say(f"{reader.prompt.label}: {reader.prompt.typed or 'nothing'}")
 
 
-def _say_here(reader: Keyed, prompt: Prompt) -> None:
+def _say_here(reader: Activity, prompt: Prompt) -> None:
     reader.say(f"cursor: {spoken(prompt.here, typed=True) if prompt.here else 'end'}")
 
 
-def _say_erased(reader: Keyed, text: str) -> None:
+def _say_erased(reader: Activity, text: str) -> None:
     reader.say(f"erased: {text.strip() or 'nothing'}")

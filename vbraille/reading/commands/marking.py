@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
-from vbraille.reading.places.anchoring import place_in
-from vbraille.reading.places.values import Bookmark
+from vbraille.reading.places.place import Bookmark, place_in
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
-    from vbraille.reading.beside import BookmarkLike
     from vbraille.reading.reader import Reader
 
 _WORDS = 5  # of the text that are kept with a bookmark
@@ -85,7 +83,7 @@ def _say_kept(reader: Reader, done: str) -> None:
     reader.say(done if fault is None else f"{done}, but not kept: {fault}; {later}")
 
 
-def _named(reader: Reader, name: str) -> BookmarkLike | None:
+def _named(reader: Reader, name: str) -> Bookmark | None:
     """Bookmark of a name, whose case need not be right where that leaves one."""
     marks = {mark.name: mark for mark in reader.kept.bookmarks()}
     alike = [mark for mark in marks.values() if mark.name.casefold() == name.casefold()]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
-from vbraille.reading.queries import FindShare
+from vbraille.reading.search.queries import FindShare
 
 if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
-    from vbraille.reading.window import Window
+    from vbraille.reading.surface import Window
 
 
 def next_line(reader: Reader) -> None:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Final
 
 from vbraille.errors import InputError
 from vbraille.live.messages import PagePress, Turn
+from vbraille.reading.bindings import Context
 from vbraille.reading.commands.table import COMMANDS
 from vbraille.reading.commands.turning import turn_to
-from vbraille.reading.context import Context
 from vbraille.render.braille.knobs import KNOBS
 from vbraille.wording import printable, spelled
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
-from vbraille.reading.queries import FindText
+from vbraille.reading.search.queries import FindText
 from vbraille.reading.whereabouts import first_character
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def fold_accents(reader: Reader) -> None:
 
 def cancel(reader: Reader) -> None:
     """Give up what is being looked for."""
-    given_up = reader.looking.cancel(reader.seeker)
+    given_up = reader.search.cancel()
     reader.say(f"search: {'given up' if given_up else 'nothing is looked for'}")
 
 

@@ -1,14 +1,25 @@
-"""Commands that go by what the text is made of: paragraphs, pages, headings, lists, links."""
+"""Commands that go by what the text is made of: paragraphs, headings, lists, links, figures."""
 
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from typing import TYPE_CHECKING
 
+from vbraille.errors import InputError
+from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
-from vbraille.reading.nearby import within
-from vbraille.reading.queries import FindKind, FindLine, FindPage, FindShare
-from vbraille.reading.seeking.kinds import EACH_ITEM, IMAGE, LINK, START, first_place, marks_of
+from vbraille.reading.figured import figure_of_block
+from vbraille.reading.search.queries import FindKind, FindLine, FindPage, FindShare, ListHeadings
+from vbraille.reading.search.structure import (
+    EACH_ITEM,
+    IMAGE,
+    LINK,
+    START,
+    first_place,
+    marks_of,
+    within,
+)
 from vbraille.reading.whereabouts import (
     LINES_PER_PAGE,
     block_of,
@@ -17,13 +28,17 @@ from vbraille.reading.whereabouts import (
     is_counted,
 )
 from vbraille.translate.source import BlockKind, MarkKind
+from vbraille.wording import count, spelled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.layout.pages import Line
     from vbraille.reading.reader import Reader
+    from vbraille.reading.search.queries import ListedHeading
     from vbraille.translate.source import Block, Mark, Source
+
+    Numbered = dict[int, ListedHeading]
 
 HEADING, LIST, TABLE = (kind.value for kind in (BlockKind.HEADING, BlockKind.ITEM, BlockKind.ROW))
 _NAMES = {LIST: "list", TABLE: "table", EACH_ITEM: "item", IMAGE: "figure"}
@@ -263,7 +278,7 @@ def _go_to_page(reader: Reader, *, backward: bool) -> None:
 
 def _go_to_braille_page(reader: Reader, page: int, name: str) -> None:
     before, number, layout = reader.character, (page - 1) * LINES_PER_PAGE + 1, reader.layout
-    if page >= 1 and reader.seeker is not None and layout.lines_to(number) > _NEAR_LINES:
+    if page >= 1 and reader.search.seeker is not None and layout.lines_to(number) > _NEAR_LINES:
         table = "" if layout.book.table is None else layout.book.table.name
         query = FindLine(number, layout.width, table)
         reader.find(query, lambda place: _arrive_at_page(reader, place, str(page)))
@@ -292,7 +307,7 @@ def _go_to_typed(reader: Reader, typed: str) -> None:
         reader.find(query, lambda place: _arrive_at_page(reader, place, typed))
     elif not typed.isdecimal():
         reader.say(f"go to: {typed!r} is no page; type a number, or percent as in 40%")
-    elif reader.seeker is None and not is_counted(reader.layout):
+    elif reader.search.seeker is None and not is_counted(reader.layout):
         reader.say("go to: pages of this book are not counted yet; type percent as in 40%")
     else:
         _go_to_braille_page(reader, int(typed), typed)
@@ -330,3 +345,82 @@ def _link_here(reader: Reader) -> Mark | None:
     on_line = [mark for mark in links if mark.start < after and first < mark.end]
     gone_to = [mark for mark in on_line if mark.start == reader.hit]
     return gone_to[-1] if gone_to else on_line[0] if len(on_line) == 1 else None
+
+
+_MOST = 100  # headings that are said at once
+_NUMBER = re.compile(r"(\d+)(?::.*)?")
+
+
+def ask_heading(reader: Reader) -> None:
+    """List the headings, ask for one, and go there."""
+
+    def ask(found: tuple[ListedHeading, ...] | None) -> None:
+        if reader.context is not Context.READING:
+            reader.say("contents: not now; answer first")
+        elif found:
+            _ask(reader, dict(enumerate(found, 1)))
+        else:
+            reader.cue(Cue.NOT_FOUND)
+            reader.say("contents: the book has no headings")
+
+    reader.find(ListHeadings(), ask)
+
+
+def _ask(reader: Reader, headings: Numbered) -> None:
+    """Say headings with their numbers, and ask which one is meant."""
+    levels = sorted({heading.level for heading in headings.values()})
+    deepest = levels[0]
+    for level in levels:
+        if sum(heading.level <= level for heading in headings.values()) <= _MOST:
+            deepest = level
+    for number, heading in headings.items():
+        if heading.level <= deepest:
+            reader.say(_line(number, heading))
+    if deepest < levels[-1]:
+        reader.say(f"contents: {count(len(headings), 'heading')}; these are to level {deepest}")
+    here = bisect_right([heading.character for heading in headings.values()], reader.character)
+    reader.ask(
+        "contents",
+        "type a number or words, Enter; up and down go through the headings",
+        "heading",
+        lambda reader, typed: _go(reader, headings, typed),
+        others=[_line(number, heading) for number, heading in headings.items()],
+        at=here - 1,
+    )
+
+
+def _line(number: int, heading: ListedHeading) -> str:
+    return f"{number}: {heading.title}, level {heading.level}"
+
+
+def _go(reader: Reader, headings: Numbered, typed: str) -> None:
+    """Go to the heading that is typed, by its number or by words of it; of several, ask again."""
+    number = _NUMBER.fullmatch(typed)
+    if number is not None and int(number[1]) in headings:
+        found = {int(number[1]): headings[int(number[1])]}
+    else:
+        words = typed.casefold()
+        found = {n: one for n, one in headings.items() if words in one.title.casefold()}
+    if len(found) > 1:
+        _ask(reader, found)
+    elif not found or not reader.arrive(next(iter(found.values())).character):
+        reader.cue(Cue.NOT_FOUND)
+        reader.say(f"contents: {'not in the lines that are read' if found else 'no such heading'}")
+
+
+def feel(reader: Reader) -> None:
+    """Put the figure that the line stands for alone under the hand, until a key leads back."""
+    line, under = reader.line, reader.under
+    address = "" if line is None else figure_of_block(line)
+    figures = under.figured.all if address else None
+    if figures is None:
+        reader.cue(Cue.NOT_FOUND)
+        reader.say("figure: none on this line")
+        return
+    try:
+        under.alone = figures.feel(address, reader.say, reader.cue)
+    except InputError as error:
+        reader.cue(Cue.NOT_FOUND)
+        reader.say(f"figure not felt: {spelled(str(error))}")
+        return
+    reader.say(f"{under.alone.key('BACK', 'G')} or escape goes back to the text")

@@ -5,43 +5,77 @@ Names are BRLTTY's where it has the command.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, ParamSpec
 
-from vbraille.reading.bindings import ANY, Bindings, Bound, Command, bind, spoken
-from vbraille.reading.commands.deferred import Deferred, made
-from vbraille.reading.context import Context
+from vbraille.reading.activity import LONGEST
+from vbraille.reading.bindings import ANY, Bindings, Bound, Command, Context, bind, spoken
 from vbraille.reading.keys import PASTE, pasted
-from vbraille.reading.prompt import LONGEST
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.reading.activity import Activity
     from vbraille.reading.commands import (
         asking,
-        choosing,
-        contents,
         control,
-        figures,
         marking,
         moving,
-        paging,
         searching,
         structure,
         turning,
     )
-    from vbraille.reading.keyed import Keyed
     from vbraille.reading.reader import Reader
-else:
-    asking, choosing, contents, control, figures, marking = map(
-        Deferred, ("asking", "choosing", "contents", "control", "figures", "marking")
-    )
-    moving, paging, searching, structure, turning = map(
-        Deferred, ("moving", "paging", "searching", "structure", "turning")
-    )
+
+Given = ParamSpec("Given")
+
+
+class Deferred:
+    """A module beside this one, of which only functions are known that load it when called.
+
+    What the commands are called and what their keys do is asked for by help, which shall not wait
+    for all that reading needs.
+
+    Parameters
+    ----------
+    name
+        Name of the module, such as "moving".
+    """
+
+    def __init__(self, name: str) -> None:
+        self._module = f"{__package__}.{name}"
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        """Give the function of a name, whether or not there is one."""
+
+        def function(*given: Any, **named: Any) -> Any:
+            return getattr(import_module(self._module), name)(*given, **named)
+
+        return function
+
+
+if not TYPE_CHECKING:
+    asking, control, marking, moving = map(Deferred, ("asking", "control", "marking", "moving"))
+    searching, structure, turning = map(Deferred, ("searching", "structure", "turning"))
 
 # Kinds of blocks, and of what is in them.
 HEADING, LIST, TABLE, QUOTE = "heading", "item", "row", "quote"
 EACH_ITEM, LINK, IMAGE = "each item", "link", "image"
 
 _LEVELS = 6
+
+
+def made(
+    make: Callable[Given, Callable[[Any], None]], *given: Given.args, **named: Given.kwargs
+) -> Callable[[Any], None]:
+    """Give a command that is made, of a function and what it is given, when it is called."""
+
+    def handler(reader: Any) -> None:
+        make(*given, **named)(reader)
+
+    return handler
+
+
 # Values of the tuning that a knob of the device may turn.
 TURNED = {"TEXTURE": "texture", "CONTRAST": "contrast"}
 
@@ -75,7 +109,7 @@ def find(key: str, context: Context) -> Command | None:
     return BOUND.find(key, context)
 
 
-def press(reader: Keyed, key: str) -> None:
+def press(reader: Activity, key: str) -> None:
     """Call the command that a key stands for in the reader's context."""
     bound = reader.bound or BOUND
     text = pasted(key)
@@ -93,7 +127,7 @@ def press(reader: Keyed, key: str) -> None:
             reader.say(f"no command: {spoken(key)}; {reader.key('HELP', 'h')} says the keys")
 
 
-def _paste(reader: Keyed, key: str, text: str) -> None:
+def _paste(reader: Activity, key: str, text: str) -> None:
     """Put pasted text into what is being typed; elsewhere it is no command."""
     if reader.prompt is not None and reader.context is Context.PROMPT:
         reader.prompt.paste(text)
@@ -101,7 +135,7 @@ def _paste(reader: Keyed, key: str, text: str) -> None:
         reader.say("paste: text that is pasted is passed over; type the keys")
 
 
-def press_button(reader: Keyed, number: int) -> None:
+def press_button(reader: Activity, number: int) -> None:
     """Call the command that a button of the device stands for."""
     _call(reader, f"button {number}", (reader.bound or BOUND).buttons.get(number))
 
@@ -117,7 +151,7 @@ def press_display_key(reader: Reader, name: str) -> None:
     _call(reader, f"display {name}", (reader.bound or BOUND).display_keys.get(name))
 
 
-def _call(reader: Keyed, name: str, command: Command | None) -> None:
+def _call(reader: Activity, name: str, command: Command | None) -> None:
     """Call the command of something that is pressed and is no key of the keyboard."""
     if reader.context is Context.LEARNING:
         _learn(reader, name, command)
@@ -154,14 +188,14 @@ def turn_knob(reader: Reader, number: int, share: float) -> str:
     return ""
 
 
-def say_keys(reader: Keyed) -> None:
+def say_keys(reader: Activity) -> None:
     """Say what the keys do."""
     for command in (reader.bound or BOUND).of(reader.context):
         if command.keys:
             reader.say(f"{command.spoken_keys}: {command.help}")
 
 
-def _learn(reader: Keyed, name: str, command: Command | None) -> None:
+def _learn(reader: Activity, name: str, command: Command | None) -> None:
     if command is not None and command.name in ("LEARN", "QUIT"):
         control.end_learning(reader)
     else:
@@ -215,8 +249,8 @@ COMMANDS = (
     Command("LNUP", ("p", "up"), "previous line", moving.previous_line),
     Command("FWINRT", ("right",), "on along the line, then the next line", moving.pan_right),
     Command("FWINLT", ("left",), "back along the line, then the line before", moving.pan_left),
-    Command("WINDN", ("]", "ctrl-pagedown"), "next page of the surface", paging.next_page),
-    Command("WINUP", ("[", "ctrl-pageup"), "previous page of the surface", paging.previous_page),
+    Command("WINDN", ("]", "ctrl-pagedown"), "next page of the surface", turning.next_page),
+    Command("WINUP", ("[", "ctrl-pageup"), "previous page of the surface", turning.previous_page),
     Command("LNBEG", ("home",), "start of the line", moving.line_start),
     Command("LNEND", ("end",), "end of the line", moving.line_end),
     Command("NXPGRPH", ("a", "ctrl-down"), "next paragraph", structure.next_paragraph),
@@ -259,13 +293,13 @@ COMMANDS = (
         "follow the link or note under the finger; from a note, go back",
         structure.follow,
     ),
-    Command("FEEL", ("G",), "feel the figure of this line, alone", figures.feel),
+    Command("FEEL", ("G",), "feel the figure of this line, alone", structure.feel),
     Command("TOP", ("<", "ctrl-home"), "first line of the text", moving.top),
     Command("BOT", (">", "ctrl-end"), "last line of the text", moving.bottom),
     Command(
         "GOTOLINE", ("g", "\x07"), "go to a page, or to percent of the text", structure.ask_place
     ),
-    Command("CONTENTS", ("O",), "list the headings, and go to one", contents.ask_heading),
+    Command("CONTENTS", ("O",), "list the headings, and go to one", structure.ask_heading),
     Command("BACK", ("b", "alt-left"), "back to the place before the last jump", moving.back),
     Command("NXSEARCH", ("/", "f3"), "search forward for a text", searching.search_forward),
     Command("PRSEARCH", ("\\", "f4"), "search backward for a text", searching.search_backward),
@@ -283,12 +317,12 @@ COMMANDS = (
     Command("SPELL_CURR_WORD", ("W",), "spell the word under the finger", asking.spell_word),
     Command("SAY_LINE", ("V", "f5"), "say the line again", asking.say_line),
     Command("SAY_HEADERS", ("H",), "say the headers of the table", asking.say_headers),
-    Command("CONTRACTED", ("x",), "contracted braille, or uncontracted", choosing.contracted),
-    Command("LANGUAGE", ("y",), "translate by the table of a language", choosing.ask_language),
-    Command("SKPBLNKWINS", ("z",), "pass over blank lines, or read them", choosing.skip_blank),
-    Command("AUTOSCROLL", ("v", "f6"), "lines come by time, or no longer", choosing.scroll),
-    Command("AUTOSCROLL_FASTER", ("+", "f8"), "lines come sooner", choosing.faster),
-    Command("AUTOSCROLL_SLOWER", ("-", "f7"), "lines come later", choosing.slower),
+    Command("CONTRACTED", ("x",), "contracted braille, or uncontracted", turning.contracted),
+    Command("LANGUAGE", ("y",), "translate by the table of a language", turning.ask_language),
+    Command("SKPBLNKWINS", ("z",), "pass over blank lines, or read them", turning.skip_blank),
+    Command("AUTOSCROLL", ("v", "f6"), "lines come by time, or no longer", turning.scroll),
+    Command("AUTOSCROLL_FASTER", ("+", "f8"), "lines come sooner", turning.faster),
+    Command("AUTOSCROLL_SLOWER", ("-", "f7"), "lines come later", turning.slower),
     Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
     Command("TEXTURE_UP", ("t",), "more texture", made(turning.turn, "texture", 1)),
     Command("TEXTURE_DOWN", ("T",), "less texture", made(turning.turn, "texture", -1)),
@@ -307,9 +341,11 @@ COMMANDS = (
         "CELL_GAP_DOWN", ("J",), "cells closer together", made(turning.turn, "cell_gap_mm", -1)
     ),
     Command("MAPPING", ("#",), "another way to show dots by actuators", turning.change_mapping),
-    Command("STRAYING", ("=",), "keep the finger on its line, or show all", paging.change_straying),
-    Command("BAND_UP", (")",), "leave a line of a page later", made(paging.turn_band, 1)),
-    Command("BAND_DOWN", ("(",), "leave a line of a page sooner", made(paging.turn_band, -1)),
+    Command(
+        "STRAYING", ("=",), "keep the finger on its line, or show all", turning.change_straying
+    ),
+    Command("BAND_UP", (")",), "leave a line of a page later", made(turning.turn_band, 1)),
+    Command("BAND_DOWN", ("(",), "leave a line of a page sooner", made(turning.turn_band, -1)),
     Command("UNDO", ("U",), "take back the last change of how braille feels", turning.undo_turn),
     Command("PREFSAVE", ("P",), "save how braille feels", turning.save_settings),
     Command("HELP", ("h", "f1"), "say the keys", say_keys),

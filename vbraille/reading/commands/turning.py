@@ -1,25 +1,24 @@
-"""Commands that change how the braille feels, while the hand moves."""
+"""Commands that change how the braille feels, or which braille it is, while the hand moves."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
 
-from vbraille.errors import VbrailleError
+from vbraille.errors import InputError, VbrailleError
 from vbraille.reading.cues import Cue
-from vbraille.render.braille.knobs import (
-    KNOBS,
-    fixed,
-    next_mapping,
-    obstacle,
-    say_mapping,
-)
+from vbraille.render.braille.knobs import KNOBS, fixed, next_mapping, obstacle, say_mapping
+from vbraille.render.braille.straying import BAND_BOUNDS
+from vbraille.translate import Book, BrailleTable, find_table
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.reading.reader import Reader
+    from vbraille.reading.scrolling import Scroll
     from vbraille.render.braille.knobs import StyleKnob
+    from vbraille.render.braille.straying import Straying
     from vbraille.render.braille.style import BrailleStyle
 
 
@@ -132,3 +131,167 @@ def _differences(one: BrailleStyle, other: BrailleStyle) -> str:
     if one.mapping != other.mapping:
         said.append(say_mapping(other.mapping))
     return ", ".join(said).replace(": ", " ")
+
+
+_BAND_STEP: Final = 0.1  # of the band, in line pitches
+_STRAYING: Final = {
+    "line": "straying: the finger is kept on its line",
+    "free": "straying: each actuator shows what lies under it",
+}
+
+
+def next_page(reader: Reader) -> None:
+    """Turn to the next page of the surface; where that has one line, go to the next one."""
+    _turn_page(reader, 1)
+
+
+def previous_page(reader: Reader) -> None:
+    """Turn to the page of the surface before; where that has one line, go to the one before."""
+    _turn_page(reader, -1)
+
+
+def change_straying(reader: Reader) -> None:
+    """Keep the finger on its line of a page, or show what lies under each actuator."""
+    straying = reader.style.straying
+    manner = "free" if straying.manner == "line" else "line"
+    _show_straying(reader, replace(straying, manner=manner), _STRAYING[manner])
+
+
+def turn_band(steps: int) -> Callable[[Reader], None]:
+    """Make a command that makes the band of a line wider, or narrower if negative."""
+
+    def handler(reader: Reader) -> None:
+        straying = reader.style.straying
+        low, high = BAND_BOUNDS
+        band = round(min(max(straying.band + steps * _BAND_STEP, low), high), 2)
+        if band == straying.band:
+            reader.cue(Cue.LIMIT)
+            reader.say(f"band: {band:g} line pitches, the {'most' if steps > 0 else 'least'}")
+        else:
+            _show_straying(reader, replace(straying, band=band), f"band: {band:g} line pitches")
+
+    return handler
+
+
+def _turn_page(reader: Reader, step: int) -> None:
+    if not reader.turn_page(step):
+        reader.cue(Cue.LIMIT)
+        reader.say("last page" if step > 0 else "first page")
+    elif not reader.under.rows:
+        reader.announce()
+
+
+def _show_straying(reader: Reader, straying: Straying, said: str) -> None:
+    """Show pages with another straying, which can be taken back, and say what has changed."""
+    if not reader.under.rows:
+        reader.cue(Cue.LIMIT)
+        reader.say("straying: one line is under the hand, and the finger cannot leave it")
+        return
+    before = reader.style
+    reader.tune(straying=straying)
+    reader.styles_before.append(before)
+    reader.say(said)
+
+
+_CONTRACTED = 2  # the grade that is asked for
+
+
+def contracted(reader: Reader) -> None:
+    """Change between contracted and uncontracted braille of the same language."""
+    table = reader.layout.book.table
+    if table is None:
+        reader.say("table: the text is in braille already")
+        return
+    info = table.info
+    if info is None or not info.language:
+        reader.say(f"table: {table.name} does not say its language; choose one by language")
+        return
+    book, before = reader.layout.book, reader.book_before
+    if before is not None and before[0] is book:
+        # As it was, with whatever grade passages in other languages had.
+        _show_book(reader, before[1])
+        return
+    grade = 1 if info.grade.isdecimal() and int(info.grade) >= _CONTRACTED else _CONTRACTED
+    _change(reader, info.language, grade)
+
+
+def ask_language(reader: Reader) -> None:
+    """Ask for a language and translate with its usual table."""
+    if reader.layout.book.table is None:
+        reader.say("table: the text is in braille already")
+    else:
+        reader.ask("language", "type its tag such as fr, Enter", "language", _change)
+
+
+def skip_blank(reader: Reader) -> None:
+    """Pass over lines without a dot, or no longer."""
+    reader.skip_blank = not reader.skip_blank
+    reader.say(f"blank lines: {'skipped' if reader.skip_blank else 'read'}")
+
+
+def scroll(reader: Reader) -> None:
+    """Have the next line come by time, or no longer."""
+    scrolling = _scroll(reader)
+    if scrolling is not None:
+        scrolling.on = not scrolling.on
+        reader.say(scrolling.sentence if scrolling.on else "autoscroll: off")
+
+
+def faster(reader: Reader) -> None:
+    """Have lines come sooner."""
+    scrolling = _scroll(reader)
+    if scrolling is not None:
+        _say_speed(reader, scrolling.faster())
+
+
+def slower(reader: Reader) -> None:
+    """Have lines come later."""
+    scrolling = _scroll(reader)
+    if scrolling is not None:
+        _say_speed(reader, scrolling.slower())
+
+
+def _scroll(reader: Reader) -> Scroll | None:
+    if reader.scroll is None:
+        reader.say("autoscroll: there is none here")
+    return reader.scroll
+
+
+def _say_speed(reader: Reader, words: str) -> None:
+    if "," in words:  # as fast or as slow as it can be
+        reader.cue(Cue.LIMIT)
+    reader.say(f"autoscroll: {words}")
+
+
+def _change(reader: Reader, language: str, grade: int | None = None) -> None:
+    """Translate with another table from now on; the same text stays under the finger."""
+    book = reader.layout.book
+    assert book.table is not None, "a text in braille is not translated"
+    try:
+        name = find_table(language, grade)
+        if name == book.table.name:
+            reader.say(f"table: {book.table.said}, as before")
+            return
+        if name == find_table(language):
+            grade = None  # the usual one, with which passages have what is usual in theirs
+        other = BrailleTable(name, book.table.how)
+        _show_book(
+            reader, Book(book.source, other, language=language, grade=grade, switch=book.switch)
+        )
+    except InputError as error:
+        reader.say(f"table: {spelled(str(error))}")
+
+
+def _show_book(reader: Reader, book: Book) -> None:
+    """Show a book by another table, and say by which.
+
+    Raises
+    ------
+    InputError
+        If it cannot be laid out.
+    """
+    before = reader.layout.book
+    reader.lay_out_again(book=book)
+    reader.book_before = (book, before)
+    if book.table is not None:
+        reader.say(f"table: {book.table.said}")

@@ -1,9 +1,8 @@
 """Places in books, kept from one reading to the next."""
 
 from vbraille.reading.places.book import KeptBook
-from vbraille.reading.places.resuming import ResumedBook, book_to_open, last_book, resume
-from vbraille.reading.places.shelf import KeptPlaces
-from vbraille.reading.places.values import Bookmark, BookOptions, KeptPlace, ListedBook
+from vbraille.reading.places.place import Bookmark, BookOptions, KeptPlace, ListedBook
+from vbraille.reading.places.shelf import KeptPlaces, book_to_open, last_book, resume
 
 __all__ = [
     "BookOptions",
@@ -12,7 +11,6 @@ __all__ = [
     "KeptPlace",
     "KeptPlaces",
     "ListedBook",
-    "ResumedBook",
     "book_to_open",
     "last_book",
     "resume",

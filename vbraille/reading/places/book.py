@@ -8,14 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from vbraille.reading.places.anchoring import anchored, place_in
-from vbraille.reading.places.values import Bookmark, BookOptions, KeptPlace, storable
+from vbraille.reading.places.place import (
+    Bookmark,
+    BookOptions,
+    KeptPlace,
+    anchored,
+    place_in,
+    storable,
+)
 from vbraille.translate.source import Index
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from vbraille.reading.places.identity import Digesting, Fingerprint
     from vbraille.reading.places.store import Store
     from vbraille.translate.source import Source
 
@@ -34,42 +39,39 @@ class KeptBook:
     ----------
     store
         Database that the book is kept in.
-    number
-        Number by which the database knows it.
-    path, mark
-        Path of the file, None for standard input, and what the system says of it.
+    digest
+        Digest by which the database knows it.
+    path
+        Path of the file.
     title
         Title, or the file's name.
-    digesting
-        Hash of the file that is still being made; None if it is known.
+
+    Attributes
+    ----------
+    place : KeptPlace or None
+        Place at which reading goes on; None if the book was not read yet.
+    tuning : dict or None
+        How the book's braille was tuned; None if nobody kept that.
+    options : BookOptions
+        Options with which the book was opened.
     """
 
-    def __init__(
-        self,
-        store: Store,
-        number: int,
-        path: Path | None,
-        mark: Fingerprint | None,
-        title: str,
-        digesting: Digesting | None = None,
-    ) -> None:
-        self.number = number
+    def __init__(self, store: Store, digest: str, path: Path, title: str) -> None:
+        self.digest = digest
         self.path = path
         self.title = title
         self._store = store
-        self._mark = mark
-        self._digesting = digesting
         self._unwritten: dict[str, tuple[str, tuple[Any, ...]]] = {}
         self._own_bookmarks: dict[str, Bookmark | None] = {}  # those that are not written yet
         self._written_s: float | None = None
         row = store.first(
-            "SELECT settled, options, place, tuning, digest FROM books WHERE id = ?", number
+            "SELECT settled, options, place, tuning FROM books WHERE digest = ?", digest
         )
-        settled, options, place, tuning, self.digest = row or (1, None, None, None, None)
+        settled, options, place, tuning = row or (1, None, None, None)
         self._settled = bool(settled)
-        self._options = decoded(options, BookOptions) or BookOptions()
-        self._place = decoded(place, KeptPlace)
-        self._tuning = decoded(tuning, dict)
+        self.options = decoded(options, BookOptions) or BookOptions()
+        self.place: KeptPlace | None = decoded(place, KeptPlace)
+        self.tuning: dict[str, Any] | None = decoded(tuning, dict)
 
     @property
     def fault(self) -> str | None:
@@ -82,36 +84,21 @@ class KeptBook:
         return not self._settled
 
     @property
-    def place(self) -> KeptPlace | None:
-        """Place at which reading goes on; None if the book was not read yet."""
-        return self._place
-
-    @property
-    def tuning(self) -> dict[str, Any] | None:
-        """How the book's braille was tuned; None if nobody kept that."""
-        return self._tuning
-
-    @property
-    def options(self) -> BookOptions:
-        """Options with which the book was opened."""
-        return self._options
-
-    @property
     def index(self) -> Index | None:
         """Where the book's blocks are, as far as it was kept."""
-        row = self._store.first("SELECT packed FROM indices WHERE book = ?", self.number)
+        row = self._store.first("SELECT packed FROM indices WHERE book = ?", self.digest)
         return None if row is None else decoded(row[0], Index)
 
     def keep(self, place: KeptPlace) -> None:
         """Keep the place at which reading goes on; call it at each step of the reading loop."""
         self.tend()
-        if place == self._place and "place" not in self._unwritten:
+        if place == self.place and "place" not in self._unwritten:
             return
-        self._place = place
+        self.place = place
         self._put(
             "place",
-            "UPDATE books SET place = ?, read_s = ? WHERE id = ?",
-            (msgspec.msgpack.encode(place), self._store.now(), self.number),
+            "UPDATE books SET place = ?, read_s = ? WHERE digest = ?",
+            (msgspec.msgpack.encode(place), self._store.now(), self.digest),
             wait=not self._due(),
         )
 
@@ -137,7 +124,7 @@ class KeptBook:
         line, lines_before, width, table, page
             As in `KeptPlace`.
         """
-        old = self._place
+        old = self.place
         if old is not None and (old.character, old.line) == (character, line):
             self.keep(old)
             return
@@ -147,7 +134,7 @@ class KeptBook:
 
     def bookmarks(self) -> list[Bookmark]:
         """All bookmarks, by their place."""
-        rows = self._store.all("SELECT packed FROM bookmarks WHERE book = ?", self.number)
+        rows = self._store.all("SELECT packed FROM bookmarks WHERE book = ?", self.digest)
         kept = [decoded(packed, Bookmark) for (packed,) in rows]
         named: dict[str, Bookmark | None] = {mark.name: mark for mark in kept if mark is not None}
         named |= self._own_bookmarks
@@ -166,7 +153,7 @@ class KeptBook:
         self._put(
             f"bookmark {bookmark.name}",
             "INSERT OR REPLACE INTO bookmarks (book, name, packed) VALUES (?, ?, ?)",
-            (self.number, bookmark.name, msgspec.msgpack.encode(bookmark)),
+            (self.digest, bookmark.name, msgspec.msgpack.encode(bookmark)),
         )
 
     def delete_bookmark(self, name: str) -> None:
@@ -176,7 +163,7 @@ class KeptBook:
         self._put(
             f"bookmark {name}",
             "DELETE FROM bookmarks WHERE book = ? AND name = ?",
-            (self.number, name),
+            (self.digest, name),
         )
 
     def keep_tuning(self, tuning: dict[str, Any]) -> None:
@@ -190,13 +177,13 @@ class KeptBook:
         packed = msgspec.msgpack.encode(tuning)
         if len(packed) > _LARGEST_TUNING:
             raise ValueError(f"tuning has {len(packed)} bytes; at most {_LARGEST_TUNING} are kept")
-        self._tuning = dict(tuning)
+        self.tuning = dict(tuning)
         self._set("tuning", packed)
 
     def keep_options(self, options: BookOptions) -> None:
         """Keep the options with which the book is open."""
-        if options != self._options:
-            self._options = options
+        if options != self.options:
+            self.options = options
             with suppress(UnicodeEncodeError):  # the name of a table's file may be no text
                 self._set("options", msgspec.msgpack.encode(options))
 
@@ -212,7 +199,7 @@ class KeptBook:
         self._put(
             "index",
             "INSERT OR REPLACE INTO indices (book, packed) VALUES (?, ?)",
-            (self.number, msgspec.msgpack.encode(index)),
+            (self.digest, msgspec.msgpack.encode(index)),
         )
 
     def settle(self, source: Source) -> str | None:
@@ -226,8 +213,8 @@ class KeptBook:
         if self._settled:
             return None
         found = True
-        if self._place is not None:
-            self._place, found = anchored(source, self._place)
+        if self.place is not None:
+            self.place, found = anchored(source, self.place)
         marks = self.bookmarks()
         for mark in marks:
             old = KeptPlace(mark.character, share=mark.share, after=mark.after or mark.text)
@@ -236,11 +223,11 @@ class KeptBook:
                 msgspec.structs.replace(mark, character=place.character, share=place.share)
             )
         self._settled = True
-        packed = None if self._place is None else msgspec.msgpack.encode(self._place)
+        packed = None if self.place is None else msgspec.msgpack.encode(self.place)
         self._put(
             "settled",
-            "UPDATE books SET settled = 1, place = ? WHERE id = ?",
-            (packed, self.number),
+            "UPDATE books SET settled = 1, place = ? WHERE digest = ?",
+            (packed, self.digest),
         )
         if found:
             return "the text has changed since it was read; the place was found again"
@@ -248,8 +235,6 @@ class KeptBook:
 
     def close(self) -> None:
         """Write what is left to write. Further calls do nothing new."""
-        if self._digesting is not None:
-            self._digesting.wait(1.0)
         with self._store.patient():
             self.tend(last=True)
 
@@ -258,7 +243,7 @@ class KeptBook:
         return passed is None or not 0 <= passed < EVERY_S
 
     def _set(self, column: str, value: Any) -> None:
-        self._put(column, f"UPDATE books SET {column} = ? WHERE id = ?", (value, self.number))
+        self._put(column, f"UPDATE books SET {column} = ? WHERE digest = ?", (value, self.digest))
 
     def _put(self, what: str, sql: str, values: tuple[Any, ...], *, wait: bool = False) -> None:
         """Write something now, or when it can be; what is newer replaces what is older."""
@@ -269,44 +254,31 @@ class KeptBook:
 
     def tend(self, *, last: bool = False) -> None:
         """Write what could not be written before, if it is time for that."""
-        if self._digesting is not None and self._digesting.digest is not None:
-            self.digest, self._digesting = self._digesting.digest, None
-            self._set("digest", self.digest)
         if self._unwritten and (last or self._due()):
             self._write()
 
     def _write(self) -> None:
         # Also where it fails, it is tried no more often.
         self._written_s = self._store.now()
-        if self._store.write([*self._unwritten.values()], self._row()):
+        if self._store.write([self._row(), *self._unwritten.values()]):
             self._unwritten.clear()
             self._own_bookmarks.clear()
 
     def _row(self) -> tuple[str, tuple[Any, ...]]:
         """Statement that makes the book's row again, if another process has deleted it."""
-        mark = self._mark
         return (
-            "INSERT OR IGNORE INTO books (id, digest, path, size, mtime_ns, inode, title, read_s,"
-            " replaced, settled, options, place, tuning) VALUES (?,?,?,?,?,?,?,?,0,1,?,?,?)",
+            "INSERT OR IGNORE INTO books (digest, path, title, read_s, settled, options, place,"
+            " tuning) VALUES (?, ?, ?, ?, 1, ?, ?, ?)",
             (
-                self.number,
                 self.digest,
-                path_bytes(self.path),
-                -1 if mark is None else mark.size,
-                -1 if mark is None else mark.mtime_ns,
-                -1 if mark is None else mark.inode,
+                os.fsencode(self.path),
                 self.title,
                 self._store.now(),
-                msgspec.msgpack.encode(self._options),
-                None if self._place is None else msgspec.msgpack.encode(self._place),
-                None if self._tuning is None else msgspec.msgpack.encode(self._tuning),
+                msgspec.msgpack.encode(self.options),
+                None if self.place is None else msgspec.msgpack.encode(self.place),
+                None if self.tuning is None else msgspec.msgpack.encode(self.tuning),
             ),
         )
-
-
-def path_bytes(path: Path | None) -> bytes:
-    """Path as the system has it, of which not every byte need be text; empty for none."""
-    return b"" if path is None else os.fsencode(path)
 
 
 def decoded(packed: bytes | None, kind: type) -> Any:

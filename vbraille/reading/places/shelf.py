@@ -1,25 +1,32 @@
-"""All books that somebody has read, each with what is kept of it."""
+"""All books that were read, each with what is kept of it; one is opened where it was left."""
 
 from __future__ import annotations
 
+import hashlib
 import os
 import sqlite3
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
-from vbraille.reading.places.book import KeptBook, decoded, path_bytes
-from vbraille.reading.places.database import usual_path
-from vbraille.reading.places.identity import QUICK_BYTES, Digesting, digest_of, fingerprint
-from vbraille.reading.places.store import Store
-from vbraille.reading.places.values import KeptPlace, ListedBook, storable
+from vbraille.errors import InputError
+from vbraille.reading.places.book import KeptBook, decoded
+from vbraille.reading.places.place import KeptPlace, ListedBook, anchored, storable
+from vbraille.reading.places.store import Store, usual_path
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.reading.places.identity import Fingerprint
+    from vbraille.reading.places.place import BookOptions
+    from vbraille.translate.source import Source
 
-_OLDER_KEPT = 5  # of the contents that a file had before
+_END_BYTES = 1_000_000  # at the beginning of a file, and at its end, by which it is known
+_FORGETTING = (
+    "DELETE FROM bookmarks WHERE book = ?",
+    "DELETE FROM indices WHERE book = ?",
+    "DELETE FROM books WHERE digest = ?",
+)
 
 
 class KeptPlaces:
@@ -65,82 +72,66 @@ class KeptPlaces:
         """Sentence on why places are not kept, given once; None if they are."""
         return self._store.note()
 
-    def book(self, path: Path | str | None, digest: str | None = None, title: str = "") -> KeptBook:
-        """What is kept of a book; an unknown one is known from now on.
+    def book(self, path: Path | str, title: str = "") -> KeptBook:
+        """Find what is kept of a book; an unknown one is known from now on.
 
-        A file that the system says the same of as when it was last read is the same book. Others
-        are known by their content, wherever they are. If the content is new and the path is known,
-        places of the path's old content are taken over: `KeptBook.changed` says so.
+        A book is known by its content, wherever it is. If the content is new and the path is
+        known, what is kept is that of the path's old content: `KeptBook.changed` says so.
 
         Parameters
         ----------
         path
-            Path of the file; None for standard input, whose digest must be given.
-        digest
-            SHA-256 of the content in hexadecimal, if it is known.
+            Path of the file.
         title
             Title, if the book has one.
         """
-        place = None if path is None else Path(path).absolute()
-        mark = None if place is None else fingerprint(place)
+        place = Path(path).absolute()
+        digest = _digest(place)
         title = storable(title)
-        name = title or ("standard input" if place is None else storable(place.name))
+        name = title or storable(place.name)
         try:
             with self._store.patient(), self._store.transaction() as connection:
-                number, known = _find_or_make(connection, place, mark, digest, name)
+                _take_in(connection, digest, os.fsencode(place), name)
                 connection.execute(
-                    "UPDATE books SET read_s = ? WHERE id = ?", (self._store.now(), number)
+                    "UPDATE books SET read_s = ? WHERE digest = ?", (self._store.now(), digest)
                 )
                 if title:
-                    connection.execute("UPDATE books SET title = ? WHERE id = ?", (title, number))
+                    connection.execute(
+                        "UPDATE books SET title = ? WHERE digest = ?", (title, digest)
+                    )
         except sqlite3.Error as error:
-            number, known = self._stand_in(error, mark), True
-        digesting = None
-        if not known and place is not None:
-            digesting = Digesting(place)
-        book = KeptBook(self._store, number, place, mark, name, digesting)
+            self._store.take(error)
+        book = KeptBook(self._store, digest, place, name)
         self._books.append(book)
         return book
 
     def last_path(self) -> Path | None:
-        """Path of the book that was read last, of those that have a file; None if there is none."""
-        row = self._store.first(
-            "SELECT path FROM books WHERE length(path) AND NOT replaced "
-            "ORDER BY read_s DESC, id DESC LIMIT 1"
-        )
-        return None if row is None else Path(os.fsdecode(row[0]))
+        """Path of the book that was read last; None if there is none."""
+        listed = self.listed()
+        return Path(listed[0].path) if listed else None
 
     def listed(self) -> list[ListedBook]:
         """All books, the one that was read last first."""
         rows = self._store.all(
-            "SELECT id, title, path, read_s, place FROM books WHERE NOT replaced "
-            "ORDER BY read_s DESC, id DESC"
+            "SELECT digest, title, path, read_s, place FROM books ORDER BY read_s DESC, rowid DESC"
         )
-        return [
-            ListedBook(
-                number, title, os.fsdecode(path), read_s, decoded(place, KeptPlace),
-                bool(path) and not _exists(path),
-            )
-            for number, title, path, read_s, place in rows
-        ]  # fmt: skip
+        books: list[ListedBook] = []
+        for digest, title, packed, read_s, place in rows:
+            path = os.fsdecode(packed)
+            missing = not os.path.exists(path)  # noqa: PTH110 - which raises nothing
+            kept = decoded(place, KeptPlace)
+            books.append(ListedBook(digest, title, path, read_s, kept, missing))
+        return books
 
-    def forget(self, number: int) -> bool:
-        """Delete what is kept of a book, by its number in `listed`; whether that was done.
-
-        What was kept of its file's older contents is deleted, too.
-        """
-        row = self._store.first("SELECT path FROM books WHERE id = ?", number)
-        if row is None:
+    def forget(self, digest: str) -> bool:
+        """Delete what is kept of a book, by its digest in `listed`; whether that was done."""
+        if self._store.first("SELECT 1 FROM books WHERE digest = ?", digest) is None:
             return False
-        older = self._store.all(
-            "SELECT id FROM books WHERE replaced AND length(path) AND path = ?", row[0]
-        )
-        numbers = [number, *(n for (n,) in older)]
         with self._store.patient():
-            return (
-                self._store.write([(sql, (n,)) for n in numbers for sql in _FORGETTING], None)
-                and self._store.shrink()
-            )
+            done = self._store.write([(sql, (digest,)) for sql in _FORGETTING])
+            if done:
+                self._store.shrink()
+            return done
 
     def close(self) -> None:
         """Write what is left to write, and close the file."""
@@ -155,113 +146,124 @@ class KeptPlaces:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _stand_in(self, error: sqlite3.Error, mark: Fingerprint | None) -> int:
-        """Number of a book where nothing can be written now, its own if it can be read."""
-        self._store.take(error)
-        if mark is not None:
-            row = self._store.first(
-                "SELECT id FROM books WHERE size = ? AND mtime_ns = ? AND inode = ?",
-                *_numbers(mark),
-            )
-            if row is not None:
-                return row[0]
-        return time.time_ns()  # no other will have it
 
+def _digest(path: Path) -> str:
+    """SHA-256 of a file's size, beginning and end; of its path if it is no file that can be read.
 
-def _exists(path: bytes) -> bool:
+    A book of any size is known at once by these.
+    """
     try:
-        return Path(os.fsdecode(path)).exists()
+        if path.is_file():
+            with path.open("rb") as file:
+                size = file.seek(0, os.SEEK_END)
+                digest = hashlib.sha256(str(size).encode())
+                for start in (0, max(size - _END_BYTES, 0)):
+                    file.seek(start)
+                    digest.update(file.read(_END_BYTES))
+                return digest.hexdigest()
     except OSError:
-        return False
+        pass
+    return hashlib.sha256(os.fsencode(path)).hexdigest()
 
 
-_FORGETTING = (
-    "DELETE FROM bookmarks WHERE book = ?",
-    "DELETE FROM indices WHERE book = ?",
-    "DELETE FROM books WHERE id = ?",
-)
-
-
-def _find_or_make(
-    connection: sqlite3.Connection,
-    path: Path | None,
-    mark: Fingerprint | None,
-    digest: str | None,
-    title: str,
-) -> tuple[int, bool]:
-    """Number of a book's row, and whether its digest is known."""
-    if mark is not None:
-        row = connection.execute(
-            "SELECT id, digest FROM books WHERE size = ? AND mtime_ns = ? AND inode = ? "
-            "ORDER BY path = ? DESC, read_s DESC LIMIT 1",
-            (mark.size, mark.mtime_ns, mark.inode, path_bytes(path)),
-        ).fetchone()
-        if row is not None and digest in (None, row[1]):
-            _take_path(connection, row[0], path, mark)
-            return row[0], row[1] is not None
-    if digest is None and path is not None and mark is not None:
-        same_size = "SELECT 1 FROM books WHERE size = ? LIMIT 1"
-        if mark.size <= QUICK_BYTES or connection.execute(same_size, (mark.size,)).fetchone():
-            digest = digest_of(path)
-    if digest is not None:
-        row = connection.execute(
-            "SELECT id FROM books WHERE digest = ? ORDER BY read_s DESC LIMIT 1", (digest,)
-        ).fetchone()
-        if row is not None:
-            _take_path(connection, row[0], path, mark)
-            return row[0], True
-    old = None
-    if path is not None:
-        old = connection.execute(
-            "SELECT id FROM books WHERE path = ? AND NOT replaced LIMIT 1", (path_bytes(path),)
-        ).fetchone()
-    values: tuple[Any, ...] = (digest, path_bytes(path), *_numbers(mark), title)
-    number = connection.execute(
-        "INSERT INTO books (digest, path, size, mtime_ns, inode, title, read_s, replaced, settled)"
-        " VALUES (?, ?, ?, ?, ?, ?, 0, 0, 1)",
-        values,
-    ).lastrowid
-    assert number is not None
-    if old is not None:
-        _take_over(connection, old[0], number)
-    _take_path(connection, number, path, mark)
-    return number, digest is not None
-
-
-def _take_over(connection: sqlite3.Connection, old: int, number: int) -> None:
-    """Copy what was kept of a file's old content; where the places are now, the text will say."""
-    connection.execute(
-        "UPDATE books SET (options, place, tuning, settled) ="
-        " (SELECT options, place, tuning, 0 FROM books WHERE id = ?) WHERE id = ?",
-        (old, number),
-    )
-    connection.execute(
-        "INSERT INTO bookmarks SELECT ?, name, packed FROM bookmarks WHERE book = ?", (number, old)
-    )
-    connection.execute("DELETE FROM indices WHERE book = ?", (old,))
-
-
-def _take_path(
-    connection: sqlite3.Connection, number: int, path: Path | None, mark: Fingerprint | None
-) -> None:
-    """Have a book be the one at a path; another that was there is replaced."""
-    if path is None:
-        return
-    connection.execute(
-        "UPDATE books SET path = ?, size = ?, mtime_ns = ?, inode = ?, replaced = 0 WHERE id = ?",
-        (path_bytes(path), *_numbers(mark), number),
-    )
-    connection.execute(
-        "UPDATE books SET replaced = 1 WHERE path = ? AND id != ?", (path_bytes(path), number)
-    )
-    older = connection.execute(
-        "SELECT id FROM books WHERE path = ? AND replaced ORDER BY read_s DESC LIMIT -1 OFFSET ?",
-        (path_bytes(path), _OLDER_KEPT),
+def _take_in(connection: sqlite3.Connection, digest: str, path: bytes, title: str) -> None:
+    """Have a book be the one at a path, with what is kept of it, or of the path's old content."""
+    known = connection.execute("SELECT 1 FROM books WHERE digest = ?", (digest,)).fetchone()
+    others = connection.execute(
+        "SELECT digest FROM books WHERE path = ? AND digest != ?", (path, digest)
     ).fetchall()
-    for row in older:
+    if known is None and others:  # where the places are now, the text will say
+        values = (digest, *others.pop())
+        connection.execute("UPDATE books SET digest = ?, settled = 0 WHERE digest = ?", values)
+        connection.execute("UPDATE bookmarks SET book = ? WHERE book = ?", values)
+        connection.execute("DELETE FROM indices WHERE book = ?", values[1:])
+    elif known is None:
+        connection.execute(
+            "INSERT INTO books (digest, path, title, read_s, settled) VALUES (?, ?, ?, 0, 1)",
+            (digest, path, title),
+        )
+    for other in others:
         for sql in _FORGETTING:
-            connection.execute(sql, row)
+            connection.execute(sql, other)
+    connection.execute("UPDATE books SET path = ? WHERE digest = ?", (path, digest))
 
 
-def _numbers(mark: Fingerprint | None) -> tuple[int, int, int]:
-    return (-1, -1, -1) if mark is None else (mark.size, mark.mtime_ns, mark.inode)
+def last_book(places: KeptPlaces) -> KeptBook:
+    """The book that was read last.
+
+    Raises
+    ------
+    InputError
+        If no book was read, or its file is not where it was.
+    """
+    path = places.last_path()
+    if path is None:
+        raise InputError("no book is kept from an earlier reading; give the name of a file")
+    if not path.exists():
+        raise InputError(
+            f"the last book, {path}, is not there any more; give its file, or choose another: "
+            f"vbraille books lists them"
+        )
+    return places.book(path)
+
+
+def numbered_book(places: KeptPlaces, number: int) -> ListedBook:
+    """The book with a number in the list of all books.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    books = places.listed()
+    if not 1 <= number <= len(books):
+        there = f"there {'is' if len(books) == 1 else 'are'} {count(len(books), 'book')}"
+        raise InputError(f"there is no book {number}; {there}, and vbraille books lists them")
+    return books[number - 1]
+
+
+def book_to_open(places: KeptPlaces, number: int) -> KeptBook:
+    """The book with a number in the list of all books, to read on in it.
+
+    Raises
+    ------
+    InputError
+        If there is none, it has no file, or the file is not where it was.
+    """
+    book = numbered_book(places, number)
+    if book.missing:
+        raise InputError(
+            f"book {number}, {book.path}, is not there any more; give its file, or choose another: "
+            f"vbraille books lists them"
+        )
+    return places.book(book.path)
+
+
+def resume(
+    source: Source, kept: KeptBook, options: BookOptions
+) -> tuple[KeptPlace | None, str | None]:
+    """Give an open book what is kept of it, such as where its blocks are.
+
+    Returns
+    -------
+    tuple[KeptPlace or None, str or None]
+        Place at which reading goes on, None for the beginning; and a sentence for the reader, such
+        as that the text has changed, None if there is none.
+    """
+    same_text = (kept.options.encoding, kept.options.keep_lines, kept.options.form) == (
+        options.encoding,
+        options.keep_lines,
+        options.form,
+    )
+    note = None
+    index = kept.index
+    if index is not None:
+        source.adopt(index)
+    if kept.changed:
+        note = kept.settle(source)
+    place = kept.place
+    if place is not None and not same_text:
+        place, _ = anchored(source, place)  # the same bytes, but other characters
+    kept.keep_options(options)
+    kept.keep_title(source.title)
+    return place, note

@@ -13,8 +13,7 @@ from vbraille.braille.dots import DOT_ROWS
 from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.errors import InputError
 from vbraille.render.braille.mappings import MAPPINGS, single_row
-from vbraille.render.braille.profiles import Profile
-from vbraille.render.braille.tuning import MOST_TEXTURE_CYCLES
+from vbraille.render.braille.profiles import MOST_TEXTURE_CYCLES, Profile
 
 if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry

@@ -9,9 +9,8 @@ from vbraille.braille import geometry
 from vbraille.carriers import carrier
 from vbraille.display import Display
 from vbraille.render.braille.mappings import MAPPINGS, single_row
-from vbraille.render.braille.profiles import Profile
+from vbraille.render.braille.profiles import Profile, Tuning
 from vbraille.render.braille.style import BrailleStyle
-from vbraille.render.braille.tuning import Tuning
 
 if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from vbraille.display import Display
+    from vbraille.render.braille.profiles import Tuning
     from vbraille.render.braille.style import BrailleStyle
-    from vbraille.render.braille.tuning import Tuning
 
 
 def bump(p: ArrayLike) -> NDArray[np.float64]:

@@ -12,9 +12,8 @@ from vbraille.braille.geometry import Geometry
 from vbraille.errors import InputError
 from vbraille.render import work
 from vbraille.render.braille.mappings import DOT_BITS, Mapping
-from vbraille.render.braille.profiles import Profile, coefficients
+from vbraille.render.braille.profiles import Profile, Tuning, coefficients
 from vbraille.render.braille.straying import MOST_TILT_RAD, Straying
-from vbraille.render.braille.tuning import Tuning
 from vbraille.render.work import ProgramKind
 from vbraille.wording import nearest
 

@@ -8,7 +8,6 @@ Shapes of many parts are given only those in reach: ``numbers`` has at ``first``
 
 import math
 
-from vbraille.render.machine.curvekernels import angle
 from vbraille.render.machine.words import (
     ACROSS_ROW,
     ALONG_ROW,
@@ -19,7 +18,7 @@ from vbraille.render.machine.words import (
     X_ROW,
     Y_ROW,
 )
-from vbraille.render.waves import compiled
+from vbraille.render.waves import angle, compiled
 
 _FAR = 1e12  # mm²
 _TURN = 2 * math.pi
@@ -180,7 +179,7 @@ def _round(numbers, corner, x, y):
 def inside(numbers, rows, block, first, parts, count):
     """Tell what is inside of closed lines by the even-odd rule.
 
-    What is to the right of all places is told by walls: `vbraille.render.scene.enclosures`.
+    What is to the right of all places is told by walls: `vbraille.render.scene.pathparts`.
     """
     for n in range(count):
         rows[INSIDE_ROW, n] = 0.0

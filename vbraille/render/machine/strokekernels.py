@@ -6,7 +6,6 @@
 
 import math
 
-from vbraille.render.machine.curvekernels import fall, hump, wave
 from vbraille.render.machine.texturekernels import phase
 from vbraille.render.machine.words import (
     ACROSS_ROW,
@@ -19,7 +18,7 @@ from vbraille.render.machine.words import (
     X_ROW,
     Y_ROW,
 )
-from vbraille.render.waves import compiled
+from vbraille.render.waves import compiled, fall, hump, wave
 
 NO_VIBRATION, HIGH, LOW = 0.0, 1.0, 2.0
 # Constants after those of the profile, of a stroke and of dots.

@@ -1,14 +1,13 @@
 """Textures and images of scenes: Lévesque 2009, 8.4.1 and 8.4.2.
 
 Each kernel fills one row of ``rows``, ``top``, from the places in the rows X and Y. ``at`` is the
-first of its constants in ``numbers``, whose order is that of `vbraille.render.scene.texturecode`.
+first of its constants in ``numbers``, whose order is that of `vbraille.render.scene.trees`.
 """
 
 import math
 
-from vbraille.render.machine.curvekernels import angle, hump
 from vbraille.render.machine.words import FREE_ROW, SIGN_ROW, SPARE_ROW, X_ROW, Y_ROW
-from vbraille.render.waves import compiled
+from vbraille.render.waves import angle, compiled, hump
 
 _TURN_DEG = 360.0
 _DEG = 180.0 / math.pi

@@ -13,8 +13,7 @@ if TYPE_CHECKING:
 
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.scene.bitmap import Bitmap
-    from vbraille.scene.labels import Label
-    from vbraille.scene.patterns import Image
+    from vbraille.scene.patterns import Image, Label
 
 
 @dataclass(frozen=True, slots=True, eq=False)

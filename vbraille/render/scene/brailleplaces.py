@@ -52,8 +52,8 @@ if TYPE_CHECKING:
 
     from vbraille.render.scene.assets import Written
     from vbraille.scene.bounds import Box
-    from vbraille.scene.labels import Label
     from vbraille.scene.measures import Point
+    from vbraille.scene.patterns import Label
 
 # By so much lines may reach into one another; a dot is less than 1e-9 up so near its edge.
 _SLACK_MM = 1e-6

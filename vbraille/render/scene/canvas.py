@@ -11,7 +11,7 @@ import numpy as np
 from vbraille.render import work
 from vbraille.render.machine import words
 from vbraille.render.scene.assets import Assets
-from vbraille.render.scene.elements import FlatElements, check_depth
+from vbraille.render.scene.compiling import flatten_scene
 from vbraille.render.scene.flat import flatten
 from vbraille.render.scene.grid import TileGrid, assemble
 from vbraille.render.scene.trees import ONE, mask
@@ -78,8 +78,7 @@ class SceneMap:
             Deflections, 0 … 1; 0 beyond the canvas.
         """
         if self._shown is None:
-            flat = FlatElements().put_together(self._scene, self._assets, math.inf)
-            self._shown = self._assemble(flat)
+            self._shown = self._assemble(flatten_scene(self._scene, self._assets))
         return _raster(self._shown, x_mm, y_mm, time_s, parity, noise_seed)
 
     def opacity(
@@ -111,9 +110,7 @@ class SceneMap:
             return None
         whole = Group(operation=self._scene.operation, parts=elements)
         tree = mask(elements[0] if len(elements) == 1 else whole, self._assets)
-        flat = flatten(ONE if tree is None else tree)
-        check_depth(flat)
-        return flat
+        return flatten(ONE if tree is None else tree)
 
     def _assemble(self, flat: Flat | None) -> _Numbers:
         head = np.zeros(words.GRID)
@@ -131,7 +128,7 @@ def _raster(
     noise_seed: int | None,
 ) -> NDArray[np.float32]:
     # Importing kernels loads numba, which only a process that makes pictures has to wait for.
-    from vbraille.render.scene import mapkernels
+    from vbraille.render.machine import showkernels
 
     numbers, table, grid = compiled
     x_mm, y_mm = np.ascontiguousarray(x_mm, np.float64), np.ascontiguousarray(y_mm, np.float64)
@@ -141,14 +138,14 @@ def _raster(
     noise = np.empty((0, 0), np.float32)
     if noise_seed is not None:
         noise = np.random.default_rng(noise_seed).random(out.shape, np.float32) * 2 - 1
-    columns = mapkernels.runs(_tiles(x_mm, grid.left_mm, grid.tile_mm, grid.columns))
-    lines = mapkernels.runs(_tiles(y_mm, grid.top_mm, grid.tile_mm, grid.rows))
+    columns = showkernels.runs(_tiles(x_mm, grid.left_mm, grid.tile_mm, grid.columns))
+    lines = showkernels.runs(_tiles(y_mm, grid.top_mm, grid.tile_mm, grid.rows))
     time = math.nan if noise_seed is not None else time_s
 
     def fill(some: NDArray[np.int64]) -> None:
-        rows = np.zeros((words.SCRATCH_ROWS, mapkernels.LANES))
+        rows = np.zeros((words.SCRATCH_ROWS, showkernels.LANES))
         sign = -1.0 if parity else 1.0
-        mapkernels.raster(numbers, table, rows, x_mm, y_mm, columns, some, sign, noise, time, out)
+        showkernels.raster(numbers, table, rows, x_mm, y_mm, columns, some, sign, noise, time, out)
 
     # Neighbouring lines cost alike, so the threads take turns.
     with ThreadPoolExecutor(_THREADS) as threads:

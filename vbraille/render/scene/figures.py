@@ -11,11 +11,9 @@ from vbraille.errors import InputError
 from vbraille.render.scene.assets import Assets, Written
 from vbraille.render.scene.brailleplaces import box_of
 from vbraille.scene.bounds import Box, bounds
-from vbraille.scene.labels import Label
-from vbraille.scene.moving import moved
-from vbraille.scene.patterns import Fill, Group, Image, Polygon, Uniform
+from vbraille.scene.patterns import Fill, Group, Image, Label, Polygon, Uniform
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.walking import each
+from vbraille.scene.walking import each, moved
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

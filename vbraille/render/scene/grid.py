@@ -14,8 +14,8 @@ import numpy as np
 
 from vbraille.render.machine import words
 from vbraille.render.scene import gridkernels as g
-from vbraille.render.scene.blocks import EVERYWHERE
-from vbraille.render.scene.reachkernels import entries
+from vbraille.render.scene.gridkernels import entries
+from vbraille.render.scene.nodes import EVERYWHERE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

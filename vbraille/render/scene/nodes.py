@@ -1,16 +1,109 @@
-"""A picture as a tree of what must be computed, of which each place of the canvas needs a part."""
+"""A picture as a tree of what must be computed, and the words of its leaves.
+
+Each place of the canvas needs a part of the tree.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from vbraille.render.machine import words
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
-    from vbraille.render.scene.blocks import WordBlock
+    from numpy.typing import NDArray
+
     from vbraille.scene.bounds import Box
+
+
+_FAR = 1e30  # stands for infinity
+EVERYWHERE = (-_FAR, -_FAR, _FAR, _FAR)
+
+
+class TableEntry(NamedTuple):
+    """Something of a block that belongs into the table: pixels, or words of braille.
+
+    Parameters
+    ----------
+    at
+        Place among the block's numbers where that of the entries belongs.
+    entries : uint16[n]
+        What is put into the table.
+    """
+
+    at: int
+    entries: NDArray[np.uint16]
+
+
+class WordBlock:
+    """Words and constants of one pattern, gathered bit by bit.
+
+    The words are said in the order in which the machine takes them. Each takes its constants from
+    a place that is counted from the block's beginning, so that a block can lie anywhere.
+    """
+
+    def __init__(self) -> None:
+        self._words: list[tuple[int, int]] = []
+        self._constants: list[float] = []
+        self._entries: list[tuple[int, NDArray[np.uint16]]] = []
+        self._lists: list[tuple[int, int]] = []
+
+    def say(self, operation: int, *constants: float) -> None:
+        """Add a word with its constants."""
+        self._words.append((operation, len(self._constants)))
+        self._constants += constants
+
+    def say_table(
+        self, operation: int, *constants: float, at: int, entries: NDArray[np.uint16]
+    ) -> None:
+        """Add a word of something in the table, whose place becomes the constant number ``at``."""
+        self._entries.append((len(self._constants) + at, entries))
+        self.say(operation, *constants)
+
+    def keep(self, parts: Iterable[tuple[float, ...]]) -> list[int]:
+        """Add the numbers of parts, and return where each is among the constants."""
+        places = []
+        for part in parts:
+            places.append(len(self._constants))
+            self._constants += part
+        return places
+
+    def say_parts(self, places: list[int]) -> None:
+        """Add the word by which the following ones look at all of these parts."""
+        begin = len(self._constants)
+        self.say(words.PARTS, len(places), *places)
+        self._lists.append((begin + 1, begin + 1 + len(places)))
+
+    @property
+    def first_constant(self) -> int:
+        """Place of the first constant, from the block's beginning, once all words are said."""
+        return words.WORDS + len(self._words) + 1
+
+    def finish(
+        self, box: tuple[float, float, float, float] | None
+    ) -> tuple[NDArray[np.float64], list[TableEntry]]:
+        """Make the numbers of the block, and tell what of it belongs into the table.
+
+        Parameters
+        ----------
+        box
+            Left, top, right and bottom beyond which it is nothing; None for everywhere.
+        """
+        first = self.first_constant
+        constants = list(self._constants)
+        for begin, end in self._lists:
+            constants[begin:end] = [place + first for place in constants[begin:end]]
+        said = [operation + words.OPERATIONS * (place + first) for operation, place in self._words]
+        within = (min(max(side, -_FAR), _FAR) for side in box or EVERYWHERE)
+        numbers = np.array([*within, *said, words.RETURN, *constants])
+        if not np.isfinite(numbers).all():
+            raise ValueError("a number of a pattern is not finite")
+        return numbers, [TableEntry(first + at, entries) for at, entries in self._entries]
 
 
 class NodeKind(IntEnum):
@@ -40,13 +133,10 @@ class LeafReach(IntEnum):
     BOX = 0  # left, top, right, bottom
     CAPSULE = 1  # start, end; all that is no farther from the line between them than the reach
     RING = 2  # centre, radius; all that is no farther from the circle than the reach
-    # Parts of filled shapes: see `vbraille.render.scene.enclosures`.
+    # Parts of filled shapes: see `vbraille.render.scene.pathparts`.
     EDGE = 3  # left, y of the start, right, y of the end of a segment
     WALL = 4  # where two segments meet: the lesser left of theirs, y, the greater left, y
     AROUND = 5  # left, top, right, bottom of all the segments
-    # What a leaf is solid in.
-    DISC_INSIDE = 6  # centre, radius
-    BAR_INSIDE = 7  # start, end of a line; all that is no farther from it, across, than the reach
 
 
 # What a leaf or a part of it lies in: a `LeafReach`, its four numbers, and the reach in mm.
@@ -72,11 +162,6 @@ class Node:
         What a leaf, or each of its parts, lies in; empty for its box.
     parts
         Whether ``enclosed`` is about parts.
-    inside
-        Where a leaf without such parts is solid, as far as it is simple to tell.
-    solid
-        Whether a leaf is 1 wherever it is solid, or hides all that is beneath it there. A filled
-        shape is so where all that an array reaches is inside of it, and far from its edges.
     pushes
         What it leaves on the stack below an OVER.
     changes : tuple of (operation, constants)
@@ -95,8 +180,6 @@ class Node:
     box: Box | None = None
     enclosed: tuple[Enclosed, ...] = ()
     parts: bool = False
-    inside: Enclosed | None = None
-    solid: bool = False
     pushes: Pushes = Pushes.ITSELF
     changes: tuple[tuple[int, tuple[float, ...]], ...] = field(default=())
     everywhere: bool = False
@@ -108,3 +191,37 @@ def joined(kind: NodeKind, children: tuple[Node, ...], pushes: Pushes = Pushes.I
     """Make a node of several, none of which need another's row of the stack."""
     depth = max(child.depth + (number > 0) for number, child in enumerate(children))
     return Node(kind, children, pushes=pushes, depth=depth)
+
+
+_JOINS = {
+    NodeKind.ADD: words.ADD,
+    NodeKind.MAXIMUM: words.MAXIMUM,
+    NodeKind.MULTIPLY: words.MULTIPLY,
+}
+
+
+def say_whole(node: Node, block: WordBlock) -> None:
+    """Say all of a tree in one block, wherever its parts are."""
+    if node.kind is NodeKind.LEAF:
+        assert node.say is not None
+        node.say(block, False)
+        return
+    children = node.children
+    if node.kind is NodeKind.OVER:
+        lowest = max((n for n, c in enumerate(children) if c.pushes is Pushes.COVER), default=0)
+        children = children[lowest:]
+    for number, child in enumerate(children):
+        say_whole(child, block)
+        if node.kind in _JOINS and number:
+            block.say(_JOINS[node.kind])
+        elif node.kind is NodeKind.OVER:
+            pair = child.pushes is Pushes.PAIR
+            if number:
+                block.say(words.OVER if pair else words.OVER_ITSELF)
+            elif pair:
+                # The lowest layer hides nothing.
+                block.say(words.DROP)
+    if node.kind is NodeKind.BLEND:
+        block.say(words.BLEND)
+    for operation, constants in node.changes:
+        block.say(operation, *constants)

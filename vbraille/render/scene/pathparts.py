@@ -1,6 +1,16 @@
-"""Parts of shapes' paths as numbers: segments, corners, markers and walls.
+"""Parts of shapes' paths as numbers, and what each lies in: segments, corners, markers and walls.
 
-`shapekernels` has their order, and `vbraille.render.scene.enclosures` says what walls are.
+An array is told of those segments of a filled shape that it may touch, and of those alone. Whether
+a place is inside is how often a line from it to the right crosses the shape's edges, even or odd,
+and so what lies to the right of all that the array reaches has to be told in another way. Of a run
+of segments there it only matters at which heights it begins and ends: the rest cancels. Each of
+these two heights is told by a *wall* far to the right, from there upwards. What cannot be told so,
+since it is beyond the top or the bottom of all that the array reaches, is the same for all places
+there; if it is odd, it is told by a wall without ends. That one alone is left where all that the
+array reaches is inside, and far from the edges.
+
+So a filled shape has as parts its segments, the wall without ends, and a wall for each corner.
+`shapekernels` has the order of their numbers.
 """
 
 from __future__ import annotations
@@ -9,24 +19,27 @@ import math
 from typing import TYPE_CHECKING
 
 from vbraille.render.machine import shapekernels as places
-from vbraille.scene.dots import Dots
-from vbraille.scene.fitting import stroke_cycles
+from vbraille.render.scene.gridkernels import AROUND, CAPSULE, EDGE, RING, WALL
+from vbraille.scene.bounds import around, drawn_radius_mm
+from vbraille.scene.dotting import dots_of
 from vbraille.scene.joints import (
     edge_lengths_mm,
     joints,
     marker_half_angle_rad,
     places_along_mm,
     rounding_radius_mm,
+    stroke_cycles,
 )
-from vbraille.scene.patterns import Circle, PathShape, Polygon
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.patterns import Circle, Dots, PathShape, Polygon, StraightLine
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from vbraille.scene.fitting import Cycle
-    from vbraille.scene.joints import Joint
+    from vbraille.render.scene.nodes import Enclosed
+    from vbraille.scene.joints import Cycle, Joint
     from vbraille.scene.measures import Point
+    from vbraille.scene.patterns import Fill
+
 
 AnyShape = StraightLine | Circle | Polygon | PathShape
 # What has a list of parts; making it anew for each of thousands of elements takes time.
@@ -192,3 +205,47 @@ def marker_reach_mm(shape: AnyShape) -> float:
         own = max(own, half_mm / max(math.tan(corner.angle_rad / 2), 1e-9))
         reach = max(reach, min(own, max(lengths[n - 1], lengths[n]) / 2) + half_mm)
     return reach + _ROUNDING_MM
+
+
+def enclosed_dots(pattern: AnyShape | Dots) -> tuple[Enclosed, ...]:
+    """What each of the dots of a pattern, or of a dotted shape, lies in."""
+    if isinstance(pattern, Dots):
+        radius, places = pattern.dot.radius_mm, pattern.centers_mm
+    else:
+        radius, places = drawn_radius_mm(pattern), [dot[:2] for dot in dots_of(pattern)]
+    return tuple((CAPSULE, x, y, x, y, radius) for x, y in places)
+
+
+def enclosed_stroke(shape: AnyShape) -> tuple[Enclosed, ...]:
+    """What a circle's stroke, or each segment of another shape, lies in."""
+    radius = drawn_radius_mm(shape)
+    if isinstance(shape, Circle):
+        return ((RING, *shape.center_mm, shape.radius_mm, 0.0, radius),)
+    radius = max(radius, marker_reach_mm(shape))
+    return tuple(
+        (CAPSULE, *start, *end, radius) for points in edges_of(shape) for start, end in points
+    )
+
+
+def enclosed_fill(shape: AnyShape, fill: Fill) -> tuple[Enclosed, ...]:
+    """What each part of a filled shape lies in, in the order in which they are said."""
+    reach = drawn_radius_mm(shape)
+    if not fill.blended:
+        reach += fill.gap_mm + fill.fade_mm
+    reach = max(reach, marker_reach_mm(shape)) + _ROUNDING_MM
+    edges: list[Enclosed] = []
+    walls: list[Enclosed] = []
+    places: list[Point] = []
+    for contour in edges_of(shape):
+        (x0, _), (x1, _) = contour[-1]
+        before = x0 if x0 < x1 else x1
+        for start, end in contour:
+            (x0, y0), (x1, y1) = start, end
+            left, right = (x0, x1) if x0 < x1 else (x1, x0)
+            edges.append((EDGE, left, y0, right, y1, reach))
+            less, more = (before, left) if before < left else (left, before)
+            walls.append((WALL, less, y0, more, y0, reach))
+            before = left
+            places.append(start)
+    left, top, right, bottom = around(places)
+    return (*edges, (AROUND, left, top, right, bottom, reach), *walls)

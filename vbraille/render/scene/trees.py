@@ -1,28 +1,32 @@
-"""Patterns as trees of nodes: what must be computed for their deflections and opacity masks."""
+"""Patterns as trees of nodes, by their deflections and opacity masks, and the words of textures."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vbraille.render.machine import words
 from vbraille.render.machine.labelplaces import TABLE
-from vbraille.render.scene import enclosures, shapecode, shapetrees, texturecode
+from vbraille.render.scene import shapetrees
 from vbraille.render.scene.brailleplaces import box_of, pack_label
-from vbraille.render.scene.nodes import Node, NodeKind, Pushes, joined
+from vbraille.render.scene.nodes import Node, NodeKind, Pushes, joined, say_whole
 from vbraille.render.scene.pathparts import AnyShape, ShapeOrDots
-from vbraille.render.scene.shapecode import fill_of
-from vbraille.render.scene.wholes import say_whole
+from vbraille.render.scene.shapetrees import fill_of, is_own_mask
+from vbraille.scene.bitmap import WHOLE, bitmap_box, opaque
 from vbraille.scene.bounds import is_everywhere
-from vbraille.scene.dots import Dots
-from vbraille.scene.labels import Label
-from vbraille.scene.opaque import bitmap_box, opaque
-from vbraille.scene.patterns import Group, Image, Tile
+from vbraille.scene.joints import Cycle, axial_cycle
+from vbraille.scene.measures import travel_deg
+from vbraille.scene.patterns import Dots, Group, Image, Label, Tile
 from vbraille.scene.textures import (
     AxialGrating,
+    Gradual,
     LinearGrating,
     RadialGrating,
+    TurnPeak,
     Uniform,
     UniformVibration,
 )
@@ -31,11 +35,13 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vbraille.render.scene.assets import Assets
-    from vbraille.render.scene.blocks import WordBlock
     from vbraille.render.scene.brailleplaces import PackedLabel
+    from vbraille.render.scene.nodes import WordBlock
     from vbraille.scene.bitmap import Bitmap
     from vbraille.scene.pattern import Pattern
     from vbraille.scene.patterns import AnyPattern
+    from vbraille.scene.textures import Peak
+
 
 _KINDS = {
     "multiply": NodeKind.MULTIPLY,
@@ -68,7 +74,7 @@ def layer(pattern: AnyPattern, assets: Assets) -> Node:
         return replace(deflection(pattern, assets), pushes=Pushes.COVER)
     if isinstance(pattern, ShapeOrDots) and not shapetrees.is_apart(pattern):
         own = _leaf(pattern, assets)
-        if _is_plain(pattern) and shapecode.is_own_mask(pattern):
+        if _is_plain(pattern) and is_own_mask(pattern):
             return own
         return shapetrees.pair(pattern, own)
     covered = mask(pattern, assets)
@@ -87,15 +93,12 @@ def mask(pattern: AnyPattern, assets: Assets) -> Node | None:
         case Image():
             bitmap = assets.bitmaps[pattern]
             hiding = opaque(bitmap)
-            say, inside = partial(_say_bitmap, hiding), enclosures.pixels(hiding)
-            box = bitmap_box(bitmap)
-            return Node(NodeKind.LEAF, say=say, box=box, inside=inside, solid=True)
+            return Node(NodeKind.LEAF, say=partial(_say_bitmap, hiding), box=bitmap_box(bitmap))
         case Label():
             written = assets.written[pattern]
             packed = pack_label(pattern, written)
             say, box = partial(_say_label, words.LABEL_MASK, packed), box_of(pattern, written)
-            inside = enclosures.cells(pattern, written)
-            return Node(NodeKind.LEAF, say=say, box=box, inside=inside, solid=True)
+            return Node(NodeKind.LEAF, say=say, box=box)
         case Group():
             return _group_mask(pattern, assets)
         case _ if isinstance(pattern, ShapeOrDots):
@@ -186,7 +189,7 @@ def _leaf(pattern: AnyPattern, assets: Assets) -> Node:
     else:
         own = Node(
             NodeKind.LEAF,
-            say=partial(_say_texture, pattern),
+            say=partial(_say, *_texture(pattern)),
             one=isinstance(pattern, Uniform) and pattern.level == 1.0 and not changes,
         )
     if not changes:
@@ -212,34 +215,36 @@ def _image(pattern: Image, assets: Assets) -> Node:
 # What leaves say
 
 
-def _say_texture(pattern: AnyPattern, block: WordBlock, _parts: bool) -> list[int]:
+def _texture(pattern: AnyPattern) -> tuple[int, tuple[float, ...]]:
+    """Word of a texture, and its constants.
+
+    Raises
+    ------
+    TypeError
+        If it is none that is rendered.
+    """
     match pattern:
         case Uniform():
-            block.say(words.LEVEL, pattern.level)
+            return words.LEVEL, (pattern.level,)
         case UniformVibration():
-            block.say(words.VIBRATION, pattern.frequency_hz)
+            return words.VIBRATION, (pattern.frequency_hz,)
         case LinearGrating():
-            texturecode.say_linear(pattern, block)
+            return words.LINEAR, _linear(pattern)
         case RadialGrating():
-            texturecode.say_radial(pattern, block)
+            cycle = Cycle(pattern.ridge_mm, pattern.gap_mm)
+            waveform = _waveform(cycle, pattern.velocity_mm_s, pattern.distortion)
+            return words.RADIAL, (*pattern.center_mm, *waveform)
         case AxialGrating():
-            texturecode.say_axial(pattern, block)
-        case _:
-            raise TypeError(f"a {type(pattern).__name__} is not rendered; resolve the scene first")
+            return words.AXIAL, _axial(pattern)
+    raise TypeError(f"a {type(pattern).__name__} is not rendered; resolve the scene first")
+
+
+def _say(word: int, constants: tuple[float, ...], block: WordBlock, _parts: bool) -> list[int]:
+    block.say(word, *constants)
     return []
 
 
-def _say_one(block: WordBlock, _parts: bool) -> list[int]:
-    block.say(words.LEVEL, 1.0)
-    return []
-
-
-ONE = Node(NodeKind.LEAF, say=_say_one, one=True)
-
-
-def _say_bitmap(bitmap: Bitmap, block: WordBlock, _parts: bool) -> list[int]:
-    texturecode.say_bitmap(bitmap, block)
-    return []
+ONE = Node(NodeKind.LEAF, say=partial(_say, words.LEVEL, (1.0,)), one=True)
 
 
 def _say_label(word: int, packed: PackedLabel, block: WordBlock, _parts: bool) -> list[int]:
@@ -259,3 +264,53 @@ def _say_changed(say, changes, block: WordBlock, parts: bool) -> list[int]:
     for operation, constants in changes:
         block.say(operation, *constants)
     return kept
+
+
+def _linear(grating: LinearGrating) -> tuple[float, ...]:
+    angle = math.radians(travel_deg(grating.wave_angle_deg, grating.ridge_angle_deg))
+    right, down = math.cos(angle), math.sin(angle)
+    x, y = grating.start_mm
+    cycle = Cycle(grating.ridge_mm, grating.gap_mm)
+    waveform = _waveform(cycle, grating.velocity_mm_s, grating.distortion)
+    return (right, down, x * right + y * down, *waveform)
+
+
+def _axial(grating: AxialGrating) -> tuple[float, ...]:
+    cycle = axial_cycle(grating)
+    waveform = _waveform(cycle, grating.velocity_deg_s, grating.distortion)
+    factor = 1.0 if grating.distortion is None else max(1.0, grating.distortion.factor)
+    inner_mm, outer_mm = grating.fade_mm
+    radius = factor / math.radians(cycle.length)
+    slope = 1.0 / ((outer_mm - inner_mm) * radius)
+    fade = (grating.middle, inner_mm * radius, slope)
+    return (*grating.center_mm, grating.start_deg, *fade, *waveform)
+
+
+def _say_bitmap(bitmap: Bitmap, block: WordBlock, _parts: bool) -> list[int]:
+    rows, columns = bitmap.intensities.shape
+    outside = round(bitmap.outside * WHOLE)
+    framed = np.pad(bitmap.intensities, 1, constant_values=outside)
+    per_mm = columns / bitmap.width_mm, rows / bitmap.height_mm
+    x, y = bitmap.place_mm
+    # The middle of the frame's first pixel is half a pixel beyond the corner.
+    first = x - 0.5 / per_mm[0], y - 0.5 / per_mm[1]
+    numbers = (*first, *per_mm, columns + 2, rows + 2, 0.0)
+    block.say_table(words.IMAGE, *numbers, at=6, entries=framed.ravel())
+    return []
+
+
+def _waveform(
+    cycle: Cycle, velocity: float, distortion: Gradual | Peak | TurnPeak | None
+) -> tuple[float, ...]:
+    own = (cycle.length, cycle.ridge, velocity, 1.0)
+    if distortion is None:
+        return (*own, 0.0)
+    if isinstance(distortion, Gradual):
+        begin, length, is_peak = distortion.start_mm, distortion.length_mm, False
+    elif isinstance(distortion, TurnPeak):
+        begin, length = distortion.center_deg - distortion.length_deg, distortion.length_deg
+        is_peak = True
+    else:
+        begin, length = distortion.center_mm - distortion.length_mm, distortion.length_mm
+        is_peak = True
+    return (*own, distortion.factor - 1.0, begin, length, float(is_peak))

@@ -7,15 +7,176 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from vbraille.wording import nearest, printable
+from vbraille.errors import InputError
+from vbraille.wording import count, nearest, printable
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
+    from typing import Any
 
     from vbraille.scene.measures import Point
-    from vbraille.scene.openlatero.remarks import Remarks
+
+
+_MOST_LINES = 5  # that one remark names, when it holds for many places
+
+
+@dataclass(slots=True)
+class Remarks:
+    """Remarks on places of a file, as they come."""
+
+    _lines: dict[tuple[str, str], list[int]] = field(default_factory=dict)
+
+    def add(self, line: int, element: str, text: str) -> None:
+        """Say something about an element.
+
+        Parameters
+        ----------
+        line
+            Line at which it begins, from 1.
+        element
+            What it is, such as "Circle".
+        text
+            The rest of the sentence.
+        """
+        self._lines.setdefault((element, text), []).append(line)
+
+    def listed(self) -> tuple[str, ...]:
+        """All remarks, in the order of their first lines; what holds at many places is said once.
+
+        >>> remarks = Remarks()
+        >>> for line in (9, 4):
+        ...     remarks.add(line, "Circle", "its icon is ignored")
+        >>> remarks.listed()
+        ('line 4, Circle: its icon is ignored (and line 9)',)
+        """
+        found = sorted((sorted(set(lines)), *key) for key, lines in self._lines.items())
+        return tuple(
+            f"line {lines[0]}, {element}: {text}{_others(lines[1:])}"
+            for lines, element, text in found
+        )
+
+
+def _others(lines: list[int]) -> str:
+    """Other lines for which a remark holds."""
+    if not lines:
+        return ""
+    named = ", ".join(map(str, lines[:_MOST_LINES]))
+    more = len(lines) - _MOST_LINES
+    rest = f" and {more} more" if more > 0 else ""
+    return f" (and line{'s' if len(lines) > 1 else ''} {named}{rest})"
+
+
+MOST_BYTES = 20_000_000
+MOST_ELEMENTS = 200_000
+DEEPEST = 100
+_MOST_FAULTS = 5  # of broken XML that are said one by one
+
+
+def read_tree(content: bytes, name: str, remarks: Remarks) -> GenElement:
+    """Read a text of XML as elements.
+
+    Nothing is looked up elsewhere, and no entity is expanded.
+
+    Parameters
+    ----------
+    content
+        The text.
+    name
+        Name of its file, for messages.
+    remarks
+        Where it is said what was broken.
+
+    Returns
+    -------
+    GenElement
+        The root.
+
+    Raises
+    ------
+    InputError
+        If it is no XML, declares entities, or is far too large or deep.
+    """
+    from lxml import etree
+
+    if b"<!ENTITY" in content:
+        raise _entities(name)
+    # Broken files are read as far as they can be; what was broken is said.
+    parser = etree.XMLParser(
+        recover=True, resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False,
+        remove_comments=True, remove_pis=True,
+    )  # fmt: skip
+    try:
+        root: Any = etree.fromstring(content, parser)
+    except (etree.XMLSyntaxError, ValueError):
+        root = None
+    if root is None:
+        raise InputError(f"{name} is no XML; give a file that OpenLatero wrote")
+    declared: Any = root.getroottree().docinfo.internalDTD
+    if declared is not None and any(True for _ in declared.iterentities()):
+        raise _entities(name)
+    if root.xpath("count(//*)") > MOST_ELEMENTS:
+        raise InputError(f"{name} has more than {MOST_ELEMENTS} elements; split the picture in two")
+    _say_faults(parser, remarks)
+    return _elements(root, name, remarks)
+
+
+def _entities(name: str) -> InputError:
+    return InputError(f"{name} declares entities, which OpenLatero's files have none of; remove it")
+
+
+def _say_faults(parser: Any, remarks: Remarks) -> None:
+    """Say where the XML is broken."""
+    faults: dict[int, str] = {}
+    for entry in parser.error_log:
+        faults.setdefault(entry.line, printable(str(entry.message)))
+    for line, message in sorted(faults.items())[:_MOST_FAULTS]:
+        remarks.add(line, "XML", f"it is broken here, and read as far as it can be: {message}")
+    if len(faults) > _MOST_FAULTS:
+        more = count(len(faults) - _MOST_FAULTS, "more line")
+        remarks.add(sorted(faults)[_MOST_FAULTS], "XML", f"it is broken here and in {more}")
+
+
+def _elements(root: Any, name: str, remarks: Remarks) -> GenElement:
+    """Elements for those of the library, without going through them by recursion."""
+    top = _element(root, None, remarks)
+    left: list[tuple[Any, GenElement, int]] = [(root, top, 1)]
+    while left:
+        xml, element, depth = left.pop()
+        for inner in xml:
+            if not isinstance(inner.tag, str):  # an entity that is declared nowhere
+                element.say(f"the entity {printable(inner.text or '')} is ignored")
+                continue
+            if depth >= DEEPEST:
+                raise InputError(f"{name} line {inner.sourceline}: its elements nest too deep")
+            child = _element(inner, element, remarks)
+            element.children.append(child)
+            left.append((inner, child, depth + 1))
+        _say_stray(xml, element)
+    return top
+
+
+def _element(xml: Any, above: GenElement | None, remarks: Remarks) -> GenElement:
+    name = printable(xml.tag.rpartition("}")[2])
+    attributes = {key: printable(value) for key, value in xml.attrib.items()}
+    owner, path = (above.owner, f"{above.path} {name}".strip()) if above else (name, "")
+    if name in ("Pattern", "Generator"):
+        owner, path = attributes.get("subtype") or attributes.get("type") or name, ""
+    line = xml.sourceline or 1
+    return GenElement(name, line, attributes, xml.text or "", remarks, owner, path)
+
+
+def _say_stray(xml: Any, element: GenElement) -> None:
+    """Say so if there is text where only elements have a meaning."""
+    if not len(xml):
+        return
+    stray = "".join([xml.text or "", *(inner.tail or "" for inner in xml)])
+    if stray.strip():
+        said = printable(" ".join(stray.split()))[:40]
+        element.say(f'the stray text "{said}" is ignored')
+
 
 # Numbers as C reads them, which is independent of the locale here.
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"

@@ -9,6 +9,7 @@ from vbraille.errors import InputError
 from vbraille.scene.filebytes import read_bytes
 from vbraille.scene.opened import FoundScene
 from vbraille.scene.openlatero.context import SURFACE_MM, GenContext
+from vbraille.scene.openlatero.elements import MOST_BYTES, Remarks, read_tree
 from vbraille.scene.openlatero.groups import (
     OPERATIONS,
     joined,
@@ -16,11 +17,9 @@ from vbraille.scene.openlatero.groups import (
     read_group,
     read_toggle,
 )
-from vbraille.scene.openlatero.masks import read_image
-from vbraille.scene.openlatero.remarks import Remarks
+from vbraille.scene.openlatero.images import read_image
 from vbraille.scene.openlatero.shapes import read_circle, read_dots, read_line, read_polygon
 from vbraille.scene.openlatero.textures import read_texture
-from vbraille.scene.openlatero.tree import MOST_BYTES, read_tree
 from vbraille.scene.patterns import Group
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.walking import placed_children

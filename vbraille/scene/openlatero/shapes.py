@@ -1,28 +1,270 @@
-"""Lines, circles, polygons and dots of OpenLatero's files."""
+"""Lines, circles, polygons and dots of OpenLatero's files, with their strokes and fills."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
 from vbraille.scene.crossing import meeting_edges
-from vbraille.scene.dots import Dots
 from vbraille.scene.joints import joints, rounding_radius_mm
 from vbraille.scene.measures import LEAST_MM, MOST_MM
-from vbraille.scene.openlatero.context import SURFACE_MM, vibration
-from vbraille.scene.openlatero.strokes import across_of, drawn, edge_of, filling
-from vbraille.scene.patterns import Circle, PathShape, Polygon
-from vbraille.scene.shapes import StraightLine
-from vbraille.scene.strokes import DotStyle, VertexMarkers, Vibration
+from vbraille.scene.openlatero.context import SURFACE_MM, swung, vibration
+from vbraille.scene.patterns import Circle, Dots, Fill, PathShape, Polygon, StraightLine
+from vbraille.scene.strokes import (
+    Across,
+    Along,
+    DotStyle,
+    Dotting,
+    Stroke,
+    VertexMarkers,
+    Vibration,
+)
+from vbraille.scene.textures import LinearGrating
 
 if TYPE_CHECKING:
     from vbraille.scene.measures import Point
     from vbraille.scene.openlatero.context import GenContext
     from vbraille.scene.openlatero.elements import GenElement
-    from vbraille.scene.openlatero.strokes import StrokeLook
-    from vbraille.scene.patterns import AnyPattern, Fill
+    from vbraille.scene.patterns import AnyPattern
+
+
+_CUES = ("none", "inherent", "superposed", "suppressed", "vibration", "blend")
+_LEAST_EDGE_MM = 0.1
+_MOST_SPEED = 1000.0
+_MOST_CYCLES = 49  # on one side of a stroke
+
+
+@dataclass(frozen=True, slots=True)
+class StrokeLook:
+    """How a shape is drawn.
+
+    Parameters
+    ----------
+    intensity
+        Factor of the stroke, and of the fill with it.
+    stroke, dots
+        The stroke, or the dots in its place; neither if nothing of it can be felt.
+    """
+
+    intensity: float
+    stroke: Stroke | None
+    dots: Dotting | None
+
+
+def drawn(shape: GenElement, context: GenContext, *, corners_swing: bool = False) -> StrokeLook:
+    """How the stroke of a shape is drawn.
+
+    Parameters
+    ----------
+    shape
+        Element of the shape.
+    context
+        How the file is read.
+    corners_swing
+        Whether dots on vertices swing where others do not, and the other way round.
+    """
+    element = shape.part("stroke")
+    width = element.number("width", 10.0, 0.0, MOST_MM)
+    intensity = element.number("intensity", 1.0, 0.0, 1.0, "share")
+    row = element.part("dots")
+    is_dotted = row.switch("enable", False)
+    # OpenLatero reads both into one profile and one vibration, the stroke's last.
+    ridge = element.part("ridge")
+    beneath = row.part("ridge")
+    edge = edge_of(ridge, edge_of(beneath, 1.0))
+    across = across_of(ridge) if ridge.children else across_of(beneath)
+    fill = element.one("fill")
+    swinging = row if fill is None else fill
+    corners = _against(swinging, context) if corners_swing and is_dotted else None
+    swing = vibration(swinging, context, "dots" if is_dotted else "")
+    row.skip("vibration")
+    width = _profiled(ridge, width)
+    if width < LEAST_MM:
+        element.forget()
+        element.say(f"stroke width is {width:g}, so there is no stroke")
+        return StrokeLook(intensity, None, None)
+    if is_dotted:
+        _speed(element, fill, None)
+        if fill is not None:
+            fill.skip("Grating", "gutter")
+        height = row.number("height", 1.0, 0.0, 1.0, "share")
+        spacing = row.number("min_spacing", 1.0, 0.0, MOST_MM)
+        dot = DotStyle(
+            radius_mm=width / 2,
+            edge_mm=edge,
+            amplitude=height,
+            across=across,
+            vibration=swing,
+        )
+        dots = Dotting(dot=dot, separation_mm=spacing, vertex_vibration=corners)
+        return StrokeLook(intensity, None, dots)
+    row.forget()
+    stroke = _stroke(fill, context, Stroke(width_mm=width, edge_mm=edge, across=across), swing)
+    along = None if stroke is None else stroke.along
+    speed = _speed(element, fill, along)
+    if stroke is not None and along is not None and speed:
+        stroke = replace(stroke, along=replace(along, velocity_mm_s=speed))
+    return StrokeLook(intensity, stroke, None)
+
+
+def edge_of(ridge: GenElement, default: float) -> float:
+    """Length of the edge of a profile, in mm."""
+    return ridge.number("edge_width", default, _LEAST_EDGE_MM, MOST_MM)
+
+
+def across_of(ridge: GenElement) -> Across | None:
+    """Texture across a profile; None for none."""
+    texture = ridge.part("texture")
+    if not texture.switch("enable", False):
+        texture.forget()
+        return None
+    amplitude = texture.number("amplitude", 0.0, 0.0, 1.0, "share")
+    cycles = int(texture.number("nb_cycles", 3, 0, _MOST_CYCLES, ""))
+    return Across(amplitude=amplitude, cycles=2 * cycles + 1) if amplitude else None
+
+
+def filling(shape: GenElement, context: GenContext) -> Fill | None:
+    """What fills a closed shape; None for nothing."""
+    element = shape.part("fill_texture")
+    if not element.switch("enable", False):
+        element.forget()
+        return None
+    gap = element.number("gap", 0.0, -MOST_MM, MOST_MM)
+    fade = element.number("edge_size", 1.0, 0.0, MOST_MM)
+    found = element.one("Pattern")
+    # Without a texture OpenLatero takes one of its own.
+    texture = LinearGrating(ridge_mm=8.0) if found is None else context.pattern(found)
+    if texture is None:
+        element.say("the fill is left out, since there is nothing of its texture to show")
+        return None
+    if gap < 0:
+        return Fill(texture=texture, blended=True)
+    return Fill(texture=texture, gap_mm=gap, fade_mm=fade)
+
+
+def _profiled(ridge: GenElement, width: float) -> float:
+    """Width of a stroke whose profile may have another one."""
+    other = ridge.number("width", width, 0.0, MOST_MM)
+    if other != width:
+        narrower = min(other, width)
+        ridge.say(
+            f"stroke ridge width is {other:g} and stroke width {width:g}; "
+            f"the stroke is {narrower:g} mm wide here"
+        )
+        return narrower
+    return width
+
+
+def _stroke(
+    fill: GenElement | None, context: GenContext, plain: Stroke, swing: Vibration | None
+) -> Stroke | None:
+    """Stroke with the texture along it; None if nothing of it can be felt."""
+    along = None
+    gutter = False
+    if fill is not None:
+        gutter = fill.switch("gutter", False)
+        along = _along(fill)
+    fits = plain.width_mm >= 4 * plain.edge
+    if along is not None:
+        along = replace(along, whole_edges=gutter and fits)
+        return replace(plain, along=along, vibration=swing)
+    if swing is not None and swing.of == "low":
+        if gutter and fill is not None:
+            fill.say("the middle of an outlined stroke does not vibrate here")
+        swing = None  # there is nothing in it that is down
+    if not gutter or fill is None:
+        return replace(plain, vibration=swing)
+    if fits:
+        return replace(plain, outlined=True, vibration=swing)
+    if context.as_shown:
+        fill.say(
+            "the outline needs a stroke of four edges, so OpenLatero shows nothing of the stroke"
+        )
+        return None
+    edge = plain.width_mm / 4
+    fill.say(
+        f"the outline needs a stroke of four edges, and OpenLatero shows nothing; "
+        f"an edge of {edge:g} mm is taken"
+    )
+    return replace(plain, edge_mm=edge, outlined=True, vibration=swing)
+
+
+def _along(fill: GenElement) -> Along | None:
+    """Grating along a stroke; None for none."""
+    grating = fill.part("Grating")
+    if not grating.switch("enable", False):
+        grating.forget()
+        return None
+    ridge = grating.number("ridge_size", 2.0, 0.0, MOST_MM)
+    gap = grating.number("gap_size", 0.0, 0.0, MOST_MM)
+    if ridge < LEAST_MM:
+        grating.forget()
+        grating.say(f"fill Grating has ridges of {ridge:g} mm, so the stroke has no texture here")
+        return None
+    if grating.switch("invert", False):
+        grating.say("fill Grating is inverted, which a texture along a stroke cannot be here")
+    modulator = grating.one("PitchModulator")
+    if modulator is not None:
+        if modulator.switch("enable", False):
+            modulator.say("a texture along a stroke has the same lengths all along it here")
+        modulator.forget()
+    return Along(ridge_mm=ridge, gap_mm=gap, whole_cycles=False)
+
+
+def _speed(stroke: GenElement, fill: GenElement | None, along: Along | None) -> float:
+    """Speed of the texture along a stroke, in mm/s, once the cues that are not shown are said."""
+    own = 0.0
+    if fill is not None and along is not None:
+        own = speed_of(fill.part("Grating"), "mm", along.ridge_mm + along.gap_mm)
+    motion = stroke.one("motion")
+    if motion is None:
+        return own
+    cue = motion.word("cue", _CUES, "none") if motion.one("cue") else None
+    speed = motion.number("velocity", 50.0, -_MOST_SPEED, _MOST_SPEED, "mm/s")
+    motion.forget()
+    if cue == "inherent" and stroke.part("dots").switch("enable", False):
+        motion.say("the dots stand still here, and move along the shape in OpenLatero")
+    elif cue not in (None, "none", "inherent"):
+        motion.say(f'the motion cue "{cue}" is not shown')
+    return speed if cue == "inherent" else own if cue is None else 0.0
+
+
+def speed_of(grating: GenElement, unit: str, cycle: float, most: float = _MOST_SPEED) -> float:
+    """Speed of a grating, in mm/s or °/s.
+
+    Parameters
+    ----------
+    grating
+        Element of the grating.
+    unit
+        "mm", or "°" for an axial grating.
+    cycle
+        Length of a ridge and a gap, which a speed in Hz counts.
+    most
+        Largest speed.
+    """
+    element = grating.one("velocity")
+    if element is None:
+        return 0.0
+    in_hertz = element.units() == "Hz"
+    speed = grating.number("velocity", 0.0, -1e6, 1e6, "Hz" if in_hertz else f"{unit}/s")
+    if in_hertz:
+        speed *= cycle
+    if abs(speed) > most:
+        element.say(f"its ridges would move at {speed:g} {unit}/s; {most:g} is taken")
+    return max(-most, min(most, speed))
+
+
+def _against(above: GenElement, context: GenContext) -> Vibration:
+    """Vibration of dots on vertices, which swing where the others do not."""
+    element = above.part("vibration")
+    if element.children and element.switch("enable", True):
+        return Vibration(amplitude=0.0)
+    return swung(element, context)
+
 
 _OPERATIONS = ("multiply", "add", "max", "blend", "overwrite", "reactive")
 _LEAST_BLEND_MM = LEAST_MM

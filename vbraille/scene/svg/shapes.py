@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.measures import LEAST_MM
-from vbraille.scene.patterns import Circle, PathShape, Polygon
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 from vbraille.scene.svg.numbers import length_px, numbers_of
 from vbraille.scene.svg.outlines import Contour, contour, contours_of_path
 from vbraille.scene.svg.tree import name_of

@@ -7,8 +7,8 @@ import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from vbraille.scene.labels import Label
 from vbraille.scene.measures import MOST_MM
+from vbraille.scene.patterns import Label
 from vbraille.scene.svg.numbers import length_px
 from vbraille.scene.svg.outlines import TOO_FAR
 from vbraille.scene.svg.style import styled

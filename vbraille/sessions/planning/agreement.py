@@ -59,8 +59,7 @@ def check_agreement(protocol: Protocol, *, planned: bool = False) -> None:
     _check_trials(protocol)
     _check_order(protocol)
     _check_tables(protocol, planned=planned)
-    if not planned:
-        _check_varies(protocol)
+    _check_varies(protocol)
     if not protocol.written or not (planned or _ungrouped(protocol)):
         check_cells(protocol)
         check_lines(protocol)
@@ -155,10 +154,7 @@ def _check_styles(protocol: Protocol) -> None:
 
 
 def _check_varies(protocol: Protocol) -> None:
-    """Check that what is compared or chosen can be felt, and that there is something to order.
-
-    Sessions that were planned before this was checked are gone on with.
-    """
+    """Check that what is compared or chosen can be felt, and that there is something to order."""
     chosen = getattr(protocol.procedure, "parameter", None)
     for table, name in (("design", protocol.parameter), ("procedure", chosen)):
         if name == "texture_cycles" and protocol.model.style.profile is Profile.HALF_SINE:

@@ -14,9 +14,7 @@ class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     Parameters
     ----------
     version
-        Version of the rules that the plan was made by, 1 or 2. Version 1 drew practice from the
-        test, and its random choices did not depend on the protocol's name. No such plans are made
-        any more; sessions that have one keep it.
+        Version of the rules that the plan was made by.
     protocol
         Name of the protocol.
     participant
@@ -34,10 +32,10 @@ class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     Raises
     ------
     ValueError
-        If the participant, the seed, the order or the version cannot be used.
+        If the participant, the seed or the order cannot be used.
     """
 
-    version: int = field(name="format", default=planfile.VERSIONS[-1])
+    version: int = field(name="format", default=planfile.VERSION)
     protocol: str
     participant: str
     seed: int
@@ -51,8 +49,6 @@ class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         check_seed(self.seed)
         if self.order < 0:
             raise ValueError(f"order is {self.order}; it must be 0 or more")
-        if self.version not in planfile.VERSIONS:
-            raise ValueError(f"version is {self.version}; it must be 1 or 2")
 
     def stimuli(self) -> list[Stimulus]:
         """All stimuli of all trials, practice included."""
@@ -73,6 +69,6 @@ class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         Raises
         ------
         InputError
-            If the text is damaged.
+            If the text is damaged, or the plan is of another version.
         """
         return planfile.decode(text, cls)

@@ -22,10 +22,9 @@ if TYPE_CHECKING:
 
 _Plan = TypeVar("_Plan")
 
-VERSIONS = (1, 2)  # rules that plans were made by; the file's layout is the same for both
+VERSION = 2  # of the rules that plans are made by
 _OF_STIMULUS = {"cells", "value_mm", *(f.name for f in (*fields(Tuning), *fields(Geometry)))}
-# Left out where the display's mapping is used, where a protocol gives cells, and on the device,
-# as in all older plans.
+# Left out where the display's mapping is used, where a protocol gives cells, and on the device.
 _OPTIONAL = ("mapping", "text", "table", "on")
 
 
@@ -54,15 +53,15 @@ def decode(text: str, kind: type[_Plan]) -> _Plan:
     """
     try:
         version = msgspec.json.decode(text, type=_Version).format
-        if version in VERSIONS:
+        if version == VERSION:
             return msgspec.json.decode(text, type=kind, dec_hook=_read_stimuli)
     except RecursionError:
         raise InputError("the plan is damaged: its brackets nest too deep") from None
     except ValueError as error:
         raise InputError(f"the plan is damaged: {error}; put it back as it was") from None
     raise InputError(
-        f"the plan is of version {version}, and this vbraille knows the versions 1 and 2; use "
-        f"the vbraille that made it, or a newer one"
+        f"the plan is of version {version}, and this vbraille knows version {VERSION}; use the "
+        f"vbraille that made it"
     )
 
 
@@ -114,5 +113,5 @@ def _read_stimuli(_kind: type, written: list[dict[str, Any]]) -> Stimuli:
 
 
 def _json(value: object) -> str:
-    # The standard library writes 1e-05, as plans always have had it; msgspec would write 0.00001.
+    # The standard library writes 1e-05, which the sums of plans are of; msgspec writes 0.00001.
     return json.dumps(value, ensure_ascii=False, allow_nan=False)

@@ -22,8 +22,7 @@ class Practice(Table, frozen=True):
         Number of practice trials.
     strings, values
         Items that practice shows: dot masks of the cells asked for, or values that are compared.
-        Both are empty if there is no practice, and in protocols of version 0.1, whose practice
-        was drawn from the test.
+        Both are empty if there is no practice.
     file
         Name of a file beside the protocol that has the strings, as for ``[items]``; None if they
         are given here.

@@ -8,20 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from vbraille.render.braille.tuning import Tuning
+    from vbraille.render.braille.profiles import Tuning
     from vbraille.render.program import Program
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Stimulus
 
 
-def render(
-    protocol: Protocol, stimulus: Stimulus, tuning: Tuning, *, anchor_mm: float | None = None
-) -> Program:
-    """Make the picture of a stimulus.
-
-    The picture is for places of the array's centre, or of another point of the array if an anchor
-    is given.
-    """
+def render(protocol: Protocol, stimulus: Stimulus, tuning: Tuning) -> Program:
+    """Make the picture of a stimulus, for places of the array's centre."""
     style = replace(
         protocol.model.style,
         mapping=protocol.mapping_of(stimulus),
@@ -29,5 +23,4 @@ def render(
         tuning=tuning,
     )
     masks = np.array(protocol.line(stimulus.masks), np.uint8)
-    program = style.render(masks, protocol.model.display)
-    return program if anchor_mm is None else program.with_anchor(anchor_mm)
+    return style.render(masks, protocol.model.display)

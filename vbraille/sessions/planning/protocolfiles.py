@@ -92,9 +92,8 @@ def parse_protocol(
     where
         Name of the file, for messages.
     planned
-        Whether the protocol belongs to a session, whose plan has been made. If so, what version
-        0.1 allowed is still allowed: blanks and dot numbers in strings, and practice with the
-        test's items.
+        Whether the protocol belongs to a session, whose plan has the cells of all texts: no
+        braille table is asked for them again.
     beside
         Function that reads a file which stands beside the protocol, by its name; None if there is
         none.
@@ -108,12 +107,12 @@ def parse_protocol(
     file.read(_Format)  # this comes first, since another format may have other keys
     keys = file.read(_Keyed, read_keys).keys
     written = _names_tables(file)
-    tables = file.read(ProtocolFile, spelled(keys, planned=planned, written=written))
+    tables = file.read(ProtocolFile, spelled(keys, written=written))
     files = _files(file, tables, beside)
     with file.checking():
         protocol = _resolved(tables, text, files, keys, written=written)
         check_agreement(protocol, planned=planned)
-        if protocol.practice.trials and not protocol.practice.items and not planned:
+        if protocol.practice.trials and not protocol.practice.items:
             raise ValueError(
                 f"[practice] has no items of its own, and those of the test would be given away; "
                 f"give {'values' if protocol.parameter else 'strings'} that the test does not "

@@ -43,7 +43,7 @@ def check_plan(protocol: Protocol, plan: Plan) -> None:
             raise ValueError(f"it is of the protocol {plan.protocol}")
         protocol = protocol.assigned(plan.group)
         tested = [trial for trial in plan.trials if not trial.catch]
-        practised = _practised(protocol) if plan.version > 1 else set(wanted)
+        practised = set(map(protocol.design.content, protocol.practice.items))
         if len(plan.practice) != protocol.practice.trials:
             raise ValueError(
                 f"{len(plan.practice)} trials are practice, and {protocol.practice.trials} must be"
@@ -56,8 +56,7 @@ def check_plan(protocol: Protocol, plan: Plan) -> None:
                 problem = "" if trial.catch else _problem_of_trial(protocol, trial, shows)
                 if problem:
                     raise ValueError(f"{about} {problem}")
-        if plan.version > 1:
-            _check_practice(protocol, plan)
+        _check_practice(protocol, plan)
         _check_counts(protocol, tested, wanted)
         _check_tuning(protocol, plan)
         _check_blocks(protocol, plan, tested)
@@ -71,11 +70,6 @@ def check_plan(protocol: Protocol, plan: Plan) -> None:
             f"the plan of {plan.participant} for {protocol.name} breaks a rule: {error}; "
             f"put it back as it was"
         ) from None
-
-
-def _practised(protocol: Protocol) -> set[Item]:
-    """Items that practice may show."""
-    return set(map(protocol.design.content, protocol.practice.items))
 
 
 def _check_practice(protocol: Protocol, plan: Plan) -> None:

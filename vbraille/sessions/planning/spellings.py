@@ -39,17 +39,13 @@ class WrittenText(Masks):
         return "".join(map(chr, self))
 
 
-def spelled(
-    keys: SpellingKeys, *, planned: bool, written: bool = False
-) -> Callable[[type, Any], Any]:
+def spelled(keys: SpellingKeys, *, written: bool = False) -> Callable[[type, Any], Any]:
     """Make the function by which `msgspec.convert` fills the types of this module.
 
     Parameters
     ----------
     keys
         Dot masks of the characters beside a to z.
-    planned
-        Whether strings may have blanks and dot numbers, as version 0.1 allowed.
     written
         Whether strings are texts, whose cells braille tables make.
     """
@@ -62,7 +58,7 @@ def spelled(
         if kind is Masks and written:
             return read_written(value)
         if kind is Masks:
-            return Masks(spell(value, keys) if planned else spell_string(value, keys))
+            return Masks(spell_string(value, keys))
         masks = spell(value, keys)
         if len(masks) != 1:
             raise ValueError(f"{quote(value)} is {len(masks)} cells; give one")

@@ -21,7 +21,6 @@ from vbraille.sessions.record.codebook import entry_of
 from vbraille.sessions.record.columns import describe_design
 from vbraille.sessions.record.export import Traces, encode, rows, to_csv
 from vbraille.sessions.record.participants import label_of
-from vbraille.sessions.record.traces import posed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -104,7 +103,7 @@ def files(
         if ticks is None or not ticks.size:
             continue
         name += "_recording-carriage_physio"
-        made[f"{name}.tsv.gz"] = _recording(posed(ticks, record.protocol.model.display.span_mm / 2))
+        made[f"{name}.tsv.gz"] = _recording(ticks)
         made[f"{name}.json"] = _json(
             {
                 "SamplingFrequency": record.head["rate_hz"],

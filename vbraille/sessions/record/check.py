@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import datetime
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from vbraille.sessions.record.eventbase import JournalEvent
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.record.journal import JournalContents
     from vbraille.sessions.record.traces import Trace
@@ -64,7 +62,7 @@ def check_folder(folder: Path, expected: str | None = None) -> Iterator[Finding]
     Raises
     ------
     InputError
-        If the directory holds no session, or one of a newer format.
+        If the directory holds no session, or one of another format.
     VbrailleError
         If there is no journal that can be used.
     """
@@ -149,18 +147,6 @@ def _check_journal(told: JournalContents) -> Iterator[Finding]:
             f"{journal.NAME}: its last line was cut short, {len(told.torn)} bytes; "
             f"session resume sets them aside"
         )
-    yield from _check_clock(told)
-
-
-def _check_clock(told: JournalContents) -> Iterator[Finding]:
-    """Say where the wall clock was set back; no duration is measured by it."""
-    before: JournalEvent | None = None
-    for event in told.events:
-        if isinstance(event, Lost):
-            continue
-        if before is not None and (back_s := _seconds_between(event, before)) > 0:
-            yield Finding(f"clock: it was set back by {back_s:g} s or more before event {event.n}")
-        before = event
 
 
 def _check_sum(folder: Path, expected: str | None) -> Iterator[Finding]:
@@ -230,21 +216,12 @@ def _check_traces(record: Record, progress: Progress) -> Iterator[Finding]:
             yield from _check_tie(record.folder / name, trace, told)
             lines = set(np.unique(trace.ticks["line"]).tolist())
             yield from _compare(name, lines, answered.get(name, set()), known | {0}, open_end)
-    if told.format == 1 and expected:
-        yield Finding(
-            "traces: of format 1, which does not tie them to the journal; events that were taken "
-            "off its end and replaced would not be seen"
-        )
 
 
 def _check_tie(path: Path, trace: Trace, told: JournalContents) -> Iterator[Finding]:
     """Check that the journal has all lines that it had when a trace was written."""
-    if told.format == 1:
-        return
     if (fault := missed_tie(trace.ties, told)) is not None:
         yield Finding(f"{path.name}: {fault}", good=False)
-    elif trace.loose:
-        yield Finding(f"{path.name}: a part of it is not tied to the journal", good=False)
     closed = [event for event in told.events if isinstance(event, Closed)]
     sums = [event.trace_sha256 for event in closed if event.trace == path.name]
     if sums and sums[-1] != sha256(path.read_bytes()).hexdigest():
@@ -291,12 +268,6 @@ def _answered_lines(progress: Progress) -> dict[str, set[int]]:
             if showing.trace is not None:
                 lines.setdefault(showing.trace, set()).add(showing.line)
     return lines
-
-
-def _seconds_between(earlier: JournalEvent, later: JournalEvent) -> float:
-    """Seconds from one event to another by the wall clock; negative if it went back."""
-    first, last = (datetime.fromisoformat(event.wall) for event in (earlier, later))
-    return (last - first).total_seconds()
 
 
 def _known_lines(progress: Progress) -> set[int]:

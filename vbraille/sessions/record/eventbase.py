@@ -33,8 +33,8 @@ class JournalEvent(
     wall
         Time by the wall clock, UTC. It is set when the event is added to the journal.
     up_s
-        Seconds since the machine was started, time asleep included; not in format 1. It is set
-        when the event is added to the journal.
+        Seconds since the machine was started, time asleep included. It is set when the event is
+        added to the journal.
     script_line
         Number of the line in an answers file that caused the event; 0 if no such line did.
     """

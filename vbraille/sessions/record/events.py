@@ -3,7 +3,7 @@
 Those that happen in a trial are in `trialevents`, and are named here with the others.
 
 `docs/session-format.md` has the same as a table. An event has no other fields than its class.
-Whoever adds a kind or a field must raise `vbraille.sessions.record.folder.FORMAT`.
+A new kind or field needs a higher `vbraille.sessions.record.folder.FORMAT`.
 """
 
 from __future__ import annotations
@@ -88,27 +88,24 @@ class Run(JournalEvent, frozen=True, kw_only=True):
     versions
         Versions of the programs that were used.
     boot
-        Identifier of the machine's last start; not in format 1.
+        Identifier of the machine's last start, from which `up_s` counts.
     gap_s
         Seconds since the last event of the run before; left out if they are not known.
     gap_by
         Clock that `gap_s` is measured by: machine if `up_s` tells it, or wall if the machine was
         started anew meanwhile.
-    clock_moved_s
-        Seconds by which the wall clock was set since the last event, if more than one.
     torn_bytes
         Length of the torn line that was moved from the journal's end to `journal.torn`.
     torn_file
         Length (`bytes`) and checksum (`crc`) of `journal.torn` when the run began.
     monitor
         What the live view shows: whether it is `blind`, the `host` at which it is served, and
-        whether its `pointer` may be the hand; left out without a live view. From format 5 on.
+        whether its `pointer` may be the hand; left out without a live view.
     calibration
         What was made up for in the device's actuators, after the frame that the trace keeps:
         `scale`, by which each deflection was multiplied (below 0: the actuator is inverted, and
         sent 1 more), which are `dead` and which `weak`, by row and column from 0, and how many of
-        the `actuators` were `tried`; left out if deflections were sent as they are. From format 6
-        on.
+        the `actuators` were `tried`; left out if deflections were sent as they are.
     """
 
     durable: ClassVar[bool] = True
@@ -126,7 +123,6 @@ class Run(JournalEvent, frozen=True, kw_only=True):
     boot: str = ""
     gap_s: float | None = None
     gap_by: str = ""
-    clock_moved_s: float | None = None
     torn_bytes: int = 0
     torn_file: dict[str, Any] = {}  # noqa: RUF012  (msgspec copies it)
     monitor: LiveView | None = None
@@ -134,7 +130,7 @@ class Run(JournalEvent, frozen=True, kw_only=True):
 
 
 class DisplayBeside(JournalEvent, frozen=True, kw_only=True):
-    """A conventional display stands ready, or another one than before; from format 6 on.
+    """A conventional display stands ready, or another one than before.
 
     Parameters
     ----------
@@ -168,11 +164,11 @@ class Device(JournalEvent, frozen=True, kw_only=True):
 
 
 class HandTaken(AnyTime, frozen=True):
-    """Somebody at the live view became the hand of the simulated device; from format 5 on."""
+    """A page of the live view became the hand of the simulated device."""
 
 
 class HandGivenBack(AnyTime, frozen=True):
-    """The simulated hand was let go at the live view, and moves by itself; from format 5 on."""
+    """The simulated hand was let go at the live view, and moves by itself."""
 
 
 class Pause(AnyTime, frozen=True):
@@ -267,7 +263,7 @@ class Closed(JournalEvent, frozen=True, kw_only=True):
     trace_bytes
         Length of the trace file.
     trace_sha256
-        SHA-256 of the trace file; from format 2 on.
+        SHA-256 of the trace file.
     """
 
     durable: ClassVar[bool] = True

@@ -21,7 +21,6 @@ from vbraille.sessions.record.columns import COLUMNS, designed
 from vbraille.sessions.record.folder import read_told_trace
 from vbraille.sessions.record.notes import read_notes, texts
 from vbraille.sessions.record.progress import Progress
-from vbraille.sessions.record.traces import left_places_mm
 from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
 
 if TYPE_CHECKING:
@@ -305,15 +304,15 @@ def _trajectory(
     felt = np.flatnonzero(ticks["flags"] & _PAUSED == 0)
     ticks = ticks[: felt[-1] + 1] if felt.size else ticks  # the answer ended the trial
     span_mm, time_ns = protocol.model.display.span_mm, ticks["time_ns"].copy()
-    left_mm = left_places_mm(ticks, span_mm / 2)
+    left_mm = ticks["x_mm"] - span_mm / 2
 
     def moved() -> NDArray[np.bool_]:
         # Few sessions need this, and numba takes long to import.
         from vbraille.sessions.planning.programs import render
 
         tuning = replace(stimulus.tuning, **told.tuning)
-        renderer = render(protocol, stimulus, tuning, anchor_mm=0.0)
-        frames = renderer.path(left_mm)
+        renderer = render(protocol, stimulus, tuning)
+        frames = renderer.path(ticks["x_mm"])
         idle = renderer.path(np.full(1, np.nan))
         return (frames != idle).any(axis=(1, 2))
 

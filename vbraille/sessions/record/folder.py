@@ -37,9 +37,6 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.journal import JournalContents, Tie
 
 FORMAT = 6
-_CENTRED_FROM = 3  # the first format whose traces have places of the array's centre
-SHOWN_FROM = 4  # the first format whose journal has what was shown
-WATCHED_FROM = 5  # the first format whose journal has who may have watched
 HEAD, PLAN, PROTOCOL = "session.json", "plan.json", "protocol.toml"
 FILES = (HEAD, PLAN, PROTOCOL)
 _TOLD_VERSIONS = ("numpy", "numba", "pyserial", "cobs", "h5py")
@@ -69,11 +66,6 @@ class Record:
     plan: Plan
     told: JournalContents
     procedure: Procedure
-
-    @property
-    def centred(self) -> bool:
-        """Whether traces have places of the array's centre, and not of its left column."""
-        return self.told.format >= _CENTRED_FROM
 
 
 def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -> None:
@@ -111,7 +103,7 @@ def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:
     Raises
     ------
     InputError
-        If the directory holds no session, or one of a newer format.
+        If the directory holds no session, or one of another format.
     VbrailleError
         If the journal cannot be read, or its first line is damaged.
     """
@@ -125,17 +117,15 @@ def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:
         raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
     first = told.events[0]
     if 1 in told.bad and not (
-        isinstance(first, Session)
-        and first.sha256.keys() >= set(FILES)
-        and first.format in range(1, FORMAT + 1)
+        isinstance(first, Session) and first.sha256.keys() >= set(FILES) and first.format == FORMAT
     ):
         raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
     if not isinstance(first, Session):
         raise InputError(f"{path} is not the journal of a session")
-    if first.format > FORMAT:
+    if first.format != FORMAT:
         raise InputError(
             f"{folder} is a session of format {first.format}, and this vbraille knows format "
-            f"{FORMAT}; use the vbraille that made it, or a newer one"
+            f"{FORMAT}; use the vbraille that made it"
         )
     return told
 
@@ -182,7 +172,7 @@ def load(folder: Path, *, salvaged: bool = False) -> Record:
     Raises
     ------
     InputError
-        If the directory holds no session, or one of a newer format.
+        If the directory holds no session, or one of another format.
     VbrailleError
         If the journal cannot be used, or another file is missing or was changed.
     """
@@ -250,7 +240,7 @@ def check_end(folder: Path, told: JournalContents) -> None:
     VbrailleError
         If some are missing: nothing may be added to the journal then.
     """
-    for path in sorted(folder.glob("trace-*.gz")) if told.format > 1 else ():
+    for path in sorted(folder.glob("trace-*.gz")):
         tie = read_last_tie(path)
         fault = None if tie is None else missed_tie([tie], told)
         if fault is not None:

@@ -91,11 +91,6 @@ class JournalContents:
         assert isinstance(first, Session), "a journal that is no session's is refused"
         return first
 
-    @property
-    def format(self) -> int:
-        """Format that the session began in, and keeps when it is resumed."""
-        return self.session.format
-
 
 def encode(event: JournalEvent, crc: int) -> tuple[bytes, int]:
     """Line for an event, and its checksum, given the checksum of the line before."""
@@ -241,7 +236,7 @@ class Journal:
         VbrailleError
             If the disk does not take the event, which then is not in the journal.
         """
-        numbered = _numbered(event, self._count + 1, self.told.format)
+        numbered = _numbered(event, self._count + 1)
         line, crc = encode(numbered, self._crc)
         try:
             written = os.write(self._file, line)
@@ -294,22 +289,17 @@ def first_lines(session: Session, *events: JournalEvent) -> bytes:
     """Bytes of a new journal that has these events."""
     lines, crc = [], 0
     for number, event in enumerate((session, *events), 1):
-        line, crc = encode(_numbered(event, number, session.format), crc)
+        line, crc = encode(_numbered(event, number), crc)
         lines.append(line)
     return b"".join(lines)
 
 
-def _numbered(event: JournalEvent, number: int, form: int) -> JournalEvent:
-    """Event with its number, and the present time by the clocks that a format uses."""
-    machine_s = up_s() if form > 1 else None
-    return msgspec.structs.replace(event, n=number, wall=_now(), up_s=machine_s)
+def _numbered(event: JournalEvent, number: int) -> JournalEvent:
+    """Event with its number, and the present time by the wall clock and the machine's."""
+    wall = datetime.now(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
+    return msgspec.structs.replace(event, n=number, wall=wall, up_s=up_s())
 
 
 def up_s() -> float:
-    """Seconds since the machine was started, time asleep included; nobody can set this clock."""
+    """Seconds since the machine was started, time asleep included."""
     return round(time.clock_gettime(time.CLOCK_BOOTTIME), 6)
-
-
-def _now() -> str:
-    """Present time by the wall clock, UTC."""
-    return datetime.now(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")

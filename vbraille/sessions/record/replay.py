@@ -17,7 +17,7 @@ from vbraille.engine.ticks import replay
 from vbraille.render.program import nothing, scratch_for
 from vbraille.sessions.planning.programs import render
 from vbraille.sessions.record.progress import Progress
-from vbraille.sessions.record.traces import read_trace
+from vbraille.sessions.record.traces import TRACE, read_trace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -56,9 +56,8 @@ class Replay:
 
         Parameters
         ----------
-        ticks : `vbraille.sessions.record.traces.TRACE`[n] or `LEFT_TRACE`[n]
-            Ticks that follow those of the last call, as they were written. The pictures are for
-            the places that these ticks have.
+        ticks : `vbraille.sessions.record.traces.TRACE`[n]
+            Ticks that follow those of the last call.
 
         Returns
         -------
@@ -71,7 +70,7 @@ class Replay:
         floats = np.zeros((ticks.size, len(FLOATS)))
         for table, names in ((ints, INTS), (floats, FLOATS)):
             for column, name in enumerate(names):
-                if name in (ticks.dtype.names or ()):
+                if name in (TRACE.names or ()):
                     table[:, column] = ticks[name]
         missing = np.diff(ticks["tick"], prepend=self._next - 1) != 1
         bounds = np.flatnonzero(missing | (np.diff(ticks["line"], prepend=-1) != 0)).tolist()
@@ -105,8 +104,8 @@ def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.f
     ------
     line : int
         Number of the showing, as the journal has it; 0 before the first of a run.
-    ticks : `vbraille.sessions.record.traces.TRACE`[n] or `LEFT_TRACE`[n]
-        Ticks of a stretch that has that number, as they were written.
+    ticks : `vbraille.sessions.record.traces.TRACE`[n]
+        Ticks of a stretch that has that number.
     deflections : float64[n, rows, columns]
         Frames of these ticks, 0 … 1.
 
@@ -146,7 +145,6 @@ class Pictures:
 
     def __init__(self, record: Record, progress: Progress) -> None:
         self._protocol = record.protocol
-        self._anchor_mm = None if record.centred else 0.0
         self.shown = {
             showing.line: (told.trial, showing)
             for told in (*progress.practice.values(), *progress.trials.values())
@@ -159,4 +157,4 @@ class Pictures:
         trial, showing = self.shown[line]
         stimulus = showing.stimulus_of(trial)
         tuning = replace(stimulus.tuning, **showing.tuning)
-        return render(self._protocol, stimulus, tuning, anchor_mm=self._anchor_mm)
+        return render(self._protocol, stimulus, tuning)

@@ -1,18 +1,18 @@
 """Traces: files with every tick of a run of the engine, written while it runs.
 
 A trace is a chain of gzip members, called chunks, each with the ticks of a second or less. The
-ticks are little-endian records of `TRACE`; in sessions of formats 1 and 2 they are records of
-`LEFT_TRACE`, which have the place of the array's left column. The header of a member has an extra
-field with the member's length and checksum. So a trace can be read up to the last whole member
-after a crash, and no flipped bit goes unseen; gzip can read the file as well. A second extra field
-names the last line of the journal that was on the disk at that time. So nobody can replace the
-journal's last lines unseen.
+ticks are little-endian records of `TRACE`. The header of a member has an extra field with the
+member's length and checksum. So a trace can be read up to the last whole member after a crash, and
+no flipped bit goes unseen; gzip can read the file as well. A second extra field names the last line
+of the journal that was on the disk at that time. So the journal's last lines cannot be replaced
+unseen.
 """
 
 from __future__ import annotations
 
 import os
 import struct
+import weakref
 import zlib
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -51,35 +51,25 @@ TRACE = np.dtype(
         ("share", "<f8"),  # how much of a change has faded in; 1 is all
     ]
 )
-LEFT_TRACE = np.dtype(
-    [
-        *((name, "<i8") for name in ("tick", "time_ns", "device_ns", "late", "line", "flags")),
-        ("x_mm", "<f8"),  # place of the array's left column; NaN before the first sample
-        ("speed_mm_s", "<f8"),  # velocity of the hand, to the right
-        ("share", "<f8"),
-    ]
-)
 CHUNK_TICKS = 1000
 _LEVEL = 1  # level of gzip: the fastest, since higher ones hardly make counts shorter
-# A member begins as RFC 1952 says: no name, no time, level 1, Unix, extra fields. The first extra
-# field has 8 bytes: the length of the member, and the checksum of all that follows the field. It is
-# called "vp" if the records are of `TRACE`, and "vb" if they are of `LEFT_TRACE`. Format 1 has no
-# other field. The second field, "vj", has 8 bytes as well, which tie the member to the journal: the
-# number of a line, and its checksum.
-_START = bytes((0x1F, 0x8B, 8, 4, 0, 0, 0, 0, 4, 3))
+# A member begins as RFC 1952 says: no name, no time, level 1, Unix, extra fields of 24 bytes. The
+# first of these, "vp", has 8 bytes: the length of the member, and the checksum of all that follows
+# the field. The second, "vj", has 8 bytes as well, which tie the member to the journal: the number
+# of a line, and its checksum.
+_HEAD = bytes((0x1F, 0x8B, 8, 4, 0, 0, 0, 0, 4, 3)) + b"\x18\x00vp\x08\x00"
 _TIE_FIELD = b"vj\x08\x00"
-_RECORDS = {b"vp\x08\x00": TRACE, b"vb\x08\x00": LEFT_TRACE}
-_LOOSE = {_START + b"\x0c\x00" + name: record for name, record in _RECORDS.items()}
-_TIED = {_START + b"\x18\x00" + name: record for name, record in _RECORDS.items()}
-HEADS = _LOOSE | _TIED
-HEAD_BYTES = len(_START) + 6
-EXTRA = struct.Struct("<II")
+_EXTRA = struct.Struct("<II")
 _TRAILER = struct.Struct("<II")
 _SIZE = struct.Struct("<I")  # last field of a member: size of its content before it was deflated
+# All checksums of a smaller trace are looked at when a `ChunkedTrace` opens it.
+_SOON_CHECKED_BYTES = 1 << 25
+# No chunk has so many ticks: what says so is no trace.
+_MOST_BYTES = 1 << 24
 _MOST_THREADS = 4
 _WORTH_A_THREAD = 16  # number of members that are worth one more thread
-_AFTER_LENGTH = HEAD_BYTES + EXTRA.size
-_AFTER_TIE = _AFTER_LENGTH + len(_TIE_FIELD) + EXTRA.size
+_AFTER_LENGTH = len(_HEAD) + _EXTRA.size
+_AFTER_TIE = _AFTER_LENGTH + len(_TIE_FIELD) + _EXTRA.size
 
 
 class TraceWriter:
@@ -90,11 +80,7 @@ class TraceWriter:
     path
         Path of the trace, which must not exist yet.
     tie
-        Function that tells which line of the journal is on the disk; None in a session of format
-        1, whose traces are not tied to the journal.
-    left_mm
-        Distance of the array's left column from its centre in a session of format 1 or 2, whose
-        traces have places of the left column; None in sessions of other formats.
+        Function that tells which line of the journal is on the disk.
 
     Raises
     ------
@@ -102,12 +88,9 @@ class TraceWriter:
         If the disk does not take the trace.
     """
 
-    def __init__(
-        self, path: Path, tie: Callable[[], Tie] | None = None, left_mm: float | None = None
-    ) -> None:
+    def __init__(self, path: Path, tie: Callable[[], Tie]) -> None:
         self._path = path
         self._tie = tie
-        self._left_mm = left_mm
         self._tied: Tie | None = None
         self._bytes = 0
         self._sum = sha256()
@@ -123,20 +106,13 @@ class TraceWriter:
     def add(self, ticks: NDArray[np.void]) -> None:
         """Take ticks from the engine, and write a chunk if there are enough of them."""
         if ticks.size:
-            self._waiting.append(self._records(ticks))
+            records = np.empty(ticks.size, TRACE)
+            for name in TRACE.names or ():
+                records[name] = ticks[name]
+            self._waiting.append(records)
             self._count += ticks.size
         if self._count >= CHUNK_TICKS:
             self.flush()
-
-    def _records(self, ticks: NDArray[np.void]) -> NDArray[np.void]:
-        """Convert ticks of the engine to records of the session's format."""
-        record = TRACE if self._left_mm is None else LEFT_TRACE
-        made = np.empty(ticks.size, record)
-        for name in record.names or ():
-            made[name] = ticks["vx_mm_s" if name == "speed_mm_s" else name]
-        if self._left_mm is not None:
-            made["x_mm"] -= self._left_mm
-        return made
 
     def flush(self) -> None:
         """Write the ticks that are waiting."""
@@ -144,8 +120,8 @@ class TraceWriter:
             self._write(np.concatenate(self._waiting).tobytes())
 
     def _write(self, ticks: bytes) -> None:
-        tie = None if self._tie is None else self._tie()
-        chunk = _squeeze(ticks, tie, TRACE if self._left_mm is None else LEFT_TRACE)
+        tie = self._tie()
+        chunk = _squeeze(ticks, tie)
         self._waiting, self._count, self._tied = [], 0, tie
         try:
             written = self._file.write(chunk)
@@ -169,15 +145,15 @@ class TraceWriter:
         if not self._file.closed:
             try:
                 self.flush()
-                if self._tie is not None and self._tie() != self._tied:
+                if self._tie() != self._tied:
                     self._write(b"")
             finally:
                 self._file.close()
 
     def closed(self) -> dict[str, Any]:
         """Fields of the journal's event for a closed trace: name, length and SHA-256."""
-        told: dict[str, Any] = {"trace": self._path.name, "trace_bytes": self._bytes}
-        return told if self._tie is None else {**told, "trace_sha256": self._sum.hexdigest()}
+        sum_of = self._sum.hexdigest()
+        return {"trace": self._path.name, "trace_bytes": self._bytes, "trace_sha256": sum_of}
 
     def _fault(self, error: OSError) -> VbrailleError:
         return VbrailleError(
@@ -192,17 +168,15 @@ class Trace:
 
     Parameters
     ----------
-    ticks : `TRACE`[n] or `LEFT_TRACE`[n]
-        Ticks of the whole chunks, as they were written; see `posed` and `left_places_mm`.
+    ticks : `TRACE`[n]
+        Ticks of the whole chunks.
     torn_bytes
         Length of a last chunk that a crash cut short.
     damage
         What is wrong with a chunk that is not the last; None if nothing is.
     ties
         Lines of the journal that whole chunks name, each once.
-    loose
-        Whether a whole chunk names no line of the journal.
-    later : `TRACE`[m] or `LEFT_TRACE`[m], …
+    later : `TRACE`[m], …
         Ticks of whole chunks after the damage, with one array after each damaged place.
     """
 
@@ -210,18 +184,16 @@ class Trace:
     torn_bytes: int
     damage: str | None
     ties: tuple[Tie, ...] = ()
-    loose: bool = False
     later: tuple[NDArray[np.void], ...] = ()
 
 
 class ChunkMember(NamedTuple):
-    """A whole gzip member: kind of its records, length, deflated bytes, full size, and tie."""
+    """A whole gzip member: its length, deflated bytes, full size, and tie."""
 
-    record: np.dtype
     length: int
     deflated: memoryview
     size: int
-    tie: Tie | None
+    tie: Tie
 
 
 def read_trace(path: Path) -> Trace:
@@ -239,17 +211,15 @@ def read_trace(path: Path) -> Trace:
     view = memoryview(trace)
     stretches: list[list[ChunkMember]] = [[]]
     at, damage, torn_bytes = 0, None, 0
-    record = None
     while at < len(trace):
         try:
-            member = check_member(view[at:], record)
+            member = _check_member(view[at:])
             after = at if member is None else at + member.length
         except ValueError:
-            member, after = None, next_start(trace, at + 1)
+            member, after = None, _next_start(trace, at + 1)
         if member is not None:
             stretches[-1].append(member)
-            record = member.record
-        elif after == at and (after := next_start(trace, at + 1)) == len(trace):
+        elif after == at and (after := _next_start(trace, at + 1)) == len(trace):
             torn_bytes = len(trace) - at if damage is None else 0
         elif damage is None:
             damage = f"chunk {len(stretches[0]) + 1} of {path.name} does not match its checksum"
@@ -257,16 +227,10 @@ def read_trace(path: Path) -> Trace:
         elif stretches[-1]:
             stretches.append([])
         at = after
-    ties = [member.tie for members in stretches for member in members]
-    first, *later = (_inflate(members, record or TRACE) for members in stretches)
-    return Trace(
-        first,
-        torn_bytes,
-        damage,
-        tuple(dict.fromkeys(tie for tie in ties if tie is not None)),
-        None in ties,
-        tuple(stretch for stretch in later if stretch.size),
-    )
+    ties = dict.fromkeys(member.tie for members in stretches for member in members)
+    first, *later = map(_inflate, stretches)
+    later = tuple(stretch for stretch in later if stretch.size)
+    return Trace(first, torn_bytes, damage, tuple(ties), later)
 
 
 def read_last_tie(path: Path) -> Tie | None:
@@ -282,102 +246,170 @@ def read_last_tie(path: Path) -> Tie | None:
             while at + _AFTER_TIE <= size:
                 file.seek(at)
                 head = file.read(_AFTER_TIE)
-                length, _ = EXTRA.unpack_from(head, HEAD_BYTES)
-                if head[:HEAD_BYTES] not in _TIED or not _AFTER_TIE <= length <= size - at:
+                length, _ = _EXTRA.unpack_from(head, len(_HEAD))
+                if not head.startswith(_HEAD) or not _AFTER_TIE <= length <= size - at:
                     break
-                last = Tie(*EXTRA.unpack_from(head, _AFTER_LENGTH + len(_TIE_FIELD)))
+                last = _tie_of(head)
                 at += length
     except OSError:
         return None
     return last
 
 
-def posed(ticks: NDArray[np.void], left_mm: float) -> NDArray[np.void]:
-    """Convert ticks of a trace of any format to places of the array's centre.
+class ChunkedTrace:
+    """A trace whose chunks are read one by one, in any order.
+
+    So hours of ticks need no more memory than a second of them.
 
     Parameters
     ----------
-    ticks : `TRACE`[n] or `LEFT_TRACE`[n]
-        Ticks as they were written.
-    left_mm
-        Distance of the array's left column from its centre.
+    path
+        Path of the trace.
 
-    Returns
-    -------
-    `TRACE`[n]
-        Ticks with places of the centre; y and its velocity are 0 if only x was measured.
+    Attributes
+    ----------
+    damage : list[int]
+        Numbers of the chunks, from 0, before which something is not whole. In a very large trace
+        only headers are looked at for that, and other damage is found when a chunk is read.
+    torn_bytes : int
+        Length of a last chunk that a crash cut short.
+
+    Raises
+    ------
+    VbrailleError
+        If the file cannot be read.
     """
-    if ticks.dtype == TRACE:
-        return ticks
-    made = np.zeros(ticks.size, TRACE)
-    for name in LEFT_TRACE.names or ():
-        made["vx_mm_s" if name == "speed_mm_s" else name] = ticks[name]
-    made["x_mm"] += left_mm
-    unknown = np.isnan(made["x_mm"])
-    made["y_mm"][unknown] = made["theta_rad"][unknown] = np.nan
-    return made
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self.damage: list[int] = []
+        self.torn_bytes = 0
+        try:
+            self._file = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+            self._close = weakref.finalize(self, os.close, self._file)
+            self._size = os.fstat(self._file).st_size
+            self._places = self._walk()
+        except OSError as error:
+            raise self._fault(error) from None
+
+    def __len__(self) -> int:
+        """Count the chunks."""
+        return len(self._places)
+
+    def ticks(self, number: int) -> NDArray[np.void]:
+        """Ticks of a chunk, `TRACE`[n]; none if it is damaged or has none."""
+        at, length = self._places[number]
+        try:
+            member = _check_member(memoryview(self._read(at, length)))
+            deflated = b"" if member is None else member.deflated
+            chunk = zlib.decompressobj(-zlib.MAX_WBITS).decompress(deflated, _MOST_BYTES)
+        except (ValueError, zlib.error):
+            chunk = b""
+        return np.frombuffer(chunk, TRACE, len(chunk) // TRACE.itemsize)
+
+    def close(self) -> None:
+        """Close the file; it is closed with the last use of this, too."""
+        self._close()
+
+    def _walk(self) -> list[tuple[int, int]]:
+        """Places and lengths of all chunks that have something in them, by their headers alone."""
+        places: list[tuple[int, int]] = []
+        at = 0
+        while at < self._size:
+            if length := self._length(at):
+                places.append((at, length))
+                at += length
+                continue
+            rest = self._read(at, self._size - at)
+            after = _next_start(rest, 1)
+            if after < len(rest) or not _is_torn(rest):
+                self.damage.append(len(places))
+            else:
+                self.torn_bytes = len(rest)
+            at += after
+        return places
+
+    def _length(self, at: int) -> int:
+        """Length of the chunk at a place; 0 if it is none."""
+        head = self._read(at, _AFTER_LENGTH)
+        if len(head) < _AFTER_LENGTH or not head.startswith(_HEAD):
+            return 0
+        length = int(_EXTRA.unpack_from(head, len(_HEAD))[0])
+        if length > min(self._size - at, _MOST_BYTES):
+            return 0
+        try:
+            if self._size <= _SOON_CHECKED_BYTES:
+                _check_member(memoryview(self._read(at, length)))
+        except ValueError:
+            return 0
+        return length
+
+    def _read(self, at: int, length: int) -> bytes:
+        try:
+            return os.pread(self._file, length, at)
+        except OSError as error:
+            raise self._fault(error) from None
+
+    def _fault(self, error: OSError) -> VbrailleError:
+        return VbrailleError(f"{self._path} cannot be read: {error.strerror}")
 
 
-def left_places_mm(ticks: NDArray[np.void], left_mm: float) -> NDArray[np.float64]:
-    """Places of the array's left column by a trace of any format; float64[n], a copy.
+def _is_torn(rest: bytes) -> bool:
+    """Whether a trace that ends with this was cut short in a chunk that may have been whole."""
+    try:
+        return _check_member(memoryview(rest)) is None
+    except ValueError:
+        return False
 
-    They are, to the bit, the places that the frames were made for.
-    """
-    return ticks["x_mm"] - (left_mm if ticks.dtype == TRACE else 0.0)
 
-
-def _squeeze(chunk: bytes, tie: Tie | None, record: np.dtype) -> bytes:
+def _squeeze(chunk: bytes, tie: Tie) -> bytes:
     """Make a gzip member of the bytes of a chunk."""
     squeeze = zlib.compressobj(_LEVEL, zlib.DEFLATED, -zlib.MAX_WBITS)
-    body = squeeze.compress(chunk) + squeeze.flush() + _TRAILER.pack(zlib.crc32(chunk), len(chunk))
-    if tie is not None:
-        body = _TIE_FIELD + EXTRA.pack(*tie) + body
-    heads = _LOOSE if tie is None else _TIED
-    head = next(head for head, kind in heads.items() if kind == record)
-    return head + EXTRA.pack(_AFTER_LENGTH + len(body), zlib.crc32(body)) + body
+    body = _TIE_FIELD + _EXTRA.pack(*tie) + squeeze.compress(chunk) + squeeze.flush()
+    body += _TRAILER.pack(zlib.crc32(chunk), len(chunk))
+    return _HEAD + _EXTRA.pack(_AFTER_LENGTH + len(body), zlib.crc32(body)) + body
 
 
-def check_member(trace: memoryview, record: np.dtype | None) -> ChunkMember | None:
+def _tie_of(member: bytes | memoryview) -> Tie:
+    return Tie(*_EXTRA.unpack_from(member, _AFTER_LENGTH + len(_TIE_FIELD)))
+
+
+def _check_member(trace: memoryview) -> ChunkMember | None:
     """Read the gzip member that a trace begins with; None if it is cut short.
 
     Raises
     ------
     ValueError
-        If the member is damaged, or its records are not of the given kind.
+        If the member is damaged.
     """
-    start = bytes(trace[:HEAD_BYTES])
-    if not any(head.startswith(start) for head, kind in HEADS.items() if record in (None, kind)):
+    if not _HEAD.startswith(bytes(trace[: len(_HEAD)])):
         raise ValueError
     if len(trace) < _AFTER_LENGTH:
         return None
-    length, crc = EXTRA.unpack_from(trace, HEAD_BYTES)
+    length, crc = _EXTRA.unpack_from(trace, len(_HEAD))
     if len(trace) < length:
         return None
-    deflated = _AFTER_LENGTH if start in _LOOSE else _AFTER_TIE
-    if length < deflated + _TRAILER.size or zlib.crc32(trace[_AFTER_LENGTH:length]) != crc:
+    if length < _AFTER_TIE + _TRAILER.size or zlib.crc32(trace[_AFTER_LENGTH:length]) != crc:
         raise ValueError
     (size,) = _SIZE.unpack_from(trace, length - _SIZE.size)
-    tie = None
-    if start in _TIED:
-        tie = Tie(*EXTRA.unpack_from(trace, _AFTER_LENGTH + len(_TIE_FIELD)))
-    return ChunkMember(HEADS[start], length, trace[deflated : length - _TRAILER.size], size, tie)
+    return ChunkMember(length, trace[_AFTER_TIE : length - _TRAILER.size], size, _tie_of(trace))
 
 
-def next_start(trace: bytes, after: int) -> int:
+def _next_start(trace: bytes, after: int) -> int:
     """Offset at which the next whole member begins; the trace's length if there is none."""
-    at = trace.find(_START, after)
+    at = trace.find(_HEAD, after)
     while at >= 0:
         with suppress(ValueError):
-            if check_member(memoryview(trace)[at:], None) is not None:
+            if _check_member(memoryview(trace)[at:]) is not None:
                 return at
-        at = trace.find(_START, at + 1)
+        at = trace.find(_HEAD, at + 1)
     return len(trace)
 
 
-def _inflate(members: list[ChunkMember], record: np.dtype) -> NDArray[np.void]:
-    """Ticks of members that were checked, as records of a kind."""
+def _inflate(members: list[ChunkMember]) -> NDArray[np.void]:
+    """Ticks of members that were checked."""
     stops = list(accumulate(member.size for member in members))
-    ticks = np.empty((stops[-1] if stops else 0) // record.itemsize, record)
+    ticks = np.empty((stops[-1] if stops else 0) // TRACE.itemsize, TRACE)
     room = ticks.view(np.uint8)
 
     def fill(first: int) -> None:

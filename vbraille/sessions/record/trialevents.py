@@ -18,16 +18,16 @@ class Presented(WithStimulus, frozen=True, kw_only=True):
     tuning
         Contrast or texture that the experimenter has set instead of the stimulus's own.
     shown
-        The stimulus itself, in the form that `plan.json` has; from format 4 on.
+        The stimulus itself, in the form that `plan.json` has.
     """
 
     line: int = 0
     tuning: dict[str, float] = {}  # noqa: RUF012  (msgspec copies it)
-    shown: dict[str, Any] = {}  # noqa: RUF012  (msgspec copies it)
+    shown: dict[str, Any]
 
 
 class Stood(WithStimulus, frozen=True, kw_only=True):
-    """Cells were put on the conventional display; from format 6 on.
+    """Cells were put on the conventional display.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class Read(WithStimulus, frozen=True, kw_only=True):
 
 
 class Ended(WithStimulus, frozen=True, kw_only=True):
-    """The participant's own key ended the reading of a stimulus; from format 5 on.
+    """The participant's own key ended the reading of a stimulus.
 
     Parameters
     ----------
@@ -108,13 +108,12 @@ class Answer(InTrial, frozen=True, kw_only=True):
     early
         Whether the answer came before the trial was read to its end.
     confidence
-        How sure the answer is, on the protocol's scale; left out if that is not asked. From
-        format 5 on.
+        How sure the answer is, on the protocol's scale; left out if that is not asked.
     confidence_s
-        Seconds from the answer to its confidence, with which it was written. From format 5 on.
+        Seconds from the answer to its confidence, with which it was written.
     ended_by
         What ended reading: "button:N", "key:NAME", or "answer" if the answer came before the
-        participant's key; left out if the protocol has no such key. From format 5 on.
+        participant's key; left out if the protocol has no such key.
     """
 
     durable: ClassVar[bool] = True

@@ -32,7 +32,7 @@ class Showing:
     tuning
         Contrast or texture that the experimenter had set instead of the stimulus's own.
     shown
-        The stimulus as the journal describes it; empty before format 4.
+        The stimulus as the journal describes it.
     """
 
     attempt: int
@@ -43,15 +43,13 @@ class Showing:
     shown: dict[str, Any]
 
     def stimulus_of(self, trial: Trial) -> Stimulus:
-        """Stimulus that was shown, from the journal, or from the planned trial before format 4.
+        """Stimulus that was shown in a trial.
 
         Raises
         ------
         VbrailleError
             If the journal's description is not that of a stimulus.
         """
-        if not self.shown:
-            return trial.stimuli[self.stimulus]
         try:
             return stimulus_from_json(self.shown)
         except ValueError as error:

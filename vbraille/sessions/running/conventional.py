@@ -6,7 +6,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.spelling import to_braille
-from vbraille.conventional.messages import CellsTaken, DisplayAway, DisplayStands
+from vbraille.conventional.brlapi import CellsTaken, DisplayAway, DisplayStands
 from vbraille.errors import DeviceError, InputError
 from vbraille.sessions.record import events
 from vbraille.sessions.running.happened import Happened

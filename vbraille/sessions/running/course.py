@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from vbraille.engine.host import HostDiedError
 from vbraille.sessions.planning.planfile import stimulus_to_json
 from vbraille.sessions.record import events
-from vbraille.sessions.record.folder import SHOWN_FROM, versions
+from vbraille.sessions.record.folder import versions
 from vbraille.sessions.running.coursestate import CourseState
 from vbraille.sessions.running.logbook import Logbook
 from vbraille.sessions.running.phases import Phase
@@ -319,13 +319,12 @@ class Course(CourseState):
     def _show(self, trial: Trial, stimulus: int) -> None:
         self.stimulus = stimulus
         shown: dict[str, Any] = {"attempt": self._attempt, "stimulus": stimulus}
+        shown["shown"] = stimulus_to_json(trial.stimuli[stimulus])
         if self.display is not None and not self.by_key:
             # The showing gets this number next: the journal has it before the stimulus is felt.
             shown["line"] = self.display.line + 1
         if self.progress.tuning:
             shown["tuning"] = self.progress.tuning
-        if self.book.format >= SHOWN_FROM:
-            shown["shown"] = stimulus_to_json(trial.stimuli[stimulus])
         self.book.log(events.Presented, trial, **shown)
         if (stands := self._stands) is not None:
             stands.show(trial.stimuli[stimulus])

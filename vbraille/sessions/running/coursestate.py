@@ -9,7 +9,7 @@ from vbraille.sessions.planning.standing import is_conventional
 from vbraille.sessions.running.phases import Phase
 
 if TYPE_CHECKING:
-    from vbraille.render.braille.tuning import Tuning
+    from vbraille.render.braille.profiles import Tuning
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial

@@ -46,11 +46,6 @@ class Logbook:
         self._now_ns = now_ns
         self.begin()
 
-    @property
-    def format(self) -> int:
-        """Format of the session, which decides what events contain."""
-        return self._journal.told.format
-
     def begin(self) -> None:
         """Begin a run: its time goes on from the total length of the runs before it."""
         self._begun_ns, self._begun_s = self._now_ns(), self._progress.t_s

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.events import Event
-    from vbraille.render.braille.tuning import Tuning
+    from vbraille.render.braille.profiles import Tuning
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.planning.stimuli import Stimulus
     from vbraille.sessions.record.journal import Tie
@@ -82,13 +82,9 @@ class OnDevice:
     keeps
         Whether ticks are kept for a simulated reader.
     tie
-        Function that tells which line of the journal is on the disk, to which traces are tied;
-        None in a session of format 1.
+        Function that tells which line of the journal is on the disk, to which traces are tied.
     steering
         Channel that tells the simulated hand what to read; None if a person's hand reads.
-    centred
-        Whether traces have places of the array's centre. In a session of format 1 or 2 they have
-        places of its left column.
     by_hand
         Whether the hand's way to the end and back ends reading, and not the participant's key
         alone.
@@ -110,9 +106,8 @@ class OnDevice:
         folder: Path,
         *,
         keeps: bool,
-        tie: Callable[[], Tie] | None = None,
+        tie: Callable[[], Tie],
         steering: Steering | None = None,
-        centred: bool = True,
         by_hand: bool = True,
     ) -> None:
         self.engine = engine
@@ -123,7 +118,6 @@ class OnDevice:
         self._keeps = keeps
         self._tie = tie
         self._steering = steering
-        self._left_mm = None if centred else self._span_mm / 2
         self._button = protocol.trial.button
         self._by_hand = by_hand
         self._ended = False  # whether the participant's key has ended this stimulus
@@ -156,7 +150,7 @@ class OnDevice:
         # A run that was killed before the journal had its event may have left a trace.
         while (self._folder / _trace_name(run)).exists():
             run += 1
-        self._trace = TraceWriter(self._folder / _trace_name(run), self._tie, self._left_mm)
+        self._trace = TraceWriter(self._folder / _trace_name(run), self._tie)
         self._newest = self._stimulus = None
         self._faults.away = self._ready = False
         return _trace_name(run)

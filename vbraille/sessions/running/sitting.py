@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vbraille.caching import compiling_note
@@ -11,9 +13,8 @@ from vbraille.engine.host import HostDiedError
 from vbraille.errors import DeviceError, InputError
 from vbraille.sessions.planning.standing import is_conventional
 from vbraille.sessions.record import events
-from vbraille.sessions.record.clocks import Moment, boot, gap, say_moved
 from vbraille.sessions.record.folder import check_end
-from vbraille.sessions.record.journal import NAME, Journal, sum_of
+from vbraille.sessions.record.journal import NAME, Journal, sum_of, up_s
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.console import Console
 from vbraille.sessions.running.course import Course
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from vbraille.errors import VbrailleError
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.record.eventbase import JournalEvent
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.running.answers import Answers
     from vbraille.sessions.running.conventional import OnConventional
@@ -184,30 +186,41 @@ class Sitting:
             record.protocol,
             record.folder,
             keeps=self._answers.felt,
-            # A session of format 1 keeps that format, whose traces are not tied to the journal.
-            tie=None if book.told.format == 1 else lambda: book.durable,
+            tie=lambda: book.durable,
             steering=self._steering,
-            centred=record.centred,
             by_hand=not self._answers.typed or record.protocol.trial.end is None,
         )
 
     def _since(self, book: Journal, progress: Progress) -> dict[str, Any]:
         """Fields of a run's event about the time since the last run, and a torn line it left."""
-        told: dict[str, Any] = {}
-        if book.told.format > 1:
-            told["boot"] = boot()
+        told: dict[str, Any] = {"boot": _boot()}
         if torn := book.torn_file():
             told["torn_file"] = torn
         if progress.runs:
-            told |= gap(Moment.of(book.told.events[-1], progress.runs[-1]), Moment.now())
-            if (moved := say_moved(told)) is not None:
-                self._say(moved)
+            same_start = bool(told["boot"]) and told["boot"] == progress.runs[-1].boot
+            told |= _gap(book.told.events[-1], same_start=same_start)
             self._say(f"resume: {progress.of_all(progress.done)} trials have answers")
         if book.told.torn:
             self._say(
                 f"torn: {len(book.told.torn)} bytes at the end of the journal are in journal.torn"
             )
         return told
+
+
+def _boot() -> str:
+    """Identifier of this machine's last start; empty if the system does not tell it."""
+    try:
+        return Path("/proc/sys/kernel/random/boot_id").read_text().strip()
+    except OSError:
+        return ""
+
+
+def _gap(last: JournalEvent, *, same_start: bool) -> dict[str, Any]:
+    """Fields of a run's event for the time since the last event, by the clock that can tell it."""
+    if same_start and last.up_s is not None:
+        return {"gap_s": round(up_s() - last.up_s, 3), "gap_by": "machine"}
+    gap_s = (datetime.now(UTC) - datetime.fromisoformat(last.wall)).total_seconds()
+    return {"gap_by": "wall"} if gap_s < 0 else {"gap_s": round(gap_s, 3), "gap_by": "wall"}
 
 
 def _closed(display: OnDevice) -> VbrailleError | None:

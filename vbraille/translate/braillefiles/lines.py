@@ -20,8 +20,8 @@ from vbraille.translate.braillefiles.dialects import (
     north_american,
     unicode_masks,
 )
+from vbraille.translate.documents.chapters import LONGEST_BLOCK, ChapterSource, Passage
 from vbraille.translate.documents.encodings import binary_kind, find_encoding, named_encoding
-from vbraille.translate.documents.parted import PIECE_CHARACTERS, PartedSource, Passage
 from vbraille.translate.source import Block, BlockKind
 from vbraille.translate.text import SPACE, Text
 from vbraille.wording import setting
@@ -108,7 +108,7 @@ def open_unicode_braille(stream: BinaryIO, name: str, encoding: str | None = Non
     return BrailleLines(io.BytesIO(text.encode()), name, None)
 
 
-class BrailleLines(PartedSource):
+class BrailleLines(ChapterSource):
     """A file of braille as a source of its lines and pages, none of them ever translated.
 
     Each character is the source of one cell. A line is a block, and an empty one is, too. The
@@ -149,7 +149,7 @@ class BrailleLines(PartedSource):
         self._form = ("utf-8" if masks is None else dialect or "brf", self._size)
         super().__init__(name, sizes, "", in_cells=True)
 
-    def passages(self, part: int) -> Iterable[Passage]:
+    def passages(self, chapter: int) -> Iterable[Passage]:
         """Give no passages: the blocks are made at once."""
         raise NotImplementedError
 
@@ -176,9 +176,15 @@ class BrailleLines(PartedSource):
     def _fits(self) -> tuple[str, tuple[str | int, ...]]:
         return f"{type(self).__name__} 2", self._form
 
-    def made(self, part: int, character: int, group: int) -> list[Block]:
-        """Make the blocks of a part of the file."""
-        start, stop = self._cut(part), self._cut(part + 1)
+    def piece(
+        self,
+        chapter: int,
+        passage: int,  # noqa: ARG002
+        character: int,
+        groups: int,
+    ) -> tuple[list[Block], None]:
+        """Make the blocks of a chapter, which is a part of the file."""
+        start, stop = self._cut(chapter), self._cut(chapter + 1)
         read = _read(self._stream, self.name, start, stop - start)
         if len(read) < stop - start:
             raise VbrailleError(
@@ -186,11 +192,12 @@ class BrailleLines(PartedSource):
             )
         codes, masks = self._decode(read, start)
         begins = start == self._first or self._ends_before(start)
-        blocks = [_page(character, 1)] if part == 0 and self._paged else []
-        page = max(group, 1)  # what stands before the first form feed is a page, too
-        return blocks + self._blocks(
+        blocks = [_page(character, 1)] if chapter == 0 and self._paged else []
+        page = max(groups, 1)  # what stands before the first form feed is a page, too
+        blocks += self._blocks(
             codes, masks, character, page, continues=not begins, final=stop == self._after
         )
+        return blocks, None
 
     def _decode(self, read: bytes, start: int) -> tuple[NDArray[np.uint32], NDArray[np.uint8]]:
         """Code points and masks of bytes that stand at a place of the file."""
@@ -252,7 +259,7 @@ class BrailleLines(PartedSource):
             nonlocal continues
             last = max(start, raised[stop - 1]) if stop > start and ended else stop
             while True:
-                cut = min(start + PIECE_CHARACTERS, last)
+                cut = min(start + LONGEST_BLOCK, last)
                 end = character + (after if cut == last else cut)
                 piece = slice(start, cut)
                 text = Text(codes[piece], places[piece], end, alphabet)

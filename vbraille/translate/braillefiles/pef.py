@@ -10,7 +10,7 @@ import numpy as np
 
 from vbraille.braille.cells import Cells
 from vbraille.errors import InputError
-from vbraille.translate.documents.parted import PartedSource, Passage
+from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.source import BlockKind
 
 if TYPE_CHECKING:
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 NAMESPACE = "http://www.daisy.org/ns/2008/pef"
 DUBLIN_CORE = "http://purl.org/dc/elements/1.1/"
 MOST_BYTES = 200_000_000
-_PAGES_IN_PART = 32
+_CHAPTER_PAGES = 32
 _BLANK = 0x2800
 _NO_CELLS = Cells(np.empty(0, np.uint8), np.empty(0, np.int64), 0)
 
 
-class PefBook(PartedSource):
+class PefBook(ChapterSource):
     """A PEF file as a source: each page a block of the kind PAGE without text, and its rows.
 
     Volumes and sections follow one another, and their pages are counted on; on which side of the
@@ -49,7 +49,7 @@ class PefBook(PartedSource):
     ) -> None:
         self._pages = pages
         groups = [
-            pages[start : start + _PAGES_IN_PART] for start in range(0, len(pages), _PAGES_IN_PART)
+            pages[start : start + _CHAPTER_PAGES] for start in range(0, len(pages), _CHAPTER_PAGES)
         ]
         sizes = array("q", (sum(1 + len(page or "") for page in group) for group in groups))
         super().__init__(name, sizes, digest, title=title, language=language, in_cells=True)
@@ -90,10 +90,10 @@ class PefBook(PartedSource):
             _metadata(root, "language"),
         )
 
-    def passages(self, part: int) -> Iterable[Passage]:
+    def passages(self, chapter: int) -> Iterable[Passage]:
         """Read the rows of some pages."""
-        start = part * _PAGES_IN_PART
-        for number, page in enumerate(self._pages[start : start + _PAGES_IN_PART], 1):
+        start = chapter * _CHAPTER_PAGES
+        for number, page in enumerate(self._pages[start : start + _CHAPTER_PAGES], 1):
             yield Passage("", BlockKind.PAGE, group=number, cells=_NO_CELLS)
             for row in () if page is None else page.split("\n"):
                 text = row.rstrip(chr(_BLANK))

@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
+import hashlib
+from dataclasses import replace
 from functools import partial
-from itertools import accumulate
 from typing import TYPE_CHECKING, BinaryIO
 from weakref import finalize
 
+import numpy as np
+
+from vbraille.braille.cells import UNICODE_BLANK, Cells, masks_of
 from vbraille.errors import InputError
-from vbraille.translate.documents.html import digest_of
-from vbraille.translate.documents.markup.archive import Archive
-from vbraille.translate.documents.markup.dtbooknames import DTBOOK
-from vbraille.translate.documents.markup.elements import BEGINS
-from vbraille.translate.documents.markup.locks import check_unlocked
+from vbraille.translate.documents.chapters import ChapterSource, Passage
+from vbraille.translate.documents.markup.archive import MOST_BYTES, Archive
 from vbraille.translate.documents.markup.package import (
     anchor_of,
     read_outline,
     read_package,
     read_page_list,
 )
-from vbraille.translate.documents.markup.parsing import Parsing, parts_of
 from vbraille.translate.documents.markup.reader import MarkupReader
-from vbraille.translate.documents.markup.ready import Spelling
-from vbraille.translate.documents.parted import PartedSource, Passage
+from vbraille.translate.documents.markup.tree import read_tree
 from vbraille.translate.source import Mark, MarkKind
+from vbraille.translate.text import NO_BREAK_SPACE, SPACE, to_codes, to_text
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -33,10 +32,8 @@ if TYPE_CHECKING:
 
     from vbraille.translate.documents.markup.package import BookPart
 
-_OPEN = 3  # chapters whose parsing is kept
 
-
-class EpubBook(PartedSource):
+class EpubBook(ChapterSource):
     """An EPUB 2 or 3, or an eBraille publication, as a `Source`.
 
     An anchor is named by its document and its name there, as "OEBPS/two.xhtml#note"; a document
@@ -58,22 +55,18 @@ class EpubBook(PartedSource):
     def __init__(self, stream: BinaryIO, name: str) -> None:
         self._stream = stream
         finalize(self, stream.close)  # before the collector looks at the stream, and complains
-        _, digest = digest_of(stream, name)
+        digest = digest_of(stream, name)
         self._archive = Archive(stream, name)
-        check_unlocked(self._archive)
+        self._archive.check_unlocked()
         self._package = read_package(self._archive)
         sizes = [self._archive.size(chapter.member) for chapter in self._package.chapters]
-        parts = [parts_of(size) for size in sizes]
-        self._starts_of = [0, *accumulate(parts)]  # first part of each chapter
         self._chapters = {c.member: number for number, c in enumerate(self._package.chapters)}
-        self._open: dict[int, Parsing] = {}
         self._pages = read_page_list(self._archive, self._package)
         self._spelling = Spelling() if self._package.is_braille else None
-        self._told = 0
-        self._any = False
+        self._told = False
         super().__init__(
             name,
-            [max(size // n, 1) for size, n in zip(sizes, parts, strict=True) for _ in range(n)],
+            [max(size, 1) for size in sizes],
             digest,
             title=self._package.title,
             language=self._package.language,
@@ -107,48 +100,54 @@ class EpubBook(PartedSource):
         """
         return read_outline(self._archive, self._package)
 
-    def passages(self, part: int) -> Iterable[Passage]:
-        """Read a part, which is a chapter or a piece of a long one.
+    def passages(self, chapter: int) -> Iterable[Passage]:
+        """Read a chapter.
 
         Raises
         ------
         InputError
             If it cannot be read, or the whole book holds no text.
         """
-        number = bisect_right(self._starts_of, part) - 1
-        chapter = self._package.chapters[number]
-        if chapter.member not in self._archive:
-            found = [self._remark(f"missing chapter: {chapter.member}", "chapter", chapter)]
-        elif not chapter.is_text:
-            what = "picture" if chapter.kind.startswith("image/") else "page"
-            found = [self._remark(f"{what}: {chapter.kind}", what, chapter)]
-        else:
-            found = self._parsing(number, chapter).part(part - self._starts_of[number])
-        self._any = self._any or any(passage.text for passage in found)
-        if not self._any and part == self.parts - 1 == len(self._starts) - 1 and self._is_empty():
+        part = self._package.chapters[chapter]
+        any_text = False
+        for passage in self._read_part(part):
+            any_text = any_text or bool(passage.text)
+            yield passage if self._spelling is None else self._spelling.with_cells(passage)
+        if not any_text and chapter == self.chapters - 1 and not self._starts[-1].block:
             raise InputError(f"{self.name} holds no text that can be read; give another book")
-        return found if self._spelling is None else self._spelling.ready(found)
+
+    def _read_part(self, part: BookPart) -> Iterable[Passage]:
+        if part.member not in self._archive:
+            return [self._remark(f"missing chapter: {part.member}", "chapter", part)]
+        if not part.is_text:
+            what = "picture" if part.kind.startswith("image/") else "page"
+            return [self._remark(f"{what}: {part.kind}", what, part)]
+        content = self._archive.read(part.member, MOST_BYTES)
+        root, _ = read_tree(content, f"{self.name} ({part.member})", xml=True)
+        reader = MarkupReader(
+            partial(anchor_of, part.member),
+            f"{part.member}#",
+            (part.member,),
+            self.language,
+            is_dtbook=part.is_dtbook,
+            spell=self._spell,
+            pages=self._pages,
+        )
+        return reader.read(root)
 
     def anchored(self, name: str) -> int | None:
-        """Give the number of the part that has an anchor; None if no part can have it."""
-        member, _, fragment = name.partition("#")
-        number = self._chapters.get(member)
-        if number is None:
-            return None
-        first, after = self._starts_of[number : number + 2]
-        if fragment and after - first > 1:
-            for part in range(first, after):
-                if any(name in passage.anchors for passage in self.passages(part)):
-                    return part
-        return first
+        """Give the number of the chapter that has an anchor; None if none can have it."""
+        return self._chapters.get(name.partition("#")[0])
 
     def anchor(self, name: str) -> int | None:
         """Place of an anchor; that of its chapter's beginning if the chapter has no such name."""
-        part = self.anchored(name)
-        if part is None:
+        chapter = self.anchored(name)
+        if chapter is None:
             return None
         found = super().anchor(name)
-        return self._starts[part].character if found is None else found
+        if found is None:
+            found = next(s.character for s in self._starts if s.chapter == chapter)
+        return found
 
     def member(self, name: str) -> bytes:
         """Give the bytes of a file of the container, such as those of a picture.
@@ -163,11 +162,9 @@ class EpubBook(PartedSource):
     def note(self) -> str | None:
         """Note on characters that are no braille in a book in braille, given once."""
         wrong = 0 if self._spelling is None else self._spelling.wrong
-        if wrong <= self._told:
+        if not wrong or self._told:
             return None
-        told, self._told = self._told, wrong
-        if told:
-            return None
+        self._told = True
         return (
             f"{self.name} should be all braille and has {count(wrong, 'other character')} so far; "
             f"they are shown as full cells"
@@ -176,36 +173,6 @@ class EpubBook(PartedSource):
     def close(self) -> None:
         """Close the file; it is closed in any case when the book is forgotten."""
         self._stream.close()
-
-    def _is_empty(self) -> bool:
-        """Whether all parts that were read have no block."""
-        return self._starts[-1].block == 0
-
-    def _parsing(self, number: int, chapter: BookPart) -> Parsing:
-        """Parsing of a chapter; a few are kept, since a long chapter is parsed from its start."""
-        parsing = self._open.get(number)
-        if parsing is None:
-            first, after = self._starts_of[number : number + 2]
-            parsing = Parsing(
-                partial(self._archive.open, chapter.member),
-                after - first,
-                f"{self.name} ({chapter.member})",
-                partial(
-                    MarkupReader,
-                    partial(anchor_of, chapter.member),
-                    f"{chapter.member}#",
-                    (chapter.member,),
-                    self.language,
-                    DTBOOK if chapter.is_dtbook else BEGINS,
-                    self._spell,
-                    self._pages,
-                ),
-                xml=True,
-            )
-            if len(self._open) >= _OPEN:
-                del self._open[next(iter(self._open))]
-            self._open[number] = parsing
-        return parsing
 
     def _remark(self, text: str, what: str, chapter: BookPart) -> Passage:
         """Remark on a chapter that cannot be shown."""
@@ -216,3 +183,81 @@ class EpubBook(PartedSource):
     @property
     def _spell(self) -> Callable[[str], str]:
         return str if self._spelling is None else self._spelling.of_print
+
+
+def digest_of(stream: BinaryIO, name: str) -> str:
+    """SHA-256 of a file, in hexadecimal.
+
+    Raises
+    ------
+    InputError
+        If it is empty or cannot be read.
+    """
+    digest = hashlib.sha256()
+    try:
+        stream.seek(0)
+        while piece := stream.read(131_072):
+            digest.update(piece)
+        size = stream.tell()
+    except OSError as error:
+        raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
+    if not size:
+        raise InputError(f"{name} is empty; give a file with text in it")
+    return digest.hexdigest()
+
+
+_FULL = 0x28FF & ~0xC0  # dots 1 to 6, for what is no braille
+_LETTERS = "abcdefghijklmnopqrstuvwxyz"
+# Unified English Braille without contractions, for the few words that a reader of markup adds.
+_SPELT = {
+    **dict(zip(_LETTERS, Cells.from_brf(_LETTERS).to_unicode(), strict=True)),
+    **dict(zip("1234567890", Cells.from_brf("ABCDEFGHIJ").to_unicode(), strict=True)),
+    **dict(zip(".,:;?!-'", "⠲⠂⠒⠆⠦⠖⠤⠄", strict=True)),
+    "(": "⠐⠣",
+    ")": "⠐⠜",
+    "[": "⠨⠣",
+    "]": "⠨⠜",
+    "•": "⠸⠲",
+    "*": "⠐⠔",
+    "/": "⠸⠌",
+    "“": "⠘⠦",
+    "”": "⠘⠴",
+}
+_NUMBER, _CAPITAL = "⠼", "⠠"
+
+
+class Spelling:
+    """Makes cells of the text of a book in braille.
+
+    Attributes
+    ----------
+    wrong : int
+        Number of characters so far that are no braille and are shown as full cells.
+    """
+
+    def __init__(self) -> None:
+        self.wrong = 0
+
+    def of_print(self, text: str) -> str:
+        """Spell what is in print, in Unified English Braille; braille stays as it is."""
+        cells, before = [], ""
+        for character in text:
+            if character.isdigit() and not before.isdigit():
+                cells.append(_NUMBER)
+            elif character.isascii() and character.isupper():
+                cells.append(_CAPITAL)
+            cells.append(_SPELT.get(character.lower(), character))
+            before = character
+        return "".join(cells)
+
+    def with_cells(self, passage: Passage) -> Passage:
+        """Give a passage its cells."""
+        codes = to_codes(passage.text).copy()
+        spaces = np.isin(codes, (0x09, NO_BREAK_SPACE, 0x202F, 0x3000))
+        codes[spaces | ((codes >= 0x2000) & (codes <= 0x200A))] = SPACE
+        braille = (codes >= UNICODE_BLANK) & (codes < UNICODE_BLANK + 0x100)
+        wrong = ~braille & ((codes < SPACE) | (codes > 0x7E))
+        codes[wrong] = _FULL
+        self.wrong += int(wrong.sum())
+        cells = Cells(masks_of(codes), np.arange(codes.size), codes.size)
+        return replace(passage, text=to_text(codes), cells=cells)

@@ -1,161 +1,149 @@
-"""A file of HTML as a source, parsed only as far as somebody reads."""
+"""A file of HTML or DTBook as a source: one tree, read in chapters of our own making."""
 
 from __future__ import annotations
 
 import hashlib
-import io
-from functools import partial
 from typing import TYPE_CHECKING, BinaryIO
 from urllib.parse import unquote
-from weakref import finalize
 
 from vbraille.errors import InputError
-from vbraille.translate.documents.markup.elements import BEGINS
-from vbraille.translate.documents.markup.parsing import Parsing, parts_of
-from vbraille.translate.documents.markup.pieces import PART_BYTES
-from vbraille.translate.documents.markup.reader import MarkupReader
-from vbraille.translate.documents.parted import PartedSource
+from vbraille.translate.documents.chapters import ChapterSource
+from vbraille.translate.documents.markup.attributes import named
+from vbraille.translate.documents.markup.reader import (
+    BLOCKS,
+    DTBOOK_BLOCKS,
+    MarkupReader,
+    title_and_language,
+)
+from vbraille.translate.documents.markup.tree import MOST_BYTES, read_tree
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator
     from typing import Self
 
-    from vbraille.translate.documents.markup.elements import Begin
-    from vbraille.translate.documents.parted import Passage
+    from lxml.etree import _Element as Element
+
+    from vbraille.translate.documents.chapters import Passage
+
+    Way = tuple[int, ...]  # index of each element on the way in the one around it
+
+_CHAPTER_CHARACTERS = 65_536
+_DEEPEST = 20  # elements around a chapter's first
+# Elements that the next chapter may begin within: what they say of their text is in their
+# attributes alone, and in how many of them are around it.
+_AROUND_NAMES = (
+    "html body div section article main dtbook book frontmatter bodymatter rearmatter level "
+    "level1 level2 level3 level4 level5 level6"
+)
+_AROUND = frozenset(_AROUND_NAMES.split())
 
 
-class HtmlBook(PartedSource):
-    """A file of HTML or XHTML as a `Source`.
-
-    A long file is parsed in parts, each after the one before it.
+class HtmlBook(ChapterSource):
+    """A tree of HTML or DTBook as a `Source`.
 
     Parameters
     ----------
-    stream
-        Bytes of the file; the stream must be able to seek.
+    root
+        Root of the tree.
     name
         Name of the source in messages.
-    encoding
-        Encoding that overrides what the bytes say: its name.
     digest
-        SHA-256 of the file that the markup was made from, in hexadecimal; that of the bytes if
-        they are the file.
+        SHA-256 of the file, in hexadecimal.
+    is_dtbook
+        Whether the names of elements are those of DTBook.
     title, language
         Title and language that are given beside the markup, and go before what it says.
+    note
+        Note on the file, which is given once.
 
     Raises
     ------
     InputError
-        If it cannot be read, holds no text, or the encoding is unknown.
+        If it holds no text.
     """
-
-    begins: Mapping[str, Begin] = BEGINS
 
     def __init__(
         self,
+        root: Element,
+        name: str,
+        digest: str,
+        *,
+        is_dtbook: bool = False,
+        title: str = "",
+        language: str = "",
+        note: str | None = None,
+    ) -> None:
+        self._root = root
+        self._is_dtbook = is_dtbook
+        self._given = language
+        self._note = note
+        found = title_and_language(root)
+        # Where each chapter begins, and how many characters it has.
+        self._ways, sizes = _cut(root, DTBOOK_BLOCKS if is_dtbook else BLOCKS)
+        super().__init__(
+            name, sizes, digest, title=title or found[0], language=language or found[1]
+        )
+        self.block(0)  # a file that shows nothing is refused at once
+
+    @classmethod
+    def open(
+        cls,
         stream: BinaryIO,
         name: str,
         encoding: str | None = None,
         *,
-        digest: str | None = None,
-        title: str = "",
-        language: str = "",
-    ) -> None:
-        self._stream = stream
-        finalize(self, stream.close)  # before the collector looks at the stream, and complains
-        size, found = digest_of(stream, name)
-        parts = parts_of(size)
-        super().__init__(name, [1] * parts, digest or found, title=title, language=language)
-        self._noted = False
-        self._any = False
-        # Nothing here refers to the book, so that the file is closed once the book is forgotten.
-        self._parsing = Parsing(
-            partial(Rewound, stream),
-            parts,
-            name,
-            partial(MarkupReader, local_target, language=language, begins=self.begins),
-            xml=is_xml(stream),
-            encoding=encoding,
+        is_dtbook: bool = False,
+    ) -> Self:
+        """Read a file.
+
+        Parameters
+        ----------
+        stream
+            Bytes of the file, which is read from its start and closed.
+        name
+            Name of the file in messages.
+        encoding
+            Name of an encoding that overrides what the bytes say.
+        is_dtbook
+            Whether it is DTBook.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read, is empty, or the encoding is unknown.
+        """
+        content = read_whole(stream, name)
+        is_xml = content[:64].removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<?xml")
+        root, note = read_tree(content, name, xml=is_xml, encoding=encoding)
+        digest = hashlib.sha256(content).hexdigest()
+        return cls(root, name, digest, is_dtbook=is_dtbook, note=note)
+
+    def passages(self, chapter: int) -> Iterator[Passage]:
+        """Read a chapter.
+
+        Raises
+        ------
+        InputError
+            If the whole file holds no text.
+        """
+        reader = MarkupReader(
+            local_target, language=self._given or self.language, is_dtbook=self._is_dtbook
         )
-        self._first: list[Passage] | None = list(self.passages(0))
-        reader = self._parsing.reader
-        if reader is not None:
-            self.title = self.title or reader.title
-            self.language = self.language or reader.root_language
-
-    @classmethod
-    def open(cls, stream: BinaryIO, name: str, encoding: str | None = None) -> Self:
-        """Open a file, whose stream is the book's from then on.
-
-        Raises
-        ------
-        InputError
-            If it cannot be read, holds no text, or the encoding is unknown.
-        """
-        return cls(stream, name, encoding)
-
-    def passages(self, part: int) -> list[Passage]:
-        """Read a part.
-
-        Raises
-        ------
-        InputError
-            If it cannot be read, or the whole file holds no text.
-        """
-        first = getattr(self, "_first", None)
-        if part == 0 and first is not None:
-            self._first = None  # it was parsed for the title already
-            return first
-        found = self._parsing.part(part)
-        self._any = self._any or any(passage.text for passage in found)
-        if part == self.parts - 1 and not self._any and not self._before(part):
+        ways = [*self._ways, ()]
+        any_text = False
+        for passage in reader.read(self._root, ways[chapter], ways[chapter + 1]):
+            any_text = any_text or bool(passage.text)
+            yield passage
+        if not any_text and chapter == self.chapters - 1 and not self._starts[-1].block:
             raise InputError(
                 f"{self.name} holds no text that can be read: all of it is hidden, or made by "
                 f"scripts; give a file that has its text in it"
             )
-        return found
 
     def note(self) -> str | None:
-        """Note on bytes that are not of the encoding, given once after one is found."""
-        pieces = self._parsing.pieces
-        if self._noted or pieces is None:
-            return None
-        note = pieces.note(self.name)
-        self._noted = note is not None
+        """Note on bytes that are not of the encoding, given once."""
+        note, self._note = self._note, None
         return note
-
-    def close(self) -> None:
-        """Close the file; it is closed in any case when the book is forgotten."""
-        self._stream.close()
-
-    def _before(self, part: int) -> bool:
-        """Whether there is text in the parts before one."""
-        return any(passage.text for before in range(part) for passage in self._parsing.part(before))
-
-
-class Rewound(io.RawIOBase):
-    """A stream read from its start, which stays open when this is closed.
-
-    Parameters
-    ----------
-    stream
-        The stream, which others may read in the meantime.
-    """
-
-    def __init__(self, stream: BinaryIO) -> None:
-        self._stream = stream
-        self._offset = 0
-
-    def readable(self) -> bool:
-        """Tell that it can be read."""
-        return True
-
-    def read(self, size: int = -1) -> bytes:
-        """Read so many bytes, or fewer."""
-        self._stream.seek(self._offset)
-        found = self._stream.read(size)
-        self._offset += len(found)
-        return found
 
 
 def local_target(address: str) -> str:
@@ -163,28 +151,47 @@ def local_target(address: str) -> str:
     return f"#{unquote(address[1:])}" if address.startswith("#") else address
 
 
-def is_xml(stream: BinaryIO) -> bool:
-    """Whether a file says in its first bytes that it is XML."""
-    stream.seek(0)
-    return stream.read(64).removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<?xml")
-
-
-def digest_of(stream: BinaryIO, name: str) -> tuple[int, str]:
-    """Size of a file in bytes, and its SHA-256 in hexadecimal.
+def read_whole(stream: BinaryIO, name: str) -> bytes:
+    """All bytes of a file, which is closed.
 
     Raises
     ------
     InputError
-        If it is empty or cannot be read.
+        If it cannot be read, or is empty or too large for markup.
     """
-    digest, size = hashlib.sha256(), 0
     try:
-        stream.seek(0)
-        while piece := stream.read(PART_BYTES):
-            digest.update(piece)
-            size += len(piece)
+        with stream:
+            stream.seek(0)
+            content = stream.read(MOST_BYTES + 1)
     except OSError as error:
         raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
-    if not size:
+    if not content:
         raise InputError(f"{name} is empty; give a file with text in it")
-    return size, digest.hexdigest()
+    return content
+
+
+def _cut(root: Element, blocks: frozenset[str]) -> tuple[list[Way], list[int]]:
+    """Cut a tree into chapters: the way to the beginning of each, and its size in characters.
+
+    A chapter begins with a block that stands after another one with text, so that nothing of the
+    one goes on in the other.
+    """
+    ways: list[Way] = [()]
+    sizes = [0]
+
+    def cut(element: Element, way: Way) -> None:
+        before = False
+        for index, child in enumerate(element):
+            name = named(child.tag)
+            if before and sizes[-1] > _CHAPTER_CHARACTERS and name in blocks and name != "hr":
+                ways.append((*way, index))
+                sizes.append(0)
+            size = sum(map(len, child.itertext()))
+            before = name in blocks and name != "hr" and not (child.tail or "").strip() and size > 0
+            if name in _AROUND and size > _CHAPTER_CHARACTERS and len(way) < _DEEPEST:
+                cut(child, (*way, index))
+            else:
+                sizes[-1] += size
+
+    cut(root, ())
+    return ways, [max(size, 1) for size in sizes]

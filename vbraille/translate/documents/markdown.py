@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import re
 from itertools import pairwise
 from typing import TYPE_CHECKING, BinaryIO
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, BinaryIO
 from vbraille.errors import InputError
 from vbraille.translate.documents.encodings import SAMPLE_BYTES, TextDecoder
 from vbraille.translate.documents.html import HtmlBook
-from vbraille.translate.documents.markup.pieces import markup_encoding
+from vbraille.translate.documents.markup.tree import markup_encoding, read_tree
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,10 +81,11 @@ def read_markdown(stream: BinaryIO, name: str, encoding: str | None = None) -> H
     html = parser.renderer.render(tokens, parser.options, {})
     if not html.strip():
         raise InputError(f"{name} holds no text; give a file with text in it")
+    root, _ = read_tree(html.encode("utf-8", "replace"), name, xml=False, encoding="utf-8")
     return HtmlBook(
-        io.BytesIO(b"\xef\xbb\xbf" + html.encode("utf-8", "replace")),
+        root,
         name,
-        digest=hashlib.sha256(content).hexdigest(),
+        hashlib.sha256(content).hexdigest(),
         title=title[1].strip("\"'") if title else "",
         language=language[1].replace("_", "-") if language else "",
     )

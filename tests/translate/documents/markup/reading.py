@@ -1,17 +1,14 @@
 """HTML read into passages, for tests."""
 
-from functools import partial
-from io import BytesIO
-
-from vbraille.translate.documents.html import Rewound
-from vbraille.translate.documents.markup.parsing import Parsing
-from vbraille.translate.documents.markup.reader import MarkupReader
+from vbraille.translate.documents.markup.reader import MarkupReader, title_and_language
+from vbraille.translate.documents.markup.tree import read_tree
 
 
-def passages(markup, *, xml=False, **reader):
+def passages(markup, *, xml=False, language="", **reader):
     """Passages of a short text of markup."""
-    opened = partial(Rewound, BytesIO(markup.encode()))
-    return Parsing(opened, 1, "test", partial(MarkupReader, **reader), xml=xml).part(0)
+    root, _ = read_tree(markup.encode(), "test", xml=xml)
+    language = language or title_and_language(root)[1]
+    return list(MarkupReader(language=language, **reader).read(root))
 
 
 def outline(markup, **options):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import zipfile
 import zlib
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -16,6 +15,18 @@ if TYPE_CHECKING:
 MOST_BYTES = 200_000_000  # of a member, when it is unpacked
 _MOST_MARKUP = 20_000_000  # bytes of a member that is read at once
 _ENCRYPTED = 0x1
+_ENCRYPTION = "META-INF/encryption.xml"
+# Fonts are garbled in books that are open otherwise; no text is.
+_FONTS = frozenset(
+    (
+        "http://www.idpf.org/2008/embedding",
+        "http://ns.adobe.com/pdf/enc#RC",
+        "http://ns.adobe.com/pdf/enc#rc",
+    )
+)
+_LCP = "META-INF/license.lcpl"
+_ADOBE = "META-INF/rights.xml"
+_APPLE = "META-INF/sinf.xml"
 _FAULTS = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError)
 _FAULTS = (*_FAULTS, ValueError)  # of a name or a place that cannot be
 
@@ -53,13 +64,13 @@ class Archive:
         info = self._zip.NameToInfo.get(member)
         return info.file_size if info is not None else 0
 
-    def open(self, member: str) -> Member:
-        """Open a member.
+    def read(self, member: str, most: int = _MOST_MARKUP) -> bytes:
+        """Read a member.
 
         Raises
         ------
         InputError
-            If it is not there, locked or too large. So does reading, if the archive is damaged.
+            If it is not there, locked, damaged or too large.
         """
         info = self._zip.NameToInfo.get(member)
         told = printable(member)
@@ -70,32 +81,18 @@ class Archive:
                 f"{self.name} is locked by a password of the ZIP archive; unpack it with the "
                 f"password and pack it again without one"
             )
-        if info.file_size > MOST_BYTES:
+        if info.file_size > most:
             raise InputError(
                 f"{self.name} has a part {told} of {info.file_size / 1e6:.0f} MB, more than "
-                f"{MOST_BYTES / 1e6:.0f} MB; that is no text of a book"
+                f"{most / 1e6:.0f} MB; that is no text of a book"
             )
         try:
-            return Member(self._zip.open(info), self.name, told)
+            with self._zip.open(info) as stream:  # which gives no more than it says it has
+                return stream.read(most)
         except _FAULTS as error:
-            raise damaged(self.name, told, error) from None
-
-    def read(self, member: str, most: int = _MOST_MARKUP) -> bytes:
-        """Read a whole member that is short.
-
-        Raises
-        ------
-        InputError
-            If it cannot be read, or is longer.
-        """
-        with self.open(member) as stream:
-            found = stream.read(most + 1)
-        if len(found) > most:
             raise InputError(
-                f"{self.name} has a part {printable(member)} of more than {most / 1e6:.0f} MB; "
-                f"get another copy of the book"
-            )
-        return found
+                f"{self.name} is damaged in its part {told} ({printable(str(error))}); get it again"
+            ) from None
 
     def xml(self, member: str) -> Any:
         """Parse a short member as XML, and give its root.
@@ -122,56 +119,36 @@ class Archive:
         """Give the first of some members that is there; None if none is."""
         return next((member for member in members if member in self), None)
 
-
-class Member(io.RawIOBase):
-    """A member of an archive that is being read; a damaged one is the user's to get again.
-
-    Parameters
-    ----------
-    stream
-        Bytes of the member.
-    name, member
-        Names of the book and the member in messages.
-    """
-
-    def __init__(self, stream: Any, name: str, member: str) -> None:
-        self._stream = stream
-        self._name = name
-        self._member = member
-        self._left = MOST_BYTES
-
-    def readable(self) -> bool:
-        """Tell that it can be read."""
-        return True
-
-    def read(self, size: int = -1) -> bytes:
-        """Read so many bytes, or fewer.
+    def check_unlocked(self) -> None:
+        """Check that a book is not locked.
 
         Raises
         ------
         InputError
-            If the archive is damaged, or the member longer than it may be.
+            If it is; the message says by whose lock.
         """
-        try:
-            found = self._stream.read(size)
-        except _FAULTS as error:
-            raise damaged(self._name, self._member, error) from None
-        self._left -= len(found)
-        if self._left < 0:
-            raise InputError(
-                f"{self._name} has a part {self._member} of more than {MOST_BYTES / 1e6:.0f} MB; "
-                f"that is no text of a book"
-            )
-        return found
-
-    def close(self) -> None:
-        """Close the member."""
-        self._stream.close()
-        super().close()
-
-
-def damaged(name: str, member: str, error: Exception) -> InputError:
-    """Error of a member that cannot be unpacked."""
-    return InputError(
-        f"{name} is damaged in its part {member} ({printable(str(error))}); get it again"
-    )
+        if _ENCRYPTION in self:
+            methods = [
+                method.get("Algorithm", "")
+                for element in self.xml(_ENCRYPTION).iter("{*}EncryptedData")
+                for method in element.iterchildren("{*}EncryptionMethod")
+            ]
+            locked = any(method not in _FONTS for method in methods)
+        else:
+            # What Adobe calls its file, others call what tells who owns a book.
+            adobe = _ADOBE in self and b"adept" in self.read(_ADOBE)
+            locked = _LCP in self or _APPLE in self or adobe
+        if not locked:
+            return
+        if _LCP in self:
+            lock, program = "Readium LCP", "such as Thorium Reader, with its passphrase"
+        elif _APPLE in self:
+            lock, program = "Apple FairPlay", "Apple Books"
+        elif _ADOBE in self:
+            lock, program = "Adobe ADEPT", "such as Adobe Digital Editions"
+        else:
+            lock, program = "a lock that it does not name", "of whoever sold it"
+        raise InputError(
+            f"{self.name} is locked by {lock}, so that only a program {program} can read it; ask "
+            f"the seller or your library for a copy without a lock"
+        )

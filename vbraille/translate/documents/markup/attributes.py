@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
 _XML = "{http://www.w3.org/XML/1998/namespace}"
 _OPS = "{http://www.idpf.org/2007/ops}"
@@ -79,15 +80,16 @@ def figure_address(found: Mapping[str, str]) -> str:
     return "" if ending == ".svg" and decorates else path
 
 
-def named(tag: object) -> str:
+@lru_cache(1_000)
+def named(tag: str) -> str:
     """Local name of a tag, in lower case, without its namespace."""
-    return str(tag).rpartition("}")[2].rpartition(":")[2].lower()
+    return tag.rpartition("}")[2].rpartition(":")[2].lower()
 
 
-def known(attributes: Mapping[str, str]) -> dict[str, str]:
+def known(attributes: Iterable[tuple[Any, Any]]) -> dict[str, str]:
     """Attributes that somebody asks for, with the usual prefixes of XML and EPUB."""
     found: dict[str, str] = {}
-    for name, value in attributes.items():
+    for name, value in attributes:
         if name[:1] == "{":
             prefix = "xml:" if name.startswith(_XML) else "epub:" if name.startswith(_OPS) else ""
             name = prefix + name.rpartition("}")[2]

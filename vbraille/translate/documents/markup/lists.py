@@ -37,57 +37,54 @@ _ROMANS = (
 
 
 @dataclass(slots=True)
-class ListState:
-    """A list that is being read.
+class Numbering:
+    """How the items of a list that is being read are numbered.
 
     Parameters
     ----------
-    group
-        Number of the list within its part; a list inside of another has the outer one's.
-    numbering
-        How items are numbered: "1", "a", "A", "i" or "I"; "•" for bullets, empty for nothing.
+    style
+        Style of the numbers: "1", "a", "A", "i" or "I"; "•" for bullets, empty for nothing.
     number
         Number of the next item.
     step
         What is added to the number from item to item.
     """
 
-    group: int
-    numbering: str
+    style: str
     number: int = 1
     step: int = 1
 
     def marker(self, attributes: Mapping[str, str]) -> str:
         """Text before the next item, which has these attributes."""
-        if not self.numbering:
+        if not self.style:
             return ""
-        if self.numbering == "•":
+        if self.style == "•":
             return BULLET
         self.number = whole(attributes.get("value"), self.number)
         number, self.number = self.number, self.number + self.step
-        return f"{numeral(number, attributes.get('type') or self.numbering)}. "
+        return f"{numeral(number, attributes.get('type') or self.style)}. "
 
 
-def begun(name: str, attributes: Mapping[str, str], group: int) -> ListState:
-    """List of an element that begins one."""
+def numbering_of(name: str, attributes: Mapping[str, str]) -> Numbering:
+    """Numbering of the list that an element begins."""
     style = attributes.get("style", "")
     numbering = "1" if name == "ol" else "•"
     if "list-style" in style:
         words = style.partition("list-style")[2].partition(";")[0].replace(":", " ").split()
         if "none" in words:
-            return ListState(group, "")
+            return Numbering("")
         numbering = next((_STYLES[word] for word in words if word in _STYLES), numbering)
     if name != "ol":
-        return ListState(group, numbering)
+        return Numbering(numbering)
     numbering = attributes.get("type") or attributes.get("enum") or numbering
     if numbering not in {"1", "a", "A", "i", "I"}:
         numbering = "1"
     if "reversed" not in attributes:
-        return ListState(group, numbering, whole(attributes.get("start"), 1))
+        return Numbering(numbering, whole(attributes.get("start"), 1))
     # How many items a list has, from which it would count down, is not known where it begins.
     if "start" not in attributes:
-        return ListState(group, "•")
-    return ListState(group, numbering, whole(attributes.get("start"), 1), -1)
+        return Numbering("•")
+    return Numbering(numbering, whole(attributes.get("start"), 1), -1)
 
 
 def whole(text: str | None, otherwise: int) -> int:

@@ -6,16 +6,16 @@ import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from vbraille.translate.documents.chapters import Passage
 from vbraille.translate.documents.markup.flow import Flow
 from vbraille.translate.documents.markup.lists import BULLET
 from vbraille.translate.documents.markup.tables import BETWEEN, TableState
-from vbraille.translate.documents.parted import Passage
 from vbraille.translate.source import BlockKind, Mark, MarkKind
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.translate.documents.markup.lists import ListState
+    from vbraille.translate.documents.markup.lists import Numbering
 
 BREAK = "* * *"  # a break in the text, which print shows by a line or by stars
 _LONGEST_LEAD = 40  # characters before an item: its number, and those of the items it begins
@@ -24,25 +24,48 @@ _BLANK = re.compile(r"[ \t\n\r\f]")
 
 
 @dataclass(frozen=True, slots=True)
-class Role:
-    """Role of the text that is being read.
+class Place:
+    """Role of the text that is being read, by the elements around it.
 
     Parameters
     ----------
     kind, level, group
         As in `Passage`.
-    quotes, items
-        Number of quotations and of lists around the text.
+    language
+        Tag of the language of a block.
+    quotes, items, sections
+        Numbers of quotations, of lists and of DTBook's sections around the text.
+    numbering
+        How the items of the list are numbered.
+    table
+        The table around the text.
     is_note
         Whether the text is in a note.
+    in_notes
+        Whether it is in a section of notes, which are the items of its list.
+    in_caption
+        Whether it is in the caption of a figure, which is not said if it says the same as what
+        stands for the picture.
+    keeps_lines
+        Whether the white space is to be kept, as in `pre`.
+    refers
+        Whether links are references to notes.
     """
 
     kind: BlockKind = BlockKind.PARAGRAPH
     level: int = 0
     group: int = 0
+    language: str = ""
     quotes: int = 0
     items: int = 0
+    sections: int = 0
+    numbering: Numbering | None = None
+    table: TableState | None = None
     is_note: bool = False
+    in_notes: bool = False
+    in_caption: bool = False
+    keeps_lines: bool = False
+    refers: bool = False
 
 
 class Writing:
@@ -62,29 +85,17 @@ class Writing:
 
     Attributes
     ----------
-    sections : int
-        Number of sections around the text, where the markup counts them.
     flow : Flow
         Text of the block that is being read.
-    place : Role
-        Role of that block.
-    language : str
-        Tag of the language of the block that is being read.
+    place : Place
+        Role of the text that is being read.
     given : str
         Tag of the language of the whole source, of which no block says that it is in it.
-    table : TableState or None
-        The table that is being read.
-    lists : list of ListState
-        The lists that are being read, the innermost last.
-    in_notes : bool
-        Whether a section of notes is being read.
-    in_caption : bool
-        Whether the caption of a figure is being read, which is not said if it says the same as
-        what stands for the picture.
-    keeps_lines : bool
-        Whether the white space is to be kept, as in `pre`.
     starts_lines : bool
-        Whether that has begun with the next text, so that a line break there is none.
+        Whether white space that is kept has begun with the next text, so that a line break there
+        is none.
+    has_written : bool
+        Whether there is text before.
     """
 
     def __init__(
@@ -96,16 +107,11 @@ class Writing:
     ) -> None:
         self.spell = spell
         self._resolve = resolve
-        self.sections = 0
         self.flow = Flow()
-        self.given = self.language = self.flow.language = language
-        self.place = Role()
-        self.table: TableState | None = None
-        self.lists: list[ListState] = []
-        self.in_notes = False
-        self.in_caption = False
-        self.keeps_lines = self.starts_lines = False
-        self.passages: list[Passage] = []
+        self.given = self.flow.language = language
+        self.place = Place(language=language)
+        self.starts_lines = False
+        self._passages: list[Passage] = []
         self._anchors = list(anchors)
         self._groups = 0
         self._lead = ""  # number of the item that begins with the next text
@@ -114,8 +120,17 @@ class Writing:
         self._continues = False
         self._pages: list[tuple[str, tuple[str, ...]]] = []
         self._broken = False
-        self._any = False
+        self.has_written = False
         self._pictures: tuple[str, ...] = ()  # texts of the pictures in the figure, and its caption
+
+    def take(self) -> list[Passage]:
+        """Take the passages that are finished, but for the last one."""
+        passages, self._passages = self._passages[:-1], self._passages[-1:]
+        return passages
+
+    def take_last(self) -> list[Passage]:
+        """Take the last passage, if there is one, after the end."""
+        return self._passages
 
     def same(self, tag: str) -> str:
         """Give a language's tag, or the source's if the one only says more than the other."""
@@ -134,7 +149,7 @@ class Writing:
 
     def begin_block(self) -> None:
         """End the block that is being read; the next text begins another one."""
-        if self.table is not None and self.table.in_row:
+        if self._in_row:
             self.flow.blank()
             return
         if self.flow.length or self._pages:
@@ -146,7 +161,7 @@ class Writing:
         """Begin a line of the block, or another block if the line is empty."""
         if self.place.kind in (BlockKind.HEADING, BlockKind.ROW) or self._in_row:
             self.flow.blank()
-        elif self.keeps_lines:
+        elif self.place.keeps_lines:
             self.write("\n")
         elif self.flow.length:
             self._end_block()
@@ -157,7 +172,7 @@ class Writing:
 
     def write(self, text: str) -> None:
         """Add text of the source."""
-        if self.keeps_lines and not self._in_row:
+        if self.place.keeps_lines and not self._in_row:
             self._write_lines(text)
             return
         if self._pages and (blank := _BLANK.search(text)):
@@ -185,7 +200,7 @@ class Writing:
     def divide(self) -> None:
         """Mark a break in the text, if there is text before and after it."""
         self.begin_block()
-        self._broken = self._any and not self.in_notes
+        self._broken = self.has_written and not self.place.in_notes
 
     def begin_item(self, marker: str) -> None:
         """Begin an item of a list with its number or bullet."""
@@ -199,41 +214,26 @@ class Writing:
         """End an item; the number of one without text is not shown."""
         self._fresh, self._lead = False, ""
 
-    def enter(self, place: Role) -> Callable[[], None]:
-        """Have the next text be in another role; what is returned leaves that again."""
-        before = self.place
-        self.place = place
-
-        def leave() -> None:
-            self.place = before
-
-        return leave
-
-    def begin_table(self) -> Callable[[], None]:
-        """Begin a table; what is returned ends it."""
-        if self.table is not None and self.table.in_row:
+    def begin_table(self) -> TableState:
+        """Begin a table."""
+        if self._in_row:
             self.lay_out_table()
         if self._fresh and self._lead:
-            alone = self._formed(Passage(""), self.language)
+            alone = self._formed(Passage(""), self.place.language)
             self._emit(replace(alone, text=alone.text.rstrip(" ")))
-        before, self.table = self.table, TableState(self.group())
-
-        def end() -> None:
-            self.end_row()
-            self.table = before
-
-        return end
+        return TableState(self.group())
 
     def begin_row(self) -> None:
         """Begin a row of the table, which ends the row before."""
         self.end_row()
-        if self.table is not None and not self.table.lays_out:
+        table = self.place.table
+        if table is not None and not table.lays_out:
             self.begin_block()
-            self.table.begin_row()
+            table.begin_row()
 
     def begin_cell(self, *, columns: int, rows: int, is_header: bool) -> None:
         """Begin a cell of the row, which ends the cell before."""
-        table = self.table
+        table = self.place.table
         if table is None or table.lays_out:
             self.begin_block()
             return
@@ -244,19 +244,20 @@ class Writing:
 
     def end_cell(self) -> None:
         """End the cell that was begun last."""
-        if self._in_row and self.table is not None:
-            self.table.end_cell(self.flow.length)
+        table = self.place.table
+        if table is not None and table.in_row:
+            table.end_cell(self.flow.length)
             self.flow.gap(BETWEEN)
         else:
             self.begin_block()
 
     def end_row(self) -> None:
         """End the row of the table, if one has begun."""
-        table = self.table
+        table = self.place.table
         if table is None or not table.in_row:
             return
         table.end_cell(self.flow.length)
-        folded = self.flow.take(self.language)
+        folded = self.flow.take(self.place.language)
         headers = table.end_row(folded.text)
         if folded.text:
             row = Passage(folded.text, BlockKind.ROW, 0, folded.marks, folded.language)
@@ -265,18 +266,15 @@ class Writing:
 
     def lay_out_table(self) -> None:
         """Take the table for one that lays out a page: what is in its cells are blocks."""
-        if self._in_row and self.table is not None:
+        table = self.place.table
+        if table is not None and table.in_row:
             self.end_row()
-            self.table.lays_out = True
+            table.lays_out = True
 
-    def begin_figure(self) -> Callable[[], None]:
-        """Begin a figure, within which nothing is said twice; what is returned ends it."""
-        before, self._pictures = self._pictures, ("",)
-
-        def end() -> None:
-            self._pictures = before
-
-        return end
+    def swap_pictures(self, pictures: tuple[str, ...] = ("",)) -> tuple[str, ...]:
+        """Begin a figure, within which nothing is said twice; or end it by what this returned."""
+        before, self._pictures = self._pictures, pictures
+        return before
 
     def picture(self, text: str) -> None:
         """Add the text that stands for a picture, unless the figure has said it."""
@@ -300,22 +298,23 @@ class Writing:
         self.end_row()
         self.begin_block()
         self._emit_pages()
-        if self._anchors and self.passages:  # they lead to the end then
-            last = self.passages[-1]
-            self.passages[-1] = replace(last, anchors=(*last.anchors, *self._anchors))
+        if self._anchors and self._passages:  # they lead to the end then
+            last = self._passages[-1]
+            self._passages[-1] = replace(last, anchors=(*last.anchors, *self._anchors))
             self._anchors = []
 
     @property
     def _in_row(self) -> bool:
-        return self.table is not None and self.table.in_row
+        table = self.place.table
+        return table is not None and table.in_row
 
     def _end_block(self) -> None:
         """Write the block that was read, and then the pages that begin within its last word."""
         if self.flow.length:
-            folded = self.flow.take(self.language)
-            if not self.in_caption or folded.text not in self._pictures:
+            folded = self.flow.take(self.place.language)
+            if not self.place.in_caption or folded.text not in self._pictures:
                 self._emit(self._formed(Passage(folded.text, marks=folded.marks), folded.language))
-            if self.in_caption:
+            if self.place.in_caption:
                 self._pictures = (*self._pictures[-7:], folded.text)
         self._continues = False
         self._emit_pages()
@@ -333,7 +332,7 @@ class Writing:
         if self._in_row:
             self.lay_out_table()
             return
-        folded = self.flow.take_part(self.language)
+        folded = self.flow.take_part(self.place.language)
         if folded is not None:
             part = self._formed(Passage(folded.text, marks=folded.marks), folded.language)
             self._emit(replace(part, continues=self._continues))
@@ -370,27 +369,27 @@ class Writing:
     def _end_line(self) -> None:
         if self.flow.length:
             self._end_block()
-        elif self.passages and self.passages[-1].text and self._any:
+        elif self._passages and self._passages[-1].text and self.has_written:
             self._emit(Passage("", BlockKind.LINE, group=self.place.group))
             self._emit_pages()
 
     def _emit_pages(self) -> None:
         pages, self._pages = self._pages, []
         for number, anchors in pages:
-            self.passages.append(Passage(self.spell(number), BlockKind.PAGE, anchors=anchors))
+            self._passages.append(Passage(self.spell(number), BlockKind.PAGE, anchors=anchors))
 
     def _emit(self, passage: Passage) -> None:
         if self._broken and passage.text:
             self._broken = False
             if passage.kind not in (BlockKind.HEADING, BlockKind.NOTE):
-                self.passages.append(Passage(self.spell(BREAK)))
-        self._any = True
+                self._passages.append(Passage(self.spell(BREAK)))
+        self.has_written = True
         if passage.language and passage.language == self.given:
             passage = replace(passage, language="")
         if self._anchors:
             passage = replace(passage, anchors=tuple(dict.fromkeys(self._anchors)))
             self._anchors = []
-        self.passages.append(passage)
+        self._passages.append(passage)
 
 
 def _moved(marks: tuple[Mark, ...], by: int) -> tuple[Mark, ...]:

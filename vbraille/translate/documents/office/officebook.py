@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import locale
 import re
 import sys
@@ -71,8 +70,10 @@ def open_office(stream: BinaryIO, name: str, form: str) -> Source:
     document = _document(content, name, form)
     html = "".join(written(document, title, language)).encode("utf-8", "replace")
     from vbraille.translate.documents.html import HtmlBook
+    from vbraille.translate.documents.markup.tree import read_tree
 
-    return HtmlBook(io.BytesIO(html), name, "utf-8", digest=digest, title=title, language=language)
+    root, _ = read_tree(html, name, xml=False, encoding="utf-8")
+    return HtmlBook(root, name, digest, title=title, language=language)
 
 
 def _document(content: bytes, name: str, form: str) -> Document:

@@ -1,0 +1,160 @@
+"""An activity at a device that is told by keys, such as reading, and what is typed meanwhile."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, ClassVar
+
+from vbraille.reading.bindings import Context, spoken
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.engine.engine import Engine
+    from vbraille.reading.bindings import Bound
+    from vbraille.reading.cues import Cue
+
+LONGEST = 200  # characters
+_MOST_EARLIER = 50  # texts that are kept to be brought again
+
+
+@dataclass(slots=True)
+class Prompt:
+    """A question that is answered by typing.
+
+    Parameters
+    ----------
+    label
+        What the answer is, as in "text: …", when it is said at the end.
+    then
+        Function that is called with the answer, without blanks around it.
+    again
+        The answer if nothing is typed; empty if there is none.
+    others
+        Texts that can be brought instead of being typed, such as earlier answers.
+    at
+        Index of the text that is brought next by going on; past the last if None.
+
+    Attributes
+    ----------
+    typed : str
+        What has been typed so far.
+    cursor : int
+        Place in it where the next character goes.
+    """
+
+    label: str
+    then: Callable[[str], None]
+    again: str = ""
+    others: list[str] = field(default_factory=list)
+    at: int | None = None
+    typed: str = ""
+    cursor: int = 0
+
+    def press(self, key: str) -> None:
+        """Take a key that is a character; others are passed over."""
+        if len(key) == 1 and key.isprintable() and len(self.typed) < LONGEST:
+            self.typed = self.typed[: self.cursor] + key + self.typed[self.cursor :]
+            self.cursor += 1
+
+    def paste(self, text: str) -> None:
+        """Take those characters of a pasted line that could have been typed."""
+        for character in text:
+            self.press(character)
+
+    @property
+    def here(self) -> str:
+        """Character at the cursor; empty at the end."""
+        return self.typed[self.cursor : self.cursor + 1]
+
+    @property
+    def word_start(self) -> int:
+        """Place where the word before the cursor begins."""
+        return self.typed[: self.cursor].rstrip().rfind(" ") + 1
+
+    def erase(self, start: int, end: int | None = None) -> str:
+        """Take away, and give, what stands between two places; up to the cursor if one is given."""
+        start, end = max(start, 0), self.cursor if end is None else end
+        gone = self.typed[start:end]
+        self.typed = self.typed[:start] + self.typed[end:]
+        self.cursor = min(self.cursor, start)
+        return gone
+
+    def move(self, steps: int) -> None:
+        """Move the cursor by so many characters, as far as there is text."""
+        self.cursor = min(max(self.cursor + steps, 0), len(self.typed))
+
+    def bring(self, step: int) -> bool:
+        """Take one of the others for what is typed; False if there is none on that side."""
+        before = len(self.others) if self.at is None else self.at
+        at = before + step
+        if not 0 <= at < len(self.others):
+            return False
+        self.at, self.typed = at, self.others[at]
+        self.cursor = len(self.typed)
+        return True
+
+    def keep(self, answer: str) -> None:
+        """Keep an answer among the others, for the next time."""
+        if answer in self.others:
+            self.others.remove(answer)
+        self.others.append(answer)
+        del self.others[:-_MOST_EARLIER]
+
+
+class Activity:
+    """What somebody does at a device, told by keys, until there is no more to do.
+
+    Parameters
+    ----------
+    engine
+        Engine that drives the device.
+    say
+        Function that is called with each thing to be said.
+    bound
+        Commands with their keys; None for those of reading.
+    cue
+        Function that is called with short signals, beside the sentences.
+
+    Attributes
+    ----------
+    does, doing : str
+        Words for what somebody does here, such as "read" and "reading".
+    context : Context
+        Meaning of the keys at the moment.
+    prompt : Prompt or None
+        What is being typed.
+    done : bool
+        Whether there is no more to do.
+    """
+
+    does: ClassVar[str]
+    doing: ClassVar[str]
+
+    def __init__(
+        self,
+        engine: Engine,
+        say: Callable[[str], None],
+        bound: Bound | None,
+        cue: Callable[[Cue], None],
+    ) -> None:
+        self.engine = engine
+        self.say = say
+        self.bound = bound
+        self.cue = cue
+        self.context = Context.READING
+        self.prompt: Prompt | None = None
+        self.done = False
+
+    def attend(self, now_s: float) -> None:
+        """Do what is done by time, in seconds by a clock that does not go back."""
+        raise NotImplementedError
+
+    def key(self, name: str, usual: str) -> str:
+        """Name of a key that calls a command, for a sentence."""
+        keys = () if self.bound is None else self.bound.keys_of(name)
+        return keys[0] if keys else spoken(usual)
+
+    def quit(self) -> None:
+        """Do no more."""
+        self.done = True

@@ -1,0 +1,195 @@
+"""A conventional display beside a reading: the line under the hand stands on it, too."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from vbraille.conventional.brlapi import DisplayAway, DisplayStands, KeyPressed, KeyTyped
+from vbraille.reading.bindings import Context
+from vbraille.reading.commands.asking import say_cell
+from vbraille.reading.commands.table import BOUND, press, press_display_key
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.conventional.display import ConventionalDisplay
+    from vbraille.layout.pages import Line
+    from vbraille.reading.reader import Reader
+
+_ROUTE: Final = "ROUTE"
+_ALONG: Final = {"FWINRT": 1, "FWINLT": -1}
+_SLACK: Final = 1  # cells that the finger may be beyond what is shown before the display follows
+
+
+class Pane:
+    """The part of a line that stands on a display, which follows the finger.
+
+    Attributes
+    ----------
+    offset : int
+        Cell of the line that stands first.
+    """
+
+    def __init__(self) -> None:
+        self.offset = 0
+        self._width = 0
+        self._line: Line | None = None
+        self._panned_at: int | None = None  # the finger's cell when a key last moved the pane
+
+    def follow(self, line: Line, width: int, cell: int | None, first: int) -> None:
+        """Show the part of a line in which the finger is.
+
+        A line falls into parts of the display's width, so that each stands still while it is read.
+        The finger may stray by a cell beyond it. After a key has moved the pane it stays until the
+        finger goes on.
+
+        Parameters
+        ----------
+        line
+            The line under the hand.
+        width
+            Number of cells of the display.
+        cell
+            Number of the cell under the finger; None if there is none.
+        first
+            Cell at which what is under the hand begins.
+        """
+        if width != self._width or not _same(line, self._line):
+            self._line, self._width, self._panned_at = line, width, None
+            self.offset = (first if cell is None else cell) // width * width
+            return
+        if cell is None or (self._panned_at is not None and abs(cell - self._panned_at) <= _SLACK):
+            return
+        self._panned_at = None
+        slack = _SLACK if width > _SLACK else 0
+        if not self.offset - slack <= cell < self.offset + width + slack:
+            self.offset = cell // width * width
+
+    def pan(self, step: int, cell: int | None) -> bool:
+        """Show the next part of the line, or the one before; False if there is none.
+
+        Parameters
+        ----------
+        step
+            1 for the next part, -1 for the one before.
+        cell
+            Number of the cell under the finger; None if there is none.
+        """
+        offset = self.offset + step * self._width
+        if self._line is None or not 0 <= offset < len(self._line):
+            return False
+        self.offset, self._panned_at = offset, cell
+        return True
+
+    def reset(self) -> None:
+        """Begin anew where the finger is, or the hand's part of the line."""
+        self._line = None
+
+    def end(self, line: Line, cell: int | None) -> None:
+        """Show the last part of another line, and stay there until the finger goes on."""
+        self._line, self._panned_at = line, cell
+        self.offset = max(len(line) - 1, 0) // max(self._width, 1) * self._width
+
+    @property
+    def cells(self) -> bytes:
+        """Dot masks of what is shown."""
+        if self._line is None:
+            return b""
+        return self._line.masks[self.offset : self.offset + self._width].tobytes()
+
+
+def _same(line: Line, other: Line | None) -> bool:
+    """Whether two are one line, which may have been laid out twice."""
+    return other is not None and (
+        line is other
+        or (line.number == other.number and line.masks.tobytes() == other.masks.tobytes())
+    )
+
+
+class ConventionalView:
+    """A conventional display on which the line under the hand stands, and whose keys are obeyed.
+
+    Parameters
+    ----------
+    display
+        The display. Nothing here waits for it.
+    say
+        Function that is called with each sentence about it.
+    """
+
+    def __init__(self, display: ConventionalDisplay, say: Callable[[str], None]) -> None:
+        self._display = display
+        self._say = say
+        self._pane = Pane()
+        self._shown: bytes | None = None
+
+    def attend(self, reader: Reader) -> None:
+        """Show what is under the hand, if it is another than before, and do what keys say."""
+        for message in self._display.poll():
+            if isinstance(message, DisplayStands):
+                self._say(f"display: {message.title}, {message.columns} cells")
+            elif isinstance(message, DisplayAway):
+                self._say(f"display: {message.why}")
+            elif isinstance(message, KeyPressed):
+                self._press(reader, message)
+            elif isinstance(message, KeyTyped):
+                press(reader, message.key)
+        self._show(reader)
+
+    def rest(self) -> None:
+        """Give the display back for a while, until `attend` is called."""
+        self._shown = None
+        self._display.rest()
+
+    def _show(self, reader: Reader) -> None:
+        standing, window = self._display.standing, reader.window
+        if window is not None and standing is not None:
+            first = max(window.offset, 0)
+            self._pane.follow(window.line, standing.columns, reader.cell, first)
+        if (cells := self._pane.cells) != self._shown:
+            self._shown = cells
+            self._display.show(cells)
+
+    def _press(self, reader: Reader, key: KeyPressed) -> None:
+        reading = reader.context is Context.READING
+        if key.name == _ROUTE and reading:
+            self._go_to(reader, self._pane.offset + key.argument)
+            return
+        if key.name == _ROUTE and reader.context is Context.LEARNING:
+            self._say("display ROUTE: say what is here, and go there")
+            return
+        command = (reader.bound or BOUND).display_keys.get(key.name)
+        step = 0 if command is None else _ALONG.get(command.name, 0)
+        if step and reading and self._pan(reader, step):
+            return
+        window, line = reader.window, reader.line
+        press_display_key(reader, key.name)
+        if step < 0 and reader.line is not None and reader.line is not line:
+            self._pane.end(reader.line, reader.cell)
+        elif reader.window is not window:
+            self._pane.reset()
+
+    def _pan(self, reader: Reader, step: int) -> bool:
+        """Go along the line by the display's width, the hand too; False if the line ends here."""
+        window = reader.window
+        if window is None:
+            return False
+        panned = self._pane.pan(step, reader.cell)
+        if not panned:  # so that the command goes on to another line
+            there = window.last if step > 0 else window.showing(0)
+        else:
+            there = window.showing(self._pane.offset)
+        first = max(window.offset, 0)
+        seen = first <= self._pane.offset < first + len(window)
+        if there.offset != window.offset and not (panned and seen):
+            reader.put(there)
+        return panned
+
+    def _go_to(self, reader: Reader, cell: int) -> None:
+        """Say what a cell of the line is, and bring it under the finger."""
+        source = None
+        if reader.line is not None and cell < len(reader.line):
+            source = reader.line.source(cell)
+        if source is not None:
+            reader.bring_under(source[0])
+        say_cell(reader, cell)

@@ -1,0 +1,360 @@
+"""What is under the hand, and how far the hand has come through it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.engine.advance import EndOfLine
+from vbraille.engine.record import Flag
+from vbraille.layout.texts import cells_per_line
+from vbraille.reading.figured import Figured
+from vbraille.reading.handwatch import Foot, LineWatch, too_fast_note
+from vbraille.reading.surface import Surface, below_pitches, rows_on
+from vbraille.simulation.steering import ReadLine, ReadPage
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from vbraille.engine.engine import Engine
+    from vbraille.layout.pages import Line
+    from vbraille.reading.activity import Activity
+    from vbraille.reading.figured import Figures, Here, PlacedFigure
+    from vbraille.reading.surface import Window
+    from vbraille.render import BrailleStyle, Model
+    from vbraille.render.program import Program
+    from vbraille.simulation.steering import Steering
+
+MOST_CELLS = 512  # that can be shown at once, however close they stand
+# A finger that goes across lines is on none of them: nothing of one has faded in before.
+_STAY_NS = 120_000_000
+# Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
+_PAUSED, _HELD, _TURNED = int(Flag.PAUSED), int(Flag.HELD), int(Flag.TURNED)
+
+
+class TextView:
+    """What is under the hand: a part of a line, or a page of lines of which the finger is on one.
+
+    Parameters
+    ----------
+    engine
+        Engine that drives the device.
+    model
+        Display, and style in which lines are shown on it.
+    steering
+        Steering that tells a simulated hand what to read; None if a person reads.
+    say
+        Function that is called with each thing to be said.
+    by_hand
+        Whether the next line comes when the hand returns; otherwise a key brings it.
+    key
+        Key that brings the next line; empty if there is nobody at a keyboard.
+    figures
+        Function that gives the figures of the text; None if they stay unfelt.
+
+    Attributes
+    ----------
+    surface : Surface or None
+        What lies on the surface; None before the first.
+    style : BrailleStyle
+        How lines are shown.
+    width : int
+        Largest number of cells of a line that are shown.
+    rows : int
+        Number of lines of a page; 0 where one line is shown.
+    shown : int
+        Number of times that something else was put under the hand.
+    figured : Figured
+        The figures of the text, and those of the page under the hand.
+    alone : Activity or None
+        Figure that is felt in place of the text; None if the text is under the hand.
+    patient : bool
+        Whether the hand may do as it likes, since somebody moves it in the live view.
+    """
+
+    def __init__(
+        self,
+        engine: Engine,
+        model: Model,
+        steering: Steering | None,
+        say: Callable[[str], None],
+        *,
+        by_hand: bool,
+        key: str,
+        figures: Callable[[], Figures] | None = None,
+    ) -> None:
+        self.surface: Surface | None = None
+        self.style = model.style
+        self.shown = 0
+        self.patient = False
+        self._engine = engine
+        self._display = model.display
+        self.width = self.width_in(model.style)
+        self.rows = rows_on(model.display, model.style)
+        self.figured = Figured(figures, model.display)
+        self.alone: Activity | None = None
+        self._awaited = False  # whether the page's figures are still to be compiled
+        self._row = 0  # of the line that the finger is on, or was on last
+        self._y_mm: float | None = None  # where the finger is, and the part of what is shown there
+        self._part = -1
+        self._near, self._near_ns = -1, 0  # the row that the finger came to last, and when
+        self._foot: Foot
+        self._steering = steering
+        self._say = say
+        self._by_hand = by_hand
+        self._key = key
+        self._end: EndOfLine
+        self._end_mm = 0.0
+        self._waiting: LineWatch
+        self._begun = False  # whether the hand was before the end since the window is there
+        self._too_fast_said = False
+
+    @property
+    def window(self) -> Window | None:
+        """Part of the line that the finger is on, or was on last; None before the first."""
+        return None if self.surface is None else self.surface.windows[self._row]
+
+    @property
+    def number(self) -> int:
+        """Number by which records call what is shown; 0 before the first."""
+        return 0 if self.surface is None else self.surface.number
+
+    @property
+    def row(self) -> int:
+        """Row of a page that the finger is in now; the first if it is not on the page."""
+        if self._y_mm is None:
+            return 0
+        if self.surface is not None and 0 <= self._part < len(self.surface.windows):
+            return self._part
+        row = math.floor(self._y_mm / self.style.geometry.line_pitch_mm)
+        return row if 0 <= row < self.rows else 0
+
+    @property
+    def figure(self) -> PlacedFigure | None:
+        """Figure of the page that the finger is on; None if it is on none."""
+        return self.figured.under(self._engine.x_mm, self._y_mm)
+
+    @property
+    def here(self) -> Here | None:
+        """What of a figure the finger is on; None if it is on no figure."""
+        return self.figured.here(self._engine.x_mm, self._y_mm)
+
+    def keep(self, line: Line) -> int:
+        """Tell how many rows of a page are kept free below a line, for its figure."""
+        return self.figured.rows_below(line, self.style.geometry.line_pitch_mm, self.rows)
+
+    @property
+    def cells(self) -> int:
+        """Number of cells that are shown."""
+        return 0 if self.surface is None else sum(map(len, self.surface.there))
+
+    @property
+    def hopeless(self) -> str | None:
+        """Reason why the line will not come to its end unless somebody helps; None without one."""
+        return None if self.window is None else self._waiting.hopeless
+
+    @property
+    def reached(self) -> bool:
+        """Whether the hand has been at the end."""
+        return self.window is not None and self._end.reached
+
+    def width_in(self, style: BrailleStyle) -> int:
+        """Largest number of cells that can be shown in a style.
+
+        Raises
+        ------
+        InputError
+            If there is no room for a cell.
+        """
+        return min(cells_per_line(style.geometry, self._display), MOST_CELLS)
+
+    def put(self, surface: Surface, name: str) -> None:
+        """Put something else under the hand.
+
+        Parameters
+        ----------
+        surface
+            What it is.
+        name
+            What the line that is meant is called, such as "line 12".
+        """
+        self.surface = surface
+        self.shown += 1
+        self._foot = Foot(len(surface.windows))
+        self._enter(surface.row, name)
+        # Braille comes at once, and figures join it when they are compiled.
+        self.figured.forget()
+        self._awaited = bool(surface.kept)
+        self._render(surface)
+        self.steer()
+
+    def come_back(self) -> None:
+        """Put the text under the hand again, after a figure was felt in its place."""
+        surface = self.surface
+        if surface is not None:
+            self.figured.forget()
+            self._awaited = bool(surface.kept)
+            self._render(surface)
+            self.steer()
+
+    def complete(self) -> None:
+        """Have the figures of a page that was put under the hand join its lines."""
+        if self._awaited and self.surface is not None and self.figured.ready:
+            self._awaited = False
+            self._render_figures(self.surface)
+
+    def _enter(self, row: int, name: str) -> None:
+        """Begin to follow the finger along the line of a row."""
+        self._row = row
+        self._begun = False
+        window = self.window
+        assert self.surface is not None
+        assert window is not None
+        span_mm = self._display.span_mm
+        self._end_mm = self._end_of(window)
+        self._end = EndOfLine(span_mm, self._end_mm)
+        by_hand = self._by_hand and not self.surface.paged
+        self._waiting = LineWatch(span_mm, self._end_mm, name, by_hand=by_hand, key=self._key)
+
+    def come_to(self, ticks: NDArray[np.void], name: Callable[[Line], str]) -> bool:
+        """Take from ticks which line of a page the finger is on, once it has stayed there a moment.
+
+        Parameters
+        ----------
+        ticks
+            Ticks that `felt` has given.
+        name
+            Function that tells what a line is called.
+
+        Returns
+        -------
+        bool
+            Whether it is another line than before.
+        """
+        surface = self.surface
+        if surface is None or not surface.paged:
+            return False
+        rows = surface.line_rows(ticks["part"])
+        row = int(rows[-1])
+        others = np.flatnonzero(rows != row)
+        if others.size or row != self._near:
+            self._near = row
+            begun = others[-1] + 1 if others.size else 0
+            self._near_ns = int(ticks["time_ns"][begun])
+        if row == self._row or not surface.has(row):
+            return False
+        if int(ticks["time_ns"][-1]) - self._near_ns < _STAY_NS:
+            return False
+        window = surface.windows[row]
+        assert window is not None
+        self._enter(row, name(window.line))
+        return True
+
+    def show_in(self, style: BrailleStyle) -> None:
+        """Show lines in another style from now on, this one too."""
+        if style.geometry.line_pitch_mm != self.style.geometry.line_pitch_mm:
+            self._part = -1  # lines will stand elsewhere
+        self.style = style
+        self.width = self.width_in(style)
+        self.rows = rows_on(self._display, style)
+        self._too_fast_said = False
+        if self.surface is not None and not (
+            self.figured.placed and self._render_figures(self.surface)
+        ):
+            self._render(self.surface)
+
+    def steer(self) -> None:
+        """Have a simulated hand read the line under it; a person's hand does so by itself."""
+        if self._steering is None or self.surface is None:
+            return
+        if not self.surface.paged:
+            self._steering.give(ReadLine(self._end_mm))
+            return
+        pitch_mm, lines = self.style.geometry.line_pitch_mm, len(self.surface.windows)
+        end_mm = max(map(self._end_of, self.surface.there))
+        end_mm = max(end_mm, self.figured.width_mm(self.surface))
+        below_mm = self._display.height_mm - lines * pitch_mm
+        foot_mm = min(below_mm, (below_pitches(self.style) + 0.5) * pitch_mm) * self._by_hand
+        self._steering.give(ReadPage(lines, pitch_mm, end_mm, foot_mm))
+
+    def steered_till(self, tick: np.void) -> bool:
+        """Whether a simulated hand had read the line by the time of a tick; False without one."""
+        return self._steering is not None and self._steering.done_at(int(tick["device_ns"]))
+
+    def felt(self, ticks: NDArray[np.void]) -> NDArray[np.void]:
+        """Take of some ticks those in which the line was to be felt."""
+        if self.surface is None:
+            return ticks[:0]
+        if self.figured.placed and ticks.size:
+            ticks = ticks.copy()
+            lines = len(self.surface.windows)
+            ticks["part"] = self.figured.rows_of(ticks["y_mm"], self.style, lines)
+        if ticks.size and not math.isnan(ticks["y_mm"][-1]):
+            self._y_mm, self._part = float(ticks["y_mm"][-1]), int(ticks["part"][-1])
+        ticks = ticks[(ticks["line"] == self.number) & (ticks["flags"] & _PAUSED == 0)]
+        if not ticks.size:
+            self._waiting.rest()
+            self._foot.rest()
+        return ticks
+
+    def follow(self, ticks: NDArray[np.void]) -> bool:
+        """Look where the hand was while it felt the line: whether it is done with what is shown.
+
+        It is done with a page when it stays below the page's last line.
+        """
+        # What the device did not take was not felt, and neither was anything beside the line.
+        felt = ticks["flags"] & (_HELD | _TURNED) == 0
+        paged = self.surface is not None and self.surface.paged
+        if paged:
+            felt &= ticks["part"] == self._row
+        felt_mm = ticks["x_mm"][felt]
+        if not self._begun:  # a hand that was at the end when the line came has not read it
+            before = np.flatnonzero(felt_mm < self._end_mm)
+            self._begun = bool(before.size)
+            felt_mm = felt_mm[before[0] :] if before.size else felt_mm[:0]
+        back = self._end.find(felt_mm) is not None
+        return self._foot.stays(ticks) if paged else back
+
+    def watch(self, ticks: NDArray[np.void], *, finished: bool) -> None:
+        """Say what keeps the hand from the end of the line, and whether it is too fast."""
+        if not finished:
+            watched = self._waiting.watch(ticks, reached=self._end.reached, patient=self.patient)
+            for sentence in watched:
+                self._say(sentence)
+        if self._too_fast_said or self._end.reached or self.patient or self.figure is not None:
+            return
+        note = too_fast_note(float(ticks["vx_mm_s"].max()), self.style)
+        if note is not None:
+            self._too_fast_said = True
+            self._say(note)
+
+    def _end_of(self, window: Window) -> float:
+        """Place where the last dot of a part of a line ends."""
+        return window.start_mm + self.style.geometry.extent_mm(len(window))
+
+    def _render_figures(self, surface: Surface) -> bool:
+        """Show a page together with its figures; False if that cannot be."""
+        picture = self.figured.page(surface, self.style)
+        if picture is not None:
+            self._show(picture, surface)
+        return picture is not None
+
+    def _render(self, surface: Surface) -> None:
+        if surface.paged:
+            blank = np.zeros(0, np.uint8)
+            masks = [blank if part is None else part.masks for part in surface.windows]
+            program = self.style.render_page(masks, self._display)
+        else:
+            program = self.style.render(surface.window.masks, self._display)
+        start_mm = surface.window.start_mm
+        if start_mm:
+            program = program.with_anchor(self._display.span_mm / 2 + start_mm)
+        self._show(program, surface)
+
+    def _show(self, program: Program, surface: Surface) -> None:
+        self.alone = None
+        self._engine.show(program, surface.number)

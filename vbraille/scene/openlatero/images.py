@@ -1,0 +1,285 @@
+"""Images of OpenLatero's files: pictures as masks of textures, and where they stand."""
+
+from __future__ import annotations
+
+import math
+import re
+import warnings
+from dataclasses import dataclass
+from io import BytesIO
+from typing import TYPE_CHECKING, Any
+
+from vbraille.errors import InputError
+from vbraille.scene.filebytes import read_bytes
+from vbraille.scene.imagefiles import KINDS, MOST_PIXELS
+from vbraille.scene.measures import MOST_MM
+from vbraille.scene.openlatero.context import SURFACE_MM
+from vbraille.scene.patterns import Image
+from vbraille.scene.textures import Uniform
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from vbraille.scene.measures import Point
+    from vbraille.scene.openlatero.context import GenContext
+    from vbraille.scene.openlatero.elements import GenElement
+    from vbraille.scene.patterns import AnyPattern
+
+
+_MOST_BYTES, _MOST_SVG_BYTES = 100 << 20, 10 << 20
+_LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][+-]?\d+)?)\s*(px|pt|pc|mm|cm|in)?\s*")
+_INCH = 96.0  # pixels
+_PIXELS = {
+    "px": 1.0,
+    "": 1.0,
+    "pt": _INCH / 72,
+    "pc": _INCH / 6,
+    "mm": _INCH / 25.4,
+    "cm": _INCH / 2.54,
+    "in": _INCH,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class MaskPicture:
+    """What a picture is, without its pixels.
+
+    Parameters
+    ----------
+    width_px, height_px
+        Size in pixels; of a drawing, as it is rasterised at 96 per inch.
+    is_coloured, has_alpha
+        Whether it has colours, and whether some of it is transparent.
+    """
+
+    width_px: float
+    height_px: float
+    is_coloured: bool
+    has_alpha: bool
+
+
+def measure(path: Path) -> MaskPicture:
+    """Find the size of a picture.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, is far too large, or is no picture.
+    """
+    if path.suffix.lower() == ".svg":
+        return _drawn(path)
+    content = read_bytes(path, _MOST_BYTES)
+    from PIL import Image
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            image = Image.open(BytesIO(content), formats=KINDS)
+            width, height = image.size
+            if width * height > MOST_PIXELS:
+                raise InputError(f"{path} has {width} × {height} pixels, which are too many")
+            return MaskPicture(width, height, _is_coloured(image), _has_alpha(image))
+    except InputError:
+        raise
+    # Readers of damaged files raise nearly everything, and Pillow promises no fewer kinds.
+    except Exception:
+        raise InputError(f"{path} is damaged, or no picture") from None
+
+
+def _is_coloured(image: Any) -> bool:
+    from PIL import ImageChops
+
+    if image.mode in ("1", "L", "LA", "I", "F") or image.mode.startswith("I;16"):
+        return False
+    red, green, blue = image.convert("RGB").split()
+    return any(ImageChops.difference(red, other).getbbox() for other in (green, blue))
+
+
+def _has_alpha(image: Any) -> bool:
+    """Whether a picture has an alpha channel of which something is not opaque."""
+    if image.mode not in ("RGBA", "LA", "PA") and "transparency" not in image.info:
+        return False
+    low, _ = image.convert("RGBA").getchannel(3).getextrema()
+    return low < 255
+
+
+def _drawn(path: Path) -> MaskPicture:
+    """Size of a drawing."""
+    from lxml import etree
+
+    content = read_bytes(path, _MOST_SVG_BYTES)
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, recover=True
+    )
+    try:
+        root: Any = etree.fromstring(content, parser)
+    except (etree.XMLSyntaxError, ValueError):
+        root = None
+    if root is None or not str(root.tag).endswith("svg"):
+        raise InputError(f"{path} is no SVG file")
+    box = [float(part) for part in re.findall(r"[-+0-9.eE]+", root.get("viewBox", ""))[:4]]
+    seen = box[2:] if len(box) == 4 else [100.0, 100.0]
+    sizes = [
+        _pixels(root.get(name)) or fallback
+        for name, fallback in zip(("width", "height"), seen, strict=True)
+    ]
+    if min(sizes) <= 0 or max(sizes) > 1e6:
+        raise InputError(f"{path} is a drawing without a size")
+    return MaskPicture(sizes[0], sizes[1], is_coloured=True, has_alpha=True)
+
+
+def _pixels(text: str | None) -> float | None:
+    found = _LENGTH.fullmatch(text or "")
+    return float(found[1]) * _PIXELS[found[2] or ""] if found else None
+
+
+_BLUR_PIXELS = 2.0  # standard deviation; it ends at 4 pixels there
+_LEAST_SIZE_MM = 0.1
+_EVEN = 0.01  # share by which pixels may be longer than they are wide
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """A picture of a mask, by its name seen from the file, and what it is."""
+
+    name: str
+    picture: MaskPicture
+
+
+def read_image(element: GenElement, context: GenContext) -> AnyPattern | None:
+    """Image of an element; None if there is nothing to show.
+
+    Raises
+    ------
+    ValueError
+        If there can be no such image.
+    """
+    part = element.one("Pattern")
+    mask = element.part("mask")
+    if part is None:
+        element.forget()
+        element.say("it has no texture, and OpenLatero ends at it; left out")
+        return None
+    texture = context.pattern(part)
+    if texture is None:
+        mask.forget()
+        element.say("there is nothing of its texture to show; left out")
+        return None
+    if part.attribute("type") != "Texture":
+        kind = part.attribute("type")
+        if context.as_shown:
+            mask.forget()
+            element.say(f"it is the mask of a {kind}, which OpenLatero does not show; left out")
+            return None
+        element.say(f"it is the mask of a {kind}, as the file says; OpenLatero does not show it")
+    file = mask.one("imgfile")
+    found = None if file is None else _found(file, context)
+    if file is None or found is None:
+        mask.forget()
+        if file is None:
+            element.say("its picture is not named; left out")
+        return None
+    width, height = _size(mask, found.picture)
+    place = _place(mask, width, height)
+    channel = "alpha" if file.attribute("type") == "alpha" else "gray"
+    blur = _blur(mask, found.picture, width, height)
+    _say_channel(file, found.picture, channel)
+    mask.say("between pixels it is bilinear here, and the nearest pixel counts there")
+    return Image(
+        file=found.name,
+        place_mm=(_plain(place[0]), _plain(place[1])),
+        width_mm=_plain(width),
+        height_mm=_plain(height),
+        channel=channel,
+        blur_mm=_plain(blur),
+        outside=mask.number("default_alpha", 0.0, 0.0, 1.0, "share"),
+        texture=None if texture == Uniform() else texture,
+    )
+
+
+def _plain(value_mm: float) -> float:
+    """Length to the nanometre, since people read it."""
+    return round(value_mm, 6)
+
+
+def _found(file: GenElement, context: GenContext) -> _Found | None:
+    """Picture that an element names."""
+    name = file.text.strip().rstrip("\\").strip()
+    # OpenLatero itself writes "/mask.png" for a picture that stands beside the scene.
+    beside = name.rpartition("/")[2]
+    path = context.folder / name
+    try:
+        moved = not path.is_file() and name == f"/{beside}" and (context.folder / beside).is_file()
+        if moved and not context.as_shown:
+            file.say(f"{name} is not there, and {beside} beside this file is taken")
+            path, name = context.folder / beside, beside
+        picture = measure(path)
+    except InputError as error:
+        file.say(f"its picture is left out: {_in(context.folder, error)}")
+        return None
+    except (OSError, ValueError):
+        file.say("its picture has no name that a file can have; left out")
+        return None
+    return _Found(name, picture)
+
+
+def _in(folder: Path, error: InputError) -> str:
+    """Message about a picture, with its name as it is seen from the file."""
+    return str(error).replace(f"{folder}/", "") if str(folder) != "." else str(error)
+
+
+def _size(mask: GenElement, picture: MaskPicture) -> tuple[float, float]:
+    """Width and height of an image on the surface, in mm."""
+    mask.skip("lock_aspect_ratio")  # what the program keeps while somebody changes the size
+    # The largest size that fits on the surface in the picture's shape.
+    wide = SURFACE_MM[0] / SURFACE_MM[1] > picture.width_px / picture.height_px
+    ratio = picture.width_px / picture.height_px
+    largest = (SURFACE_MM[1] * ratio, SURFACE_MM[1]) if wide else (
+        SURFACE_MM[0], SURFACE_MM[0] / ratio
+    )  # fmt: skip
+    whole = largest if mask.switch("reference_maximized", True) else SURFACE_MM
+    width, height = (
+        _extent(mask, name, fitting, reference)
+        for name, fitting, reference in zip(("width", "height"), largest, whole, strict=True)
+    )
+    return width, height
+
+
+def _extent(mask: GenElement, name: str, fitting: float, reference: float) -> float:
+    element = mask.one(name)
+    if element is None:
+        return fitting
+    if element.units() == "%":
+        most = MOST_MM / reference
+        return mask.number(name, 1.0, _LEAST_SIZE_MM / reference, most, "share") * reference
+    return mask.number(name, fitting, _LEAST_SIZE_MM, MOST_MM)
+
+
+def _place(mask: GenElement, width: float, height: float) -> Point:
+    """Top left corner of an image."""
+    element = mask.one("position")
+    middle = ((SURFACE_MM[0] - width) / 2, (SURFACE_MM[1] - height) / 2)
+    if element is None or element.text.strip() == "centered":
+        return middle
+    return element.place(middle)
+
+
+def _blur(mask: GenElement, picture: MaskPicture, width: float, height: float) -> float:
+    """Standard deviation of the blur of an image as it is placed, in mm."""
+    if not mask.switch("blur", False):
+        return 0.0
+    pixel = width / picture.width_px, height / picture.height_px
+    if abs(pixel[0] / pixel[1] - 1.0) > _EVEN:
+        mask.say("its pixels are longer than wide; it is blurred alike both ways here")
+    mask.say("its blur is of 2 pixels of the picture, as mm here, and does not end at 4 pixels")
+    return _BLUR_PIXELS * math.sqrt(pixel[0] * pixel[1])
+
+
+def _say_channel(file: GenElement, picture: MaskPicture, channel: str) -> None:
+    """Say so if a picture's intensities are others there."""
+    if channel == "gray" and picture.is_coloured:
+        file.say("its picture has colours: their luminance counts here, and their red there")
+    if channel == "gray" and picture.has_alpha:
+        file.say("what is transparent in its picture is down here, and its gray counts there")
+    if channel == "alpha" and not picture.has_alpha:
+        raise ValueError("imgfile has no alpha, which is to be its mask")
