@@ -164,13 +164,10 @@ def _corrected(p: NDArray[np.float64], method: str) -> NDArray[np.float64]:
     """p-values corrected in each study for the number of those that it has."""
     if p.shape[1] == 1 or method == "none":
         return p
-    corrected = np.full_like(p, np.nan)
     known = ~np.isnan(p)
-    if method == "holm" and known.all():  # as `adjust` does, for all studies at once
-        order = np.argsort(p, axis=1, kind="stable")
-        steps = np.take_along_axis(p, order, axis=1) * np.arange(p.shape[1], 0, -1)
-        np.put_along_axis(corrected, order, np.maximum.accumulate(steps, axis=1), axis=1)
-        return np.minimum(corrected, 1.0)
+    if known.all():
+        return adjust(p, method)
+    corrected = np.full_like(p, np.nan)
     for study, own in enumerate(known):
         corrected[study, own] = adjust(p[study, own], method)
     return corrected

@@ -188,8 +188,8 @@ def adjust(p_values: ArrayLike, method: str) -> NDArray[np.float64]:
 
     Parameters
     ----------
-    p_values : float[n], 0…1
-        p-values of the tests that belong together; there may be none.
+    p_values : float[…, n], 0…1
+        p-values of the n tests that belong together; there may be none.
     method
         A key of `METHODS`.
 
@@ -200,19 +200,20 @@ def adjust(p_values: ArrayLike, method: str) -> NDArray[np.float64]:
     """
     if method not in METHODS:
         raise ValueError(f"no correction {method!r}; there are {', '.join(METHODS)}")
-    p = finite_scores("p-values", p_values)
-    if ((p < 0) | (p > 1)).any():
+    p = np.asarray(p_values, np.float64)
+    if not ((p >= 0) & (p <= 1)).all():  # nor NaN
         raise ValueError(f"p-values {p.tolist()} are not all in 0…1")
     if method == "none" or p.size == 0:
         return p.copy()
     if method == "bonferroni":
-        return np.minimum(p * p.size, 1.0)
+        return np.minimum(p * p.shape[-1], 1.0)
     if method == "fdr":
-        return stats.false_discovery_control(p)
-    order = np.argsort(p)
-    steps = np.maximum.accumulate(p[order] * np.arange(p.size, 0, -1))
+        return stats.false_discovery_control(p, axis=-1)
+    order = np.argsort(p, axis=-1)
+    steps = np.take_along_axis(p, order, axis=-1) * np.arange(p.shape[-1], 0, -1)
     adjusted = np.empty_like(p)
-    adjusted[order] = np.minimum(steps, 1.0)
+    steps = np.minimum(np.maximum.accumulate(steps, axis=-1), 1.0)
+    np.put_along_axis(adjusted, order, steps, axis=-1)
     return adjusted
 
 
