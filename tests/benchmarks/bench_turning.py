@@ -82,7 +82,7 @@ def _record(device: OpenDevice, seconds: float) -> np.ndarray:
     end, records = time.monotonic() + seconds, []
     while time.monotonic() < end:
         time.sleep(0.005)
-        ticks = device._engine.poll()
+        ticks = device.engine.poll()
         device.reader.step(ticks)
         records.append(ticks)
     return np.concatenate(records)

@@ -13,7 +13,7 @@ import numpy as np
 
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.check import check
-from vbraille.sessions.record.eventlines import to_json
+from vbraille.sessions.record.events import to_json
 from vbraille.sessions.record.folder import PLAN, load
 from vbraille.sessions.record.traces import read_last_tie
 

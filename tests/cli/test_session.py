@@ -171,7 +171,7 @@ def test_check_says_what_is_whole(call, folder):
     assert (said.code, said.err) == (0, "")
     assert re.fullmatch(
         r"session\.json, plan\.json, protocol\.toml: as they were when the session began\n"
-        r"plan: 4 trials, all design rules hold\n"
+        r"plan: 4 trials, as the seed makes them\n"
         r"journal\.jsonl: \d+ events, whole\n"
         r"trace-001\.gz: \d+ ticks, 0 missing, 0 deadlines late\n"
         r"answers: 4 of 4; the session is ended\n"

@@ -81,7 +81,7 @@ def test_notes_are_in_the_report(call, noted, tmp_path):
 
 def test_a_note_between_trials_and_in_practice_is_tied_to_what_is_beside_it():
     from vbraille.sessions.record import events
-    from vbraille.sessions.record.notes import read_notes
+    from vbraille.sessions.record.export import read_notes
 
     def shown(trial, **more):
         return events.Presented(t_s=0.0, trial=trial, attempt=1, stimulus=0, shown={}, **more)

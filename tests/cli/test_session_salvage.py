@@ -15,8 +15,7 @@ from tests.cli.test_session_bad_input import contents
 from tests.sessions.sittings import MINI
 from vbraille.sessions.record import events
 from vbraille.sessions.record.check import check_folder
-from vbraille.sessions.record.journal import decode, first_lines
-from vbraille.sessions.record.salvage import salvage
+from vbraille.sessions.record.journal import decode, first_lines, salvage
 from vbraille.wording import spelled
 
 LONG = MINI.replace("length = 1", "length = 2\nrepeats = 2")  # 32 trials

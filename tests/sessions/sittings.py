@@ -12,7 +12,7 @@ from vbraille.sessions.beginning import head_of
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
-from vbraille.sessions.record.eventlines import to_json
+from vbraille.sessions.record.events import to_json
 from vbraille.sessions.record.folder import create
 from vbraille.sessions.record.progress import Progress
 

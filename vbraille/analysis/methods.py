@@ -15,7 +15,6 @@ from vbraille.render.braille.models import MODELS
 from vbraille.sessions.planning.chance import balanced_orders
 from vbraille.sessions.planning.choosing import varied
 from vbraille.sessions.planning.factors import within
-from vbraille.sessions.planning.knobs import GAP, KNOBS
 from vbraille.sessions.planning.procedures import (
     FixedProcedure,
     QuestProcedure,
@@ -29,7 +28,7 @@ from vbraille.sessions.planning.questions import (
     SameQuestion,
     WhichQuestion,
 )
-from vbraille.sessions.planning.rules import is_balanced
+from vbraille.sessions.planning.stimuli import GAP, KNOBS
 from vbraille.version import __version__
 from vbraille.wording import count
 
@@ -461,7 +460,7 @@ def ordered(protocol: Protocol, heads: Sequence[dict[str, Any]]) -> str:
     """Clause that says in which order the blocks of conditions came."""
     if protocol.order_rows:
         return "in the order that a table gives each participant"
-    if is_balanced(protocol):
+    if protocol.balanced:
         number = len(balanced_orders(len(protocol.conditions)))
         used = ", ".join(map(str, sorted({head["order"] for head in heads})))
         return f"balanced by Williams squares (of {count(number, 'order')}: {used})"

@@ -10,12 +10,18 @@ from typing import TYPE_CHECKING, Any
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_file
 from vbraille.sessions.record import journal
-from vbraille.sessions.record.anonymous import anonymous
+from vbraille.sessions.record.bids import write
 from vbraille.sessions.record.codebook import entry_of, to_codebook
-from vbraille.sessions.record.dataset import write
-from vbraille.sessions.record.export import Traces, encode, rows, spans, to_csv
+from vbraille.sessions.record.export import (
+    Traces,
+    anonymous,
+    encode,
+    read_notes,
+    rows,
+    spans,
+    to_csv,
+)
 from vbraille.sessions.record.folder import load, whole_lines
-from vbraille.sessions.record.notes import read_notes
 from vbraille.wording import count
 
 if TYPE_CHECKING:

@@ -140,7 +140,7 @@ def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToR
     if arguments.no_places or arguments.file == "-" or arguments.lines != (1, None):
         return BookToRead(book)
     source = book.source
-    kept = places.book(arguments.file, title=source.title)
+    kept = places.book(str(arguments.file), title=source.title)
     turned = kept.options.turned and book.table is not None
     if turned := turned and _take_translation(arguments, kept.options, said):
         with suppress(InputError):  # the language has no table any more

@@ -15,7 +15,6 @@ from vbraille.forecast.workers import KeptResults, work_on
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record.folder import load
-from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.session import Session
 from vbraille.wording import setting
 
@@ -77,8 +76,7 @@ def conduct(task: PilotTask) -> int:
     """Conduct a session as fast as the machine can, or go on with it, and count its trials."""
     folder = Path(task.folder)
     if folder.exists():
-        record = load(folder)
-        progress = Progress(record.plan, record.told.events, record.procedure)
+        progress = load(folder).progress()
         if progress.ended:
             return progress.done
         session = Session.resume(folder)

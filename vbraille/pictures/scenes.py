@@ -15,11 +15,10 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from vbraille.errors import InputError
-from vbraille.pictures.scenewords import vibrations
 from vbraille.pictures.words import plain
 from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating
-from vbraille.scene.walking import each
+from vbraille.scene.walking import each, vibrations
 from vbraille.wording import setting
 
 if TYPE_CHECKING:

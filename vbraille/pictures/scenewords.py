@@ -19,7 +19,6 @@ from vbraille.scene.patterns import (
     Tile,
     Use,
 )
-from vbraille.scene.strokes import Vibration
 from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
@@ -27,14 +26,14 @@ from vbraille.scene.textures import (
     Uniform,
     UniformVibration,
 )
-from vbraille.scene.walking import each
+from vbraille.scene.walking import vibrations
 from vbraille.wording import count
 
 if TYPE_CHECKING:
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
-    from vbraille.scene.strokes import DotStyle, Stroke
+    from vbraille.scene.strokes import DotStyle, Stroke, Vibration
 
 # How groups put their parts together, in words that need no formula.
 _TOGETHER = {
@@ -89,23 +88,6 @@ def pattern_words(pattern: AnyPattern) -> str:
         words.append(f"vibrating: {_swing_words(pattern.vibration)}")
     name = plain(name_of(pattern))
     return (f"{name}, " if name else "") + ", ".join(words)
-
-
-def vibrations(pattern: AnyPattern) -> list[Vibration]:
-    """Tell every vibration of a pattern and of what it is made of."""
-    found: list[Vibration | None] = []
-    for part in each(pattern):
-        found.append(part.vibration)
-        if isinstance(part, UniformVibration):
-            found.append(Vibration(frequency_hz=part.frequency_hz))
-        if isinstance(part, Dots | ImageDots):
-            found.append(part.dot.vibration)
-        if isinstance(part, StraightLine | Circle | Polygon | PathShape):
-            found += [part.stroke.vibration] if part.stroke else []
-            found += [part.dots.dot.vibration, part.dots.vertex_vibration] if part.dots else []
-        if isinstance(part, Polygon) and part.markers is not None:
-            found.append(part.markers.swing)
-    return [vibration for vibration in found if vibration is not None]
 
 
 def _kind_words(pattern: AnyPattern) -> str:

@@ -10,7 +10,7 @@ from vbraille.sessions.record import events
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from vbraille.sessions.record.eventbase import JournalEvent
+    from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.record.progress import Progress
 
 

@@ -21,9 +21,8 @@ from vbraille.playback.reels import PLAYED, Piece, line_shown
 from vbraille.render import work
 from vbraille.render.program import Program, nothing
 from vbraille.sessions.record import journal
-from vbraille.sessions.record.bidsevents import runs_of
+from vbraille.sessions.record.bids import runs_of
 from vbraille.sessions.record.folder import load
-from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.replay import Pictures, Replay
 from vbraille.sessions.record.traces import ChunkedTrace
 
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.record.bidsevents import BidsRun
+    from vbraille.sessions.record.bids import BidsRun
     from vbraille.sessions.record.folder import Record
 
 # A fade is over long before so many chunks; a trace that says otherwise is not believed.
@@ -93,7 +92,7 @@ class Traced:
         record = load(folder, salvaged=True)
         _refuse_running(folder)
         self._record = record
-        self._progress = Progress(record.plan, record.told.events, record.procedure)
+        self._progress = record.progress()
         self._display = record.protocol.model.display
         self._pictures = Pictures(record, self._progress)
         self._firsts_ns: dict[int, int | None] = {}

@@ -13,7 +13,6 @@ from vbraille.carriers.carrier import LATERO, PANTOGRAPH, TACTOGRAPH
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.patterns import (
     Circle,
-    Dots,
     Group,
     Image,
     Label,
@@ -22,8 +21,8 @@ from vbraille.scene.patterns import (
     Shape,
     Tile,
 )
-from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform, UniformVibration
-from vbraille.scene.walking import ONE, children, each, with_children
+from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform
+from vbraille.scene.walking import ONE, children, drawn_vibrations, each, vibrations, with_children
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -362,10 +361,7 @@ _MOST_COMPARED = 200
 
 def frequencies(pattern: AnyPattern) -> set[float]:
     """Frequencies in Hz at which something in a pattern vibrates."""
-    found = _own(pattern) | _changed(pattern)
-    for part in children(pattern):
-        found |= frequencies(part)
-    return found
+    return {one.frequency_hz for one in vibrations(pattern) if one.amplitude}
 
 
 def _beats_within(pattern: AnyPattern, known: Boxes) -> Iterator[str]:
@@ -444,20 +440,7 @@ _SAID = {
 
 def _own(pattern: AnyPattern) -> set[float]:
     """Frequencies of what a pattern draws itself."""
-    if isinstance(pattern, UniformVibration):
-        return {pattern.frequency_hz}
-    if isinstance(pattern, Dots):
-        return _of(pattern.dot.vibration)
-    if not isinstance(pattern, Shape):
-        return set()
-    found: set[float] = set()
-    if pattern.stroke is not None:
-        found |= _of(pattern.stroke.vibration)
-        if isinstance(pattern, Polygon) and pattern.markers is not None:
-            found |= _of(pattern.markers.swing)
-    if pattern.dots is not None:
-        found |= _of(pattern.dots.dot.vibration) | _of(pattern.dots.vertex_vibration)
-    return found
+    return {one.frequency_hz for one in drawn_vibrations(pattern) if one.amplitude}
 
 
 def _changed(pattern: AnyPattern) -> set[float]:

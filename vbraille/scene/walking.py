@@ -6,7 +6,19 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
-from vbraille.scene.patterns import Circle, Group, Image, PathShape, Polygon, Tile
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Group,
+    Image,
+    ImageDots,
+    PathShape,
+    Polygon,
+    Shape,
+    Tile,
+)
+from vbraille.scene.strokes import Vibration
+from vbraille.scene.textures import UniformVibration
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -53,6 +65,32 @@ def each(*patterns: AnyPattern) -> Iterator[AnyPattern]:
         pattern = left.pop()
         yield pattern
         left += reversed(children(pattern))
+
+
+def vibrations(pattern: AnyPattern) -> list[Vibration]:
+    """Every vibration of a pattern and of what stands in it."""
+    return [
+        vibration
+        for part in each(pattern)
+        for vibration in (part.vibration, *drawn_vibrations(part))
+        if vibration is not None
+    ]
+
+
+def drawn_vibrations(pattern: AnyPattern) -> list[Vibration]:
+    """Vibrations of what a pattern draws itself, beside that of all of it."""
+    found: list[Vibration | None] = []
+    if isinstance(pattern, UniformVibration):
+        found.append(Vibration(frequency_hz=pattern.frequency_hz))
+    elif isinstance(pattern, Dots | ImageDots):
+        found.append(pattern.dot.vibration)
+    elif isinstance(pattern, Shape):
+        found += [pattern.stroke.vibration] if pattern.stroke else []
+        if pattern.dots is not None:
+            found += [pattern.dots.dot.vibration, pattern.dots.vertex_vibration]
+        if isinstance(pattern, Polygon) and pattern.markers is not None:
+            found.append(pattern.markers.swing)
+    return [vibration for vibration in found if vibration is not None]
 
 
 def with_children(

@@ -10,7 +10,7 @@ from vbraille.errors import InputError
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.protocolfiles import load_protocol
-from vbraille.sessions.planning.writing import made_by
+from vbraille.sessions.planning.spellings import made_by
 from vbraille.sessions.record.folder import FORMAT, versions
 
 if TYPE_CHECKING:

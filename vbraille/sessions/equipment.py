@@ -8,9 +8,8 @@ from vbraille.devices import open_device
 from vbraille.devices.registry import find_driver
 from vbraille.engine.host import Host
 from vbraille.errors import InputError
-from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
-from vbraille.sessions.planning.standing import cells_needed, stands_beside
-from vbraille.sessions.running.markerports import parse_markers
+from vbraille.sessions.planning.appearance import CONVENTIONAL
+from vbraille.sessions.running.markers import Markers, parse_markers
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.running.conventional import OnConventional
-    from vbraille.sessions.running.markers import Markers
     from vbraille.sessions.running.onlookers import Onlookers
     from vbraille.sessions.running.showing import RunEngine
     from vbraille.simulation.pointing import Pointer
@@ -112,7 +110,7 @@ def usual_beside(
         Whether answers come from what is felt: a simulated reader compares nothing with what
         stands there.
     """
-    if conditions.fast or felt or not stands_beside(protocol):
+    if conditions.fast or felt or not protocol.stands_beside:
         return None
     from vbraille.conventional.display import ConventionalDisplay
     from vbraille.sessions.running.conventional import OnConventional
@@ -123,6 +121,13 @@ def usual_beside(
     return OnConventional(ConventionalDisplay(spec), table, cells=cells, spec=spec)
 
 
+def cells_needed(protocol: Protocol, plan: Plan) -> int:
+    """Number of cells that a conventional display must have for all of a plan."""
+    table = protocol.conventional
+    shown = [stimulus.masks for stimulus in plan.stimuli() if stimulus.conventional]
+    return max(len(table.placed(masks)) for masks in [table.reference, *shown])
+
+
 def check_beside(protocol: Protocol, conditions: Conditions) -> None:
     """Check that the protocol and a conventional display go together.
 
@@ -131,7 +136,7 @@ def check_beside(protocol: Protocol, conditions: Conditions) -> None:
     InputError
         If they do not.
     """
-    if conditions.also is not None and not stands_beside(protocol):
+    if conditions.also is not None and not protocol.stands_beside:
         raise InputError(
             f"{protocol.name} shows nothing on a conventional display; leave out {setting('also')}"
         )

@@ -22,11 +22,11 @@ from vbraille.sessions.equipment import (
 )
 from vbraille.sessions.planning.choosing import procedure_of
 from vbraille.sessions.record import journal
-from vbraille.sessions.record.folder import create, load
+from vbraille.sessions.record.folder import Record, create, load
 from vbraille.sessions.record.progress import Progress
-from vbraille.sessions.running.markerports import parse_markers
+from vbraille.sessions.running.given import answers_from
+from vbraille.sessions.running.markers import parse_markers
 from vbraille.sessions.running.reader import seed_of
-from vbraille.sessions.running.sources import answers_from
 from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.specs import device_spec, has_hand, refuse_hand, steering_of
 from vbraille.wording import setting
@@ -37,11 +37,10 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
-    from vbraille.sessions.record.folder import Record
     from vbraille.sessions.running.answers import Answers
+    from vbraille.sessions.running.given import Source
     from vbraille.sessions.running.onlookers import Onlookers
     from vbraille.sessions.running.showing import RunEngine
-    from vbraille.sessions.running.sources import Source
     from vbraille.sounds import Sound
 
     Say = Callable[[str], None]
@@ -227,7 +226,7 @@ class Session:
                 f"{record.folder} is damaged: of {journal.NAME} {record.told.damage}; the "
                 f"{len(record.told.events)} events before it are whole, and nothing was changed"
             )
-        progress = Progress(record.plan, record.told.events, record.procedure)
+        progress = record.progress()
         if progress.ended:
             raise InputError(f"{record.folder} has ended; session export makes tables of it")
         began = Conditions.of(record.head)
@@ -248,7 +247,7 @@ class Session:
     def trials(self) -> list[dict[str, Any]]:
         """A row for each planned trial, as `vbraille session export` writes them.
 
-        The columns are described in `vbraille.sessions.record.columns.COLUMNS`.
+        The columns are described in `vbraille.sessions.record.codebook.COLUMNS`.
         """
         from vbraille.sessions.record.export import Traces, rows
 

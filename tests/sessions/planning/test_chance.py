@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.sessions.planning.rulebook import check_balance
 from vbraille.sessions.planning.chance import Chance, balanced_orders
-from vbraille.sessions.planning.rules import check_balance
 
 
 class TestChance:

@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.sessions.planning.rulebook import check_rules
 from tests.sessions.planning.test_bad_protocols import VBD_HEAD
 from tests.tiers import examples
 from vbraille.errors import InputError
 from vbraille.sessions.planning.chance import balanced_orders
-from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.making import check_plan, make_plan
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol
-from vbraille.sessions.planning.rules import check_plan
 
 ITEMS = "string,kind\nac,word\nca,word\ncc,non\naa,non\n"
 TEXTURE = (
@@ -113,7 +113,7 @@ class TestFactors:
     def test_a_plan_of_another_group_is_no_plan_of_this_one(self):
         protocol = parse(LIST + GROUPS)
         text = make_plan(protocol, "P01", 1).to_json().replace('"near"', '"far"')
-        with pytest.raises(InputError, match="has other distances than the protocol's"):
+        with pytest.raises(InputError, match="differs in its stimuli"):
             check_plan(protocol, Plan.from_json(text))
 
 
@@ -191,11 +191,11 @@ class TestOrders:
         text = LIST + "blocks = 1\nrepeats = 4\n" + TEXTURE + "[rules]\n"
         ruled = parse(text + "at_most_running = { texture = 1 }\n")
         free = make_plan(parse(text), "P01", 1)
-        with pytest.raises(InputError, match=r"texture is \w+ in \d trials running from trial"):
-            check_plan(ruled, free)
+        with pytest.raises(ValueError, match=r"texture is \w+ in \d trials running from trial"):
+            check_rules(ruled, free)
         quarters = parse(text + "balanced_quarters = true\n")
-        with pytest.raises(InputError, match=r"quarter \d has \w+ \d times, and its share is 4"):
-            check_plan(quarters, free)
+        with pytest.raises(ValueError, match=r"quarter \d has \w+ \d times, and its share is 4"):
+            check_rules(quarters, free)
 
 
 class TestItems:
@@ -348,7 +348,7 @@ def test_what_no_search_finds_is_refused_before_anything_is_written():
     except InputError as error:
         assert "no order of its trials was found" in str(error)  # noqa: PT017
     else:
-        check_plan(protocol, plan)
+        check_rules(protocol, plan)
 
 
 def test_the_examples_of_the_page_are_protocols():

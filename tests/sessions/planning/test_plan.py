@@ -11,14 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import structs
 
-from tests.sessions.planning.rulebook import broken_rules
+from tests.sessions.planning.rulebook import broken_rules, check_rules
 from vbraille.braille.spelling import LETTERS
 from vbraille.errors import InputError
+from vbraille.sessions.planning.design import Rules
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import builtin_names, load_protocol, parse_protocol
-from vbraille.sessions.planning.rules import check_plan
-from vbraille.sessions.planning.ruletable import Rules
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\nmodel = "stress2"\n'
 ABC = "".join(f'[[conditions]]\nname = "{name}"\n' for name in "ABC")
@@ -175,7 +174,7 @@ class TestPlans:
         text = plan.to_json()
         assert Plan.from_json(text) == plan
         assert Plan.from_json(text).to_json() == text
-        check_plan(protocol, Plan.from_json(text))
+        check_rules(protocol, Plan.from_json(text))
         assert text.count('{"number"') == len(re.findall(r"(?m)^\{\"number\".*\},?$", text))
         assert len(json.loads(text)["trials"]) == protocol.trials
 
@@ -270,7 +269,7 @@ class TestPlans:
     @given(st.integers(0, 2**63 - 1), st.from_regex(r"[A-Za-z0-9][\w-]{0,9}1", fullmatch=True))
     def test_any_seed_gives_a_plan_that_keeps_the_rules(self, seed, participant):
         if participant.isascii():
-            check_plan(LETTERS_PROTOCOL, make_plan(LETTERS_PROTOCOL, participant, seed))
+            check_rules(LETTERS_PROTOCOL, make_plan(LETTERS_PROTOCOL, participant, seed))
 
 
 class TestRefusals:

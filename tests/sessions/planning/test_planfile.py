@@ -6,8 +6,7 @@ import pytest
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.making import make_plan
-from vbraille.sessions.planning.plan import Plan
-from vbraille.sessions.planning.planfile import stimulus_from_json, stimulus_to_json
+from vbraille.sessions.planning.plan import Plan, stimulus_from_json, stimulus_to_json
 from vbraille.sessions.planning.protocolfiles import load_protocol
 
 

@@ -15,14 +15,13 @@ from vbraille.errors import InputError
 from vbraille.render import MAPPINGS, Tuning
 from vbraille.sessions import planning
 from vbraille.sessions.planning.conduct import Question, Tone
-from vbraille.sessions.planning.practice import Practice
+from vbraille.sessions.planning.design import Practice
 from vbraille.sessions.planning.protocolfiles import (
     builtin_names,
     builtin_text,
     load_protocol,
     parse_protocol,
 )
-from vbraille.sessions.planning.rules import is_balanced
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\n'
 VBD_HEAD = f'{HEAD}model = "vbd"\n'
@@ -89,7 +88,7 @@ class TestBuiltIns:
         assert (protocol.task, protocol.parameter) == ("choice", "dot_width_mm")
         assert protocol.design.values == (0.5, 1.0, 1.5, 2.0, 2.5, 3.0)
         assert (protocol.design.string, protocol.trials) == ((1,), 90)
-        assert [protocol.tuning(c).texture for c in protocol.conditions] == [1.0]
+        assert [protocol.style_of(c).tuning.texture for c in protocol.conditions] == [1.0]
 
     def test_tuning_of_the_spacing(self):
         protocol = load_protocol("tuning-spacing")
@@ -106,7 +105,7 @@ class TestBuiltIns:
         assert protocol.keys == {"l": 1, "r": 8, "n": 0}
         assert protocol.design.characters == (1, 9, 8, 0)
         assert (protocol.design.before, protocol.design.after) == ((9,), (9,))
-        assert [(c.name, protocol.tuning(c)) for c in protocol.conditions] == [
+        assert [(c.name, protocol.style_of(c).tuning) for c in protocol.conditions] == [
             ("nominal", Tuning(texture=0.0)),
             ("textured", Tuning(texture=1.0)),
         ]
@@ -123,8 +122,12 @@ class TestBuiltIns:
     def test_letters(self):
         protocol = load_protocol("letters")
         assert (protocol.model.name, protocol.mapping) == ("stress2", MAPPINGS["alternate"])
-        assert [protocol.tuning(c).texture for c in protocol.conditions] == [0.0, 0.25, 1.0]
-        assert {protocol.tuning(c).cycles for c in protocol.conditions} == {7}
+        assert [protocol.style_of(c).tuning.texture for c in protocol.conditions] == [
+            0.0,
+            0.25,
+            1.0,
+        ]
+        assert {protocol.style_of(c).tuning.cycles for c in protocol.conditions} == {7}
         assert (len(protocol.design.strings), protocol.trials) == (26, 78)
         assert all(len(set(string)) == 5 for string in protocol.design.strings)
         assert (protocol.design.blocks, protocol.design.reorder) == (2, True)
@@ -139,19 +142,19 @@ class TestBuiltIns:
         assert protocol.trials == 40
         assert protocol.rules.each_letter_at_least == 4
         assert protocol.session.limit_s == 3600.0
-        assert protocol.tuning(protocol.conditions[0]) == Tuning(texture=1.0)
+        assert protocol.style_of(protocol.conditions[0]).tuning == Tuning(texture=1.0)
 
 
 class TestParsing:
     def test_what_is_left_out(self):
         protocol = parse(VBD_HEAD + PAIRS)
         assert protocol.geometry == VBD
-        assert (protocol.medium, protocol.repeat_faults) == ("device", True)
+        assert (protocol.medium, protocol.faults.repeat) == ("device", True)
         assert protocol.practice == Practice()
         assert not protocol.rules.never_twice_running
         assert (protocol.design.blocks, protocol.design.repeats) == ("conditions", 1)
-        assert (protocol.design.order, is_balanced(protocol)) == (None, False)
-        assert [(c.name, protocol.tuning(c), c.given) for c in protocol.conditions] == [
+        assert (protocol.design.order, protocol.balanced) == (None, False)
+        assert [(c.name, protocol.style_of(c).tuning, c.given) for c in protocol.conditions] == [
             ("all", Tuning(), {})
         ]
         assert (protocol.trial.gap_s, protocol.trial.warning_s) == (0.5, None)
@@ -206,7 +209,7 @@ class TestParsing:
         assert (protocol.geometry.dot_width_mm, protocol.geometry.travel_mm) == (3.0, 200.0)
         assert (protocol.mapping.name, protocol.medium) == ("paired", "paper")
         assert protocol.design.strings == ((3, 1, 8),)
-        assert [(c.name, protocol.tuning(c), c.given) for c in protocol.conditions] == [
+        assert [(c.name, protocol.style_of(c).tuning, c.given) for c in protocol.conditions] == [
             ("weak", Tuning(0.5, 0.25, 5), {"contrast": 0.25}),
             ("fine", Tuning(1.0, 0.75, 9), {"texture": 1.0, "cycles": 9}),
         ]
@@ -214,7 +217,7 @@ class TestParsing:
         assert protocol.practice == Practice(3, ((3, 3),))
         assert (protocol.trial.gap_s, protocol.trial.warning_s) == (1.0, 20.0)
         assert (protocol.session.limit_s, protocol.session.break_every) == (60.0, 5)
-        assert not protocol.repeat_faults
+        assert not protocol.faults.repeat
         assert protocol.sound.cue == Tone(1000, 100)
         assert protocol.fields == (Question("finger", "Which?"),)
 

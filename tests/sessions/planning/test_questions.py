@@ -6,7 +6,7 @@ from tests.sessions.sittings import COMPARED, MINI
 from vbraille.errors import InputError
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol
-from vbraille.sessions.running.inquiry import read_line
+from vbraille.sessions.running.console import read_line
 
 RATED = 'kind = "rating"\nscale = "roughness"\nleast = 1\nmost = 5\n'
 BLANK = '[[conditions]]\nname = "blank"\ncontrast = 0.0\n[[conditions]]\nname = "full"\n'

@@ -6,11 +6,12 @@ from itertools import groupby
 import pytest
 from msgspec import structs
 
+from tests.sessions.planning.rulebook import check_rules
 from vbraille.errors import InputError
-from vbraille.sessions.planning.making import make_plan
-from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol
-from vbraille.sessions.planning.rules import check_plan
-from vbraille.sessions.planning.ruletable import Rules
+from vbraille.sessions.planning.design import Rules
+from vbraille.sessions.planning.making import check_plan, make_plan
+from vbraille.sessions.planning.plan import Plan
+from vbraille.sessions.planning.protocolfiles import builtin_names, load_protocol, parse_protocol
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\nmodel = "stress2"\n'
 ABC = "".join(f'[[conditions]]\nname = "{name}"\n' for name in "ABC")
@@ -35,7 +36,11 @@ def changed(plan, which, /, **values):
 
 class TestChecking:
     def refuse(self, protocol, plan, says):
-        with pytest.raises(InputError, match=rf"^the plan of P07 for .* breaks a rule: .*{says}"):
+        """Check by the rules, and by making the plan again, which tells every alteration."""
+        with pytest.raises(ValueError, match=says):
+            check_rules(protocol, plan)
+        made = rf"^the plan of P07 for [\w-]+ is not what seed {plan.seed} makes: .*; put it back"
+        with pytest.raises(InputError, match=made):
             check_plan(protocol, plan)
 
     def test_a_plan_of_another_protocol(self):
@@ -166,8 +171,39 @@ class TestChecking:
         strings = '[design]\nkind = "list"\nstrings = ["abcdefghijklm", "nopqrstuvwxyz"]\n'
         protocol = parse(f"{strings}[rules]\neach_letter = 1\neach_letter_at_least = 1")
         plan = make_plan(protocol, "P07", 1)
-        check_plan(protocol, plan)
+        check_rules(protocol, plan)
         says = "a is shown once; each_letter is 2"
         assert Rules(each_letter=2).problem(t.stimuli[0].masks for t in plan.trials) == says
         wrong = changed(plan, 1, stimuli=plan.trials[1].stimuli)
         self.refuse(protocol, wrong, "condition all shows ⠁⠃⠉.* times, and must 1 times|⠝⠕⠏")
+
+    def test_two_trials_of_one_condition_that_changed_places(self):
+        """They keep every rule, and are no plan of this seed all the same."""
+        plan = make_plan(LETTERS_PROTOCOL, "P07", 42)
+        first = plan.trials[0]
+        other = next(
+            t
+            for t in plan.trials[1:]
+            if t.block == first.block and t.condition == first.condition and t.item != first.item
+        )
+        swapped = changed(plan, 1, stimuli=other.stimuli)
+        swapped = changed(swapped, other.number, stimuli=first.stimuli)
+        with pytest.raises(InputError, match="makes: trial 1 differs in its stimuli"):
+            check_plan(LETTERS_PROTOCOL, swapped)
+
+
+@pytest.mark.parametrize("name", builtin_names())
+def test_a_plan_is_what_its_seed_makes(name):
+    protocol = load_protocol(name)
+    for participant, seed in (("P07", 42), ("P12", 0)):
+        plan = make_plan(protocol, participant, seed)
+        check_plan(protocol, Plan.from_json(plan.to_json()))
+        check_plan(protocol.assigned(plan.group), plan)
+        with pytest.raises(InputError, match=f"not what seed {seed + 1} makes"):
+            check_plan(protocol, structs.replace(plan, seed=seed + 1))
+
+
+@pytest.mark.parametrize("given", [{"texture": 0.25}, {"contrast": 0.5}])
+def test_a_texture_that_was_given_for_the_session_is_of_its_plan(given):
+    plan = make_plan(load_protocol("words"), "P07", 42, **given)
+    check_plan(load_protocol("words"), plan)

@@ -5,10 +5,10 @@ from itertools import pairwise
 import pytest
 
 from vbraille.errors import InputError
+from vbraille.sessions.equipment import cells_needed
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol
-from vbraille.sessions.planning.standing import cells_needed, is_conventional, stands_beside
 
 HEAD = """
 format = 1
@@ -38,12 +38,12 @@ def test_a_condition_says_where_its_strings_stand_and_the_plan_keeps_it():
     protocol = parse_protocol(HEAD + STRINGS + BOTH + "[conventional]\ncell = 5\n", "test")
     plan = make_plan(protocol, "P1", 1)
     for trial in plan.trials:
-        assert is_conventional(trial.stimuli[0]) == (trial.condition == "conventional")
+        assert trial.stimuli[0].conventional == (trial.condition == "conventional")
     assert Plan.from_json(plan.to_json()) == plan
     assert '"on": "brlapi"' in plan.to_json()
-    assert stands_beside(protocol)
+    assert protocol.stands_beside
     assert cells_needed(protocol, plan) == 4 + 3
-    assert not stands_beside(load_protocol("legibility"))
+    assert not load_protocol("legibility").stands_beside
 
 
 def test_texts_stand_there_in_the_table_of_the_condition():
@@ -62,7 +62,7 @@ def test_its_cells_are_not_bound_to_the_rows_or_the_travel_of_the_device():
     on = '[display]\non = "brlapi"\ntravel_mm = 30\n'
     protocol = parse_protocol(HEAD + letters + on, "test")
     plan = make_plan(protocol, "P1", 1)
-    assert all(is_conventional(trial.stimuli[0]) for trial in plan.trials)
+    assert all(trial.stimuli[0].conventional for trial in plan.trials)
     spelling = protocol.cell_spelling(plan.trials[0].stimuli[0])
     assert spelling.shown_dots == 0xFF
     with pytest.raises(InputError, match="the VBD's row 1 shows dots 1 and 4 only"):

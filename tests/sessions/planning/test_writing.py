@@ -10,12 +10,11 @@ from tests.sessions.planning.test_bad_protocols import VBD_HEAD
 from vbraille.braille.spelling import to_braille
 from vbraille.errors import InputError
 from vbraille.sessions.conditions import Conditions
-from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.making import check_plan, make_plan
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
-from vbraille.sessions.planning.rules import check_plan
-from vbraille.sessions.planning.writing import cells_of, parse_text
-from vbraille.sessions.record.dataset import write
+from vbraille.sessions.planning.spellings import cells_of, parse_text
+from vbraille.sessions.record.bids import write
 from vbraille.sessions.record.export import rows
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.session import Session
@@ -69,7 +68,7 @@ def test_each_condition_has_the_cells_of_its_table():
 def test_a_plan_with_the_table_of_another_condition_is_refused():
     protocol = parse(TEXT)
     text = make_plan(protocol, "P01", 1).to_json().replace(G1, G2)
-    with pytest.raises(InputError, match="has another table than the protocol's"):
+    with pytest.raises(InputError, match="trial 1 differs in its stimuli"):
         check_plan(protocol, Plan.from_json(text))
 
 

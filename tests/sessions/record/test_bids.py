@@ -12,7 +12,7 @@ from msgspec import structs
 
 from tests.sessions.bidsvalid import complaints
 from tests.sessions.sittings import COMPARED, MINI, Session
-from vbraille.sessions.record import bids, dataset
+from vbraille.sessions.record import bids
 from vbraille.sessions.record.export import rows, to_csv
 from vbraille.sessions.record.traces import read_trace
 
@@ -50,7 +50,7 @@ def test_names_are_those_of_bids(record, files, tmp_path):
             f"{RECORDING}.tsv.gz", f"{RECORDING}.json",
         ]
     )  # fmt: skip
-    dataset.write(record, tmp_path / "set")
+    bids.write(record, tmp_path / "set")
     written = [
         path.relative_to(tmp_path / "set")
         for path in (tmp_path / "set").rglob("*")
@@ -68,7 +68,7 @@ def test_two_values_that_were_compared_are_no_number(tmp_path):
     column = json.loads(bids.files(compared)[name])["dot_width_mm"]
     assert "Units" not in column
     assert column["Description"].endswith(", in mm")
-    dataset.write(compared, tmp_path / "set")
+    bids.write(compared, tmp_path / "set")
     assert complaints(tmp_path / "set") == ""
 
 
@@ -76,7 +76,7 @@ def test_labels_have_letters_and_digits_only(record, tmp_path):
     named = replace(record, plan=structs.replace(record.plan, participant="P-0_7", protocol="a-b"))
     for path in bids.files(named):
         assert path.startswith("sub-P07/ses-01/beh/sub-P07_ses-01_task-ab_")
-    dataset.write(named, tmp_path / "set")
+    bids.write(named, tmp_path / "set")
     assert complaints(tmp_path / "set") == ""
 
 

@@ -68,8 +68,9 @@ def faults(folder):
 def test_of_a_whole_session_all_is_said_to_be_whole(sat):
     text, good = said(sat)
     assert good
-    for name in ("session.json, plan.json, protocol.toml: as they were", "plan: 4 trials, all",
-                 "events, whole", "trace-001.gz: ", "trace-002.gz: ", "answers: 4 of 4; ",
+    for name in ("session.json, plan.json, protocol.toml: as they were",
+                 "plan: 4 trials, as the seed makes them", "events, whole",
+                 "trace-001.gz: ", "trace-002.gz: ", "answers: 4 of 4; ",
                  "journal.torn: 51 bytes set aside", "the session is ended"):  # fmt: skip
         assert name in text
     assert not [finding for finding in check(load(sat)) if not finding.good]

@@ -6,8 +6,7 @@ import json
 
 from tests.sessions.sittings import MINI, Session
 from vbraille.sessions.record import bids
-from vbraille.sessions.record.codebook import HEAD, entry_of, to_codebook
-from vbraille.sessions.record.columns import COLUMNS
+from vbraille.sessions.record.codebook import COLUMNS, HEAD, entry_of, to_codebook
 from vbraille.sessions.record.export import rows
 
 ASKS = MINI + '[[fields]]\nname = "hand"\nask = "Reading hand"\n'

@@ -11,8 +11,8 @@ from msgspec import structs
 from tests.sessions.bidsvalid import complaints
 from tests.sessions.sittings import Session
 from vbraille.errors import InputError, VbrailleError
-from vbraille.sessions.record import dataset
-from vbraille.sessions.record.participants import alike, label_of
+from vbraille.sessions.record import bids
+from vbraille.sessions.record.folder import alike, label_of
 
 
 @pytest.fixture(scope="module")
@@ -41,12 +41,12 @@ def named(record, participant):
 
 def test_a_dataset_takes_several_participants_and_several_sessions_of_each(records, tmp_path):
     first, second = records
-    dataset.write(first, tmp_path)
+    bids.write(first, tmp_path)
     about = (tmp_path / "dataset_description.json").read_bytes()
     assert json.loads(about)["BIDSVersion"] == "1.9.0"
     assert people(tmp_path) == {"sub-P1": "P1"}
-    dataset.write(named(first, "P-2"), tmp_path)
-    dataset.write(second, tmp_path)
+    bids.write(named(first, "P-2"), tmp_path)
+    bids.write(second, tmp_path)
     assert (tmp_path / "dataset_description.json").read_bytes() == about
     assert people(tmp_path) == {"sub-P1": "P1", "sub-P2": "P-2"}
     assert sorted(str(p.relative_to(tmp_path)) for p in tmp_path.glob("sub-*/ses-*")) == [
@@ -59,20 +59,20 @@ def test_a_dataset_takes_several_participants_and_several_sessions_of_each(recor
 
 def test_a_session_is_added_once(records, tmp_path):
     for record in records:
-        dataset.write(record, tmp_path)
+        bids.write(record, tmp_path)
     before = {path: path.is_file() and path.read_bytes() for path in tmp_path.rglob("*")}
     for record, number in zip(records, ("01", "02"), strict=True):
         with pytest.raises(InputError, match=f"is there already, as .*_ses-{number}_task-mini_beh"):
-            dataset.write(record, tmp_path)
+            bids.write(record, tmp_path)
     assert {path: path.is_file() and path.read_bytes() for path in tmp_path.rglob("*")} == before
 
 
 @pytest.mark.parametrize("other", ["p07", "P7", "P007", "P-07", "P_0-7", "p-7"])
 def test_pseudonyms_that_could_be_taken_for_one_another_are_refused(record, tmp_path, other):
-    dataset.write(named(record, "P07"), tmp_path)
+    bids.write(named(record, "P07"), tmp_path)
     before = sorted(tmp_path.rglob("*"))
     with pytest.raises(InputError, match=f"P07, who could not be told from {other}; give another"):
-        dataset.write(named(record, other), tmp_path)
+        bids.write(named(record, other), tmp_path)
     assert sorted(tmp_path.rglob("*")) == before
 
 
@@ -91,7 +91,7 @@ LONG = f"participant_id\tpseudonym\nsub-P1\t{'P' * 200_000}\n"
 def test_a_table_of_participants_that_is_not_one_is_refused(record, tmp_path, table):
     (tmp_path / "participants.tsv").write_text(table, "latin-1")
     with pytest.raises(InputError, match=r"participants.tsv is no table of participant_id and"):
-        dataset.write(record, tmp_path)
+        bids.write(record, tmp_path)
 
 
 @pytest.mark.parametrize("fails", [1, 4, 9])
@@ -106,12 +106,12 @@ def test_a_dataset_that_cannot_be_finished_is_not_begun(record, tmp_path, monkey
 
     monkeypatch.setattr("os.link", full)
     with pytest.raises(VbrailleError, match="could not be written: No space left on device"):
-        dataset.write(record, tmp_path / "new" / "set")
+        bids.write(record, tmp_path / "new" / "set")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_without_times_no_file_tells_when_or_where(record, tmp_path):
-    dataset.write(record, tmp_path / "set", without_times=True)
+    bids.write(record, tmp_path / "set", without_times=True)
     year = record.told.events[0].wall[:4]
     for path in (tmp_path / "set").rglob("*"):
         if path.suffix in (".tsv", ".json") or path.name == "README":

@@ -10,9 +10,16 @@ import pytest
 from tests.sessions.sittings import Session as Sitting
 from vbraille.errors import VbrailleError
 from vbraille.sessions.record import events, journal
-from vbraille.sessions.record.eventbase import AnyTime, InTrial, JournalEvent, WithStimulus
-from vbraille.sessions.record.eventlines import read, to_json
-from vbraille.sessions.record.events import AnyEvent, Lost
+from vbraille.sessions.record.events import (
+    AnyEvent,
+    AnyTime,
+    InTrial,
+    JournalEvent,
+    Lost,
+    WithStimulus,
+    read_event,
+    to_json,
+)
 from vbraille.sessions.record.progress import Progress
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "session-format.md"
@@ -98,7 +105,7 @@ def test_what_is_written_is_read(tmp_path):
 )
 def test_what_is_no_event_is_said(line, why):
     with pytest.raises(ValueError, match=re.escape(why)):
-        read(line)
+        read_event(line)
 
 
 def test_a_text_that_is_no_unicode_is_kept():

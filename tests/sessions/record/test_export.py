@@ -9,7 +9,7 @@ import pytest
 
 from tests.sessions.sittings import COMPARED, MINI, Session, of
 from vbraille.analysis.input.sheets import read_csv
-from vbraille.sessions.record.columns import COLUMNS
+from vbraille.sessions.record.codebook import COLUMNS
 from vbraille.sessions.record.export import Traces, rows, to_csv
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.traces import read_trace

@@ -10,7 +10,7 @@ from msgspec import structs
 from tests.sessions.sittings import COMPARED, MINI, Session, crash, of
 from tests.tiers import by_tier
 from vbraille.errors import VbrailleError
-from vbraille.sessions.planning.planfile import stimulus_to_json
+from vbraille.sessions.planning.plan import stimulus_to_json
 from vbraille.sessions.planning.protocolfiles import load_protocol
 from vbraille.sessions.record.check import check
 from vbraille.sessions.record.export import rows

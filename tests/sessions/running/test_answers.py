@@ -8,7 +8,8 @@ from tests.tiers import by_tier, heavy
 from vbraille.errors import InputError
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import builtin_text, parse_protocol
-from vbraille.sessions.running.answers import ScriptedAnswers, parse_answers
+from vbraille.sessions.running.answers import ScriptedAnswers
+from vbraille.sessions.running.given import parse_answers
 from vbraille.sessions.running.reader import Simulated
 from vbraille.sessions.simulated.skin import Exploration
 

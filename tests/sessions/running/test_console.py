@@ -6,7 +6,7 @@ from tests.sessions.sittings import COMPARED, MINI, Session, of
 from vbraille.braille.spelling import say_cells
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.record import Flag
-from vbraille.sessions.record.notes import read_notes
+from vbraille.sessions.record.export import read_notes
 from vbraille.sessions.running.console import ORDERS
 
 PRACTICE = '[practice]\ntrials = 2\nstrings = ["ac", "ca"]\n'

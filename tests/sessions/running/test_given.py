@@ -6,8 +6,8 @@ from tests.sessions.sittings import MINI
 from vbraille.errors import InputError
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
-from vbraille.sessions.running.answers import PROGRAM, Answers, parse_answers
-from vbraille.sessions.running.given import GivenAnswers
+from vbraille.sessions.running.answers import PROGRAM, Answers
+from vbraille.sessions.running.given import GivenAnswers, parse_answers
 from vbraille.sessions.session import Session
 
 PROTOCOL = parse_protocol(MINI, "test")

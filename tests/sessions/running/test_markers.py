@@ -17,8 +17,7 @@ from vbraille.engine.batch import BatchEngine
 from vbraille.errors import InputError
 from vbraille.sessions import session as door
 from vbraille.sessions.record import events
-from vbraille.sessions.running.markerports import CODES, OTHER, MarkerSpec, parse_markers
-from vbraille.sessions.running.markers import Markers
+from vbraille.sessions.running.markers import CODES, OTHER, Markers, MarkerSpec, parse_markers
 
 FAKE = """
 sent, streams = [], []

@@ -8,8 +8,7 @@ from vbraille.errors import InputError
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record.export import rows
-from vbraille.sessions.running.comparing import pair_of
-from vbraille.sessions.running.reader import Simulated
+from vbraille.sessions.running.reader import Simulated, pair_of
 
 MORE = '[question]\nkind = "which"\nright = "more"\n'
 NEAREST = '[question]\nkind = "which"\nright = "nearest"\nreference = {}\n'

@@ -14,8 +14,7 @@ from vbraille.live.messages import PagePress, Turn
 from vbraille.render.braille.knobs import say_mapping
 from vbraille.render.braille.mappings import MAPPINGS
 from vbraille.sessions.record.check import check
-from vbraille.sessions.running.onlookers import ENDED, Onlookers
-from vbraille.sessions.running.viewed import Heard
+from vbraille.sessions.running.onlookers import ENDED, Heard, Onlookers
 
 SEEING = "[session]\nblind = false\n"
 PRACTICE = '[practice]\ntrials = 2\nstrings = ["ac", "ca"]\n'

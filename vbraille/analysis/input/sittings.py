@@ -11,10 +11,8 @@ import numpy as np
 
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Answer
-from vbraille.sessions.record.export import Traces, walk
+from vbraille.sessions.record.export import Traces, read_notes, walk
 from vbraille.sessions.record.folder import load
-from vbraille.sessions.record.notes import read_notes
-from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -25,9 +23,10 @@ if TYPE_CHECKING:
 
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.record.eventbase import JournalEvent
+    from vbraille.sessions.record.events import JournalEvent
+    from vbraille.sessions.record.export import PlacedNote
     from vbraille.sessions.record.folder import Record
-    from vbraille.sessions.record.notes import PlacedNote
+    from vbraille.sessions.record.progress import Progress
 
 # Ours: about a dot's width, since a hand that goes back further can feel a dot again. Tremor and
 # the counts of an encoder stay far below it.
@@ -337,7 +336,7 @@ def read_sitting(folder: Path) -> SessionTrials:
         If a file other than the journal and the traces is missing or has changed.
     """
     record = load(folder)
-    progress = Progress(record.plan, record.told.events, record.procedure)
+    progress = record.progress()
     traces = Traces(record)
     rows: list[dict[str, Any]] = []
     readings: dict[int, Reading | str] = {}

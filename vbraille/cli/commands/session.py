@@ -12,9 +12,9 @@ from vbraille.cli.options.live import check_live_options
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
-from vbraille.sessions.planning.knobs import said_value
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
-from vbraille.sessions.record.participants import nearly_same
+from vbraille.sessions.planning.stimuli import said_value
+from vbraille.sessions.record.folder import nearly_same
 from vbraille.sessions.running.answers import Typed
 from vbraille.simulation.specs import refuse_hand
 from vbraille.wording import spelled

@@ -218,6 +218,34 @@ def translation(parser: ArgumentParser) -> None:
     settings_file(parser)
 
 
+def device(parser: ArgumentParser) -> None:
+    """Add the option that names the device, or a simulated one."""
+    parser.add_argument("--device", default="sim", metavar="SPEC", help=f"{SPEC} (default: sim).")
+
+
+def heard(parser: ArgumentParser) -> None:
+    """Add the options of what is heard beside what is felt."""
+    parser.add_argument(
+        "--speech",
+        action="store_true",
+        help="Speak all that is said, such as lines and settings, through Speech Dispatcher.",
+    )
+    parser.add_argument(
+        "--cues",
+        choices=("sound", "bell", "none"),
+        help="Signal a limit, what is not found, and in a text the end of a line or page: by "
+        "tones, by the terminal's bell, or not (default: tones at a terminal, the bell through "
+        "SSH, otherwise none).",
+    )
+
+
+def force(parser: ArgumentParser) -> None:
+    """Add the option that has files replaced."""
+    parser.add_argument(
+        "--force", action="store_true", help="Replace files that are there already."
+    )
+
+
 def settings_file(parser: ArgumentParser) -> None:
     """Add the option that names another settings file."""
     parser.add_argument(

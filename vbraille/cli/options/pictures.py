@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from vbraille.cli.options import groups
-from vbraille.cli.options.groups import MODELS, SPEC, number, seed, whole
+from vbraille.cli.options.groups import MODELS, number, seed, whole
 from vbraille.cli.options.live import add_live_options
 
 TYPE_CHECKING = False  # as in vbraille.cli
@@ -21,7 +21,7 @@ def feel(parser: ArgumentParser) -> None:
     parser.add_argument(
         "file", metavar="FILE", help="Feel this scene, SVG or file of OpenLatero's."
     )
-    parser.add_argument("--device", default="sim", metavar="SPEC", help=f"{SPEC} (default: sim).")
+    groups.device(parser)
     parser.add_argument(
         "--model",
         choices=MODELS,
@@ -42,17 +42,7 @@ def feel(parser: ArgumentParser) -> None:
         action="store_true",
         help="Say the name of each element when the finger comes to it.",
     )
-    parser.add_argument(
-        "--speech",
-        action="store_true",
-        help="Speak all that is said, through Speech Dispatcher.",
-    )
-    parser.add_argument(
-        "--cues",
-        choices=("sound", "bell", "none"),
-        help="Signal a limit and what is not found: by tones, by the terminal's bell, or not "
-        "(default: tones at a terminal, the bell through SSH, otherwise none).",
-    )
+    groups.heard(parser)
     add_live_options(parser)
 
 
@@ -111,9 +101,7 @@ def profile(parser: ArgumentParser) -> None:
         metavar="FILE.png",
         help="Draw the map of the cost as PNG or SVG (default: none).",
     )
-    parser.add_argument(
-        "--force", action="store_true", help="Replace files that are there already."
-    )
+    groups.force(parser)
 
 
 def check(parser: ArgumentParser) -> None:
@@ -136,9 +124,7 @@ def convert(parser: ArgumentParser) -> None:
         help="Convert what OpenLatero shows, where that is not what its file says "
         "(default: what the file says).",
     )
-    parser.add_argument(
-        "--force", action="store_true", help="Replace the file if it is there already."
-    )
+    groups.force(parser)
 
 
 def scene_map(parser: ArgumentParser) -> None:
@@ -155,9 +141,7 @@ def scene_map(parser: ArgumentParser) -> None:
         help="Write the picture to this file, whole or not at all; its suffix says the form. CSV "
         "has a row for each pixel with x, y and the deflection there.",
     )
-    parser.add_argument(
-        "--force", action="store_true", help="Replace a file that is there already."
-    )
+    groups.force(parser)
     parser.add_argument(
         "--resolution",
         type=number,

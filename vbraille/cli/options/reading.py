@@ -53,7 +53,7 @@ def tune(parser: ArgumentParser) -> None:
         "file", nargs="?", metavar="TEXT", help="Practise on this text (default: a short one)."
     )
     groups.profile(parser)
-    parser.add_argument("--device", default="sim", metavar="SPEC", help=f"{SPEC} (default: sim).")
+    groups.device(parser)
     parser.add_argument("--model", choices=MODELS, help="Refuse a device that is not this display.")
     groups.translation(parser)
     groups.hand(parser, _OWN_RATE)
@@ -68,7 +68,7 @@ def _reading(parser: ArgumentParser) -> None:
     """Add the options of reading that are not the text's."""
     groups.show(parser)
     groups.profile(parser)
-    parser.add_argument("--device", default="sim", metavar="SPEC", help=f"{SPEC} (default: sim).")
+    groups.device(parser)
     parser.add_argument(
         "--advance",
         choices=("return", "key"),
@@ -82,18 +82,7 @@ def _reading(parser: ArgumentParser) -> None:
         help="Say what is printed of each line: nothing, its text, its cells in Unicode braille, "
         "or both (default: none at a terminal, otherwise both).",
     )
-    parser.add_argument(
-        "--speech",
-        action="store_true",
-        help="Speak lines, settings and all else that is said, through Speech Dispatcher.",
-    )
-    parser.add_argument(
-        "--cues",
-        choices=("sound", "bell", "none"),
-        help="Signal the end of a line or page, a limit, and what is not found: by tones, by the "
-        "terminal's bell, or not (default: tones at a terminal, the bell through SSH, otherwise "
-        "none).",
-    )
+    groups.heard(parser)
     parser.add_argument(
         "--also",
         metavar="DISPLAY",
@@ -161,9 +150,7 @@ def page(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--out", metavar="FILE", help="Write to this file, whole or not at all (default: print)."
     )
-    parser.add_argument(
-        "--force", action="store_true", help="Replace the file if it is there already."
-    )
+    groups.force(parser)
     parser.add_argument(
         "--cells",
         type=whole,
@@ -190,9 +177,7 @@ def render(parser: ArgumentParser) -> None:
     groups.hand(parser)
     parser.add_argument("--out", required=True, metavar="FILE.h5", help="Write to this file.")
     groups.page(parser)
-    parser.add_argument(
-        "--force", action="store_true", help="Replace the file if it is there already."
-    )
+    groups.force(parser)
     pictures.path(parser)
     parser.set_defaults(model=None)  # which is another one for lines than for pictures
     parser.add_argument(

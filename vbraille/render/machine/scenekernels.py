@@ -40,7 +40,7 @@ def evaluate(numbers, table, rows, start, count, time, left, right, top_mm, bott
         operation, argument = word & (w.OPERATIONS - 1), word >> 6
         place = block + argument
         if operation == w.CALL or operation == w.CALL_PARTS:
-            block, join = argument >> 3, argument & (w.JOINS - 1)
+            block, join = argument >> 6, argument & (w.JOINS - 1)
             if operation == w.CALL_PARTS:
                 parts, first = int(numbers[at]), at + 1
                 at = first + parts
@@ -58,27 +58,15 @@ def evaluate(numbers, table, rows, start, count, time, left, right, top_mm, bott
                     if join == w.PUSHED_PAIR:
                         _level(rows, top, 0.0, count)
                         top += 1
-                elif join == w.MULTIPLIED:
+                elif join == w.MULTIPLY:
                     _level(rows, top - 1, 0.0, count)
             else:
                 back, at = at, block + w.WORDS
         elif operation == w.RETURN:
             at, block = back, _NO_BLOCK
-            if join == w.ADDED:
-                top -= 1
-                _add(rows, top, count)
-            elif join == w.LARGER:
-                top -= 1
-                _maximum(rows, top, count)
-            elif join == w.MULTIPLIED:
-                top -= 1
-                _multiply(rows, top, count)
-            elif join == w.LAID_PAIR:
-                top -= 2
-                _over(rows, top, top + 1, count)
-            elif join == w.LAID_ITSELF:
-                top -= 1
-                _over(rows, top, top, count)
+            top = _join(rows, top, join, count)
+        elif w.ADD <= operation <= w.OVER_ITSELF:
+            top = _join(rows, top, operation, count)
         elif operation == w.END:
             return
         elif operation == w.PARTS:
@@ -91,21 +79,6 @@ def evaluate(numbers, table, rows, start, count, time, left, right, top_mm, bott
             top += 1
         elif operation == w.DROP:
             top -= 1
-        elif operation == w.ADD:
-            top -= 1
-            _add(rows, top, count)
-        elif operation == w.MAXIMUM:
-            top -= 1
-            _maximum(rows, top, count)
-        elif operation == w.MULTIPLY:
-            top -= 1
-            _multiply(rows, top, count)
-        elif operation == w.OVER:
-            top -= 2
-            _over(rows, top, top + 1, count)
-        elif operation == w.OVER_ITSELF:
-            top -= 1
-            _over(rows, top, top, count)
         elif operation == w.BLEND:
             top -= 2
             _blend(rows, top, count)
@@ -175,6 +148,27 @@ def evaluate(numbers, table, rows, start, count, time, left, right, top_mm, bott
         elif operation == w.UNWRAP:
             top -= 2
             _unwrap(rows, top, count)
+
+
+@compiled
+def _join(rows, top, word, count):
+    """Put the uppermost row or pair together with the row below it; return the place above."""
+    if word == w.ADD:
+        top -= 1
+        _add(rows, top, count)
+    elif word == w.MAXIMUM:
+        top -= 1
+        _maximum(rows, top, count)
+    elif word == w.MULTIPLY:
+        top -= 1
+        _multiply(rows, top, count)
+    elif word == w.OVER:
+        top -= 2
+        _over(rows, top, top + 1, count)
+    elif word == w.OVER_ITSELF:
+        top -= 1
+        _over(rows, top, top, count)
+    return top
 
 
 @compiled

@@ -121,7 +121,7 @@ def _is_out_of_reach(numbers, at, left, right, top, bottom):
         at += 1
         operation, argument = word & (w.OPERATIONS - 1), word >> 6
         if operation == w.CALL or operation == w.CALL_PARTS:
-            block = argument >> 3
+            block = argument >> 6
             if not (
                 numbers[block + w.BOX_RIGHT] < left
                 or numbers[block + w.BOX_LEFT] > right

@@ -29,7 +29,7 @@ OPERATIONS = 64
 (
     END,  # the result is in the lowest row of the stack
     RETURN,  # from a pattern's own words
-    CALL,  # words of a pattern; argument: 8 · its place + how the result joins what is on the stack
+    CALL,  # words of a pattern; argument: 64 · its place + how the result joins the stack
     CALL_PARTS,  # the same, followed by a count and so many places of parts in reach, from its own
     PARTS,  # parts of a pattern: place of a count, which the places of parts follow
     ZERO,  # push 0
@@ -68,9 +68,10 @@ OPERATIONS = 64
     MARKERS,  # how much of each place is in a marker of a polygon
 ) = range(39)
 
-# How what a CALL pushes joins what is on the stack; PUSHED leaves it there, also if it is a pair.
-PUSHED, ADDED, LARGER, MULTIPLIED, LAID_PAIR, LAID_ITSELF, PUSHED_PAIR = range(7)
-JOINS = 8
+# How what a CALL pushes joins what is on the stack: by one of the words from ADD to OVER_ITSELF, or
+# not at all, as one row or as a pair.
+PUSHED, PUSHED_PAIR = 62, 63
+JOINS = 64
 
 # The block of a pattern: its box, then its words, then its constants.
 BOX_LEFT, BOX_TOP, BOX_RIGHT, BOX_BOTTOM, WORDS = range(5)

@@ -14,9 +14,9 @@ from vbraille.render.scene.grid import TileGrid, assemble
 from vbraille.render.scene.nodes import NodeKind, joined
 from vbraille.render.scene.trees import deflection, layer
 from vbraille.render.work import ProgramKind
-from vbraille.scene.patterns import Dots, Polygon, Shape
-from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, UniformVibration
-from vbraille.scene.walking import each
+from vbraille.scene.patterns import Shape
+from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating
+from vbraille.scene.walking import drawn_vibrations, each
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from vbraille.render.scene.flat import Flat
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
-    from vbraille.scene.strokes import Vibration
 
 
 _KINDS = {
@@ -129,30 +128,15 @@ def highest_hz(pattern: AnyPattern, number: int, rate_hz: float) -> float:
 
 def _frequencies(pattern: AnyPattern) -> Iterator[float]:
     """Frequencies of a pattern itself, without those that stand in it."""
-    yield from _of(pattern.vibration)
+    for vibration in (pattern.vibration, *drawn_vibrations(pattern)):
+        if vibration is not None and vibration.amplitude > 0.0:
+            yield vibration.frequency_hz
     if isinstance(pattern, Shape):
-        if pattern.stroke is not None:
-            yield from _of(pattern.stroke.vibration)
-            along = pattern.stroke.along
-            if along is not None and along.velocity_mm_s:
-                yield abs(along.velocity_mm_s) / (along.ridge_mm + along.gap_mm)
-        if pattern.dots is not None:
-            yield from _of(pattern.dots.dot.vibration)
-            yield from _of(pattern.dots.vertex_vibration)
-        if isinstance(pattern, Polygon) and pattern.markers is not None:
-            yield from _of(pattern.markers.swing)
-    elif isinstance(pattern, UniformVibration):
-        yield pattern.frequency_hz
+        along = None if pattern.stroke is None else pattern.stroke.along
+        if along is not None and along.velocity_mm_s:
+            yield abs(along.velocity_mm_s) / (along.ridge_mm + along.gap_mm)
     elif isinstance(pattern, LinearGrating | RadialGrating):
         if pattern.velocity_mm_s:
             yield abs(pattern.velocity_mm_s) / (pattern.ridge_mm + pattern.gap_mm)
-    elif isinstance(pattern, AxialGrating):
-        if pattern.velocity_deg_s:
-            yield abs(pattern.velocity_deg_s) / (pattern.ridge_deg + pattern.gap_deg)
-    elif isinstance(pattern, Dots):
-        yield from _of(pattern.dot.vibration)
-
-
-def _of(vibration: Vibration | None) -> Iterator[float]:
-    if vibration is not None and vibration.amplitude > 0.0:
-        yield vibration.frequency_hz
+    elif isinstance(pattern, AxialGrating) and pattern.velocity_deg_s:
+        yield abs(pattern.velocity_deg_s) / (pattern.ridge_deg + pattern.gap_deg)

@@ -288,20 +288,6 @@ def _choose(nodes, room, active, count):
 
 
 @compiled
-def _join(kind, pushes):
-    """Tell how a leaf joins what is under it."""
-    if kind == ADD:
-        return w.ADDED
-    if kind == MAXIMUM:
-        return w.LARGER
-    if kind == MULTIPLY:
-        return w.MULTIPLIED
-    if kind == OVER:
-        return w.LAID_PAIR if pushes == PAIR else w.LAID_ITSELF
-    return w.PUSHED
-
-
-@compiled
 def _join_word(kind, pushes):
     """Tell the word by which what is uppermost joins what is under it."""
     if kind == ADD:
@@ -353,7 +339,7 @@ def _say_tile(nodes, changes, reach, listed, room, active, count, said, at):
         if kind == LEAF:
             join = w.PUSHED
             if joining:
-                join = _join(above, pushes)
+                join = _join_word(above, pushes)
             elif pushes == PAIR:
                 join = w.PUSHED_PAIR
             at = _say_leaf(nodes, node, reach, listed, room, join, said, at)

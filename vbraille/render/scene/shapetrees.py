@@ -44,12 +44,12 @@ if TYPE_CHECKING:
 
 def is_apart(pattern: ShapeOrDots) -> bool:
     """Tell whether a pattern is several leaves."""
-    fill = None if isinstance(pattern, Dots) else fill_of(pattern)
+    fill = fill_of(pattern)
     if fill is None or isinstance(pattern, Dots):
         return False
-    if pattern.dots is not None:
-        return True
-    return any(isinstance(part, ShapeOrDots) for part in each(fill.texture))
+    return pattern.dots is not None or any(
+        isinstance(part, ShapeOrDots) for part in each(fill.texture)
+    )
 
 
 def apart(shape: AnyShape, texture: Node | None) -> Node:
@@ -143,9 +143,9 @@ _SHARPEST = 1e9  # 1/mm, of a fill that does not fade in
 _SWINGS = {"high": strokes.HIGH, "low": strokes.LOW}
 
 
-def fill_of(shape: AnyShape) -> Fill | None:
+def fill_of(pattern: ShapeOrDots) -> Fill | None:
     """Fill of a shape, if it has one."""
-    return None if isinstance(shape, StraightLine) else shape.fill
+    return None if isinstance(pattern, StraightLine | Dots) else pattern.fill
 
 
 # Words

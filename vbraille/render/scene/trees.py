@@ -20,7 +20,7 @@ from vbraille.scene.bitmap import WHOLE, bitmap_box, opaque
 from vbraille.scene.bounds import is_everywhere
 from vbraille.scene.joints import Cycle, axial_cycle
 from vbraille.scene.measures import travel_deg
-from vbraille.scene.patterns import Dots, Group, Image, Label, Tile
+from vbraille.scene.patterns import Group, Image, Label, Tile
 from vbraille.scene.textures import (
     AxialGrating,
     Gradual,
@@ -202,7 +202,7 @@ def _leaf(pattern: AnyPattern, assets: Assets) -> Node:
 
 
 def _fill_texture(pattern: ShapeOrDots, assets: Assets) -> Node | None:
-    fill = None if isinstance(pattern, Dots) else fill_of(pattern)
+    fill = fill_of(pattern)
     return None if fill is None else deflection(fill.texture, assets)
 
 

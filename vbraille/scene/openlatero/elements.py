@@ -324,7 +324,7 @@ class GenElement:
         element = self.one(name)
         if element is None:
             return default
-        word = _cleaned(element.text).lower()
+        word = cleaned(element.text).lower()
         if word not in ("yes", "true", "no", "false"):
             said = _short(element.text)
             element.say(f'{element.path} is "{said}", neither yes nor no; no is taken')
@@ -337,7 +337,7 @@ class GenElement:
 
     def chosen(self, text: str, words: Collection[str], default: str) -> str:
         """One of a few words for a text, or what counts for others, which is said."""
-        word = _cleaned(text)
+        word = cleaned(text)
         if word in words:
             return word
         if word.lower() in words:
@@ -362,7 +362,7 @@ class GenElement:
         them.
         """
         self._check_units("mm")
-        text = _cleaned(self.text)
+        text = cleaned(self.text)
         commas = _COMMAS.fullmatch(text)
         if commas:
             x = float(f"{commas[1]}.{commas[2]}")
@@ -394,7 +394,7 @@ class GenElement:
 
     def _value(self, default: float) -> float:
         """Number that the text of this element begins with."""
-        text = _cleaned(self.text)
+        text = cleaned(self.text)
         comma = _DECIMAL_COMMA.match(text)
         found = comma or _LEADING.match(text)
         if found is None:
@@ -413,7 +413,7 @@ class GenElement:
         return value
 
 
-def _cleaned(text: str) -> str:
+def cleaned(text: str) -> str:
     r"""Text without blanks around it, and without the stray ``\`` that some files have."""
     return text.strip().rstrip("\\").strip()
 

@@ -14,7 +14,9 @@ from vbraille.scene.filebytes import read_bytes
 from vbraille.scene.imagefiles import KINDS, MOST_PIXELS
 from vbraille.scene.measures import MOST_MM
 from vbraille.scene.openlatero.context import SURFACE_MM
+from vbraille.scene.openlatero.elements import cleaned
 from vbraille.scene.patterns import Image
+from vbraille.scene.svg.numbers import length_px
 from vbraille.scene.textures import Uniform
 
 if TYPE_CHECKING:
@@ -27,17 +29,6 @@ if TYPE_CHECKING:
 
 
 _MOST_BYTES, _MOST_SVG_BYTES = 100 << 20, 10 << 20
-_LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][+-]?\d+)?)\s*(px|pt|pc|mm|cm|in)?\s*")
-_INCH = 96.0  # pixels
-_PIXELS = {
-    "px": 1.0,
-    "": 1.0,
-    "pt": _INCH / 72,
-    "pc": _INCH / 6,
-    "mm": _INCH / 25.4,
-    "cm": _INCH / 2.54,
-    "in": _INCH,
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,17 +111,12 @@ def _drawn(path: Path) -> MaskPicture:
     box = [float(part) for part in re.findall(r"[-+0-9.eE]+", root.get("viewBox", ""))[:4]]
     seen = box[2:] if len(box) == 4 else [100.0, 100.0]
     sizes = [
-        _pixels(root.get(name)) or fallback
+        length_px(root.get(name), 0.0) or fallback
         for name, fallback in zip(("width", "height"), seen, strict=True)
     ]
     if min(sizes) <= 0 or max(sizes) > 1e6:
         raise InputError(f"{path} is a drawing without a size")
     return MaskPicture(sizes[0], sizes[1], is_coloured=True, has_alpha=True)
-
-
-def _pixels(text: str | None) -> float | None:
-    found = _LENGTH.fullmatch(text or "")
-    return float(found[1]) * _PIXELS[found[2] or ""] if found else None
 
 
 _BLUR_PIXELS = 2.0  # standard deviation; it ends at 4 pixels there
@@ -204,7 +190,7 @@ def _plain(value_mm: float) -> float:
 
 def _found(file: GenElement, context: GenContext) -> _Found | None:
     """Picture that an element names."""
-    name = file.text.strip().rstrip("\\").strip()
+    name = cleaned(file.text)
     # OpenLatero itself writes "/mask.png" for a picture that stands beside the scene.
     beside = name.rpartition("/")[2]
     path = context.folder / name

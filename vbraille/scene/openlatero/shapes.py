@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -479,15 +478,11 @@ def _nothing(element: GenElement) -> None:
 
 def _touch(centers: tuple[Point, ...], apart: float) -> bool:
     """Whether two of many places are nearer than a distance."""
-    cells: dict[tuple[int, int], list[Point]] = {}
-    if apart <= 0:
+    if apart <= 0 or len(centers) < 2:
         return False
-    for x, y in centers:
-        column, row = math.floor(x / apart), math.floor(y / apart)
-        for i in (column - 1, column, column + 1):
-            for j in (row - 1, row, row + 1):
-                for other in cells.get((i, j), ()):
-                    if math.dist(other, (x, y)) < apart - 1e-9:
-                        return True
-        cells.setdefault((column, row), []).append((x, y))
-    return False
+    if len(set(centers)) < len(centers):
+        return True
+    from scipy.spatial import KDTree
+
+    nearest, _ = KDTree(centers).query(centers, k=2)
+    return bool(nearest[:, 1].min() < apart - 1e-9)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
@@ -39,184 +39,6 @@ _MOST_DEG_S = 3600.0
 _MOST_MM_S = 1000.0
 _FACTORS = (0.05, 20.0)
 _STILL = 1e-3  # mm/s, below which OpenLatero takes a projected speed as none
-
-
-@dataclass(frozen=True, slots=True)
-class _Wave:
-    """Waveform of a grating."""
-
-    ridge: float
-    gap: float
-    speed: float
-    distortion: Gradual | Peak | TurnPeak | None
-    inverted: bool
-
-
-def read_linear(element: GenElement) -> AnyPattern | None:
-    """Linear grating of an element, without its changes; None if it cannot be shown."""
-    angle = turned(element.number("angle", 0.0, -1e6, 1e6, "°"))
-    seed = element.point("seed", (0.0, 0.0))
-    wave = _wave(element, 8.0, "mm")
-    if not isinstance(wave, _Wave):
-        return wave
-    grating = LinearGrating(
-        ridge_mm=wave.ridge,
-        gap_mm=wave.gap,
-        wave_angle_deg=angle or None,
-        start_mm=seed,
-        distortion=_along_a_line(wave),
-        velocity_mm_s=wave.speed,
-    )
-    return replace(grating, inverted=wave.inverted)
-
-
-def read_radial(element: GenElement) -> AnyPattern | None:
-    """Radial grating of an element, without its changes; None if it cannot be shown."""
-    seed = element.point("seed", (0.0, 0.0))
-    wave = _wave(element, 8.0, "mm")
-    if not isinstance(wave, _Wave):
-        return wave
-    return RadialGrating(
-        center_mm=seed,
-        ridge_mm=wave.ridge,
-        gap_mm=wave.gap,
-        distortion=_along_a_line(wave),
-        velocity_mm_s=wave.speed,
-        inverted=wave.inverted,
-    )
-
-
-def read_axial(element: GenElement) -> AnyPattern | None:
-    """Axial grating of an element, without its changes; None if it cannot be shown."""
-    seed = element.point("seed", (0.0, 0.0))
-    start = turned(element.number("seed_angle", 0.0, -1e6, 1e6, "°"))
-    wave = _wave(element, 36.0, "°")
-    if not isinstance(wave, _Wave):
-        return wave
-    gap = wave.gap
-    if wave.ridge + gap > 360.0:
-        gap = 360.0 - wave.ridge
-        element.say(f"its ridge and gap are more than a turn; a gap of {gap:g}° is taken")
-    if wave.inverted:
-        element.say("its middle is down here, where the grating is inverted, and up there")
-    turning = wave.distortion if isinstance(wave.distortion, TurnPeak) else None
-    return AxialGrating(
-        center_mm=seed,
-        ridge_deg=wave.ridge,
-        gap_deg=gap,
-        start_deg=start,
-        whole_cycles=False,
-        distortion=turning,
-        velocity_deg_s=wave.speed,
-        inverted=wave.inverted,
-    )
-
-
-def read_double(element: GenElement) -> tuple[AnyPattern, AnyPattern] | None:
-    """The two gratings of a double one; None if they cannot be shown."""
-    seed = element.point("seed", (0.0, 0.0))
-    angle = element.number("angle", 0.0, -1e6, 1e6, "°")
-    ridge = element.number("primary_ridge_size", 8.0, 0.0, MOST_MM)
-    gap = element.number("primary_gap_size", 0.0, 0.0, MOST_MM)
-    scale = element.number("secondary_scale", 1.0, 0.0, MOST_MM, "")
-    # OpenLatero takes whatever it does not know as parallel.
-    parallel = "parallel"
-    constraint = element.word("constraint", ("orthogonal", parallel), parallel)
-    orthogonal = constraint == "orthogonal" or element.one("constraint") is None
-    amplitudes = [
-        element.number(f"{which}_amplitude", 1.0, 0.0, 1.0, "share")
-        for which in ("primary", "secondary")
-    ]
-    if min(ridge, ridge * scale) < LEAST_MM:
-        element.say(f"its ridges are below {LEAST_MM} mm; left out")
-        return None
-    made: list[AnyPattern] = []
-    for number, amplitude in enumerate(amplitudes):
-        times = scale if number else 1.0
-        direction = turned(angle + (90.0 if number and orthogonal else 0.0))
-        grating = LinearGrating(
-            ridge_mm=ridge * times,
-            gap_mm=min(gap * times, MOST_MM),
-            wave_angle_deg=direction or None,
-            start_mm=seed,
-        )
-        grating = travelling(grating, element) or grating
-        made.append(changed(grating, amplitude, False, None))
-    return (made[0], made[1])
-
-
-def travelling(grating: LinearGrating, element: GenElement) -> LinearGrating | None:
-    """Linear grating with a texture's motion; None if that cannot be shown.
-
-    A grating that is carried along is the same as one whose ridges move by the part of the motion
-    that goes across them.
-    """
-    motion = element.one("motion")
-    if motion is None:
-        return grating
-    if not motion.switch("enable", False):
-        motion.forget()
-        return grating
-    if grating.distortion is not None:
-        return None
-    speed = motion.number("velocity", 50.0, -_MOST_MM_S, _MOST_MM_S, "mm/s")
-    direction = motion.number("direction", 0.0, -1e6, 1e6, "°")
-    across = speed * math.cos(math.radians(direction - (grating.wave_angle_deg or 0.0)))
-    total = grating.velocity_mm_s + (across if abs(across) >= _STILL else 0.0)
-    return replace(grating, velocity_mm_s=max(-_MOST_MM_S, min(_MOST_MM_S, total)))
-
-
-def turned(angle_deg: float) -> float:
-    """Angle within a turn."""
-    return math.fmod(angle_deg, 360.0)
-
-
-def _wave(element: GenElement, usual: float, unit: str) -> _Wave | Uniform | None:
-    """Waveform of a grating; what is the same everywhere if it is off; None if it has no ridges."""
-    grating = element.part("Grating")
-    inverted = grating.switch("invert", False)
-    if not grating.switch("enable", True):
-        grating.forget()
-        return Uniform(level=float(inverted))
-    least, most = (_LEAST_DEG, 360.0) if unit == "°" else (LEAST_MM, MOST_MM)
-    ridge = grating.number("ridge_size", usual, 0.0, most, unit)
-    gap = grating.number("gap_size", 0.0, 0.0, most, unit)
-    if ridge < least:
-        grating.say(f"its ridges are {ridge:g} {unit}, and must be {least:g} or more; left out")
-        return None
-    distortion = _distortion(grating, unit)
-    speed = speed_of(grating, unit, ridge + gap, _MOST_DEG_S if unit == "°" else _MOST_MM_S)
-    if distortion is not None:
-        speed = 0.0  # OpenLatero ignores it, too
-    return _Wave(ridge, gap, speed, distortion, inverted)
-
-
-def _distortion(grating: GenElement, unit: str) -> Gradual | Peak | TurnPeak | None:
-    """Change of the frequency along a grating; None for none."""
-    element = grating.one("PitchModulator")
-    if element is None:
-        return None
-    if not element.switch("enable", False):
-        element.forget()
-        return None
-    kind = element.chosen(element.attribute("type"), ("slope", "peak"), "slope")
-    factor = element.number("factor", 5.0, *_FACTORS, "")
-    if unit == "mm":
-        length = element.number("length", 113.0, LEAST_MM, MOST_MM)
-        place = element.number("position", 0.0, -MOST_MM, MOST_MM)
-        if kind == "peak":
-            return Peak(factor=factor, center_mm=place, length_mm=length)
-        return Gradual(factor=factor, start_mm=place, length_mm=length)
-    length = element.number("length", 113.0, _LEAST_DEG, 360.0, unit)
-    place = element.number("position", 0.0, 0.0, 360.0, unit)
-    if kind == "peak":
-        return TurnPeak(factor=factor, center_deg=place, length_deg=length)
-    element.say("the frequency of an axial grating has no slope here; it is the same all round")
-    return None
-
-
-def _along_a_line(wave: _Wave) -> Gradual | Peak | None:
-    return None if isinstance(wave.distortion, TurnPeak) else wave.distortion
 
 
 _CUES = (
@@ -273,36 +95,161 @@ def _vibration(element: GenElement, context: GenContext) -> AnyPattern:
 
 
 def _linear(element: GenElement, context: GenContext) -> AnyPattern | None:
-    return _graded(read_linear, element, context)
+    angle = turned(element.number("angle", 0.0, -1e6, 1e6, "°"))
+    seed = element.point("seed", (0.0, 0.0))
+    make = partial(LinearGrating, wave_angle_deg=angle or None, start_mm=seed)
+    return _graded(make, _wave(element, 8.0, "mm"), element, context)
 
 
 def _radial(element: GenElement, context: GenContext) -> AnyPattern | None:
-    return _graded(read_radial, element, context)
+    make = partial(RadialGrating, center_mm=element.point("seed", (0.0, 0.0)))
+    return _graded(make, _wave(element, 8.0, "mm"), element, context)
 
 
 def _axial(element: GenElement, context: GenContext) -> AnyPattern | None:
-    return _graded(read_axial, element, context)
+    seed = element.point("seed", (0.0, 0.0))
+    start = turned(element.number("seed_angle", 0.0, -1e6, 1e6, "°"))
+    make = partial(AxialGrating, center_mm=seed, start_deg=start, whole_cycles=False)
+    wave = _wave(element, 36.0, "°")
+    if isinstance(wave, dict):
+        if wave["ridge_deg"] + wave["gap_deg"] > 360.0:
+            wave["gap_deg"] = 360.0 - wave["ridge_deg"]
+            gap = f"{wave['gap_deg']:g}°"
+            element.say(f"its ridge and gap are more than a turn; a gap of {gap} is taken")
+        if wave["inverted"]:
+            element.say("its middle is down here, where the grating is inverted, and up there")
+    return _graded(make, wave, element, context)
 
 
 def _graded(
-    reader: Callable[[GenElement], AnyPattern | None], element: GenElement, context: GenContext
+    make: Callable[..., AnyPattern],
+    wave: dict[str, Any] | Uniform | None,
+    element: GenElement,
+    context: GenContext,
 ) -> AnyPattern | None:
-    pattern = reader(element)
-    if pattern is None:
+    """Grating of a waveform, with its motion and its changes."""
+    if wave is None:
         return None
-    moved = travelling(pattern, element) if isinstance(pattern, LinearGrating) else None
-    if isinstance(pattern, Uniform):
+    if isinstance(wave, Uniform):
         element.skip("motion")  # the same everywhere
-    elif moved is None:
+        return _changed(wave, element, context)
+    pattern = make(**wave)
+    moved = travelling(pattern, element) if isinstance(pattern, LinearGrating) else None
+    if moved is None:
         say_motion(element)
     return _changed(moved or pattern, element, context)
 
 
-def _double(element: GenElement, context: GenContext) -> AnyPattern | None:
-    gratings = read_double(element)
-    if gratings is None:
+def _wave(element: GenElement, usual: float, unit: str) -> dict[str, Any] | Uniform | None:
+    """Waveform of a grating, by the names of its fields here.
+
+    It is what is the same everywhere if it is off, and None if it has no ridges.
+    """
+    grating = element.part("Grating")
+    inverted = grating.switch("invert", False)
+    if not grating.switch("enable", True):
+        grating.forget()
+        return Uniform(level=float(inverted))
+    turning = unit == "°"
+    least, most = (_LEAST_DEG, 360.0) if turning else (LEAST_MM, MOST_MM)
+    ridge = grating.number("ridge_size", usual, 0.0, most, unit)
+    gap = grating.number("gap_size", 0.0, 0.0, most, unit)
+    if ridge < least:
+        grating.say(f"its ridges are {ridge:g} {unit}, and must be {least:g} or more; left out")
         return None
-    pattern = joined(element, list(gratings))
+    distortion = _distortion(grating, unit)
+    speed = speed_of(grating, unit, ridge + gap, _MOST_DEG_S if turning else _MOST_MM_S)
+    name = "deg" if turning else "mm"
+    return {
+        f"ridge_{name}": ridge,
+        f"gap_{name}": gap,
+        # OpenLatero ignores it where the frequency changes, too.
+        f"velocity_{name}_s": speed if distortion is None else 0.0,
+        "distortion": distortion,
+        "inverted": inverted,
+    }
+
+
+def _distortion(grating: GenElement, unit: str) -> Gradual | Peak | TurnPeak | None:
+    """Change of the frequency along a grating; None for none."""
+    element = grating.one("PitchModulator")
+    if element is None:
+        return None
+    if not element.switch("enable", False):
+        element.forget()
+        return None
+    kind = element.chosen(element.attribute("type"), ("slope", "peak"), "slope")
+    factor = element.number("factor", 5.0, *_FACTORS, "")
+    if unit == "mm":
+        length = element.number("length", 113.0, LEAST_MM, MOST_MM)
+        place = element.number("position", 0.0, -MOST_MM, MOST_MM)
+        if kind == "peak":
+            return Peak(factor=factor, center_mm=place, length_mm=length)
+        return Gradual(factor=factor, start_mm=place, length_mm=length)
+    length = element.number("length", 113.0, _LEAST_DEG, 360.0, unit)
+    place = element.number("position", 0.0, 0.0, 360.0, unit)
+    if kind == "peak":
+        return TurnPeak(factor=factor, center_deg=place, length_deg=length)
+    element.say("the frequency of an axial grating has no slope here; it is the same all round")
+    return None
+
+
+def travelling(grating: LinearGrating, element: GenElement) -> LinearGrating | None:
+    """Linear grating with a texture's motion; None if that cannot be shown.
+
+    A grating that is carried along is the same as one whose ridges move by the part of the motion
+    that goes across them.
+    """
+    motion = element.one("motion")
+    if motion is None:
+        return grating
+    if not motion.switch("enable", False):
+        motion.forget()
+        return grating
+    if grating.distortion is not None:
+        return None
+    speed = motion.number("velocity", 50.0, -_MOST_MM_S, _MOST_MM_S, "mm/s")
+    direction = motion.number("direction", 0.0, -1e6, 1e6, "°")
+    across = speed * math.cos(math.radians(direction - (grating.wave_angle_deg or 0.0)))
+    total = grating.velocity_mm_s + (across if abs(across) >= _STILL else 0.0)
+    return replace(grating, velocity_mm_s=max(-_MOST_MM_S, min(_MOST_MM_S, total)))
+
+
+def turned(angle_deg: float) -> float:
+    """Angle within a turn."""
+    return math.fmod(angle_deg, 360.0)
+
+
+def _double(element: GenElement, context: GenContext) -> AnyPattern | None:
+    seed = element.point("seed", (0.0, 0.0))
+    angle = element.number("angle", 0.0, -1e6, 1e6, "°")
+    ridge = element.number("primary_ridge_size", 8.0, 0.0, MOST_MM)
+    gap = element.number("primary_gap_size", 0.0, 0.0, MOST_MM)
+    scale = element.number("secondary_scale", 1.0, 0.0, MOST_MM, "")
+    # OpenLatero takes whatever it does not know as parallel.
+    parallel = "parallel"
+    constraint = element.word("constraint", ("orthogonal", parallel), parallel)
+    orthogonal = constraint == "orthogonal" or element.one("constraint") is None
+    amplitudes = [
+        element.number(f"{which}_amplitude", 1.0, 0.0, 1.0, "share")
+        for which in ("primary", "secondary")
+    ]
+    if min(ridge, ridge * scale) < LEAST_MM:
+        element.say(f"its ridges are below {LEAST_MM} mm; left out")
+        return None
+    made: list[AnyPattern | None] = []
+    for number, amplitude in enumerate(amplitudes):
+        times = scale if number else 1.0
+        direction = turned(angle + (90.0 if number and orthogonal else 0.0))
+        grating = LinearGrating(
+            ridge_mm=ridge * times,
+            gap_mm=min(gap * times, MOST_MM),
+            wave_angle_deg=direction or None,
+            start_mm=seed,
+        )
+        grating = travelling(grating, element) or grating
+        made.append(changed(grating, amplitude, False, None))
+    pattern = joined(element, made)
     return None if pattern is None else _unread(pattern, element, context)
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from vbraille.scene.patterns import AnyPattern
 
 
-_HEX = re.compile(r"#([0-9a-f]{3,4}|[0-9a-f]{6}|[0-9a-f]{8})")
+_HEX = re.compile(r"#(?:[0-9a-f]{3,4}|[0-9a-f]{6}|[0-9a-f]{8})")
 _FUNCTION = re.compile(r"rgba?\(([^()]*)\)|hsla?\(([^()]*)\)")
 _SPLIT = re.compile(r"[\s,/]+")
 
@@ -32,16 +32,15 @@ def color_of(text: str) -> Color | None:
     >>> color_of("#f00"), color_of("rgb(100%, 0, 127.5)"), color_of("url(#wood)")
     ((1.0, 0.0, 0.0), (1.0, 0.0, 0.5), None)
     """
+    from PIL import ImageColor
+
     text = text.strip().lower()
-    if found := _HEX.fullmatch(text):
-        digits = found[1]
-        if len(digits) < 6:
-            digits = "".join(2 * digit for digit in digits)
-        red, green, blue = (int(digits[at : at + 2], 16) / 255 for at in (0, 2, 4))
+    if text in ImageColor.colormap or _HEX.fullmatch(text):
+        red, green, blue = (of / 255 for of in ImageColor.getrgb(text)[:3])
         return red, green, blue
     if found := _FUNCTION.fullmatch(text):
         return _of_function(_SPLIT.split((found[1] or found[2]).strip()), hues=found[1] is None)
-    return _named(text)
+    return None
 
 
 def _of_function(parts: list[str], *, hues: bool) -> Color | None:
@@ -64,16 +63,6 @@ def _of_function(parts: list[str], *, hues: bool) -> Color | None:
 
 def _share(value: float) -> float:
     return min(max(value, 0.0), 1.0)
-
-
-def _named(name: str) -> Color | None:
-    """Colour of one of the names of CSS."""
-    from PIL import ImageColor
-
-    if name not in ImageColor.colormap:
-        return None
-    red, green, blue = (of / 255 for of in ImageColor.getrgb(name)[:3])
-    return red, green, blue
 
 
 def darkness(color: Color) -> float:

@@ -1,22 +1,57 @@
-"""How strings are shown: the display's style, and how each condition may differ from it."""
+"""How and where strings are shown: the display's style, and how each condition may differ."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from msgspec import field
 
 from vbraille.braille.geometry import BOUNDS_MM
+from vbraille.errors import check_range
 from vbraille.render import MAPPINGS, Profile, Tuning, single_row
 from vbraille.sessions.planning.conduct import check_name
-from vbraille.sessions.planning.conventionaltable import Where
+from vbraille.sessions.planning.spellings import Masks
 from vbraille.toml.tomlfile import Table, which
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from vbraille.render import BrailleStyle, Mapping, Model
+
+
+Where = Literal["device", "brlapi"]
+CONVENTIONAL: Where = "brlapi"  # on the display that BRLTTY drives
+MOST_CELLS = 200  # no conventional display has a longer row
+
+
+class ConventionalTable(Table, frozen=True, kw_only=True):
+    """The table ``[conventional]``.
+
+    Parameters
+    ----------
+    cell
+        Cell of the conventional display at which everything on it begins, from 1.
+    reference
+        Dot masks of what stands there throughout each trial on the device, to be compared with;
+        empty for nothing.
+
+    Raises
+    ------
+    ValueError
+        If the number is out of range.
+    """
+
+    cell: int = 1
+    reference: Masks = Masks()
+
+    def __post_init__(self) -> None:
+        check_range("cell", self.cell, 1, MOST_CELLS)
+
+    def placed(self, masks: tuple[int, ...]) -> bytes:
+        """Cells of the display, from its left, on which some cells stand in their place."""
+        return bytes((0,) * (self.cell - 1) + tuple(masks))
+
 
 MOST_LEAD = 20
 # Lengths that conditions may differ in; the travel is the device's, and the same for all.
@@ -25,53 +60,13 @@ TUNED = ("texture", "contrast", "cycles")
 LOOKS = (*TUNED, "dot_row", "mapping", "table", "on", *LENGTHS)
 
 
-class Tuned(Table, frozen=True, kw_only=True):
-    """Values that a file gives for a `Tuning`; a value that is left out is None.
+class Look(Table, frozen=True, kw_only=True):
+    """Any part of the way in which strings are shown; a value that is left out is None.
 
     Parameters
     ----------
     texture, contrast, cycles
         These are described at `Tuning`.
-
-    Raises
-    ------
-    ValueError
-        If a value is out of range.
-    """
-
-    texture: float | None = None
-    contrast: float | None = None
-    cycles: int | None = field(name="texture_cycles", default=None)
-
-    def __post_init__(self) -> None:
-        Tuning(**self.given)
-
-    @property
-    def given(self) -> dict[str, Any]:
-        """Values that the file gives, by their names in `Tuning`."""
-        return _given(self, TUNED)
-
-    def tune(self, model: Model, tuning: Tuning) -> Tuning:
-        """Tuning in which the values given here take the place of its own.
-
-        Raises
-        ------
-        ValueError
-            If the model has no use for one of the values.
-        """
-        if self.cycles is not None and model.style.profile is Profile.HALF_SINE:
-            raise ValueError(
-                f"texture_cycles is of the STReSS²; the texture of the {model.title} has a fixed "
-                f"wavelength, leave it out"
-            )
-        return replace(tuning, **self.given)
-
-
-class Look(Tuned, frozen=True, kw_only=True):
-    """Any part of the way in which strings are shown; a value that is left out is None.
-
-    Parameters
-    ----------
     dot_row
         Row of dots that the VBD shows, from 1.
     mapping
@@ -90,6 +85,9 @@ class Look(Tuned, frozen=True, kw_only=True):
         If a value is out of range.
     """
 
+    texture: float | None = None
+    contrast: float | None = None
+    cycles: int | None = field(name="texture_cycles", default=None)
     dot_row: int | None = None
     mapping: str | None = None
     table: str | None = None
@@ -101,12 +99,17 @@ class Look(Tuned, frozen=True, kw_only=True):
     line_pitch_mm: float | None = None
 
     def __post_init__(self) -> None:
-        super().__post_init__()
+        Tuning(**self.given)
         if self.table is not None and (not self.table.strip() or "/" in self.table):
             raise ValueError(
                 f"table is {self.table!r}; it must be the name of a braille table that liblouis "
                 f"has, such as en-ueb-g2.ctb (vbraille tables lists all)"
             )
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """Values that the file gives, by their names in `Tuning`."""
+        return _given(self, TUNED)
 
     @property
     def changes(self) -> dict[str, Any]:
@@ -121,11 +124,15 @@ class Look(Tuned, frozen=True, kw_only=True):
         ValueError
             If values contradict each other, or the model has no use for them.
         """
+        if self.cycles is not None and model.style.profile is Profile.HALF_SINE:
+            raise ValueError(
+                f"texture_cycles is of the STReSS²; the texture of the {model.title} has a fixed "
+                f"wavelength, leave it out"
+            )
         geometry = replace(style.geometry, **_given(self, LENGTHS))
         mapping = self._mapping(model) or style.mapping
-        return replace(
-            style, mapping=mapping, geometry=geometry, tuning=self.tune(model, style.tuning)
-        )
+        tuning = replace(style.tuning, **self.given)
+        return replace(style, mapping=mapping, geometry=geometry, tuning=tuning)
 
     def _mapping(self, model: Model) -> Mapping | None:
         """Mapping that the file gives; None if it gives none."""
@@ -149,8 +156,8 @@ class Look(Tuned, frozen=True, kw_only=True):
         return mapping
 
 
-class NamedLook(Look, frozen=True):
-    """Any part of the way in which strings are shown, with a name.
+class Condition(Look, frozen=True):
+    """A named way of showing strings: a condition of a protocol, or a level of a factor.
 
     Parameters
     ----------
@@ -168,10 +175,6 @@ class NamedLook(Look, frozen=True):
     def __post_init__(self) -> None:
         check_name("name", self.name)
         super().__post_init__()
-
-
-class Condition(NamedLook, frozen=True):
-    """One condition of a protocol: the display's style, but for the values given here."""
 
 
 class Appearance(Look, frozen=True, kw_only=True):

@@ -9,15 +9,13 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from msgspec import structs
 
 from vbraille.adaptive.staircase import Asked
 from vbraille.errors import VbrailleError
 from vbraille.sessions.planning.design import Choice
-from vbraille.sessions.planning.knobs import KNOBS, value_at, with_value
-from vbraille.sessions.planning.procedure import FixedOrder
 from vbraille.sessions.planning.procedures import (
     PREFERRED,
     THRESHOLD,
@@ -25,7 +23,7 @@ from vbraille.sessions.planning.procedures import (
     QuestProcedure,
     StaircaseProcedure,
 )
-from vbraille.sessions.planning.stimuli import Stimuli
+from vbraille.sessions.planning.stimuli import KNOBS, Stimuli, Trial, value_at, with_value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -33,10 +31,69 @@ if TYPE_CHECKING:
     from vbraille.adaptive.questplus import GridQuest
     from vbraille.adaptive.staircase import Staircases, StopRule
     from vbraille.sessions.planning.plan import Plan
-    from vbraille.sessions.planning.procedure import Answered, Procedure
-    from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.questions import AnyQuestion
-    from vbraille.sessions.planning.stimuli import Trial
+
+
+@dataclass(frozen=True, slots=True)
+class Answered:
+    """A trial that was answered.
+
+    Parameters
+    ----------
+    trial
+        The trial; as it was shown, if the answers choose what is shown.
+    answer
+        The answer that counts; `vbraille.braille.spelling` says how it is written.
+    t_s
+        Seconds of the session at the answer; if it was taken back, at the one given instead.
+    """
+
+    trial: Trial
+    answer: str
+    t_s: float = 0.0
+
+
+class Procedure(Protocol):
+    """Rule that chooses the next trial. The same history must always give the same trial."""
+
+    @property
+    def trials(self) -> Sequence[Trial] | None:
+        """All trials in order, if they are known beforehand; None if they depend on the answers."""
+        ...
+
+    def next(self, history: Sequence[Answered], /) -> Trial | None:
+        """Trial that follows a history, with the next number; None if there are no more trials.
+
+        The history leaves practice out. Where an answer was taken back, the history has in its
+        place the answer that was given instead.
+        """
+        ...
+
+    def found(self, history: Sequence[Answered], /) -> Sequence[str]:
+        """Sentences on what the answers have shown; none if the procedure does not go by them."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class FixedOrder:
+    """Procedure that follows a plan, whatever is answered.
+
+    Parameters
+    ----------
+    trials
+        All trials of the plan, in order.
+    """
+
+    trials: tuple[Trial, ...]
+
+    def next(self, history: Sequence[Answered], /) -> Trial | None:
+        """Trial of the plan that follows the answered ones; None after the last."""
+        done = len(history)
+        return self.trials[done] if done < len(self.trials) else None
+
+    def found(self, _history: Sequence[Answered], /) -> Sequence[str]:
+        """No sentence: nothing is made of the answers."""
+        return ()
 
 
 @dataclass(frozen=True, slots=True)

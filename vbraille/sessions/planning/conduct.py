@@ -10,6 +10,7 @@ from vbraille.toml.tomlfile import Table
 # Form of the names of conditions and fields, which become columns of tables and parts of file
 # names.
 NAME = re.compile(r"[A-Za-z0-9_-]{1,40}")
+_FILE = re.compile(r"[A-Za-z0-9_-]{1,40}\.(csv|txt)")
 LONGEST_LINE = 200
 ENTER = "key:enter"
 # Keys with names, and what they type; other keys are called by the character that they type.
@@ -44,6 +45,21 @@ def check_line(what: str, text: str) -> None:
     if not 1 <= len(text.strip()) <= LONGEST_LINE:
         raise ValueError(
             f"{what} has {len(text.strip())} characters; it must have 1 to {LONGEST_LINE}"
+        )
+
+
+def check_file_name(name: str, what: str) -> None:
+    """Check the name of a file that stands beside a protocol.
+
+    Raises
+    ------
+    ValueError
+        If it is no plain name of a CSV or a text.
+    """
+    if not _FILE.fullmatch(name):
+        raise ValueError(
+            f"{what} is {name!r}; it must be the name of a file beside the protocol: 1 to 40 "
+            f"letters a to z, digits, hyphens or underscores, and .csv or .txt"
         )
 
 

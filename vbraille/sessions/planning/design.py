@@ -1,4 +1,4 @@
-"""Designs: what is shown in each condition of a session, how often, and in which blocks."""
+"""Designs: what is shown and practised, how often, in which order, and by which rules."""
 
 from __future__ import annotations
 
@@ -6,17 +6,90 @@ from collections import Counter
 from itertools import permutations, product
 from typing import TYPE_CHECKING, Literal
 
-from vbraille.braille.spelling import name_dots
+from vbraille.braille.spelling import LETTERS, name_dots, to_braille
 from vbraille.errors import check_range
-from vbraille.sessions.planning.knobs import KNOBS, KnobName
-from vbraille.sessions.planning.ordering import Catch
-from vbraille.sessions.planning.spellings import Mask, Masks
+from vbraille.sessions.planning.conduct import check_file_name
+from vbraille.sessions.planning.spellings import Mask, Masks, WrittenText
+from vbraille.sessions.planning.stimuli import KNOBS, KnobName, StimulusKnob
 from vbraille.toml.tomlfile import Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from vbraille.sessions.planning.knobs import StimulusKnob
+
+class Catch(Table, frozen=True, kw_only=True):
+    """Trials that keep watch over the participant; they belong to no item.
+
+    Parameters
+    ----------
+    every
+        Number of trials among which there is one catch trial, at a random place; None if the
+        share is given.
+    share
+        Share of catch trials among all, above 0 and at most 0.5; None if ``every`` is given.
+    show
+        What a catch trial shows: "blank" for cells without dots, "repeat" for what the trial
+        before it has shown.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or both or neither of the two is given.
+    """
+
+    every: int | None = None
+    share: float | None = None
+    show: Literal["blank", "repeat"] = "blank"
+
+    def __post_init__(self) -> None:
+        check_range("every", self.every, 2, 1000)
+        check_range("share", self.share, 0.001, 0.5)
+        if (self.every is None) == (self.share is None):
+            raise ValueError("every and share say the same; give one of the two")
+
+    def number(self, trials: int) -> int:
+        """Number of catch trials beside so many others."""
+        if self.every is not None:
+            # One of every n trials is a catch trial, and so there are n - 1 others for each.
+            return trials // (self.every - 1)
+        assert self.share is not None
+        return max(1, round(trials * self.share / (1 - self.share)))
+
+
+class BlockOrder(Table, frozen=True, kw_only=True):
+    """The table ``[order]``: in which order participants have the blocks of the conditions.
+
+    Parameters
+    ----------
+    kind
+        "williams" or "balanced" for Williams squares over participants, "listed" for the order of
+        the file, "random" for an order of each participant's own, "table" for the order that a
+        file gives each participant.
+    file
+        Name of the file of orders, which stands beside the protocol.
+
+    Raises
+    ------
+    ValueError
+        If a table has no file, or something else has one.
+    """
+
+    kind: Literal["williams", "balanced", "listed", "random", "table"]
+    file: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.kind == "table" and self.file is None:
+            raise ValueError('file is missing; give the file of orders, such as "orders.csv"')
+        if self.kind != "table" and self.file is not None:
+            raise ValueError("file is of kind = 'table'; leave it out")
+
+    @property
+    def of_blocks(self) -> Literal["balanced", "listed", "shuffled"]:
+        """Name that ``[design] order`` has for this order; that of a table counts as listed."""
+        if self.kind == "random":
+            return "shuffled"
+        return "balanced" if self.kind in ("williams", "balanced") else "listed"
+
 
 MOST_TRIALS = 10_000
 UNFELT = ("row_spacing_mm", "line_pitch_mm")  # lengths that change nothing in a single line
@@ -318,3 +391,143 @@ def _check_distinct(what: str, names: Iterable[str]) -> None:
 def _bounds(knob: StimulusKnob) -> tuple[float, float]:
     """Bounds of the values compared; geometry itself says which lengths go together."""
     return (0, max(50, knob.high)) if knob.unit else (knob.low, knob.high)
+
+
+class Rules(Table, frozen=True):
+    """Rules that a plan must follow beside its design.
+
+    Parameters
+    ----------
+    each_letter
+        Exact number of times that each letter of the alphabet is shown in each condition; None
+        for any number.
+    each_letter_at_least
+        Least number of times that each letter is shown in each condition; None for any number.
+    never_twice_running
+        Whether no two neighbouring trials may show the same. Two trials show the same if they
+        have the same string, the same cells in any order where cells are reordered, or the same
+        two values in the same order.
+    at_most_running
+        Largest number of neighbouring trials that may have the same level of a factor, by the
+        factor's name; "condition" stands for the conditions, and a column of the items' file for
+        itself.
+    balanced_quarters
+        Whether each quarter of the test has each condition equally often, as far as numbers allow.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    each_letter: int | None = None
+    each_letter_at_least: int | None = None
+    never_twice_running: bool = False
+    at_most_running: dict[str, int] = {}  # noqa: RUF012  (msgspec copies an empty default)
+    balanced_quarters: bool = False
+
+    def __post_init__(self) -> None:
+        check_range("each_letter", self.each_letter, 1, MOST_TRIALS)
+        check_range("each_letter_at_least", self.each_letter_at_least, 1, MOST_TRIALS)
+        for most in self.at_most_running.values():
+            check_range("at_most_running: one", most, 1, MOST_TRIALS)
+
+    @property
+    def searched(self) -> bool:
+        """Whether an order that keeps the rules must be searched for."""
+        return bool(self.at_most_running) or self.balanced_quarters
+
+    def problem(self, lines: Iterable[tuple[int, ...]]) -> str:
+        """Sentence about a letter that is shown too often or too seldom; empty if all is right."""
+        shown = Counter(mask for masks in lines for mask in masks)
+        for letter, mask in LETTERS.items():
+            if self.each_letter not in (None, shown[mask]):
+                return f"{letter} is shown {_times(shown[mask])}; each_letter is {self.each_letter}"
+            if shown[mask] < (self.each_letter_at_least or 0):
+                return (
+                    f"{letter} is shown {_times(shown[mask])}; "
+                    f"each_letter_at_least is {self.each_letter_at_least}"
+                )
+        return ""
+
+
+def _times(number: int) -> str:
+    return "once" if number == 1 else f"{number} times"
+
+
+class Practice(Table, frozen=True):
+    """The table ``[practice]`` of a protocol: what is practised, and how often.
+
+    Parameters
+    ----------
+    trials
+        Number of practice trials.
+    strings, values
+        Items that practice shows: dot masks of the cells asked for, or values that are compared.
+        Both are empty if there is no practice.
+    file
+        Name of a file beside the protocol that has the strings, as for ``[items]``; None if they
+        are given here.
+    feedback
+        Whether it is said after each trial of practice whether the answer was right.
+
+    Raises
+    ------
+    ValueError
+        If the number of trials is out of range.
+    """
+
+    trials: int = 0
+    strings: tuple[Masks, ...] = ()
+    values: tuple[float, ...] = ()
+    file: str | None = None
+    feedback: bool = True
+
+    def __post_init__(self) -> None:
+        if self.file is not None:
+            check_file_name(self.file, "file")
+            if self.strings or self.values:
+                raise ValueError("file has the strings; leave strings and values out")
+        check_range("trials", self.trials, 0, MOST_TRIALS)
+
+    @property
+    def items(self) -> tuple[Item, ...]:
+        """Items of practice: the strings, or all pairs of two different values in both orders."""
+        return self.strings or tuple(permutations(self.values, 2))
+
+    def lines(self, design: Design) -> list[tuple[int, ...]]:
+        """Cells of all strings practised, with delimiters; empty if values are compared."""
+        before, after = design.around
+        return [(*before, *string, *after) for string in self.strings]
+
+    def problem(self, design: Design) -> str:
+        """Say why this practice does not go with a test of a design; empty if it does."""
+        compares = isinstance(design, Choice)
+        if self.strings if compares else self.values:
+            given, wanted = ("strings", "values") if compares else ("values", "strings")
+            return f"{given} are not of this kind of design; give {wanted} instead"
+        if compares:
+            shared = set(self.values) & {*design.values, design.reference}
+            if shared:
+                unit = KNOBS[design.parameter].unit
+                return f"values have {min(shared):g}{unit}, which the test compares; give another"
+            return ""
+        for string, line in zip(self.strings, self.lines(design), strict=True):
+            if not any(line):
+                return "strings have one without dots, and nothing can be felt of it"
+            if _is_shown(design, string):
+                return f"strings have {name_item(string)}, which the test shows; give another"
+        return ""
+
+
+def name_item(item: Item) -> str:
+    """Words for an item: its text in quotation marks, or its cells in Unicode braille."""
+    if isinstance(item, WrittenText):
+        return repr(str(item))
+    return to_braille(map(int, item))
+
+
+def _is_shown(design: Design, item: Item) -> bool:
+    if isinstance(design, Combinations):
+        return len(item) == design.length and set(item) <= set(design.characters)
+    return design.content(item) in map(design.content, design.items())

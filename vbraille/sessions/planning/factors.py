@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from msgspec import structs
 
-from vbraille.sessions.planning.appearance import Condition, NamedLook
+from vbraille.sessions.planning.appearance import Condition
 from vbraille.sessions.planning.conduct import check_name
 from vbraille.toml.tomlfile import Table
 from vbraille.wording import nearest
@@ -18,10 +18,6 @@ if TYPE_CHECKING:
 JOINT = "-"  # between the levels that a condition or a group is named from
 Levels = tuple[str, ...]  # a level of each factor, in the order of the factors
 Cross = Literal["all"] | tuple[Levels, ...]
-
-
-class Level(NamedLook, frozen=True):
-    """One level of a factor: what it changes, by the keys of ``[display]``."""
 
 
 class Factor(Table, frozen=True, kw_only=True):
@@ -44,7 +40,7 @@ class Factor(Table, frozen=True, kw_only=True):
     """
 
     name: str
-    levels: tuple[Level, ...]
+    levels: tuple[Condition, ...]
     between: bool = False
 
     def __post_init__(self) -> None:
@@ -78,7 +74,7 @@ class Factor(Table, frozen=True, kw_only=True):
         """What the levels change, with the values of the first."""
         return self.levels[0].changes
 
-    def level(self, name: str) -> Level:
+    def level(self, name: str) -> Condition:
         """Level of a name, which the factor has."""
         return next(level for level in self.levels if level.name == name)
 
@@ -95,23 +91,22 @@ def between(factors: Iterable[Factor]) -> tuple[Factor, ...]:
 
 def crossed(factors: Iterable[Factor], cross: Cross) -> dict[str, Levels]:
     """Combinations of levels of the factors within participants, by the conditions' names."""
-    own = within(factors)
-    if not own:
-        return {}
-    if cross == "all":
-        combined = list(product(*([level.name for level in factor.levels] for factor in own)))
-    else:
-        combined = list(cross)
-    return {JOINT.join(levels): levels for levels in combined}
+    return _named(_all(within(factors)) if cross == "all" else cross)
 
 
 def groups(factors: Iterable[Factor]) -> dict[str, Levels]:
     """Combinations of levels of the factors between participants, by the groups' names."""
-    own = between(factors)
-    if not own:
-        return {}
-    names = product(*([level.name for level in factor.levels] for factor in own))
-    return {JOINT.join(levels): levels for levels in names}
+    return _named(_all(between(factors)))
+
+
+def _all(factors: tuple[Factor, ...]) -> list[Levels]:
+    """All combinations of levels of some factors; none of no factor."""
+    names = ([level.name for level in factor.levels] for factor in factors)
+    return list(product(*names)) if factors else []
+
+
+def _named(combinations: Iterable[Levels]) -> dict[str, Levels]:
+    return {JOINT.join(levels): levels for levels in combinations}
 
 
 def combined(factors: Iterable[Factor], levels: Levels) -> dict[str, Any]:
@@ -153,15 +148,15 @@ def problem(factors: tuple[Factor, ...], cross: Cross, *, listed: bool) -> str:
             if key in whose:
                 return f"{about} levels give {key}, which {whose[key]} gives; leave it out of one"
             whose[key] = factor.name
-    made = crossed(factors, cross)
     if cross != "all":
         return _problem_of_cross(within(factors), cross)
-    for name in (*made, *groups(factors)):
+    combinations = [*_all(within(factors)), *_all(between(factors))]
+    for name in map(JOINT.join, combinations):
         try:
             check_name("the name made from its levels", name)
         except ValueError as error:
             return f"[[factors]] number 1 levels: {error}; give shorter names"
-    if len(made) < _product(within(factors)) or len(groups(factors)) < _product(between(factors)):
+    if len(crossed(factors, cross)) + len(groups(factors)) < len(combinations):
         return "[[factors]] number 1 levels make two of one name; leave hyphens out"
     return ""
 
@@ -195,13 +190,6 @@ def _problem_of_cross(own: tuple[Factor, ...], cross: tuple[Levels, ...]) -> str
                 f"with one level varies nothing; give two or more, or leave the factor out"
             )
     return ""
-
-
-def _product(factors: tuple[Factor, ...]) -> int:
-    number = 1 if factors else 0
-    for factor in factors:
-        number *= len(factor.levels)
-    return number
 
 
 def _listed(changes: dict[str, Any]) -> str:

@@ -2,34 +2,30 @@
 
 from __future__ import annotations
 
-from itertools import cycle
+import re
+from dataclasses import replace
+from itertools import cycle, zip_longest
 from typing import TYPE_CHECKING
 
 from msgspec import structs
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.allotting import choose_group, choose_order
-from vbraille.sessions.planning.catching import with_catch
 from vbraille.sessions.planning.chance import Chance, balanced_orders
 from vbraille.sessions.planning.choosing import varied
-from vbraille.sessions.planning.design import Choice, Item, StringList
+from vbraille.sessions.planning.design import Catch, Choice, Item, StringList
 from vbraille.sessions.planning.plan import Plan
-from vbraille.sessions.planning.rules import check_plan
 from vbraille.sessions.planning.sequencing import arranged
 from vbraille.sessions.planning.spellings import WrittenText
-from vbraille.sessions.planning.stimuli import (
-    Stimuli,
-    Trial,
-    check_participant,
-    check_seed,
-)
+from vbraille.sessions.planning.stimuli import Stimuli, Trial, check_participant, check_seed
+from vbraille.toml.tomlfile import which
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from vbraille.sessions.planning.appearance import Condition
     from vbraille.sessions.planning.protocol import Protocol
+
 
 _Shown = tuple[Item, "Condition"]
 
@@ -44,7 +40,7 @@ def make_plan(
     texture: float | None = None,
     contrast: float | None = None,
 ) -> Plan:
-    """Make the plan of a session, and check it.
+    """Make the plan of a session.
 
     Parameters
     ----------
@@ -93,7 +89,7 @@ def make_plan(
         trials = with_catch(trials, protocol.design.catch, Chance(f"{drawn} catch"))
     # Practice is shuffled separately, so that the number of its trials does not change the others.
     practice = _practice(protocol, conditions, Chance(f"{drawn} practice"))
-    plan = Plan(
+    return Plan(
         protocol=protocol.name,
         participant=participant,
         seed=seed,
@@ -102,8 +98,67 @@ def make_plan(
         practice=_numbered(practice),
         trials=_numbered(trials),
     )
-    check_plan(protocol, plan)
-    return plan
+
+
+def check_plan(protocol: Protocol, plan: Plan) -> None:
+    """Check that a plan is what the protocol, the participant and the seed make.
+
+    Cells of texts are taken from the plan, since liblouis may have other tables than it had.
+
+    Raises
+    ------
+    InputError
+        If the plan was altered; the sentence says where.
+    """
+    cells = {(s.text, s.table): s.masks for s in plan.stimuli() if s.text and s.table}
+    protocol = structs.replace(protocol, cells=cells)
+    try:
+        again = make_plan(
+            protocol,
+            plan.participant,
+            plan.seed,
+            plan.order or None,
+            group=plan.group or None,
+            texture=_own_tuning(protocol, plan, "texture"),
+            contrast=_own_tuning(protocol, plan, "contrast"),
+        )
+        if said := _difference(plan, again):
+            raise ValueError(said)
+    except (InputError, ValueError) as error:
+        raise InputError(
+            f"the plan of {plan.participant} for {protocol.name} is not what seed {plan.seed} "
+            f"makes: {error}; put it back as it was"
+        ) from None
+
+
+def _difference(plan: Plan, again: Plan) -> str:
+    """Say where a plan differs from the one that was made again; empty if it does not."""
+    for name in ("protocol", "group", "order"):
+        if (kept := getattr(plan, name)) != (made := getattr(again, name)):
+            return f"{name} is {kept!r}, and must be {made!r}"
+    for name, trials, made in (
+        ("practice trial", plan.practice, again.practice),
+        ("trial", plan.trials, again.trials),
+    ):
+        for number, (kept, wanted) in enumerate(zip_longest(trials, made), 1):
+            if kept is None or wanted is None:
+                return f"{name} {number} is {'missing' if kept is None else 'one too many'}"
+            for field in wanted.__struct_fields__:
+                if getattr(kept, field) != getattr(wanted, field):
+                    return f"{name} {number} differs in its {field}"
+    return ""
+
+
+def _own_tuning(protocol: Protocol, plan: Plan, name: str) -> float | None:
+    """Texture or contrast that was given for the session instead of the display's; else None."""
+    free = [condition.name for condition in protocol.conditions if name not in condition.given]
+    if name == varied(protocol):
+        return None
+    for trial in (*plan.trials, *plan.practice):
+        if trial.condition in free:
+            value = getattr(trial.stimuli[0].tuning, name)
+            return None if value == getattr(protocol.style.tuning, name) else value
+    return None
 
 
 def _tuned(protocol: Protocol, given: dict[str, float | None]) -> list[Condition]:
@@ -250,3 +305,132 @@ def _trial(protocol: Protocol, item: Item, condition: Condition, block: int) -> 
 
 def _numbered(trials: list[Trial]) -> tuple[Trial, ...]:
     return tuple(structs.replace(trial, number=number) for number, trial in enumerate(trials, 1))
+
+
+def choose_group(protocol: Protocol, participant: str, group: str | None) -> str:
+    """Name of the participant's group; empty if the protocol has no groups.
+
+    Parameters
+    ----------
+    protocol, participant
+        The protocol, and the participant's pseudonym, whose last number chooses the group if
+        nothing else does.
+    group
+        Group that was asked for; None for that of the table of orders, or of the number.
+
+    Raises
+    ------
+    InputError
+        If there is no such group, the table gives another, or there is nothing to go by.
+    """
+    groups = protocol.groups
+    if group is None and protocol.group:
+        return protocol.group
+    if not groups:
+        if group:
+            raise InputError(f"{protocol.name} has no groups; leave {setting('group')} out")
+        return ""
+    if group is not None and group not in groups:
+        raise InputError(f"there is no group {group!r}{which(group, groups)}")
+    told = next((row.group for row in protocol.order_rows if row.participant == participant), None)
+    if told is not None:
+        if group not in (None, told):
+            raise InputError(
+                f"the table of orders has {participant} in the group {told}; leave "
+                f"{setting('group')} out"
+            )
+        return told
+    if group is not None:
+        return group
+    return groups[(_number(participant, "group", "NAME") - 1) % len(groups)]
+
+
+def choose_order(protocol: Protocol, participant: str, order: int | None) -> int:
+    """Number of the balanced order or row of the table, from 1; 0 if there is only one order.
+
+    Raises
+    ------
+    InputError
+        If an order is asked for that there is not, or there is nothing to go by.
+    """
+    if protocol.order_rows:
+        return _row(protocol, participant, order)
+    if not protocol.balanced:
+        if order is not None:
+            raise InputError(
+                f"{protocol.name} has no balanced orders; leave {setting('order')} out"
+            )
+        return 0
+    if order is None:
+        number = _number(participant, "order", "N")
+        # Groups take turns, so that each of them has all orders.
+        order = (number - 1) // max(1, len(protocol.groups)) + 1
+    elif order < 1:
+        raise InputError(f"order is {order}; it must be 1 or more")
+    return (order - 1) % len(balanced_orders(len(protocol.conditions))) + 1
+
+
+def _row(protocol: Protocol, participant: str, order: int | None) -> int:
+    rows = protocol.order_rows
+    if order is not None:
+        if not 1 <= order <= len(rows):
+            raise InputError(f"order is {order}; it must be 1 to {len(rows)}, a row of the table")
+        return order
+    names = [row.participant for row in rows]
+    if participant not in names:
+        raise InputError(
+            f"the table of orders of {protocol.name} has no participant "
+            f"{participant!r}{which(participant, names)}; or give {setting('order')} N, a row"
+        )
+    return names.index(participant) + 1
+
+
+def _number(participant: str, what: str, give: str) -> int:
+    """Last number in a pseudonym, by which the group or the order goes."""
+    numbers = re.findall("[0-9]+", participant)
+    if not numbers:
+        whose = "order of the conditions" if what == "order" else "group"
+        raise InputError(
+            f"the {whose} goes by the participant's number, and {participant} "
+            f"has none; give {setting(what)} {give}, or a participant such as P07"
+        )
+    return int(numbers[-1])
+
+
+def stretches(trials: int, catch: Catch) -> list[int]:
+    """Ends of the stretches of other trials, each of which has one catch trial."""
+    number = catch.number(trials)
+    if catch.every is not None:
+        return [(catch.every - 1) * part for part in range(1, number + 1)]
+    return [part * trials // number for part in range(1, number + 1)]
+
+
+def with_catch(trials: Sequence[Trial], catch: Catch, chance: Chance) -> list[Trial]:
+    """Trials with catch trials among them, one at a random place of each stretch.
+
+    A catch trial stands after a trial of its stretch, whose block and condition it has. So it is
+    never the first of the session, and no two are neighbours.
+    """
+    found: list[Trial] = []
+    first = 0
+    for end in stretches(len(trials), catch):
+        after = first + chance.below(end - first)
+        found += [*trials[first : after + 1], _caught(trials[after], catch)]
+        found += trials[after + 1 : end]
+        first = end
+    return [*found, *trials[first:]]
+
+
+def _caught(trial: Trial, catch: Catch) -> Trial:
+    if catch.show == "repeat":
+        return structs.replace(trial, catch="repeat")
+    first, stop = trial.asked
+    blank = [
+        replace(
+            s,
+            masks=(*s.masks[:first], *(0,) * (stop - first), *s.masks[stop:]),
+            text=None if s.text is None else "",
+        )
+        for s in trial.stimuli
+    ]
+    return structs.replace(trial, catch="blank", stimuli=Stimuli(blank))

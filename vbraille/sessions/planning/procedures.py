@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from vbraille.adaptive.questplus import (
     GridAxis,
@@ -15,12 +15,9 @@ from vbraille.adaptive.questplus import (
 )
 from vbraille.adaptive.staircase import StaircaseRule, Staircases, StopRule
 from vbraille.errors import check_range
-from vbraille.sessions.planning.design import MOST_TRIALS, Choice
-from vbraille.sessions.planning.knobs import KNOBS, KnobName
+from vbraille.sessions.planning.design import MOST_TRIALS, Choice, Design
+from vbraille.sessions.planning.stimuli import KNOBS, KnobName
 from vbraille.toml.tomlfile import Table
-
-if TYPE_CHECKING:
-    from vbraille.sessions.planning.design import Design
 
 THRESHOLD, PREFERRED = "threshold", "preferred"
 _MOST_VALUES = 1000
@@ -192,6 +189,7 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
             raise ValueError(f"step makes more than {_MOST_VALUES} values; make it larger")
         return steps(low, high, self.step)
 
+    @lru_cache(maxsize=8)  # noqa: B019 - tables are values, and few
     def quest(self, design: Design) -> GridQuest:
         """Grid of this procedure for a design.
 
@@ -200,10 +198,6 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
         ValueError
             If there is no such grid.
         """
-        return _make_quest(self, design)
-
-    def grid(self, design: Design) -> GridQuest:
-        """Make the grid of this procedure anew; `quest` keeps it."""
         values = self.values(design)
         spread, lapse = GridAxis("spread", self.spread), GridAxis("lapse", self.lapse)
         if not isinstance(design, Choice):
@@ -320,11 +314,6 @@ class StaircaseProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="stairc
             for start in self.start
         )
         return Staircases(rules, seed)
-
-
-@lru_cache(maxsize=8)
-def _make_quest(table: QuestProcedure, design: Design) -> GridQuest:
-    return table.grid(design)
 
 
 ProcedureTable = FixedProcedure | QuestProcedure | StaircaseProcedure

@@ -10,12 +10,17 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
 from msgspec import field, structs
 
 from vbraille.render import MODELS
-from vbraille.sessions.planning.appearance import Appearance, Condition, mapping_named
-from vbraille.sessions.planning.asking import CellSpelling
-from vbraille.sessions.planning.besides import ItemRow, OrderRow
+from vbraille.sessions.planning.appearance import (
+    CONVENTIONAL,
+    Appearance,
+    Condition,
+    ConventionalTable,
+    mapping_named,
+)
 from vbraille.sessions.planning.conduct import (
     FaultRules,
     Question,
@@ -24,13 +29,15 @@ from vbraille.sessions.planning.conduct import (
     TrialPace,
     check_line,
 )
-from vbraille.sessions.planning.conventionaltable import CONVENTIONAL, ConventionalTable
 from vbraille.sessions.planning.design import (
+    BlockOrder,
     Choice,
     Combinations,
     Design,
     Item,
     ItemList,
+    Practice,
+    Rules,
     StringList,
 )
 from vbraille.sessions.planning.factors import (
@@ -43,21 +50,17 @@ from vbraille.sessions.planning.factors import (
     groups,
     within,
 )
-from vbraille.sessions.planning.items import Items
-from vbraille.sessions.planning.knobs import with_value
-from vbraille.sessions.planning.ordering import BlockOrder
-from vbraille.sessions.planning.practice import Practice
+from vbraille.sessions.planning.items import ItemRow, Items, OrderRow
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
-from vbraille.sessions.planning.questions import AnyQuestion, usual_question
-from vbraille.sessions.planning.ruletable import Rules
-from vbraille.sessions.planning.spellings import SpellingKeys, WrittenText
-from vbraille.sessions.planning.stimuli import Stimulus
-from vbraille.sessions.planning.writing import cells_of
+from vbraille.sessions.planning.questions import AnyQuestion, CellSpelling, usual_question
+from vbraille.sessions.planning.spellings import SpellingKeys, WrittenText, cells_of
+from vbraille.sessions.planning.stimuli import Stimulus, with_value
 from vbraille.toml.tomlfile import Table, which
 
 if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
     from vbraille.render import BrailleStyle, Mapping, Model, Tuning
+    from vbraille.render.program import Program
 
 FORMAT = 1
 ONLY_CONDITION = "all"
@@ -148,6 +151,9 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         What these files hold: items, and orders of participants; empty without such files.
     group
         Group whose share of the protocol this is; empty for the protocol of all.
+    cells
+        Dot masks of texts that are known already, by the text and its table; those of others are
+        made by the tables.
 
     Raises
     ------
@@ -162,6 +168,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
     item_rows: tuple[ItemRow, ...] = ()
     order_rows: tuple[OrderRow, ...] = ()
     group: str = ""
+    cells: dict[tuple[str, str], tuple[int, ...]] = {}  # noqa: RUF012
 
     def __post_init__(self) -> None:
         if not _NAME.fullmatch(self.name):
@@ -263,9 +270,10 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         return "table" if self.order.kind == "table" else self.order.of_blocks
 
     @property
-    def repeat_faults(self) -> bool:
-        """Whether a trial in which the device failed is shown again."""
-        return self.faults.repeat
+    def balanced(self) -> bool:
+        """Whether participants differ in the order of the conditions."""
+        by_blocks = self.design.blocks == "conditions" and self.block_order in ("balanced", None)
+        return by_blocks and len(self.conditions) > 1
 
     @property
     def task(self) -> str:
@@ -284,7 +292,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
 
     def cell_spelling(self, stimulus: Stimulus) -> CellSpelling:
         """How cells may be typed in answers about a stimulus."""
-        if stimulus.on == CONVENTIONAL:
+        if stimulus.conventional:
             return CellSpelling(self.keys, _ALL_DOTS)
         return CellSpelling(self.keys, self.mapping_of(stimulus).shown_dots())
 
@@ -308,10 +316,6 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         """Number of blank cells before each string, which keep it clear of the left stop."""
         return self.display.lead_cells
 
-    def tuning(self, condition: Condition) -> Tuning:
-        """Tuning that a condition is shown with."""
-        return condition.tune(self.model, self.style.tuning)
-
     def style_of(self, condition: Condition) -> BrailleStyle:
         """How strings are shown in a condition.
 
@@ -333,6 +337,13 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
     def place_of(self, condition: Condition) -> str:
         """Where the strings of a condition stand: "device", or "brlapi"."""
         return condition.on or self.display.on or "device"
+
+    @property
+    def stands_beside(self) -> bool:
+        """Whether a conventional display is needed."""
+        return bool(self.conventional.reference) or any(
+            self.place_of(condition) == CONVENTIONAL for condition in self.conditions
+        )
 
     def shown(
         self, condition: Condition, masks: tuple[int, ...], value: float | None = None
@@ -359,7 +370,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
             if table is None:
                 raise ValueError(f"the condition {condition.name} has no table; give it one")
             text = str(masks)
-            masks = cells_of(text, table)
+            masks = self.cells.get((text, table)) or cells_of(text, table)
         if self.place_of(condition) == CONVENTIONAL:
             return Stimulus(
                 masks, style.tuning, style.geometry, text=text, table=table, on=CONVENTIONAL
@@ -376,6 +387,16 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
     def mapping_of(self, stimulus: Stimulus) -> Mapping:
         """Which dots the rows of the array show while a stimulus is felt."""
         return self.mapping if stimulus.mapping is None else mapping_named(stimulus.mapping)
+
+    def program(self, stimulus: Stimulus, tuning: Tuning) -> Program:
+        """Picture of a stimulus for the compiled code, by places of the array's centre."""
+        style = replace(
+            self.model.style,
+            mapping=self.mapping_of(stimulus),
+            geometry=stimulus.geometry,
+            tuning=tuning,
+        )
+        return style.render(np.array(self.line(stimulus.masks), np.uint8), self.model.display)
 
     def told(self, item: tuple[int, ...]) -> dict[str, str]:
         """What the file of items tells of an item, by column; see `Trial.item`."""

@@ -11,9 +11,9 @@ from msgspec import field
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.agreement import check_agreement
-from vbraille.sessions.planning.besides import read_items, read_orders, read_words
 from vbraille.sessions.planning.design import ItemList
 from vbraille.sessions.planning.factors import problem
+from vbraille.sessions.planning.items import read_items, read_orders, read_words
 from vbraille.sessions.planning.protocol import FORMAT, Protocol, ProtocolFile
 from vbraille.sessions.planning.spellings import SpellingKeys, read_keys, spelled
 from vbraille.toml.textfile import read_text

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import accumulate, chain, pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -27,21 +28,19 @@ _STARTS, _EXCHANGES, _PARTNERS, _DRAWS = 40, 30_000, 25, 40
 
 def limited(protocol: Protocol) -> dict[str, Callable[[Shown], str]]:
     """What ``at_most_running`` may name, each with the level that an item in a condition has."""
-    found: dict[str, Callable[[Shown], str]] = {CONDITION: lambda shown: shown[1].name}
-    for factor in within(protocol.factors):
-        found[factor.name] = _level(protocol, factor.name)
-    for column in protocol.item_columns:
-        found[column] = _column(protocol, column)
-    return found
+    levels = {c.name: protocol.levels(c.name) for c in protocol.conditions}
 
+    def level(name: str, shown: Shown) -> str:
+        return levels[shown[1].name][name]
 
-def _level(protocol: Protocol, name: str) -> Callable[[Shown], str]:
-    levels = {c.name: protocol.levels(c.name)[name] for c in protocol.conditions}
-    return lambda shown: levels[shown[1].name]
+    def told(name: str, shown: Shown) -> str:
+        return protocol.told(tuple(map(int, shown[0])))[name]
 
-
-def _column(protocol: Protocol, name: str) -> Callable[[Shown], str]:
-    return lambda shown: protocol.told(tuple(map(int, shown[0])))[name]
+    return {
+        CONDITION: lambda shown: shown[1].name,
+        **{factor.name: partial(level, factor.name) for factor in within(protocol.factors)},
+        **{column: partial(told, column) for column in protocol.item_columns},
+    }
 
 
 def impossible(protocol: Protocol) -> str:

@@ -1,33 +1,170 @@
-"""A session in the Brain Imaging Data Structure: trials as behaviour, traces as recordings.
+"""Sessions in the Brain Imaging Data Structure: trials as behaviour, traces as recordings.
 
 The files follow BIDS 1.9, "Behavioral experiments (with no neural recordings)" and "Physiological
-recordings".
+recordings". Sessions are added to a dataset one by one.
 """
 
 from __future__ import annotations
 
+import csv
 import gzip
 import io
 import json
-from dataclasses import replace
+import re
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille.sessions.record.anonymous import anonymous, number_of
-from vbraille.sessions.record.bidsevents import EVENT_COLUMNS, runs_of
-from vbraille.sessions.record.codebook import entry_of
-from vbraille.sessions.record.columns import describe_design
-from vbraille.sessions.record.export import Traces, encode, rows, to_csv
-from vbraille.sessions.record.participants import label_of
+from vbraille.errors import InputError
+from vbraille.files import missing, write_file
+from vbraille.sessions.record.codebook import CodebookEntry, describe_design, entry_of
+from vbraille.sessions.record.events import (
+    Answer,
+    AnyTime,
+    BreakWanted,
+    Closed,
+    Device,
+    End,
+    Ended,
+    Fault,
+    JournalEvent,
+    Lost,
+    Note,
+    Run,
+    Tuning,
+)
+from vbraille.sessions.record.export import (
+    PlacedNote,
+    Traces,
+    anonymous,
+    encode,
+    number_of,
+    read_notes,
+    rows,
+    to_csv,
+    without_paths,
+)
+from vbraille.sessions.record.folder import Record, alike, label_of
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from vbraille.sessions.record.folder import Record
+
+EVENT_COLUMNS = {
+    "onset": {"Description": "from the first row of the run's recording", "Units": "s"},
+    "duration": {"Description": "no event has one that is known", "Units": "s"},
+    "trial_type": {"Description": "what happened, by the names of docs/session-format.md"},
+    "practice": {"Description": "1 in a trial of practice, else 0"},
+    "trial": {"Description": "number of the trial that it happened in"},
+    "trial_before": {"Description": "of a note: the trial that was shown last before it"},
+    "trial_after": {"Description": "of a note: the trial that was shown next"},
+    "value": {
+        "Description": "of an answer, what was answered, and its confidence after a "
+        "semicolon; of a note, its text; else what"
+    },
+}
+_LEFT_OUT = (Run, BreakWanted, Tuning, Closed, Lost)
+
+
+@dataclass(frozen=True, slots=True)
+class BidsRun:
+    """A run of a session, with its events.
+
+    Parameters
+    ----------
+    event
+        Event that the run began with.
+    events
+        Events of the run, after that one.
+    notes
+        All notes of the session, by the numbers of their events.
+    """
+
+    event: Run
+    events: list[JournalEvent]
+    notes: dict[int, PlacedNote]
+
+    def table(self, first_ns: int | None, *, without_times: bool) -> str:
+        """Events as a table, with tabs between columns.
+
+        Parameters
+        ----------
+        first_ns
+            Time of the first tick of the run's trace; None if there is none, and times count
+            from the event that the run began with.
+        without_times
+            Whether notes, and words that may be paths, are left out.
+        """
+        begun_s = self._begun_s(first_ns)
+        rows = [
+            self._row(event, begun_s, without_times)
+            for event in self.events
+            if not isinstance(event, (*_LEFT_OUT, Note) if without_times else _LEFT_OUT)
+        ]
+        # The journal may have an event a little later than one that happened after it.
+        rows.sort(key=lambda row: row["onset"])
+        if not rows:
+            return "\t".join(EVENT_COLUMNS) + "\n"
+        return to_csv(rows, "\t", "n/a")
+
+    def _begun_s(self, first_ns: int | None) -> float:
+        """Time of the first tick, in seconds that the session had run for."""
+        for event in self.events:
+            time_ns = getattr(event, "time_ns", None)
+            if first_ns is not None and time_ns is not None:
+                return event.t_s - (time_ns - first_ns) / 1e9
+        return self.event.t_s
+
+    def _row(self, event: JournalEvent, begun_s: float, without_times: bool) -> dict[str, Any]:
+        note = self.notes.get(event.n)
+        text = _text_of(event)
+        return {
+            "onset": round(event.t_s - begun_s, 6),
+            "duration": "",
+            "trial_type": event.kind,
+            "practice": int(isinstance(event, AnyTime) and event.practice),
+            "trial": (isinstance(event, AnyTime) and event.trial) or "",
+            "trial_before": note.before or "" if note else "",
+            "trial_after": note.after or "" if note else "",
+            "value": without_paths(text) if without_times else text,
+        }
+
+
+def _text_of(event: JournalEvent) -> str:
+    """Text that an event carries; empty for kinds without one."""
+    match event:
+        case Answer():
+            sure = "" if event.confidence is None else f"; {event.confidence}"
+            return event.answer + sure
+        case Ended():
+            return event.by
+        case Note():
+            return event.text
+        case Fault() | Device():
+            return event.what
+        case End():
+            return event.why
+    return ""
+
+
+def runs_of(record: Record) -> list[BidsRun]:
+    """Runs of a session, in order."""
+    notes = {note.event: note for note in read_notes(record.told.events)}
+    runs: list[BidsRun] = []
+    for event in record.told.events:
+        if isinstance(event, Run):
+            runs.append(BidsRun(event, [], notes))
+        elif runs:
+            runs[-1].events.append(event)
+    return runs
+
 
 _ROWS = 1000  # number of rows that are formatted at once
 _LEVEL = 3  # level of gzip; higher ones take longer than all the rest
@@ -161,3 +298,175 @@ def _recording(ticks: NDArray[np.void]) -> bytes:
                 # Rows are formatted many at a time, which is several times as fast as one by one.
                 file.write((row * some.size % values).replace("nan", "n/a").encode())
     return packed.getvalue()
+
+
+_BIDS = "1.9.0"
+_ABOUT, _README = "dataset_description.json", "README"
+_PEOPLE, _PEOPLE_COLUMNS = "participants.tsv", "participants.json"
+_ID, _PSEUDONYM = "participant_id", "pseudonym"
+_DESCRIBED = CodebookEntry(
+    _PSEUDONYM, "as the laboratory has it; participant_id has letters and digits"
+)
+_README_TEXT = """\
+Legibility sessions of vbraille, as behavioural data.
+
+Each sub- is a participant, by the pseudonym that participants.tsv has. Each ses- is one session: a
+protocol from its first trial to its last, in the order in which they were added. A session that was
+broken off and gone on with has several runs.
+
+*_beh.tsv has a row a trial. *_events.tsv has what happened in a run, notes of the experimenter
+included, and *_recording-carriage_physio.tsv.gz where the array was at each moment, with its speed.
+What each column holds is in the file of the same name that ends in .json.
+"""
+
+
+def write(
+    record: Record,
+    folder: Path,
+    traces: Traces | None = None,
+    *,
+    without_times: bool = False,
+    session: str | None = None,
+) -> list[Path]:
+    """Add a session to a dataset, which is begun if there is none, and return the files written.
+
+    Parameters
+    ----------
+    record, traces, without_times
+        These are described at `vbraille.sessions.record.bids.files`.
+    folder
+        Directory of the dataset.
+    session
+        Label of the session among those of the participant; None for the next number.
+
+    Raises
+    ------
+    InputError
+        If the dataset has the session already, another participant's pseudonym is too similar
+        to this one's, or a file cannot be made. Nothing is written then.
+    VbrailleError
+        If the disk does not take the files. The dataset then is as it was before.
+    """
+    people = _read_people(folder)
+    pseudonym = record.plan.participant
+    label = label_of(pseudonym)
+    _check_pseudonym(folder, people, pseudonym)
+    _check_absent(folder, record)
+    if session is None:
+        session = _next_session(folder / f"sub-{label}")
+    elif not label_of(session):
+        raise InputError(
+            f"{record.folder} has no answer that could name its session; leave out "
+            f"{setting('session-by')}"
+        )
+    made = files(
+        record,
+        traces,
+        session=label_of(session),
+        without_times=without_times,
+        participant=pseudonym,
+    )
+    if there := next((path for path in made if (folder / path).exists()), None):
+        raise InputError(
+            f"{folder / there} is there already, of another session; leave out "
+            f"{setting('session-by')}, or give another directory with {setting('out')}"
+        )
+    new = {folder / path: content for path, content in made.items()}
+    for path, content in (
+        (_ABOUT, _json(_about(record))),
+        (_README, _README_TEXT.encode()),
+        (_PEOPLE_COLUMNS, _json({_PSEUDONYM: _DESCRIBED.to_bids()})),
+    ):
+        if not (folder / path).exists():
+            new[folder / path] = content
+    people.setdefault(label, pseudonym)
+    rows = [{_ID: f"sub-{of}", _PSEUDONYM: name} for of, name in people.items()]
+    _write(folder, new, _PEOPLE, encode(to_csv(rows, "\t", "n/a")))
+    return [*new, folder / _PEOPLE]
+
+
+def _read_people(folder: Path) -> dict[str, str]:
+    """Read the pseudonyms of a dataset's participants, by their labels.
+
+    Raises
+    ------
+    InputError
+        If the table cannot be read, or has columns of others.
+    """
+    path = folder / _PEOPLE
+    try:
+        rows = list(csv.reader(io.StringIO(path.read_text("utf-8")), delimiter="\t"))
+    except (FileNotFoundError, NotADirectoryError):
+        return {}  # a dataset that is no directory is refused when it is written
+    except (OSError, ValueError, csv.Error):
+        rows = []
+    if not rows or rows[0] != [_ID, _PSEUDONYM] or any(len(row) != 2 for row in rows):
+        raise InputError(
+            f"{path} is no table of {_ID} and {_PSEUDONYM} alone, to which participants could be "
+            f"added; give another directory with {setting('out')}, and put the tables together"
+        )
+    return {label.removeprefix("sub-"): pseudonym for label, pseudonym in rows[1:]}
+
+
+def _check_pseudonym(folder: Path, people: dict[str, str], pseudonym: str) -> None:
+    """Check that nobody else in the dataset could be mistaken for this participant."""
+    for other in people.values():
+        if other != pseudonym and alike(other, pseudonym):
+            raise InputError(
+                f"{folder} has a participant {other}, who could not be told from {pseudonym}; "
+                f"give another directory with {setting('out')}"
+            )
+
+
+def _check_absent(folder: Path, record: Record) -> None:
+    """Check that the dataset does not have the session under any label."""
+    number = number_of(record)
+    for path in folder.glob("sub-*/ses-*/beh/*_beh.json"):
+        try:
+            told = json.loads(path.read_text("utf-8")).get(SESSION)
+        except (OSError, ValueError, AttributeError):
+            continue
+        if told == number:
+            there = path.with_suffix(".tsv")
+            raise InputError(
+                f"{record.folder} is there already, as {there}; give another directory with "
+                f"{setting('out')}"
+            )
+
+
+def _next_session(participant: Path) -> str:
+    """Label for the next session of a participant."""
+    names = [path.name for path in participant.glob("ses-*")]
+    numbers = [int(name[4:]) for name in names if re.fullmatch("ses-[0-9]{1,9}", name)]
+    return f"{max(numbers, default=0) + 1:02}"
+
+
+def _write(folder: Path, new: dict[Path, bytes], people: str, table: bytes) -> None:
+    """Write new files, and then the table of participants; undo everything if one fails."""
+    written: list[Path] = []
+    try:
+        parents = {parent for path in new for parent in missing(path.parent)}
+        for parent in sorted(parents):  # a directory comes after the one that contains it
+            parent.mkdir(exist_ok=True)
+            written.append(parent)
+        for path, content in new.items():
+            write_file(path, content)
+            written.append(path)
+        write_file(folder / people, table, replace=True, durable=True)
+    except BaseException as fault:
+        for path in reversed(written):
+            with suppress(OSError):  # a directory that somebody else has used meanwhile stays
+                path.rmdir() if path.is_dir() else path.unlink()
+        if isinstance(fault, OSError):
+            raise InputError(f"{folder} cannot be written: {fault.strerror}") from None
+        raise
+
+
+def _about(record: Record) -> dict[str, Any]:
+    """Content of the file that describes the dataset."""
+    return {
+        "Name": "vbraille legibility sessions",
+        "BIDSVersion": _BIDS,
+        "DatasetType": "raw",
+        "GeneratedBy": [{"Name": "vbraille", "Version": record.head["versions"]["vbraille"]}],
+    }

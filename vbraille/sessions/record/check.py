@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.errors import VbrailleError
-from vbraille.sessions.planning.rules import check_plan
+from vbraille.sessions.planning.making import check_plan
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Closed, Lost, Run
 from vbraille.sessions.record.folder import (
     FILES,
+    Record,
     load,
     missed_tie,
     read_file,
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from vbraille.sessions.record.folder import Record
     from vbraille.sessions.record.journal import JournalContents
     from vbraille.sessions.record.traces import Trace
 
@@ -94,7 +94,7 @@ def check(record: Record) -> Iterator[Finding]:
     try:
         check_plan(record.protocol, record.plan)
         deck = " to choose the values of" if record.protocol.adaptive else ""
-        yield Finding(f"plan: {len(record.plan.trials)} trials{deck}, all design rules hold")
+        yield Finding(f"plan: {len(record.plan.trials)} trials{deck}, as the seed makes them")
     except VbrailleError as error:
         yield Finding(f"plan: {error}", good=False)
     yield from _check_journal(told)

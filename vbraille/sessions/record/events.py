@@ -1,6 +1,4 @@
-"""The kinds of events that a session's journal may have, with a class for each kind.
-
-Those that happen in a trial are in `trialevents`, and are named here with the others.
+"""The kinds of events that a session's journal may have, a class for each, and their JSON.
 
 `docs/session-format.md` has the same as a table. An event has no other fields than its class.
 A new kind or field needs a higher `vbraille.sessions.record.folder.FORMAT`.
@@ -8,25 +6,266 @@ A new kind or field needs a higher `vbraille.sessions.record.folder.FORMAT`.
 
 from __future__ import annotations
 
+import json
+import re
 from typing import Any, ClassVar
 
 import msgspec
 
-from vbraille.sessions.record.eventbase import AnyTime, JournalEvent
-from vbraille.sessions.record.trialevents import (
-    Answer,
-    Contact,
-    Cue,
-    Ended,
-    Fault,
-    Presented,
-    Read,
-    Repeat,
-    Stood,
-    Undo,
-    Warning,  # noqa: A004 - the protocol calls it so
-    Well,
-)
+
+def _kind_of(name: str) -> str:
+    """Name that the journal has for a class of events, such as break_wanted for BreakWanted."""
+    return re.sub("(?<=[a-z])(?=[A-Z])", "_", name).lower()
+
+
+class JournalEvent(
+    msgspec.Struct,
+    frozen=True,
+    kw_only=True,
+    omit_defaults=True,
+    forbid_unknown_fields=True,
+    tag_field="event",
+    tag=_kind_of,
+):
+    """Something that happened in a session.
+
+    Parameters
+    ----------
+    n
+        Number of the event, from 1. It is set when the event is added to the journal.
+    t_s
+        Seconds that the session had run for, without the time between runs.
+    wall
+        Time by the wall clock, UTC. It is set when the event is added to the journal.
+    up_s
+        Seconds since the machine was started, time asleep included. It is set when the event is
+        added to the journal.
+    script_line
+        Number of the line in an answers file that caused the event; 0 if no such line did.
+    """
+
+    # Whether events of the kind are on the disk before the console says anything about them.
+    durable: ClassVar[bool] = False
+
+    n: int = 0
+    t_s: float
+    wall: str = ""
+    up_s: float | None = None
+    script_line: int = 0
+
+    @property
+    def kind(self) -> str:
+        """Name of the event's kind, as in the journal."""
+        return str(self.__struct_config__.tag)
+
+
+class AnyTime(JournalEvent, frozen=True, kw_only=True):
+    """Something that may happen in a trial or between trials.
+
+    Parameters
+    ----------
+    trial
+        Number of the trial that was open; 0 if none was.
+    practice
+        Whether that trial is practice.
+    """
+
+    trial: int = 0
+    practice: bool = False
+
+
+class InTrial(AnyTime, frozen=True, kw_only=True):
+    """Something that can happen in a trial only."""
+
+    def __post_init__(self) -> None:
+        if self.trial < 1:
+            raise ValueError("it is of no trial")
+
+
+class WithStimulus(InTrial, frozen=True, kw_only=True):
+    """Something that happens to a stimulus of a trial.
+
+    Parameters
+    ----------
+    attempt
+        Number of the attempt at the trial, from 1.
+    stimulus
+        Which stimulus of the trial it is: 0, or 1 for the second of two.
+    """
+
+    attempt: int
+    stimulus: int
+
+
+class Presented(WithStimulus, frozen=True, kw_only=True):
+    """A stimulus was put under the hand.
+
+    Parameters
+    ----------
+    line
+        Number of the showing, which the trace has as `line`; left out on paper, and on a
+        conventional display.
+    tuning
+        Contrast or texture that the experimenter has set instead of the stimulus's own.
+    shown
+        The stimulus itself, in the form that `plan.json` has.
+    """
+
+    line: int = 0
+    tuning: dict[str, float] = {}
+    shown: dict[str, Any]
+
+
+class Stood(WithStimulus, frozen=True, kw_only=True):
+    """Cells were put on the conventional display.
+
+    Parameters
+    ----------
+    cells
+        What stands on it from its left, in Unicode braille; left out if nothing does any more.
+    reference
+        Whether that is what the stimuli are compared with, and not the stimulus itself.
+    time_ns
+        Time at which the display's driver had taken it, by the host's monotonic clock.
+    """
+
+    cells: str = ""
+    reference: bool = False
+    time_ns: int
+
+
+class Cue(InTrial, frozen=True):
+    """The start signal sounded."""
+
+
+class Contact(WithStimulus, frozen=True, kw_only=True):
+    """The array came to the first dot.
+
+    Parameters
+    ----------
+    tick, time_ns
+        Number and time of the tick at which it came there, as in the trace.
+    """
+
+    tick: int
+    time_ns: int
+
+
+class Read(WithStimulus, frozen=True, kw_only=True):
+    """The stimulus was read: the hand went to its end and back, or off the device Enter said so.
+
+    Parameters
+    ----------
+    tick, time_ns
+        Number and time of the tick at which it was read, as in the trace; left out off the device.
+    """
+
+    tick: int | None = None
+    time_ns: int | None = None
+
+
+class Ended(WithStimulus, frozen=True, kw_only=True):
+    """The participant's own key ended the reading of a stimulus.
+
+    Parameters
+    ----------
+    by
+        Which key it was: "button:N" of the device, or "key:NAME".
+    time_ns
+        Time of it by the host's monotonic clock, as in the trace; left out if it is not known.
+    """
+
+    by: str
+    time_ns: int | None = None
+
+
+class Warning(InTrial, frozen=True):  # noqa: A001 - the protocol calls it so
+    """The warning sounded."""
+
+
+class Answer(InTrial, frozen=True, kw_only=True):
+    """An answer was given.
+
+    Parameters
+    ----------
+    attempt
+        Number of the attempt at the trial that was answered.
+    answer
+        The answer: Unicode braille with `?` for a place not read; 1 or 2, for the stimulus
+        chosen; or as `[question]` has it: yes or no, same or different, a number, or words.
+    corrects
+        Whether the answer replaces one that was taken back.
+    early
+        Whether the answer came before the trial was read to its end.
+    confidence
+        How sure the answer is, on the protocol's scale; left out if that is not asked.
+    confidence_s
+        Seconds from the answer to its confidence, with which it was written.
+    ended_by
+        What ended reading: "button:N", "key:NAME", or "answer" if the answer came before the
+        participant's key; left out if the protocol has no such key.
+    """
+
+    durable: ClassVar[bool] = True
+
+    attempt: int
+    answer: str
+    corrects: bool = False
+    early: bool = False
+    confidence: int | None = None
+    confidence_s: float = 0.0
+    ended_by: str = ""
+
+
+class Undo(InTrial, frozen=True):
+    """The last answer was taken back; the record keeps it."""
+
+    durable: ClassVar[bool] = True
+
+
+class Repeat(InTrial, frozen=True):
+    """The experimenter asked for the trial to be shown again."""
+
+    durable: ClassVar[bool] = True
+
+
+class Fault(InTrial, frozen=True, kw_only=True):
+    """The stimulus could no longer be felt, because of the device or the engine.
+
+    Parameters
+    ----------
+    what
+        What went wrong, in words for people.
+    attempt
+        Number of the attempt at the trial in which it went wrong.
+    stimulus
+        Which stimulus of the trial it is: 0, or 1 for the second of two; left out if the engine
+        died.
+    tick, time_ns
+        Number and time of the first tick that was not felt, as in the trace; left out if the
+        engine died.
+    """
+
+    durable: ClassVar[bool] = True
+
+    what: str
+    attempt: int
+    stimulus: int | None = None
+    tick: int | None = None
+    time_ns: int | None = None
+
+
+class Well(WithStimulus, frozen=True, kw_only=True):
+    """The stimulus could be felt again after a fault.
+
+    Parameters
+    ----------
+    tick, time_ns
+        Number and time of the first tick that was felt again, as in the trace.
+    """
+
+    tick: int
+    time_ns: int
 
 
 class LiveView(msgspec.Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
@@ -112,19 +351,19 @@ class Run(JournalEvent, frozen=True, kw_only=True):
 
     why: str
     trace: str = ""
-    device: dict[str, Any] = {}  # noqa: RUF012  (msgspec copies it)
+    device: dict[str, Any] = {}
     spec: str = ""
     hand: str | None = None
     answers: str = ""
     clock: str = ""
     sound: str = ""
     practice: str = ""
-    versions: dict[str, str] = {}  # noqa: RUF012  (msgspec copies it)
+    versions: dict[str, str] = {}
     boot: str = ""
     gap_s: float | None = None
     gap_by: str = ""
     torn_bytes: int = 0
-    torn_file: dict[str, Any] = {}  # noqa: RUF012  (msgspec copies it)
+    torn_file: dict[str, Any] = {}
     monitor: LiveView | None = None
     calibration: dict[str, Any] | None = None
 
@@ -269,7 +508,7 @@ class Closed(JournalEvent, frozen=True, kw_only=True):
     durable: ClassVar[bool] = True
 
     lost: int | None = None
-    counts: dict[str, int] = {}  # noqa: RUF012  (msgspec copies it)
+    counts: dict[str, int] = {}
     trace: str = ""
     trace_bytes: int = 0
     trace_sha256: str = ""
@@ -284,3 +523,58 @@ AnyEvent = (
     | Answer | Undo | Repeat | Fault | Well | Device | HandTaken | HandGivenBack | Pause | Go
     | BreakWanted | Break | Begin | Tuning | Note | Stop | End | Closed
 )  # fmt: skip
+
+
+_FROM_JSON = msgspec.json.Decoder(AnyEvent)
+_FIELD = re.compile(r"Object (missing required|contains unknown) field `(.+?)`")
+
+
+def read_event(line: bytes) -> JournalEvent:
+    """Read an event from a line of a journal, given as JSON without its checksum.
+
+    Raises
+    ------
+    ValueError
+        If the kind is not known, or the fields are not those of the kind. The message goes on
+        a sentence that begins with the number of the line.
+    """
+    try:
+        return _FROM_JSON.decode(line)
+    except msgspec.ValidationError as error:
+        raise ValueError(_fault(json.loads(line), str(error))) from None
+    except msgspec.DecodeError:
+        return _read_slowly(line)
+
+
+def _read_slowly(line: bytes) -> JournalEvent:
+    """Read an event that has a lone surrogate, as file names may; fail if it is not JSON."""
+    try:
+        told = json.loads(line)
+    except ValueError:
+        raise ValueError("is not JSON") from None
+    try:
+        return msgspec.convert(told, AnyEvent)
+    except msgspec.ValidationError as error:
+        raise ValueError(_fault(told, str(error))) from None
+
+
+def _fault(told: Any, why: str) -> str:
+    """Say what is wrong with JSON that is not an event."""
+    kind = told.get("event") if isinstance(told, dict) else None
+    if kind is None or why.endswith("`$.event`"):
+        return f"has an event of the kind {kind!r}, which this vbraille does not know"
+    has = f"has an event of the kind {kind!r}"
+    found = _FIELD.match(why)
+    if found is None:
+        return f"{has} that cannot be read: {why}"
+    missing = found[1] == "missing required"
+    return f"{has} {'without' if missing else 'with an unknown field,'} {found[2]!r}"
+
+
+def to_json(event: JournalEvent) -> dict[str, Any]:
+    """Event in the form that the journal has; `read_event` makes an equal event of it."""
+    told = msgspec.to_builtins(event)
+    # The number and the kind come first and the times last, for people who read the journal.
+    first = {"n": told.pop("n", 0), "event": told.pop("event")}
+    last = {name: told.pop(name) for name in ("t_s", "wall", "up_s") if name in told}
+    return first | told | last

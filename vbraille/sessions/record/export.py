@@ -1,11 +1,12 @@
-"""A session as a table with one row for each planned trial, made from the record alone."""
+"""A session as a table with a row for each planned trial, made from the record alone."""
 
 from __future__ import annotations
 
 import csv
 import io
+import re
 from bisect import bisect_left, bisect_right
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,25 +17,81 @@ from vbraille.engine.record import Flag
 from vbraille.files import no_formula
 from vbraille.sessions.planning.appearance import TUNED
 from vbraille.sessions.planning.design import StringList
-from vbraille.sessions.planning.standing import is_conventional
-from vbraille.sessions.record.columns import COLUMNS, designed
-from vbraille.sessions.record.folder import read_told_trace
-from vbraille.sessions.record.notes import read_notes, texts
-from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.record.codebook import COLUMNS, designed
+from vbraille.sessions.record.events import AnyTime, JournalEvent, Note, Presented
+from vbraille.sessions.record.folder import Record, read_told_trace
 from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
     from vbraille.braille.geometry import Geometry
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.record.folder import Record
-    from vbraille.sessions.record.notes import PlacedNote
+    from vbraille.sessions.record.progress import TrialRecord
     from vbraille.sessions.record.traces import Trace
-    from vbraille.sessions.record.trialrecord import TrialRecord
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedNote:
+    """A note, and the trials around it.
+
+    Parameters
+    ----------
+    text
+        Text of the note, as it was typed.
+    event
+        Number of its event in the journal.
+    t_s
+        Time of the note, in seconds that the session had run for.
+    before
+        Number of the trial that was shown last before the note; 0 if none was.
+    trial
+        Number of the trial that was open when the note was typed; 0 if none was.
+    after
+        Number of the trial that was shown next after the note; 0 if none was.
+    practice
+        Whether the note was typed in a practice trial.
+    """
+
+    text: str
+    event: int
+    t_s: float
+    before: int
+    trial: int
+    after: int
+    practice: bool = False
+
+
+def read_notes(events: Iterable[JournalEvent]) -> list[PlacedNote]:
+    """Notes of a session, in order."""
+    notes: list[PlacedNote] = []
+    before, waiting = 0, 0  # waiting: number of notes whose next trial is still to come
+    for event in events:
+        trial = event.trial if isinstance(event, AnyTime) and not event.practice else 0
+        if isinstance(event, Note):
+            told = (event.text, event.n, event.t_s)
+            if trial:
+                notes.append(PlacedNote(*told, trial, trial, trial))
+            else:
+                notes.append(PlacedNote(*told, before, 0, 0, event.practice))
+                waiting += 1
+        elif isinstance(event, Presented) and trial:
+            for n, note in enumerate(notes) if waiting else ():
+                if not note.after:
+                    # Between two attempts at one trial, a note counts as typed in that trial.
+                    again = trial if note.before == trial else 0
+                    notes[n] = replace(note, trial=again, after=trial)
+            before, waiting = trial, 0
+    return notes
+
+
+def texts(notes: Iterable[PlacedNote]) -> str:
+    """Text of notes for one cell of a table."""
+    return "; ".join(note.text for note in notes)
+
 
 _TIMES = ("duration_s", "returned", "contact_s", "response_s", "paused_s")
 # This is a plain number because numpy, when it reads an enumeration, can swallow an exception that
@@ -138,8 +195,7 @@ def walk(
         for trials whose trace is not read: comparisons, trials on paper or on a conventional
         display, and trials without an answer.
     """
-    if progress is None:
-        progress = Progress(record.plan, record.told.events, record.procedure)
+    progress = record.progress() if progress is None else progress
     traces = Traces(record) if traces is None else traces
     fields = {f"field_{name}": value for name, value in record.head["fields"].items()}
     notes = read_notes(record.told.events)
@@ -233,7 +289,7 @@ def _asked(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
 
 def shown_on(protocol: Protocol, trial: Trial) -> str:
     """Where a trial's string stood: "device", "conventional" for such a display, or "paper"."""
-    if is_conventional(trial.stimuli[0]):
+    if trial.stimuli[0].conventional:
         return "conventional"
     return protocol.medium
 
@@ -307,13 +363,10 @@ def _trajectory(
     left_mm = ticks["x_mm"] - span_mm / 2
 
     def moved() -> NDArray[np.bool_]:
-        # Few sessions need this, and numba takes long to import.
-        from vbraille.sessions.planning.programs import render
-
         tuning = replace(stimulus.tuning, **told.tuning)
-        renderer = render(protocol, stimulus, tuning)
-        frames = renderer.path(ticks["x_mm"])
-        idle = renderer.path(np.full(1, np.nan))
+        program = protocol.program(stimulus, tuning)
+        frames = program.path(ticks["x_mm"])
+        idle = program.path(np.full(1, np.nan))
         return (frames != idle).any(axis=(1, 2))
 
     found = duration(left_mm, time_ns, moved, edge_mm=edges[0], span_mm=span_mm)
@@ -341,3 +394,35 @@ def to_csv(table: list[dict[str, Any]], delimiter: str = ",", missing: str = "")
 def encode(text: str) -> bytes:
     """UTF-8 of a text; surrogates, which a directory's name may have, are written as escapes."""
     return text.encode("utf-8", "backslashreplace")
+
+
+LEFT_OUT = ("notes", "notes_before", "notes_after", "cue_time", "answer_time", "trace")
+_PATH = re.compile(r"\S*[/\\]\S*")
+_SOURCES = ("typed", "simulated", "program")
+
+
+def number_of(record: Record) -> str:
+    """Eight digits that identify a session, whatever its directory is called."""
+    return f"{record.told.crcs[0] if record.told.crcs else 0:08x}"
+
+
+def without_paths(text: str) -> str:
+    """Text with each word that may be a path replaced."""
+    return _PATH.sub("(left out)", text)
+
+
+def anonymous(record: Record, table: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Rows of `vbraille.sessions.record.export.rows` without times of day, paths and notes."""
+    return [_without_times(record, row) for row in table]
+
+
+def _without_times(record: Record, row: dict[str, Any]) -> dict[str, Any]:
+    kept = {
+        name: without_paths(value) if name == "faults" or name.startswith("field_") else value
+        for name, value in row.items()
+        if name not in LEFT_OUT
+    }
+    kept["session"] = number_of(record)
+    if kept["answers_from"] and kept["answers_from"].partition(":")[0] not in _SOURCES:
+        kept["answers_from"] = "file"
+    return kept

@@ -1,4 +1,4 @@
-"""A session's directory: the files written before the first trial, and those that grow.
+"""A session's directory: files written before the first trial, those that grow, and whose it is.
 
 `docs/session-format.md` describes the files.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import gzip
 import json
 import platform
+import re
 import sys
 import zlib
 from dataclasses import dataclass, replace
@@ -19,12 +20,13 @@ import numpy as np
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_folder
-from vbraille.sessions.planning.choosing import procedure_of
+from vbraille.sessions.planning.choosing import Procedure, procedure_of
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Closed, Session
-from vbraille.sessions.record.salvage import salvage
+from vbraille.sessions.record.journal import JournalContents, Tie, salvage
+from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.traces import TRACE, Trace, read_last_tie, read_trace
 from vbraille.version import __version__
 
@@ -32,9 +34,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from vbraille.sessions.planning.procedure import Procedure
     from vbraille.sessions.planning.protocol import Protocol
-    from vbraille.sessions.record.journal import JournalContents, Tie
+
 
 FORMAT = 6
 HEAD, PLAN, PROTOCOL = "session.json", "plan.json", "protocol.toml"
@@ -66,6 +67,10 @@ class Record:
     plan: Plan
     told: JournalContents
     procedure: Procedure
+
+    def progress(self) -> Progress:
+        """How far the session had come by then."""
+        return Progress(self.plan, self.told.events, self.procedure)
 
 
 def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -> None:
@@ -288,3 +293,48 @@ def _clear(partial: Path, names: Iterable[str]) -> None:
     for name in names:
         (partial / name).unlink(missing_ok=True)
     partial.rmdir()
+
+
+def label_of(pseudonym: str) -> str:
+    """Label that BIDS takes for a pseudonym or other name: its letters and digits alone."""
+    return re.sub(r"[^A-Za-z0-9]", "", pseudonym)
+
+
+def alike(one: str, other: str) -> bool:
+    """Whether two pseudonyms differ only in case, leading zeros, or signs that labels lack."""
+    return _plain(one) == _plain(other) or label_of(one).lower() == label_of(other).lower()
+
+
+def participants_in(room: Path) -> dict[str, str]:
+    """Participants whose sessions are in a directory, each with the name of one session."""
+    found: dict[str, str] = {}
+    try:
+        heads = sorted(room.glob(f"*/{HEAD}"))
+    except OSError:
+        return {}
+    for head in heads:
+        try:
+            told = json.loads(head.read_text("utf-8"))
+            found.setdefault(str(told["participant"]), head.parent.name)
+        except (OSError, ValueError, KeyError, TypeError):
+            continue  # this is no readable session; whoever uses it will be told
+    return found
+
+
+def nearly_same(room: Path, participant: str) -> tuple[str, str] | None:
+    """Another participant in a directory whose pseudonym is similar to a new one.
+
+    Returns
+    -------
+    tuple[str, str] or None
+        Pseudonym of the other participant, and the name of one of their sessions. None if there
+        is no such participant, or the new pseudonym is already in the directory itself.
+    """
+    known = participants_in(room)
+    if participant in known:
+        return None
+    return next(((other, known[other]) for other in known if alike(other, participant)), None)
+
+
+def _plain(pseudonym: str) -> str:
+    return label_of(re.sub(r"(?<![0-9])0+(?=[0-9])", "", pseudonym)).lower()

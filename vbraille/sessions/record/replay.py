@@ -15,8 +15,6 @@ import numpy as np
 from vbraille.engine.record import FLAGS, FLOATS, INTS, LINE, Flag
 from vbraille.engine.ticks import replay
 from vbraille.render.program import nothing, scratch_for
-from vbraille.sessions.planning.programs import render
-from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.traces import TRACE, read_trace
 
 if TYPE_CHECKING:
@@ -27,6 +25,7 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.render.program import Program
     from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.record.progress import Progress
 
 _RESTING = int(Flag.RESTING)
 
@@ -114,7 +113,7 @@ def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.f
     VbrailleError
         If a trace cannot be read.
     """
-    progress = Progress(record.plan, record.told.events, record.procedure)
+    progress = record.progress()
     pictures = Pictures(record, progress)
     for run in progress.runs:
         if not run.trace:
@@ -157,4 +156,4 @@ class Pictures:
         trial, showing = self.shown[line]
         stimulus = showing.stimulus_of(trial)
         tuning = replace(stimulus.tuning, **showing.tuning)
-        return render(self._protocol, stimulus, tuning)
+        return self._protocol.program(stimulus, tuning)

@@ -18,8 +18,8 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
 from hashlib import sha256
-from itertools import accumulate
-from typing import TYPE_CHECKING, Any, NamedTuple
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -61,7 +61,6 @@ _HEAD = bytes((0x1F, 0x8B, 8, 4, 0, 0, 0, 0, 4, 3)) + b"\x18\x00vp\x08\x00"
 _TIE_FIELD = b"vj\x08\x00"
 _EXTRA = struct.Struct("<II")
 _TRAILER = struct.Struct("<II")
-_SIZE = struct.Struct("<I")  # last field of a member: size of its content before it was deflated
 # All checksums of a smaller trace are looked at when a `ChunkedTrace` opens it.
 _SOON_CHECKED_BYTES = 1 << 25
 # No chunk has so many ticks: what says so is no trace.
@@ -187,15 +186,6 @@ class Trace:
     later: tuple[NDArray[np.void], ...] = ()
 
 
-class ChunkMember(NamedTuple):
-    """A whole gzip member: its length, deflated bytes, full size, and tie."""
-
-    length: int
-    deflated: memoryview
-    size: int
-    tie: Tie
-
-
 def read_trace(path: Path) -> Trace:
     """Read a trace, including its whole chunks after a damage.
 
@@ -204,56 +194,37 @@ def read_trace(path: Path) -> Trace:
     VbrailleError
         If the file cannot be read at all.
     """
-    try:
-        trace = path.read_bytes()
-    except OSError as error:
-        raise VbrailleError(f"{path} cannot be read: {error.strerror}") from None
-    view = memoryview(trace)
-    stretches: list[list[ChunkMember]] = [[]]
-    at, damage, torn_bytes = 0, None, 0
-    while at < len(trace):
-        try:
-            member = _check_member(view[at:])
-            after = at if member is None else at + member.length
-        except ValueError:
-            member, after = None, _next_start(trace, at + 1)
-        if member is not None:
-            stretches[-1].append(member)
-        elif after == at and (after := _next_start(trace, at + 1)) == len(trace):
-            torn_bytes = len(trace) - at if damage is None else 0
-        elif damage is None:
-            damage = f"chunk {len(stretches[0]) + 1} of {path.name} does not match its checksum"
-            stretches.append([])
-        elif stretches[-1]:
-            stretches.append([])
-        at = after
-    ties = dict.fromkeys(member.tie for members in stretches for member in members)
-    first, *later = map(_inflate, stretches)
+    chunks = ChunkedTrace(path, checked=True)
+    bounds = sorted({0, *chunks.damage, len(chunks)})
+    first, *later = (_stretch(chunks, *span) for span in pairwise([*bounds, len(chunks)]))
+    damage = None
+    if chunks.damage:
+        damage = f"chunk {chunks.damage[0] + 1} of {path.name} does not match its checksum"
+        if not chunks.damage[0]:
+            first, later = np.zeros(0, TRACE), [first, *later]
     later = tuple(stretch for stretch in later if stretch.size)
-    return Trace(first, torn_bytes, damage, tuple(ties), later)
+    torn_bytes = 0 if chunks.damage else chunks.torn_bytes
+    chunks.close()
+    return Trace(first, torn_bytes, damage, tuple(dict.fromkeys(chunks.ties)), later)
+
+
+def _stretch(chunks: ChunkedTrace, first: int, stop: int) -> NDArray[np.void]:
+    """Ticks of some chunks that follow each other."""
+    # zlib lets other threads run while it works; a short trace is not worth a thread.
+    most = 1 + (stop - first) // _WORTH_A_THREAD
+    with ThreadPoolExecutor(min(len(os.sched_getaffinity(0)), _MOST_THREADS, most)) as pool:
+        parts = map if most == 1 else pool.map
+        return np.concatenate([np.zeros(0, TRACE), *parts(chunks.ticks, range(first, stop))])
 
 
 def read_last_tie(path: Path) -> Tie | None:
-    """Line of the journal that the last chunk of a trace names; None if it names none.
-
-    Only the headers of the chunks are read, which takes hardly any time.
-    """
-    last = None
+    """Line of the journal that the last whole chunk of a trace names; None if there is none."""
     try:
-        with path.open("rb") as file:
-            size = file.seek(0, os.SEEK_END)
-            at = 0
-            while at + _AFTER_TIE <= size:
-                file.seek(at)
-                head = file.read(_AFTER_TIE)
-                length, _ = _EXTRA.unpack_from(head, len(_HEAD))
-                if not head.startswith(_HEAD) or not _AFTER_TIE <= length <= size - at:
-                    break
-                last = _tie_of(head)
-                at += length
-    except OSError:
+        chunks = ChunkedTrace(path)
+    except VbrailleError:
         return None
-    return last
+    chunks.close()
+    return chunks.ties[-1] if chunks.ties else None
 
 
 class ChunkedTrace:
@@ -265,14 +236,19 @@ class ChunkedTrace:
     ----------
     path
         Path of the trace.
+    checked
+        Whether the checksums of all chunks are looked at when it is opened; None if it is small
+        enough for that. Of a trace whose headers alone are looked at, other damage is found when
+        a chunk is read.
 
     Attributes
     ----------
     damage : list[int]
-        Numbers of the chunks, from 0, before which something is not whole. In a very large trace
-        only headers are looked at for that, and other damage is found when a chunk is read.
+        Numbers of the chunks, from 0, before which something is not whole.
     torn_bytes : int
         Length of a last chunk that a crash cut short.
+    ties : list[Tie]
+        Line of the journal that each chunk names.
 
     Raises
     ------
@@ -280,17 +256,20 @@ class ChunkedTrace:
         If the file cannot be read.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, checked: bool | None = None) -> None:
         self._path = path
+        self._places: list[tuple[int, int]] = []
         self.damage: list[int] = []
         self.torn_bytes = 0
+        self.ties: list[Tie] = []
         try:
             self._file = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
             self._close = weakref.finalize(self, os.close, self._file)
             self._size = os.fstat(self._file).st_size
-            self._places = self._walk()
         except OSError as error:
             raise self._fault(error) from None
+        self._checked = self._size <= _SOON_CHECKED_BYTES if checked is None else checked
+        self._walk()
 
     def __len__(self) -> int:
         """Count the chunks."""
@@ -298,10 +277,9 @@ class ChunkedTrace:
 
     def ticks(self, number: int) -> NDArray[np.void]:
         """Ticks of a chunk, `TRACE`[n]; none if it is damaged or has none."""
-        at, length = self._places[number]
+        member = memoryview(self._read(*self._places[number]))
         try:
-            member = _check_member(memoryview(self._read(at, length)))
-            deflated = b"" if member is None else member.deflated
+            deflated = member[_AFTER_TIE : _whole(member) - _TRAILER.size]
             chunk = zlib.decompressobj(-zlib.MAX_WBITS).decompress(deflated, _MOST_BYTES)
         except (ValueError, zlib.error):
             chunk = b""
@@ -311,38 +289,34 @@ class ChunkedTrace:
         """Close the file; it is closed with the last use of this, too."""
         self._close()
 
-    def _walk(self) -> list[tuple[int, int]]:
-        """Places and lengths of all chunks that have something in them, by their headers alone."""
-        places: list[tuple[int, int]] = []
+    def _walk(self) -> None:
+        """Find all chunks, and what is not whole between them."""
         at = 0
         while at < self._size:
-            if length := self._length(at):
-                places.append((at, length))
+            head = self._read(at, _AFTER_TIE)
+            if length := self._length(at, head):
+                self._places.append((at, length))
+                self.ties.append(Tie(*_EXTRA.unpack_from(head, _AFTER_LENGTH + len(_TIE_FIELD))))
                 at += length
                 continue
             rest = self._read(at, self._size - at)
-            after = _next_start(rest, 1)
+            after = _next_start(rest)
             if after < len(rest) or not _is_torn(rest):
-                self.damage.append(len(places))
+                self.damage.append(len(self._places))
             else:
                 self.torn_bytes = len(rest)
             at += after
-        return places
 
-    def _length(self, at: int) -> int:
-        """Length of the chunk at a place; 0 if it is none."""
-        head = self._read(at, _AFTER_LENGTH)
-        if len(head) < _AFTER_LENGTH or not head.startswith(_HEAD):
+    def _length(self, at: int, head: bytes) -> int:
+        """Length of the chunk that begins with these bytes at a place; 0 if it is none."""
+        if len(head) < _AFTER_TIE or not head.startswith(_HEAD):
             return 0
         length = int(_EXTRA.unpack_from(head, len(_HEAD))[0])
         if length > min(self._size - at, _MOST_BYTES):
             return 0
-        try:
-            if self._size <= _SOON_CHECKED_BYTES:
-                _check_member(memoryview(self._read(at, length)))
-        except ValueError:
-            return 0
-        return length
+        with suppress(ValueError):
+            return _whole(memoryview(self._read(at, length))) if self._checked else length
+        return 0
 
     def _read(self, at: int, length: int) -> bytes:
         try:
@@ -354,14 +328,6 @@ class ChunkedTrace:
         return VbrailleError(f"{self._path} cannot be read: {error.strerror}")
 
 
-def _is_torn(rest: bytes) -> bool:
-    """Whether a trace that ends with this was cut short in a chunk that may have been whole."""
-    try:
-        return _check_member(memoryview(rest)) is None
-    except ValueError:
-        return False
-
-
 def _squeeze(chunk: bytes, tie: Tie) -> bytes:
     """Make a gzip member of the bytes of a chunk."""
     squeeze = zlib.compressobj(_LEVEL, zlib.DEFLATED, -zlib.MAX_WBITS)
@@ -370,12 +336,8 @@ def _squeeze(chunk: bytes, tie: Tie) -> bytes:
     return _HEAD + _EXTRA.pack(_AFTER_LENGTH + len(body), zlib.crc32(body)) + body
 
 
-def _tie_of(member: bytes | memoryview) -> Tie:
-    return Tie(*_EXTRA.unpack_from(member, _AFTER_LENGTH + len(_TIE_FIELD)))
-
-
-def _check_member(trace: memoryview) -> ChunkMember | None:
-    """Read the gzip member that a trace begins with; None if it is cut short.
+def _whole(trace: memoryview) -> int:
+    """Length of the gzip member that a trace begins with; 0 if it is cut short.
 
     Raises
     ------
@@ -385,43 +347,29 @@ def _check_member(trace: memoryview) -> ChunkMember | None:
     if not _HEAD.startswith(bytes(trace[: len(_HEAD)])):
         raise ValueError
     if len(trace) < _AFTER_LENGTH:
-        return None
+        return 0
     length, crc = _EXTRA.unpack_from(trace, len(_HEAD))
     if len(trace) < length:
-        return None
+        return 0
     if length < _AFTER_TIE + _TRAILER.size or zlib.crc32(trace[_AFTER_LENGTH:length]) != crc:
         raise ValueError
-    (size,) = _SIZE.unpack_from(trace, length - _SIZE.size)
-    return ChunkMember(length, trace[_AFTER_TIE : length - _TRAILER.size], size, _tie_of(trace))
+    return length
 
 
-def _next_start(trace: bytes, after: int) -> int:
-    """Offset at which the next whole member begins; the trace's length if there is none."""
-    at = trace.find(_HEAD, after)
+def _is_torn(rest: bytes) -> bool:
+    """Whether a trace that ends with this was cut short in a chunk that may have been whole."""
+    try:
+        return not _whole(memoryview(rest))
+    except ValueError:
+        return False
+
+
+def _next_start(rest: bytes) -> int:
+    """Offset at which the next whole member begins; the length of the rest if there is none."""
+    at = rest.find(_HEAD, 1)
     while at >= 0:
         with suppress(ValueError):
-            if _check_member(memoryview(trace)[at:]) is not None:
+            if _whole(memoryview(rest)[at:]):
                 return at
-        at = trace.find(_HEAD, at + 1)
-    return len(trace)
-
-
-def _inflate(members: list[ChunkMember]) -> NDArray[np.void]:
-    """Ticks of members that were checked."""
-    stops = list(accumulate(member.size for member in members))
-    ticks = np.empty((stops[-1] if stops else 0) // TRACE.itemsize, TRACE)
-    room = ticks.view(np.uint8)
-
-    def fill(first: int) -> None:
-        for member, stop in zip(members[first::threads], stops[first::threads], strict=True):
-            chunk = zlib.decompress(member.deflated, -zlib.MAX_WBITS, member.size)
-            room[stop - member.size : stop] = np.frombuffer(chunk, np.uint8)
-
-    # zlib lets other threads run while it works; a short trace is not worth a thread.
-    threads = min(len(os.sched_getaffinity(0)), _MOST_THREADS, 1 + len(members) // _WORTH_A_THREAD)
-    if threads == 1:
-        fill(0)
-    else:
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(fill, range(threads)))
-    return ticks
+        at = rest.find(_HEAD, at + 1)
+    return len(rest)

@@ -5,20 +5,70 @@ from __future__ import annotations
 import os
 import select
 import sys
+import termios
 import time
-from pathlib import Path
+from contextlib import suppress
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from vbraille.errors import InputError
-from vbraille.sessions.running.keypress import KeyPress, TerminalKey
-from vbraille.sessions.running.reader import Simulated
-from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from vbraille.sessions.planning.plan import Plan
-    from vbraille.sessions.planning.protocol import Protocol as Design
+    from pathlib import Path
+
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.simulated.skin import Exploration
+
+
+_OFF = b"\0"  # the sign for none
+
+
+class KeyPress(str):
+    """The participant's key, where a line might have come."""
+
+    __slots__ = ()
+
+
+class TerminalKey:
+    """A key of a terminal.
+
+    Parameters
+    ----------
+    descriptor
+        Descriptor of the terminal.
+    key
+        Character that the key types.
+    """
+
+    def __init__(self, descriptor: int, key: str) -> None:
+        self._descriptor = descriptor
+        self._key = key.encode("ascii")
+        self._told = False
+
+    @classmethod
+    def at(cls, descriptor: int | None, key: str) -> TerminalKey | None:
+        """Make it if the descriptor is that of a terminal which takes lines; else None."""
+        if descriptor is None or not os.isatty(descriptor):
+            return None
+        try:
+            lines = termios.tcgetattr(descriptor)[3] & termios.ICANON
+        except termios.error:
+            return None
+        return cls(descriptor, key) if lines else None
+
+    def tell(self, at_once: bool) -> None:
+        """Have the key told at once, or be typed into lines like all others."""
+        if at_once is self._told:
+            return
+        with suppress(termios.error):  # the terminal is gone, which reading from it tells
+            attributes = termios.tcgetattr(self._descriptor)
+            attributes[6][termios.VEOL] = self._key if at_once else _OFF
+            termios.tcsetattr(self._descriptor, termios.TCSANOW, attributes)
+            self._told = at_once
+
+    def pressed(self, said: bytes) -> bool:
+        """Whether bytes that came at the beginning of a line are presses of the key alone."""
+        return self._told and not said.strip(self._key)
+
 
 PROGRAM = "program"  # name that the record has for answers given by a program
 _WAIT_S = 1.0
@@ -129,7 +179,19 @@ class Typed:
         return None
 
 
-class ScriptedAnswers:
+class AnswersAtTrials:
+    """A source that answers a trial once it has been read, and says nothing else."""
+
+    typed = False
+    felt = False
+
+    def lines(self, wait_s: float) -> list[str]:
+        """Wait, and return no lines."""
+        time.sleep(wait_s)
+        return []
+
+
+class ScriptedAnswers(AnswersAtTrials):
     """Source of answers that takes the next line of a file whenever a trial has been read.
 
     Empty lines, and lines that begin with #, are left out.
@@ -146,9 +208,6 @@ class ScriptedAnswers:
     InputError
         If the file cannot be read.
     """
-
-    typed = False
-    felt = False
 
     def __init__(self, path: Path, after: int = 0) -> None:
         try:
@@ -167,11 +226,6 @@ class ScriptedAnswers:
         self.name = str(path)
         self._given = 0
 
-    def lines(self, wait_s: float) -> list[str]:
-        """Wait, and return no lines: the lines of the file are given to trials."""
-        time.sleep(wait_s)
-        return []
-
     def next(
         self, _trial: Trial, _attempt: int, _felt: list[Exploration], /
     ) -> tuple[str, int] | None:
@@ -180,37 +234,3 @@ class ScriptedAnswers:
             return None
         self._given += 1
         return self.left[self._given - 1]
-
-
-def parse_answers(spec: str, protocol: Design, plan: Plan, after: int = 0) -> Answers:
-    """Make the source of answers for a spec.
-
-    That is ``typed``, ``simulated[:NOISE]``, or a file's name.
-
-    Raises
-    ------
-    InputError
-        If the spec, or the file that it names, cannot be used.
-    """
-    kind, _, noise = spec.partition(":")
-    if kind == "typed" and not noise:
-        return Typed()
-    if spec == PROGRAM:
-        raise InputError(f"the answers came from a program; give {setting('answers')} typed")
-    if kind == "simulated":
-        try:
-            loud = float(noise or 0.0)
-        except ValueError:
-            raise InputError(f"noise is {noise!r}; give a number, such as simulated:0.2") from None
-        answers = Simulated(protocol, plan, loud)
-    else:
-        from difflib import get_close_matches  # takes long to load
-
-        if not Path(spec).exists() and get_close_matches(kind, ("typed", "simulated")):
-            raise InputError(
-                f"{spec} is no file; give typed, simulated:NOISE such as simulated:0.2, or the "
-                f"name of a file"
-            )
-        answers = ScriptedAnswers(Path(spec), after)
-    answers.name = spec
-    return answers

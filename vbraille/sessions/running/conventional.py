@@ -9,14 +9,14 @@ from vbraille.braille.spelling import to_braille
 from vbraille.conventional.brlapi import CellsTaken, DisplayAway, DisplayStands
 from vbraille.errors import DeviceError, InputError
 from vbraille.sessions.record import events
-from vbraille.sessions.running.happened import Happened
+from vbraille.sessions.running.logbook import Happened
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.conventional.display import ConventionalDisplay
-    from vbraille.sessions.planning.conventionaltable import ConventionalTable
+    from vbraille.sessions.planning.appearance import ConventionalTable
     from vbraille.sessions.planning.stimuli import Stimulus
 
 _COMES_S = 10.0  # by then a display that is there has said so

@@ -8,35 +8,63 @@ protocol has them. A trial in which the device failed is shown again.
 from __future__ import annotations
 
 import time
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, replace
+from enum import Enum, auto
 from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.host import HostDiedError
-from vbraille.sessions.planning.planfile import stimulus_to_json
+from vbraille.sessions.planning.plan import Plan, stimulus_to_json
 from vbraille.sessions.record import events
 from vbraille.sessions.record.folder import versions
-from vbraille.sessions.running.coursestate import CourseState
-from vbraille.sessions.running.logbook import Logbook
-from vbraille.sessions.running.phases import Phase
+from vbraille.sessions.running.logbook import Happened, Logbook
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from vbraille.render.braille.profiles import Tuning
     from vbraille.sessions.planning.conduct import Tone
-    from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.journal import Journal
     from vbraille.sessions.record.progress import Progress
     from vbraille.sessions.running.conventional import OnConventional
-    from vbraille.sessions.running.happened import Happened
     from vbraille.sessions.running.showing import OnDevice
+
+
+class Phase(Enum):
+    """Phase of a session, by what the session waits for."""
+
+    BREAK = auto()  # a break, which Enter ends
+    READY = auto()  # before a trial, until the slider is at the left; on paper, until Enter
+    OPEN = auto()  # a trial, until its answer
+    LAST = auto()  # all trials are done; Enter ends the session, an undo takes back an answer
+    OVER = auto()  # the session waits for nothing any more
+
+
+@dataclass(frozen=True, slots=True)
+class HalfAnswer:
+    """An answer whose confidence is waited for.
+
+    Parameters
+    ----------
+    trial
+        Trial that was answered.
+    told
+        Fields of the journal's event.
+    at_s
+        Seconds of the session at the answer.
+    """
+
+    trial: Trial
+    told: dict[str, Any]
+    at_s: float
+
 
 POLL_S = 0.02
 MOST_DEATHS = 3  # number of deaths after which the host is not started again
 
 
-class Course(CourseState):
+class Course:
     """Course of a session, which goes from trial to trial.
 
     Parameters
@@ -66,6 +94,21 @@ class Course(CourseState):
     ----------
     book : Logbook
         Logbook that writes the events of the session.
+    phase : Phase
+        What the session waits for.
+    paused : bool
+        Whether the session is paused, so that the array rests.
+    read_said : bool
+        Whether the experimenter has been told that the trial is read; on paper, whether a key has
+        said so.
+    half : HalfAnswer or None
+        Answer whose confidence is waited for.
+    ended_by : str
+        Key by which the participant has ended reading; empty before.
+    stimulus : int
+        Which stimulus of the open trial is shown: 0, or 1 for the second of two.
+    break_wanted : bool
+        Whether the experimenter has asked for a break that has not begun.
     """
 
     def __init__(
@@ -83,7 +126,18 @@ class Course(CourseState):
         real: bool = True,
         beside: OnConventional | None = None,
     ) -> None:
-        super().__init__(protocol, plan, progress, display, beside)
+        self.protocol = protocol
+        self.plan = plan
+        self.progress = progress
+        self.display = display
+        self.beside = beside
+        self.phase = Phase.READY
+        self.paused = False
+        self.read_said = False
+        self.half: HalfAnswer | None = None
+        self.ended_by = ""
+        self.stimulus = 0
+        self.break_wanted = False
         self._waits = waits
         self._corrects = corrects
         self._say = say
@@ -96,6 +150,122 @@ class Course(CourseState):
         self._deaths = 0
         self._told_why = ""  # what the experimenter was told that the trial waits for
         self._watched: dict[str, Any] = {}  # fields that each run's event has again
+
+    @property
+    def trial(self) -> Trial | None:
+        """Trial that is open or comes next; None after the last."""
+        return self.progress.next_trial
+
+    @property
+    def open_trial(self) -> Trial | None:
+        """Trial that is open; None if none is."""
+        return self.trial if self.phase is Phase.OPEN else None
+
+    @property
+    def by_key(self) -> bool:
+        """Whether Enter times the trial that is open or comes next, since no device feels it.
+
+        It is read on paper, or on the conventional display.
+        """
+        return self.display is None or self._stands is not None
+
+    @property
+    def _stands(self) -> OnConventional | None:
+        """Conventional display, if the trial that is open or comes next stands on it."""
+        trial = self.trial
+        return self.beside if trial is not None and trial.stimuli[0].conventional else None
+
+    @property
+    def _referred(self) -> OnConventional | None:
+        """Conventional display, if what the next trial is compared with stands on it."""
+        return self.beside if self.protocol.conventional.reference and not self.by_key else None
+
+    @property
+    def read(self) -> bool:
+        """Whether the open trial has been read to its end."""
+        trial = self.open_trial
+        if trial is None or self.stimulus + 1 < len(trial.stimuli):
+            return False
+        return self.read_said if self.display is None or self.by_key else self.display.read
+
+    @property
+    def reached(self) -> bool:
+        """Whether the hand has been at the end of the open trial; on paper, whether it is read."""
+        return self.read_said if self.display is None or self.by_key else self.display.reached
+
+    @property
+    def second_to_come(self) -> bool:
+        """Whether a stimulus of the open trial has not been shown yet."""
+        trial = self.open_trial
+        return trial is not None and self.stimulus + 1 < len(trial.stimuli)
+
+    def name(self, trial: Trial) -> str:
+        """Name of a trial in sentences for the experimenter."""
+        if trial.practice:
+            return f"practice {trial.number} of {len(self.plan.practice)}"
+        return f"trial {self.progress.of_all(trial.number)}"
+
+    @property
+    def reading(self) -> bool:
+        """Whether a stimulus is read, so that the participant's key may end it."""
+        display = self.display
+        if self.open_trial is None or display is None or display.ended or self.by_key:
+            return False
+        return not (self.paused or self.half or self.ended_by)
+
+    @property
+    def over(self) -> bool:
+        """Whether the session has lasted as long as the protocol allows."""
+        limit_s = self.protocol.session.limit_s
+        return limit_s is not None and self.progress.t_s >= limit_s
+
+    def break_due(self, trial: Trial) -> bool:
+        """Whether there is a break before a trial that comes next."""
+        done = self.progress.done
+        if self.break_wanted:
+            return True
+        if trial.practice or done == self.progress.broken:
+            return False
+        every = self.protocol.session.break_every
+        in_block = sum(past.trial.block == trial.block for past in self.progress.history)
+        return not in_block or (every is not None and in_block % every == 0)
+
+    def warning_due(self, trial: Trial, since_cue_s: float) -> bool:
+        """Whether the warning is due so long after the start signal, pauses included."""
+        warning_s = self.protocol.trial.warning_s
+        told = self.progress.told(trial)
+        if warning_s is None or "warning" in told.t_s:
+            return False
+        return since_cue_s - told.paused_s >= warning_s
+
+    def tuning_of(self, trial: Trial) -> Tuning:
+        """Tuning of the stimulus that is shown, with what the experimenter has set instead."""
+        return replace(trial.stimuli[self.stimulus].tuning, **self.progress.tuning)
+
+    @property
+    def prompt(self) -> str:
+        """What the experimenter is to type as an answer."""
+        return "the answer" if self.protocol.question is None else self.protocol.question.typed
+
+    def told_ready(self, trial: Trial, *, waits: bool) -> str:
+        """Sentence that says that a trial is ready, to somebody who presses keys if it waits."""
+        again = ", again" if self.progress.told(trial).attempts else ""
+        how = "; Enter when reading begins" if self.by_key and waits else ""
+        if self._stands is not None:
+            how = f", on the conventional display{how}"
+        return f"ready: {self.name(trial)}{again}{how}"
+
+    def told_read(self, trial: Trial) -> str:
+        """Sentence that says how long a trial was read off the device, and what to type."""
+        told = self.progress.told(trial)
+        seconds = told.t_s["read"] - told.t_s["cue"] - told.unread_s
+        return f"read: {seconds:.1f} s; type {self.prompt}"
+
+    def told_ended(self, trial: Trial, key: str) -> str:
+        """Sentence that says when the participant's key ended a trial, and what to type."""
+        told = self.progress.told(trial)
+        seconds = told.t_s["ended"] - told.t_s["cue"] - told.paused_s
+        return f"ended: {seconds:.2f} s, by {key}; type {self.prompt}"
 
     def start(self, **started: Any) -> None:
         """Begin a run, once the engine is started; `started` are fields for the event `Run`."""
@@ -373,7 +543,7 @@ class Course(CourseState):
 
     def _repeat_faulty(self, trial: Trial, what: str) -> None:
         """Show the open trial again after a fault, if the protocol says so."""
-        repeats = self.protocol.repeat_faults
+        repeats = self.protocol.faults.repeat
         how = "is repeated" if repeats else "goes on"
         self._say(f"fault: {what}; {self.name(trial)} {how}")
         if repeats:

@@ -1,25 +1,37 @@
-"""Answers that are given beforehand, by a program or in a file, and their check."""
+"""Where the answers of a session come from: a spec, lines or a function; and their check."""
 
 from __future__ import annotations
 
-import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.sessions.running.answers import PROGRAM, ScriptedAnswers
-from vbraille.sessions.running.console import find_order
-from vbraille.sessions.running.inquiry import read_line
+from vbraille.sessions.running.answers import (
+    PROGRAM,
+    Answers,
+    AnswersAtTrials,
+    ScriptedAnswers,
+    Typed,
+)
+from vbraille.sessions.running.console import find_order, read_line
+from vbraille.sessions.running.reader import Simulated
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.progress import Progress
     from vbraille.sessions.simulated.skin import Exploration
 
+    # What answers may be taken from: a spec as in `Conditions`, a source that is made already, a
+    # line for each trial, or a function that gives the line for a trial.
+    Source = str | Answers | Iterable[str] | Callable[[Trial], str | None]
 
-class GivenAnswers:
+
+class GivenAnswers(AnswersAtTrials):
     """Source of answers that asks a program for a line whenever a trial has been read.
 
     Parameters
@@ -32,8 +44,6 @@ class GivenAnswers:
     """
 
     name = PROGRAM
-    typed = False
-    felt = False
 
     def __init__(
         self, protocol: Protocol, given: Iterable[str] | Callable[[Trial], str | None]
@@ -45,11 +55,6 @@ class GivenAnswers:
             lines = iter(given)
             self._give = lambda _trial: next(lines, None)
         self._answered: tuple[bool, int, int] | None = None
-
-    def lines(self, wait_s: float) -> list[str]:
-        """Wait, and return no lines: the lines of the program are given to trials."""
-        time.sleep(wait_s)
-        return []
 
     def next(
         self, trial: Trial, attempt: int, _felt: list[Exploration], /
@@ -129,3 +134,73 @@ def _is_answer(protocol: Protocol, trial: Trial, line: str) -> bool:
             f"it has no confidence; give one after a semicolon, such as '{line}; {scale.most}'"
         )
     return True
+
+
+def parse_answers(spec: str, protocol: Protocol, plan: Plan, after: int = 0) -> Answers:
+    """Make the source of answers for a spec.
+
+    That is ``typed``, ``simulated[:NOISE]``, or a file's name.
+
+    Raises
+    ------
+    InputError
+        If the spec, or the file that it names, cannot be used.
+    """
+    kind, _, noise = spec.partition(":")
+    if kind == "typed" and not noise:
+        return Typed()
+    if spec == PROGRAM:
+        raise InputError(f"the answers came from a program; give {setting('answers')} typed")
+    if kind == "simulated":
+        try:
+            loud = float(noise or 0.0)
+        except ValueError:
+            raise InputError(f"noise is {noise!r}; give a number, such as simulated:0.2") from None
+        answers = Simulated(protocol, plan, loud)
+    else:
+        from difflib import get_close_matches  # takes long to load
+
+        if not Path(spec).exists() and get_close_matches(kind, ("typed", "simulated")):
+            raise InputError(
+                f"{spec} is no file; give typed, simulated:NOISE such as simulated:0.2, or the "
+                f"name of a file"
+            )
+        answers = ScriptedAnswers(Path(spec), after)
+    answers.name = spec
+    return answers
+
+
+def answers_from(
+    source: Source, protocol: Protocol, plan: Plan, progress: Progress, *, fast: bool
+) -> Answers:
+    """Make the source of a session's answers, and check it.
+
+    Parameters
+    ----------
+    source
+        What the answers are taken from.
+    protocol, plan, progress
+        What the session shows, in which order, and how far it has come.
+    fast
+        Whether the session runs as fast as the machine can.
+
+    Raises
+    ------
+    InputError
+        If the answers cannot be used with this session.
+    """
+    if isinstance(source, str):
+        used = progress.script_lines.get(source, 0)
+        answers = parse_answers(source, protocol, plan, used)
+    elif isinstance(source, Answers):
+        answers = source
+    else:
+        answers = GivenAnswers(protocol, source)
+    if fast and isinstance(answers, Typed):
+        raise InputError(
+            f"{setting('fast')} is for answers that are not typed; "
+            f"give {setting('answers')} simulated"
+        )
+    if isinstance(answers, ScriptedAnswers):
+        check_script(answers, protocol, progress)
+    return answers

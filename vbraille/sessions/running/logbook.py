@@ -1,16 +1,58 @@
-"""Writing of events into the journal, with the time and the trial of each."""
+"""Writing of what happens into the journal, with the time and the trial of each event."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from vbraille.devices.events import HandHeld
+from vbraille.devices.saying import told
+from vbraille.sessions.record import events
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
+    from vbraille.devices.events import Event
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.record.eventbase import JournalEvent
+    from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.record.journal import Journal
     from vbraille.sessions.record.progress import Progress
+
+
+class Happened(NamedTuple):
+    """Something that the experimenter or the journal should be told.
+
+    Parameters
+    ----------
+    kind
+        Kind of event: ``Contact`` if the array came to the first dot, ``Read`` if the hand went
+        to the end and back, ``Fault`` if the stimulus can no longer be felt, ``Well`` if it can be
+        felt again, ``Device`` if the device reports something, ``HandTaken`` and
+        ``HandGivenBack`` if somebody at the live view becomes its hand or lets that go.
+    fields
+        Those fields of the kind that are known here.
+    said
+        Sentence for the experimenter; empty if there is none.
+    """
+
+    kind: type[JournalEvent]
+    fields: dict[str, Any]
+    said: str = ""
+
+
+def reported(what: str) -> Happened:
+    """Make what has happened of a sentence on the device."""
+    return Happened(events.Device, {"what": what}, what)
+
+
+def of_device(given: Iterable[Event]) -> list[Happened]:
+    """What events of a device, or of its engine, mean for a session."""
+    return [_meant(event, sentence) for event in given for sentence in told((event,))]
+
+
+def _meant(event: Event, sentence: str) -> Happened:
+    if not isinstance(event, HandHeld):
+        return reported(sentence)
+    return Happened(events.HandTaken if event.held else events.HandGivenBack, {}, sentence)
 
 
 def _nobody(_event: JournalEvent, _ago_ns: int) -> None:

@@ -1,22 +1,276 @@
-"""The live view of a session, seen from the session: it is told, and never waited for."""
+"""The live view of a session: what its pages are told, which may have to be blind.
+
+The session tells it, and never waits for it. A blind state is made of nothing from which a stimulus
+or an answer could be read: neither cells nor condition nor distances of a stimulus, no answers, no
+sentence that may hold one of these, and not the participant, whose number chooses the order of the
+conditions. `docs/session-format.md` has the list.
+"""
 
 from __future__ import annotations
 
 import logging
-from typing import TYPE_CHECKING, Final, Protocol
+from dataclasses import asdict, dataclass, field, replace
+from typing import TYPE_CHECKING, Final
 
 from msgspec import structs
 
+from vbraille.braille.spelling import say_cells, to_braille
+from vbraille.devices.base import Placing
+from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host
+from vbraille.engine.record import Flag
+from vbraille.live.messages import LineShown, ViewState
+from vbraille.live.states import array_shown, geometry_shown, rows_shown
+from vbraille.render.braille.knobs import say_mapping
+from vbraille.sessions.planning.stimuli import Stimulus, Trial, said_value
 from vbraille.sessions.record.events import LiveView
-from vbraille.sessions.running.viewed import Heard, state_of
+from vbraille.sessions.running.course import Course, Phase
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
+
+    import numpy as np
 
     from vbraille.engine.shared import Extent
-    from vbraille.live.messages import PagePress, Turn, ViewState
-    from vbraille.sessions.running.course import Course
+    from vbraille.live.monitor import Monitor
+    from vbraille.sessions.planning.protocol import Protocol
+
+
+# Sentences begin with a word for their kind. Those of these kinds hold no stimulus and no answer.
+_SAFE: Final = frozenset(
+    {
+        "begin",
+        "break",
+        "cue",
+        "device",
+        "display",
+        "end",
+        "fault",
+        "go",
+        "hand",
+        "last",
+        "pause",
+        "place",
+        "read",
+        "ready",
+        "refused",
+        "repeat",
+        "resume",
+        "stopped",
+        "timing",
+        "undo",
+        "warning",
+    }
+)
+# The live view's address holds its token, and the others tell who takes part, or the seed.
+_NEVER: Final = frozenset({"live view", "record", "seed", "session"})
+_MOST_SAID: Final = 20
+_SECONDS_PER_MINUTE: Final = 60
+_PLACES: Final = {
+    Placing.MARK: "place: the carriage has to pass its mark",
+    Placing.STOP: "place: the carriage has to be shown its place",
+}
+
+
+@dataclass(slots=True)
+class Heard:
+    """The sentences for the experimenter that a page may be told.
+
+    Parameters
+    ----------
+    blind
+        Whether only sentences of kinds that hold no stimulus and no answer are kept.
+    last
+        The last of those sentences, oldest first.
+    before
+        Number of such sentences before these.
+    """
+
+    blind: bool
+    last: list[str] = field(default_factory=list)
+    before: int = 0
+
+    def hear(self, sentence: str) -> None:
+        """Keep a sentence if a page may be told it."""
+        kind = sentence.partition(":")[0]
+        if kind in _NEVER or (self.blind and kind not in _SAFE):
+            return
+        self.last.append(sentence)
+        if len(self.last) > _MOST_SAID:
+            self.last.pop(0)
+            self.before += 1
+
+
+def state_of(course: Course, heard: Heard, *, simulated: bool = False) -> ViewState:
+    """Make the state of a session that its pages show.
+
+    Parameters
+    ----------
+    course
+        Course of the session, which has a display.
+    heard
+        Sentences that pages may be told, and whether the session is blind.
+    simulated
+        Whether a page may be the hand.
+
+    Returns
+    -------
+    ViewState
+        ViewState without a number, which whoever sends it gives.
+    """
+    assert course.display is not None, "paper cannot be watched"
+    engine, protocol = course.display.engine, course.protocol
+    state = ViewState(
+        number=0,
+        title=protocol.title,
+        array=array_shown(engine.display),
+        geometry=geometry_shown(protocol.geometry),
+        rows_shown=rows_shown(protocol.style, engine.display),
+        place=_place(course),
+        mapping=say_mapping(protocol.mapping),
+        paused=course.paused,
+        simulated=simulated,
+        held=course.progress.pointed,
+        device=_device(course.display.newest),
+        said=list(heard.last),
+        said_before=heard.before,
+        facts=_facts(course),
+        blind=heard.blind,
+        done=course.phase is Phase.OVER,
+    )
+    return state if heard.blind else _unhidden(state, course)
+
+
+def _unhidden(state: ViewState, course: Course) -> ViewState:
+    """ViewState with all that a blind one keeps back."""
+    facts, trial = [*state.facts], course.trial
+    answered = course.progress.last_answered
+    if answered is not None and (answer := course.progress.told(answered).answer) is not None:
+        facts.append(("last answer", _answer(course.protocol, answered, answer)))
+    if trial is None:
+        return structs.replace(state, facts=facts)
+    facts.append(("condition", trial.condition))
+    if course.phase is not Phase.OPEN or course.by_key:
+        return structs.replace(state, facts=facts)
+    stimulus = trial.stimuli[course.stimulus]
+    tuning = asdict(stimulus.tuning) | course.progress.tuning
+    facts += [
+        ("contrast", f"{tuning['contrast']:g}"),
+        ("texture", f"{tuning['texture']:g}"),
+        ("asked for", _asked(course.protocol, trial, stimulus)),
+    ]
+    geometry = geometry_shown(stimulus.geometry)
+    style = replace(course.protocol.style, mapping=course.protocol.mapping_of(stimulus))
+    assert course.display is not None, "paper cannot be watched"
+    return structs.replace(
+        state,
+        facts=facts,
+        geometry=geometry,
+        mapping=say_mapping(style.mapping),
+        rows_shown=rows_shown(style, course.display.engine.display),
+        lines=[_line(course, stimulus)],
+    )
+
+
+def _line(course: Course, stimulus: Stimulus) -> LineShown:
+    """Line on which a stimulus is shown."""
+    assert course.display is not None
+    cells = list(course.protocol.line(stimulus.masks))
+    return LineShown(
+        number=course.display.line,
+        text=stimulus.text or "",
+        start_mm=0.0,
+        top_mm=0.0,
+        cells=cells,
+        sources=[(0, 0)] * len(cells),
+        under=True,
+    )
+
+
+def _asked(protocol: Protocol, trial: Trial, stimulus: Stimulus) -> str:
+    """Words for what the participant is to say about a stimulus."""
+    if stimulus.value is not None:
+        return said_value(stimulus.value, protocol.parameter)
+    return say_cells(to_braille(stimulus.masks[slice(*trial.asked)]), protocol.keys)
+
+
+def _answer(protocol: Protocol, trial: Trial, answer: str) -> str:
+    """Words for an answer, and whether it is right."""
+    question = protocol.asks
+    if question.name == "which":
+        values = [said_value(s.value or 0.0, protocol.parameter) for s in trial.stimuli]
+        return f"{values[int(answer) - 1]} of {values[0]} and {values[1]}"
+    said, was = question.said(answer, protocol.keys), question.was(trial, protocol.keys)
+    if not was:
+        return said
+    return f"{said}, right" if question.good(trial, answer) else f"{said}, wrong: it was {was}"
+
+
+def _facts(course: Course) -> list[tuple[str, str]]:
+    """How far the session has come; nothing here depends on stimuli or answers."""
+    protocol, progress, trial = course.protocol, course.progress, course.trial
+    facts: list[tuple[str, str]] = []
+    if trial is not None:
+        practice, number = trial.practice, trial.number
+        told = f"{number} of {len(course.plan.practice)}" if practice else progress.of_all(number)
+        facts.append(("practice" if practice else "trial", told))
+        blocks = max((one.block for one in course.plan.trials), default=0)
+        if not practice and blocks > 1:
+            facts.append(("block", f"{trial.block} of {blocks}"))
+        if len(trial.stimuli) == 2 and course.phase is Phase.OPEN:
+            facts.append(("stimulus", "second of 2" if course.stimulus else "first of 2"))
+        if (attempt := progress.told(trial).attempts) > 1:
+            facts.append(("attempt", f"{attempt}"))
+    facts.append(("answered", progress.of_all(progress.done)))
+    if protocol.session.break_every is not None:
+        facts.append(("since the last break", f"{progress.done - progress.broken} trials"))
+    facts.append(("time", _time(course.book.elapsed_s)))
+    if protocol.session.limit_s is not None:
+        facts.append(("limit", _time(protocol.session.limit_s)))
+    return facts
+
+
+def _time(seconds: float) -> str:
+    minutes, rest = divmod(int(seconds), _SECONDS_PER_MINUTE)
+    return f"{minutes} min {rest:02} s"
+
+
+def _place(course: Course) -> str:
+    """Sentence that says what the session waits for."""
+    if course.phase is Phase.OVER:
+        return "the session is over"
+    correcting = course.progress.correcting
+    if correcting is not None:
+        return f"{course.name(correcting)}: its answer was taken back, and is typed anew"
+    if course.phase is Phase.LAST:
+        return "all trials are done; Enter at the console ends the session"
+    if course.phase is Phase.BREAK:
+        return "a break; Enter at the console ends it"
+    assert course.trial is not None
+    name = course.name(course.trial)
+    if course.paused:
+        return f"{name}: a pause; Enter at the console ends it"
+    if course.phase is Phase.READY:
+        return f"{name}: waits until the array is at the left stop"
+    if course.read:
+        return f"{name}: was read; waits for the answer"
+    return f"{name}: is read"
+
+
+def _device(newest: np.void | None) -> str:
+    """Sentence on the state of the device, by the newest tick."""
+    if newest is None:
+        return "device: starts"
+    flags = int(newest["flags"])
+    if flags & int(Flag.SILENT):
+        return "device: silent"
+    placing = placing_of(newest)
+    if placing is not Placing.DONE:
+        return _PLACES[placing]
+    if flags & int(Flag.HELD):
+        return "device: at rest by itself"
+    return "device: turned too far" if flags & int(Flag.TURNED) else "device: in use"
+
 
 LOOPBACK: Final = "127.0.0.1"
 ENDED: Final = "live view: ended by a fault; the session goes on"
@@ -24,34 +278,6 @@ _NO_KNOBS: Final = (
     "refused: in a session nothing is turned or pressed here; the experimenter types at the console"
 )
 _log = logging.getLogger(__name__)
-
-
-class ToldMonitor(Protocol):
-    """What is used here of `vbraille.live.monitor.Monitor`, none of which waits."""
-
-    def launch(self) -> None:
-        """Start the process of the server."""
-        ...
-
-    def share(self, descriptor: int, extent: Extent, /) -> None:
-        """Give the server the memory of an engine."""
-        ...
-
-    def tell(self, state: ViewState) -> None:
-        """Give the pages another state."""
-        ...
-
-    def take(self) -> Sequence[PagePress | Turn]:
-        """What pages have asked for since the last call."""
-        ...
-
-    def notes(self) -> Sequence[str]:
-        """Sentences for the experimenter since the last call."""
-        ...
-
-    def close(self) -> None:
-        """End the live view."""
-        ...
 
 
 class Onlookers:
@@ -71,13 +297,13 @@ class Onlookers:
 
     def __init__(
         self,
-        monitor: ToldMonitor,
+        monitor: Monitor,
         *,
         blind: bool,
         host: str,
         simulated: bool,
     ) -> None:
-        self._monitor: ToldMonitor | None = monitor
+        self._monitor: Monitor | None = monitor
         self._simulated = simulated
         self._host = host
         self._say: Callable[[str], None] = _nobody
@@ -142,7 +368,7 @@ class Onlookers:
         if monitor is not None:
             _close(monitor)
 
-    def _look(self, monitor: ToldMonitor, course: Course) -> None:
+    def _look(self, monitor: Monitor, course: Course) -> None:
         for note in monitor.notes():
             self._say(note)
         if monitor.take() and _NO_KNOBS not in self._heard.last[-1:]:
@@ -152,7 +378,7 @@ class Onlookers:
             self._newest, self._number = state, self._number + 1
             monitor.tell(structs.replace(state, number=self._number))
 
-    def _end(self, monitor: ToldMonitor) -> None:
+    def _end(self, monitor: Monitor) -> None:
         self._monitor = None
         _close(monitor)
         self._say(ENDED)
@@ -162,7 +388,7 @@ def _nobody(_sentence: str) -> None:
     """Ignore a sentence, before it is known who hears them."""
 
 
-def _close(monitor: ToldMonitor) -> None:
+def _close(monitor: Monitor) -> None:
     try:
         monitor.close()
     except Exception as fault:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import time
-from dataclasses import replace
+import math
+from dataclasses import dataclass, replace
 from hashlib import sha256
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vbraille.braille.spelling import to_answer
 from vbraille.errors import InputError
-from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
+from vbraille.sessions.planning.appearance import CONVENTIONAL, Condition
 from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.questions import (
     DIFFERENT,
@@ -25,27 +26,98 @@ from vbraille.sessions.planning.questions import (
     SameQuestion,
     WhichQuestion,
 )
-from vbraille.sessions.running import comparing
+from vbraille.sessions.record.trajectory import columns_of, edges_mm
+from vbraille.sessions.running.answers import AnswersAtTrials
 from vbraille.sessions.simulated import judging
 from vbraille.sessions.simulated.observer import Observer
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vbraille.braille.geometry import Geometry
+    from vbraille.render import Mapping
     from vbraille.render.braille.models import Model
-    from vbraille.sessions.planning.appearance import Condition
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.running.comparing import DotPair
-    from vbraille.sessions.simulated.observer import Parameter
     from vbraille.sessions.simulated.skin import Exploration
 
+
+WIDTH, GAP, SPACING, CELL_GAP = "dot_width_mm", "dot_gap_mm", "dot_spacing_mm", "cell_gap_mm"
+LENGTHS = (WIDTH, GAP, SPACING, CELL_GAP)
+
+
+def nominal_mm(parameter: str, geometry: Geometry) -> float:
+    """Value of a length that the reader was told, by the nominal distances."""
+    if parameter == GAP:
+        return geometry.dot_spacing_mm - geometry.dot_width_mm
+    return getattr(geometry, parameter)
+
+
+@dataclass(frozen=True, slots=True)
+class DotPair:
+    """Two neighbouring dot columns of a line, whose distance tells a length.
+
+    Parameters
+    ----------
+    columns
+        Number of dot columns that are shown of the line.
+    first
+        Number of the first of the two, from 0.
+    distance_mm
+        Distance between the two by the nominal distances.
+    cells
+        How many cells further the second one is: 0 in the same cell.
+    """
+
+    columns: int
+    first: int
+    distance_mm: float
+    cells: int
+
+
+def pair_of(
+    parameter: str, masks: Sequence[int], mapping: Mapping, geometry: Geometry
+) -> DotPair | None:
+    """Find two dot columns by which a distance can be told; None if the line has none.
+
+    Parameters
+    ----------
+    parameter
+        "dot_spacing_mm" or "cell_gap_mm".
+    masks
+        Dot masks of the line's cells, which are the same in all trials and known to the reader.
+    mapping, geometry
+        Which dots are shown, and the nominal distances.
+    """
+    columns = columns_of(masks, mapping)
+    edges = edges_mm(masks, mapping, geometry)
+    for number, (one, two) in enumerate(pairwise(columns)):
+        cells = two[0] - one[0]
+        if (cells > 0) is (parameter == CELL_GAP):
+            return DotPair(len(columns), number, edges[number + 1] - edges[number], cells)
+    return None
+
+
+def felt_mm(
+    observer: Observer, parameter: str, exploration: Exploration, pair: DotPair | None
+) -> float:
+    """Length that is felt of a stimulus; NaN if it is not felt."""
+    if parameter in (WIDTH, GAP):
+        return observer.lengths_mm(exploration)[(WIDTH, GAP).index(parameter)]
+    dots_mm = observer.dots_mm(exploration)
+    if pair is None or len(dots_mm) != pair.columns:
+        return math.nan
+    distance_mm = dots_mm[pair.first + 1, 0] - dots_mm[pair.first, 0]
+    more_mm = (distance_mm - pair.distance_mm) / max(pair.cells, 1)
+    return float(nominal_mm(parameter, observer.geometry) + more_mm)
+
+
 MOST_NOISE = 100.0
-# Names of the parameters that the observer itself compares: the protocol's name, and its own.
-_COMPARED: dict[str, Parameter] = {"dot_width_mm": "dot width", "dot_gap_mm": "gap"}
 _INSTEAD = "type the answers, or give a file of them"
 
 
-class Simulated:
+class Simulated(AnswersAtTrials):
     """A simulated reader, which is given the frames sent to the device, and nothing of the plan.
 
     Like a person, it has been told the task: where a string begins, how many characters it has,
@@ -67,14 +139,13 @@ class Simulated:
         If the protocol is for paper, or the noise is out of range.
     """
 
-    typed = False
     felt = True
 
     def __init__(self, protocol: Protocol, plan: Plan, noise: float = 0.0) -> None:
         if protocol.medium == "paper":
             raise InputError(
                 f"{protocol.name} is read on paper, which the simulated reader cannot feel; "
-                f"type the answers, or give a file of them"
+                f"{_INSTEAD}"
             )
         if any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions):
             raise InputError(
@@ -101,15 +172,10 @@ class Simulated:
         if isinstance(self._question, FreeQuestion) or (pairs and not self._compares):
             raise InputError(
                 f"{protocol.name} asks a question of the kind {self._question.name!r}, which the "
-                f"simulated reader cannot answer; type the answers, or give a file of them"
+                f"simulated reader cannot answer; {_INSTEAD}"
             )
         self._check_feels(protocol)
         self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"
-
-    def lines(self, wait_s: float) -> list[str]:
-        """Wait, and return no lines: the reader answers when it has read a trial."""
-        time.sleep(wait_s)
-        return []
 
     def next(self, trial: Trial, attempt: int, felt: list[Exploration], /) -> tuple[str, int]:
         """Answer to a trial, by what was felt of it."""
@@ -129,7 +195,7 @@ class Simulated:
                 f"{protocol.name} compares {parameter}, and the simulated reader does not feel "
                 f"which texture is finer; {_INSTEAD}"
             )
-        if question.right == "nearest" and parameter not in comparing.LENGTHS:
+        if question.right == "nearest" and parameter not in LENGTHS:
             raise InputError(
                 f"{protocol.name} asks which of two is nearest to a {parameter} of "
                 f"{question.reference:g}, and the simulated reader feels how strong a dot is, not "
@@ -144,12 +210,9 @@ class Simulated:
         question, noise = self._question, self._noise
         observer = self._observers[trial.condition]
         likes = isinstance(question, WhichQuestion) and question.right is None
-        if likes and self._parameter in _COMPARED:
-            first, second = felt
-            return str(observer.compare(first, second, _COMPARED[self._parameter], random))
         if self._compares:
             one, two, unit = self._felt_of_two(trial, felt)
-            if likes and self._parameter in comparing.LENGTHS:
+            if likes and self._parameter in LENGTHS:
                 return str(judging.nearer(one, two, unit, noise, random))
             if likes:
                 return str(judging.larger(one, two, unit, noise, random))
@@ -174,12 +237,12 @@ class Simulated:
 
     def _felt_of_two(self, trial: Trial, felt: list[Exploration]) -> tuple[float, float, float]:
         """What is felt of two stimuli, and its unit: lengths in mm, or how strong they are."""
-        if self._parameter not in comparing.LENGTHS:
+        if self._parameter not in LENGTHS:
             one, two = (self._strength(trial, place, felt[place]) for place in (0, 1))
             return one, two, 1.0
         observer, pair = self._observers[trial.condition], self._pairs[trial.condition]
-        one, two = (comparing.felt_mm(observer, self._parameter, each, pair) for each in felt[:2])
-        return one, two, comparing.nominal_mm(self._parameter, observer.geometry)
+        one, two = (felt_mm(observer, self._parameter, each, pair) for each in felt[:2])
+        return one, two, nominal_mm(self._parameter, observer.geometry)
 
     def _strength(self, trial: Trial, place: int, felt: Exploration) -> float:
         places = self._lead_cells + len(trial.stimuli[place].masks)
@@ -190,11 +253,11 @@ class Simulated:
 def _dot_pair(protocol: Protocol, condition: Condition) -> DotPair | None:
     """Dots by which a distance is told in a condition; None if none is compared or can be told."""
     design = protocol.design
-    if not isinstance(design, Choice) or protocol.parameter not in comparing.LENGTHS:
+    if not isinstance(design, Choice) or protocol.parameter not in LENGTHS:
         return None
     style = protocol.style_of(condition)
     line = protocol.line(design.string)
-    return comparing.pair_of(protocol.parameter, line, style.mapping, style.geometry)
+    return pair_of(protocol.parameter, line, style.mapping, style.geometry)
 
 
 def seed_of(text: str) -> int:

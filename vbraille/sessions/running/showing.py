@@ -13,12 +13,10 @@ from vbraille.engine.advance import HOME_MM, EndOfLine
 from vbraille.engine.engine import Engine, placing_of
 from vbraille.engine.record import Flag
 from vbraille.engine.upright import Upright
-from vbraille.sessions.planning.programs import render
 from vbraille.sessions.record import events
 from vbraille.sessions.record.traces import TraceWriter
 from vbraille.sessions.record.trajectory import first_edge_mm
-from vbraille.sessions.running.faultwatch import AWAY, FaultWatch, when
-from vbraille.sessions.running.happened import Happened, of_device, reported
+from vbraille.sessions.running.logbook import Happened, of_device, reported
 from vbraille.sessions.simulated.skin import Exploration
 from vbraille.simulation.steering import ReadLine
 
@@ -36,9 +34,106 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.journal import Tie
     from vbraille.simulation.steering import Steering
 
-# This is a plain number because numpy, when it reads an enumeration, can swallow an exception that
+
+# Flags of a device that cannot let a stimulus be felt, and of one that has just gone to rest.
+AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD | Flag.TURNED)
+_UNFELT = AWAY | int(Flag.RESTED)
+# These are plain numbers because numpy, when it reads an enumeration, can swallow an exception that
 # a signal raises.
-_PAUSED = int(Flag.PAUSED)
+_PAUSED, _RESTING, _HELD = int(Flag.PAUSED), int(Flag.RESTING), int(Flag.HELD)
+_WHY_HELD = int(Flag.HELD | Flag.RESTED | Flag.SILENT)
+# A fault is told at most once in so many seconds of a trial, which the first one has marked.
+_TOLD_S = 1.0
+# A device that rests because the hand stands still may take so long to accept frames again.
+_WAKING_S = 0.1
+
+
+class FaultWatch:
+    """Watch over the ticks of a trial.
+
+    Attributes
+    ----------
+    away : bool
+        Whether the stimulus cannot be felt at the moment.
+    """
+
+    def __init__(self) -> None:
+        self.away = False
+        self._line = 0  # first line of the trial
+        self._still = False  # whether the newest tick rested because the hand stood still
+        self._waking_ns = -(1 << 62)  # when the device last began to wake
+        self._told_ns: int | None = None  # time of the last fault of the trial
+
+    def begin(self, line: int) -> None:
+        """Begin a trial, or another attempt at it, with the showing of this line number."""
+        self.away, self._told_ns, self._line = False, None, line
+
+    def look(self, ticks: NDArray[np.void], lost: NDArray[np.bool_]) -> list[Happened]:
+        """Faults that begin or end in these ticks.
+
+        Parameters
+        ----------
+        ticks
+            Records of ticks, in order.
+        lost : bool[n]
+            Whether ticks before each were lost.
+
+        Notes
+        -----
+        A tick of the trial, pauses left out, is faulty if the device was silent, did not know its
+        place, had gone to rest by itself or took no frames, if its array was turned too far, or if
+        ticks before it were lost. It is no fault that the array rests while the hand stands still,
+        nor that the device then takes a moment to wake.
+        """
+        shown = (ticks["line"] >= self._line) & (ticks["flags"] & _PAUSED == 0)
+        ticks, lost = ticks[shown], lost[shown]
+        if not ticks.size:
+            return []
+        unfelt = (ticks["flags"] & _UNFELT != 0) & ~self._wakes(ticks) | lost
+        at = np.flatnonzero(unfelt)
+        happened = []
+        if at.size and not self.away:
+            fault = ticks[int(at[0])]
+            time_ns = int(fault["time_ns"])
+            if self._told_ns is not None and time_ns - self._told_ns < _TOLD_S * 1e9:
+                return []
+            self.away, self._told_ns = True, time_ns
+            happened.append(Happened(events.Fault, {"what": _why(fault), **when(fault)}))
+        if self.away and not unfelt[-1]:
+            self.away = False
+            well = int(at[-1]) + 1 if at.size else 0
+            happened.append(Happened(events.Well, when(ticks[well])))
+        return happened
+
+    def _wakes(self, ticks: NDArray[np.void]) -> NDArray[np.bool_]:
+        """Mark ticks at which the device still wakes after the hand stood still."""
+        flags, times_ns = ticks["flags"], ticks["time_ns"]
+        held = flags & _WHY_HELD == _HELD
+        wakes = np.zeros(ticks.size, np.bool_)
+        for n in np.flatnonzero(held):
+            begins = self._still if n == 0 else bool(flags[n - 1] & _RESTING) and not held[n - 1]
+            if begins:
+                self._waking_ns = int(times_ns[n])
+            wakes[n] = times_ns[n] - self._waking_ns < _WAKING_S * 1e9
+        self._still = bool(flags[-1] & _RESTING) and not held[-1]
+        return wakes
+
+
+def _why(tick: np.void) -> str:
+    """Say why the stimulus could not be felt at a tick."""
+    flags = int(tick["flags"])
+    if flags & Flag.SILENT:
+        return "the device is silent"
+    if flags & (Flag.MARK | Flag.STOP):
+        return "the device does not know where its carriage is"
+    if flags & (Flag.HELD | Flag.RESTED):
+        return "the array went to rest by itself"
+    return "the array was turned too far" if flags & Flag.TURNED else "ticks of it were lost"
+
+
+def when(tick: np.void) -> dict[str, Any]:
+    """Fields of an event for the tick at which it happened."""
+    return {"tick": int(tick["tick"]), "time_ns": int(tick["time_ns"])}
 
 
 class RunEngine(Engine, Protocol):
@@ -93,11 +188,17 @@ class OnDevice:
     ----------
     line : int
         Number of the last showing.
+    newest : record or None
+        Record of the newest tick that was polled; None before the first.
+    ready : bool
+        Whether the device works, and its carriage has just been at the left stop.
+    read : bool
+        Whether the hand has gone to the end of the stimulus and back.
+    ended : bool
+        Whether the participant's key has ended the reading of this stimulus.
     explorations : list[Exploration]
         Frames and places of each stimulus of the trial so far.
     """
-
-    by_key = False
 
     def __init__(
         self,
@@ -120,15 +221,15 @@ class OnDevice:
         self._steering = steering
         self._button = protocol.trial.button
         self._by_hand = by_hand
-        self._ended = False  # whether the participant's key has ended this stimulus
+        self.ended = False
         self._trace: TraceWriter | None = None
-        self._newest: np.void | None = None
+        self.newest: np.void | None = None
         self._placing = Placing.DONE
         self._stimulus: Stimulus | None = None
         self._end: EndOfLine
         self._edge_mm: float | None = None
         self._shown_ns = 0
-        self._touched = self._read = self._ready = False
+        self._touched = self.read = self.ready = False
         self._shown_line = 0  # first line of the stimulus
         self._faults = FaultWatch()
         self._upright = Upright()
@@ -151,39 +252,19 @@ class OnDevice:
         while (self._folder / _trace_name(run)).exists():
             run += 1
         self._trace = TraceWriter(self._folder / _trace_name(run), self._tie)
-        self._newest = self._stimulus = None
-        self._faults.away = self._ready = False
+        self.newest = self._stimulus = None
+        self._faults.away = self.ready = False
         return _trace_name(run)
 
     @property
     def now_ns(self) -> int:
         """Time of the newest tick that was polled; 0 before the first."""
-        return 0 if self._newest is None else int(self._newest["time_ns"])
-
-    @property
-    def newest(self) -> np.void | None:
-        """Record of the newest tick that was polled; None before the first."""
-        return self._newest
-
-    @property
-    def ready(self) -> bool:
-        """Whether the device works, and its carriage has just been at the left stop."""
-        return self._ready
-
-    @property
-    def read(self) -> bool:
-        """Whether the hand has gone to the end of the stimulus and back."""
-        return self._read
-
-    @property
-    def ended(self) -> bool:
-        """Whether the participant's key has ended the reading of this stimulus."""
-        return self._ended
+        return 0 if self.newest is None else int(self.newest["time_ns"])
 
     @property
     def reached(self) -> bool:
         """Whether the hand has been at the end of the stimulus."""
-        return self._read or self._end.reached
+        return self.read or self._end.reached
 
     @property
     def explorations(self) -> list[Exploration]:
@@ -215,7 +296,7 @@ class OnDevice:
             stimulus.geometry,
         )
         self._edge_mm = None if edge_mm is None else edge_mm - self._span_mm / 2
-        self._touched = self._read = self._ended = False
+        self._touched = self.read = self.ended = False
         self.retune(tuning)
         self.engine.paused = False
 
@@ -224,8 +305,7 @@ class OnDevice:
         stimulus = self._stimulus
         assert stimulus is not None, "nothing is shown"
         self.line += 1
-        picture = render(self._protocol, stimulus, tuning)
-        self.engine.show(picture, self.line)
+        self.engine.show(self._protocol.program(stimulus, tuning), self.line)
         if self._steering is not None:
             self._steering.give(ReadLine(self._end_mm(stimulus)))
 
@@ -238,11 +318,11 @@ class OnDevice:
 
     def go(self) -> None:
         """Let the stimulus be felt again after a rest, unless its reading was ended."""
-        self.engine.paused = self._ended
+        self.engine.paused = self.ended
 
     def end_reading(self) -> None:
         """Bring the array to rest, since the participant's key has ended the reading."""
-        self._read = self._ended = True
+        self.read = self.ended = True
         self.rest()
 
     def withdraw(self) -> None:
@@ -270,16 +350,16 @@ class OnDevice:
         happened = of_device(told)
         if not ticks.size:
             return happened + self._pressed(told)
-        before = ticks["tick"][0] - 1 if self._newest is None else self._newest["tick"]
+        before = ticks["tick"][0] - 1 if self.newest is None else self.newest["tick"]
         lost = np.diff(ticks["tick"], prepend=before) != 1
-        self._newest = ticks[-1]
+        self.newest = ticks[-1]
         # A carriage that a machine moves may be at the left for a few ticks only.
         at_left = ticks["x_mm"] <= HOME_MM - self._span_mm / 2
         well = ticks["flags"] & AWAY == 0
-        self._ready = bool(well[-1] and (at_left & well).any())
+        self.ready = bool(well[-1] and (at_left & well).any())
         if self._trace is not None:
             self._trace.add(ticks)
-        placing = placing_of(self._newest)
+        placing = placing_of(self.newest)
         if placing is not self._placing:
             self._placing = placing
             display = self.engine.display
@@ -295,7 +375,7 @@ class OnDevice:
 
     def _pressed(self, told: Iterable[Event]) -> list[Happened]:
         """Press of the button that ends reading, if it is among these events."""
-        if self._stimulus is None or self._ended:
+        if self._stimulus is None or self.ended:
             return []
         for event in told:
             if isinstance(event, Button) and event.pressed and event.number == self._button:
@@ -340,10 +420,10 @@ class OnDevice:
         steered = self._steering is not None and self._steering.done_at(int(ticks["device_ns"][-1]))
         if (
             self._by_hand
-            and not self._read
+            and not self.read
             and (self._end.find(ticks["x_mm"]) is not None or steered)
         ):
-            self._read = True
+            self.read = True
             happened.append(Happened(events.Read, when(ticks[-1])))
         return happened
 

@@ -11,14 +11,13 @@ from vbraille.caching import compiling_note
 from vbraille.devices.registry import TRAVEL_TOLERANCE_MM
 from vbraille.engine.host import HostDiedError
 from vbraille.errors import DeviceError, InputError
-from vbraille.sessions.planning.standing import is_conventional
 from vbraille.sessions.record import events
-from vbraille.sessions.record.folder import check_end
+from vbraille.sessions.record.folder import Record, check_end
 from vbraille.sessions.record.journal import NAME, Journal, sum_of, up_s
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.console import Console
 from vbraille.sessions.running.course import Course
-from vbraille.sessions.running.showing import OnDevice
+from vbraille.sessions.running.showing import OnDevice, RunEngine
 from vbraille.sounds import Bell, Silence, Tones
 from vbraille.wording import setting
 
@@ -29,13 +28,11 @@ if TYPE_CHECKING:
     from vbraille.errors import VbrailleError
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
-    from vbraille.sessions.record.eventbase import JournalEvent
-    from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.running.answers import Answers
     from vbraille.sessions.running.conventional import OnConventional
     from vbraille.sessions.running.markers import Markers
     from vbraille.sessions.running.onlookers import Onlookers
-    from vbraille.sessions.running.showing import RunEngine
     from vbraille.simulation.steering import Steering
     from vbraille.sounds import Sound
 
@@ -258,7 +255,7 @@ def check_room(info: Display, protocol: Protocol, plan: Plan) -> None:
         (
             stimulus.geometry.extent_mm(len(protocol.line(stimulus.masks)))
             for stimulus in plan.stimuli()
-            if not is_conventional(stimulus)
+            if not stimulus.conventional
         ),
         default=0.0,
     )

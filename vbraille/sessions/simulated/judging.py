@@ -1,7 +1,7 @@
 """How the simulated reader answers questions other than which cells these are.
 
 It goes by one number of a stimulus: a length in mm, or how strong its strongest dot is felt, in
-units of E₀ (`vbraille.sessions.simulated.observer`); `vbraille.sessions.running.comparing` says
+units of E₀ (`vbraille.sessions.simulated.observer`); `vbraille.sessions.running.reader` says
 which. Where it is asked which of two it likes, it takes the one nearer to the length that it was
 told, or the stronger one. Noise is normal. It says yes, or different,
 beyond one standard deviation of its noise, so that it gives a false alarm in 16 % of trials with
@@ -13,14 +13,10 @@ scale. All this is for trying out protocols, and claims nothing about people.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.sessions.simulated.observer import LEAST_FELT, TIE
-
-if TYPE_CHECKING:
-    from vbraille.sessions.simulated.observer import Touch
+from vbraille.sessions.simulated.observer import LEAST_FELT, TIE, Touch
 
 LEAST_MAGNITUDE = 1e-3  # smallest magnitude given, as a share of the modulus: none may be 0
 

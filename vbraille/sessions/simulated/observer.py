@@ -40,15 +40,16 @@ mean.
 
 **Comparing.** A dot reaches from the first to the last place at which contactors swing more than
 the one that swings least. Places less than a tenth of W apart belong to one dot. Noise in units
-of the nominal length is added to the width, or to the gap from one dot to the next, and the
-stimulus that is nearer to the nominal length is chosen.
+of the nominal length is added to the width, or to the gap from one dot to the next
+(`vbraille.sessions.simulated.judging`), and the stimulus that is nearer to the nominal length is
+chosen.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -67,8 +68,6 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.render.braille.style import BrailleStyle
-
-Parameter = Literal["dot width", "gap"]
 
 PLACE_MM = 0.005
 LEAST_FELT = 1e-3  # least evidence, in units of E₀, that counts as felt
@@ -261,49 +260,6 @@ class Observer:
             return math.nan, math.nan
         width_mm = float(dots_mm[0, 1] - dots_mm[0, 0])
         return width_mm, float(dots_mm[1, 0] - dots_mm[0, 1]) if len(dots_mm) > 1 else math.nan
-
-    def compare(
-        self,
-        first: Exploration,
-        second: Exploration,
-        parameter: Parameter,
-        random: np.random.Generator,
-    ) -> int:
-        """Choose which of two stimuli is nearer to the nominal length: 1 or 2.
-
-        Parameters
-        ----------
-        first, second
-            Explorations of a dot, or of two dots side by side.
-        parameter
-            Length that is compared, "dot width" or "gap".
-        random
-            Generator that draws the noise.
-
-        Returns
-        -------
-        int
-            The number chosen; 1 if both are equally near, or neither was felt.
-
-        Raises
-        ------
-        ValueError
-            If there is no such parameter, or frames have not the array's shape.
-        """
-        geometry = self.geometry
-        nominal_mm = {
-            "dot width": geometry.dot_width_mm,
-            "gap": geometry.dot_spacing_mm - geometry.dot_width_mm,
-        }
-        if parameter not in nominal_mm:
-            raise ValueError(f"the parameter is {parameter!r}; it must be 'dot width' or 'gap'")
-        which = [*nominal_mm].index(parameter)
-        unit_mm = nominal_mm[parameter]
-        felt_mm = np.array([self.lengths_mm(one)[which] for one in (first, second)])
-        noisy_mm = felt_mm + self.noise * unit_mm * random.standard_normal(2)
-        off_mm = np.nan_to_num(np.abs(noisy_mm - unit_mm), nan=geometry.travel_mm)
-        tie_mm = 0.0 if self.noise else TIE * abs(unit_mm)
-        return 2 if off_mm[1] < off_mm[0] - tie_mm else 1
 
     def _near(self, exploration: Exploration, right_mm: float) -> Exploration:
         """Ticks at which the array is over a line, or at most a dot's width beside it.
