@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.record.progress import TrialRecord
+    from vbraille.sessions.record.progress import Progress, TrialRecord
     from vbraille.sessions.record.traces import Trace
 
 
