@@ -118,7 +118,7 @@ speech:
 	@touch .venv/runs $@
 
 # What drives the actuators is compiled here, so that no reading waits for it.
-.venv/compiled: .venv/runs vbraille/libc.py $(shell find vbraille/render vbraille/devices vbraille/engine -name "*.py")
+.venv/compiled: .venv/runs $(shell find vbraille/render vbraille/devices vbraille/engine -name "*.py")
 	$(BIN)/python -m vbraille.engine.compiling
 	@touch $@
 

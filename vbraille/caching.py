@@ -95,7 +95,7 @@ def _leave_scipy_out() -> None:
 def _source() -> str:
     """Name the source of all kernels, and their compiler, by its files' names, sizes and times."""
     root = Path(__file__).parent
-    files = [root / "libc.py", *(file for room in _ROOMS for file in sorted(root.glob(room)))]
+    files = [file for room in _ROOMS for file in sorted(root.glob(room))]
     compiler = find_spec("numba")  # not imported, which takes long
     if compiler is not None and compiler.origin is not None:
         files.append(Path(compiler.origin))

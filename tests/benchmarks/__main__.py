@@ -13,7 +13,6 @@ PARTS = (
     "wire",
     "engine",
     "tick",
-    "protocols",
     "faults",
     "latero",
     "jumps",

@@ -1,17 +1,11 @@
-"""The host of today and that of 2026-11-21, in turn, beside the same independent controller.
+"""The loop of this checkout and that of another, in turn, beside the same devices.
 
-`loop-of-2026-11-21.zip` is the package as it was at commit 5ced91b, but for what neither the host
-nor the controller needs:
+    git worktree add ../before COMMIT
+    python -m tests.benchmarks.bench_tick ../before 5 6
 
-    git archive --format=zip -9 5ced91b vbraille/{__init__,errors,caching,geometry}.py \
-        vbraille/{devices,engine,render}, less devices/{carriage,conformance,simulator}.py and
-        engine/{advance,batch,checkup,local,suspending}.py
-
-It is unpacked for the measurement, since numba keeps nothing that it compiles of a zip.
-
-    python -m tests.benchmarks.bench_tick 5
-
-measures for 5 s each way, once.
+measures each for 5 s, six times. Without another checkout (`python -m tests.benchmarks tick`) the
+figures are this one's alone. The device is always this checkout's: a controller at a
+pseudo-terminal, a Latero at a port, and a driver in Python.
 """
 
 from __future__ import annotations
@@ -22,166 +16,172 @@ import statistics
 import subprocess
 import sys
 import tempfile
-import zipfile
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tests import drivers
+from tests.benchmarks.latero_page import spec as latero_spec
 from tests.benchmarks.timing import Result
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 REPEATS = 3
-BLOCK_S = 60.0
-LONG_S = 600.0
+BLOCK_S = 20.0
 BUSY_PROCESSES = 3
 ROOT = Path(__file__).parents[2]
-ARCHIVE = Path(__file__).with_name("loop-of-2026-11-21.zip")
-# By whom each is opened: one module for each interface that a host had.
-BASELINE = "tests.benchmarks.tick_baseline"
-TODAY = "tests.benchmarks.tick_today"
+# Of the work of a tick, this checkout's against the other's.
+BARS = {"serial": 1.3, "latero": 0.7, "driver": 0.7}
 _SPIN = "while True: pass"
+_DRIVER = '''
+import time
+import numpy as np
+from vbraille.devices import Device
+from vbraille.pose import Pose
+
+class Plain(Device):
+    """A device in memory, as a driver from elsewhere is: four members, and no more."""
+
+    def __init__(self, address, wanted):
+        self._wanted, self._ticks = wanted, 0
+        self._kept = np.zeros(wanted.shape)
+
+    @property
+    def display(self):
+        return self._wanted
+
+    def read(self):
+        self._ticks += 1
+        return Pose(time.monotonic_ns(), 2.0 + self._ticks % 150 * 0.04, 0.0, 0.0)
+
+    def _send(self, frame):
+        self._kept[:] = frame
+
+    def _release(self):
+        pass
+'''
 
 
 def run(
-    seconds: float = BLOCK_S, repeats: int = REPEATS, long_s: float = LONG_S
+    other: Path | None = None, seconds: float = BLOCK_S, repeats: int = REPEATS
 ) -> Iterator[Result]:
-    """Measure each host so often for so many seconds, quiet and beside busy processes.
+    """Measure the hosts so often for so many seconds; rows give their medians.
 
     Parameters
     ----------
+    other
+        Directory of another checkout; None for none.
     seconds
-        Of each measurement.
+        Duration of each measurement.
     repeats
-        Measurements of each kind; rows give their medians.
-    long_s
-        For how long today's host is run to see whether it loses ticks; 0 leaves that out.
+        Measurements of each kind.
     """
-    with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(ARCHIVE) as archive:
-        old = Path(folder)
-        archive.extractall(old)
-        hosts = {"baseline": (BASELINE, old), "today": (TODAY, ROOT)}
-        for module, root in hosts.values():
-            measured(module, root, old, 0.5)  # compiles, for the others to be warm
-        found: dict[tuple[str, bool], list[dict[str, Any]]] = {}
-        for _ in range(repeats):
-            for busy in (False, True):
-                for name, (module, root) in hosts.items():
-                    with _busy(BUSY_PROCESSES if busy else 0):
-                        got = measured(module, root, old, seconds)
-                    found.setdefault((name, busy), []).append(got)
-        yield from _rows(found)
-        if long_s:
-            lost = measured(TODAY, ROOT, old, long_s)["overruns"]
-            minutes = f"in {long_s / 60:g} minutes"
-            yield Result(f"ticks lost by own work {minutes}", "0", f"{lost}", lost == 0)
+    hosts = {"now": ROOT} | ({"before": other} if other else {})
+    found: dict[tuple[str, str, bool], list[dict[str, Any]]] = {}
+    with tempfile.TemporaryDirectory() as folder:
+        installed = drivers.install(Path(folder), "plain", "Plain", _DRIVER)["PYTHONPATH"]
+        for number in range(repeats + 1):
+            for kind in BARS:
+                for busy in (False, True) if kind == "serial" else (False,):
+                    for name, root in hosts.items():
+                        with _busy(BUSY_PROCESSES if busy else 0):
+                            got = measured(kind, root, seconds if number else 2.0, installed)
+                        if number:  # the first compiles, for the others to be warm
+                            found.setdefault((kind, name, busy), []).append(got)
+    yield from _rows(found)
 
 
-def _rows(found: dict[tuple[str, bool], list[dict[str, Any]]]) -> Iterator[Result]:
-    def median(name: str, busy: bool, what: str, which: int) -> float:
-        return statistics.median(got[what][which] for got in found[name, busy])
+def _rows(found: dict[tuple[str, str, bool], list[dict[str, Any]]]) -> Iterator[Result]:
+    def median(key: tuple[str, str, bool], what: str, which: int | None = None) -> float:
+        values = [got[what] if which is None else got[what][which] for got in found[key]]
+        return statistics.median(values)
 
-    def beside(what: str, which: int, *, busy: bool) -> tuple[float, float, str]:
-        ours, theirs = (median(name, busy, what, which) for name in ("today", "baseline"))
-        return ours, ours / theirs, f"{ours:.1f} µs, {ours / theirs:.2f} × ({theirs:.1f} µs)"
-
-    for which, name, bar_us in ((0, "p50", 8.0), (1, "p99", 30.0)):
-        ours_us, share, said = beside("work_us", which, busy=False)
-        yield Result(
-            f"work of a tick, {name}, beside the loop of 2026-11-21, on a quiet machine",
-            f"≤ 1/5, ≤ {bar_us:g} µs",
-            said,
-            share <= 0.2 and ours_us <= bar_us,
-        )
-    for which, name, bar_us in ((0, "p50", None), (1, "p99", 60.0)):
-        ours_us, _, said = beside("work_us", which, busy=True)
-        yield Result(
-            f"the same beside {BUSY_PROCESSES} busy processes, {name}",
-            "reported" if bar_us is None else f"≤ {bar_us:g} µs",
-            said,
-            bar_us is None or ours_us <= bar_us,
-        )
-    for busy, where in ((False, "quiet"), (True, "busy")):
-        ours, theirs = (
-            statistics.median(got["processor"] for got in found[name, busy])
-            for name in ("today", "baseline")
-        )
-        yield Result(
-            f"processor time of the host at 1 kHz, on a {where} machine",
-            "≤ 3.5 %" if not busy else "reported",
-            f"{ours:.1%} ({theirs:.1%})",
-            busy or ours <= 0.035,
-        )
-    for busy, where in ((False, "quiet"), (True, "busy")):
-        for which, name, bar_us in ((0, "p50", 60.0), (1, "p99", 200.0)):
-            ours_us, _, said = beside("trip_us", which, busy=busy)
-            yield Result(
-                f"position at the device to the frame for it back, {name}, on a {where} machine",
-                "reported" if busy else f"≤ {bar_us:g} µs",
-                said,
-                busy or ours_us <= bar_us,
-            )
-    ours, theirs = (
-        statistics.median(got["ready_s"] for got in found[name, False])
-        for name in ("today", "baseline")
-    )
-    yield Result(
-        "host ready, from launch, warm", "≤ 0.6 s", f"{ours:.2f} s ({theirs:.2f} s)", ours <= 0.6
-    )
-    lost, lost_before = (
-        sum(got["overruns"] for busy in (False, True) for got in found[name, busy])
-        for name in ("today", "baseline")
-    )
-    yield Result("ticks lost by own work in all of that", "0", f"{lost} ({lost_before})", lost == 0)
+    for kind, name, busy in found:
+        if name == "before":
+            continue
+        beside = (kind, "before", busy)
+        where = f", beside {BUSY_PROCESSES} busy processes" if busy else ""
+        for which, percent in ((0, "p50"), (1, "p99")):
+            ours_us = median((kind, name, busy), "work_us", which)
+            row, got, bar, met = f"work of a tick, {kind}, {percent}{where}", "", "reported", True
+            if beside in found:
+                theirs_us = median(beside, "work_us", which)
+                share = ours_us / theirs_us
+                got = f"{share:.2f} × ({theirs_us:.1f} µs), "
+                bar, met = f"≤ {BARS[kind]:g} ×", share <= BARS[kind]
+            yield Result(row, bar, f"{got}{ours_us:.1f} µs", met)
+        for what, unit, factor in (("processor", "%", 100.0), ("ready_s", "s", 1.0)):
+            names = [each for each in ("now", "before") if (kind, each, busy) in found]
+            got = ", ".join(f"{factor * median((kind, n, busy), what):.2f} {unit}" for n in names)
+            yield Result(f"{what}, {kind}{where}", "reported", got, met=True)
+        if kind == "serial":
+            for which, percent in ((0, "p50"), (1, "p99")):
+                names = [each for each in ("now", "before") if (kind, each, busy) in found]
+                got = ", ".join(
+                    f"{median((kind, n, busy), 'trip_us', which):.0f} µs" for n in names
+                )
+                row = f"position at the device to the frame for it back, {percent}{where}"
+                yield Result(row, "reported", got, met=True)
+        lost = sum(got["overruns"] for got in found[kind, name, busy])
+        yield Result(f"ticks lost by own work, {kind}{where}", "0", f"{lost}", lost == 0)
 
 
-def measured(
-    module: str,
-    root: Path,
-    devices: Path,
-    seconds: float,
-    device_module: str = "tests.benchmarks.tick_device",
-    *options: str,
-) -> dict[str, Any]:
-    """What is found of one host, beside a controller of its own.
+def measured(kind: str, root: Path, seconds: float, installed: str) -> dict[str, Any]:
+    """What is found of the host of a checkout, beside a device of this one.
 
     Parameters
     ----------
-    module, root
-        Module that opens the host, and the directory of its package.
-    devices
-        Directory of the controller's package.
+    kind
+        Device: one of `BARS`.
+    root
+        Directory of the host's checkout.
     seconds
         Duration of the measurement.
-    device_module, options
-        Module that is the controller, and what else it is told.
+    installed
+        Directory in which the driver in Python is installed.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        link = str(Path(folder) / "vb0")
-        device = _python(devices, device_module, link, *options)
-        with device:
+    with ExitStack() as stack:
+        device = None
+        if kind == "serial":
+            link = str(Path(stack.enter_context(tempfile.TemporaryDirectory())) / "vb0")
+            device = stack.enter_context(_python(ROOT, installed, "tick_device", link))
+            _line(device)
+            spec = f"serial:{link}"
+        elif kind == "latero":
+            device = stack.enter_context(_python(ROOT, installed, "latero_device"))
+            spec = latero_spec(int(_line(device)))
+        else:
+            spec = "plain:"
+        with _python(root, installed, "tick_host", spec, str(seconds)) as host:
+            found = json.loads(host.communicate()[0])
+        if device is not None:
             assert device.stdin is not None
-            assert device.stdout is not None
-            device.stdout.readline()
-            with _python(
-                root, "tests.benchmarks.tick_host", module, f"serial:{link}", str(seconds)
-            ) as host:
-                said = host.communicate()[0]
             device.stdin.close()
-            found = json.loads(said) | json.loads(device.stdout.readline())
+            found |= json.loads(_line(device))
     assert Path(found["package"]).parent == root, "the wrong package was measured"
     return found
 
 
-def _python(root: Path, *arguments: str) -> subprocess.Popen[str]:
+def _line(process: subprocess.Popen[str]) -> str:
+    assert process.stdout is not None
+    return process.stdout.readline()
+
+
+def _python(root: Path, installed: str, module: str, *arguments: str) -> subprocess.Popen[str]:
     """Run a module of these benchmarks with the package that is in a directory."""
     # Whoever measures with byte code forbidden would measure the compiler.
     environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
+    # The working directory comes first, and an old checkout has benchmarks of its own: this one's
+    # are run by their path.
+    start = (
+        f"import runpy, sys; import vbraille; sys.path.insert(0, {str(ROOT)!r}); "
+        "sys.argv = sys.argv[1:]; runpy.run_module(sys.argv[0], run_name='__main__')"
+    )
     return subprocess.Popen(
-        [sys.executable, "-m", *arguments],
+        [sys.executable, "-c", start, f"tests.benchmarks.{module}", *arguments],
         cwd=root,
-        env=environment | {"PYTHONPATH": str(ROOT)},
+        env=environment | {"PYTHONPATH": f"{root}:{installed}"},
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
@@ -199,5 +199,5 @@ def _busy(processes: int) -> Iterator[None]:
 
 
 if __name__ == "__main__":
-    for result in run(float(sys.argv[1]), repeats=1, long_s=0.0):
+    for result in run(Path(sys.argv[1]).resolve(), float(sys.argv[2]), int(sys.argv[3])):
         print(result.row(), flush=True)

@@ -14,7 +14,7 @@ from vbraille.devices.events import Placing
 from vbraille.errors import DeviceError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from vbraille.pose import Pose
 
 _DOUBLE = np.dtype(np.float64)
-_ONE = int(np.array(1.0).view(np.uint64))
-_largest = np.maximum.reduce
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,10 +234,23 @@ class Device(ABC):
                 f"{self.display.name} has {self.display.rows} × {self.display.columns} actuators; "
                 f"the frame has shape {frame.shape}"
             )
-        if not _in_range(frame):
+        if not self._allows(frame):
             raise DeviceError("a deflection is not in [0, 1]; the frame was not sent")
         correction = self._correction
         self._send(frame if correction is None else correction.of(frame, self.rested))
+
+    @cached_property
+    def _allows(self) -> Callable[[NDArray[np.float64]], bool]:
+        """Whether all deflections of a frame are in [0, 1]."""
+        # numba is heavy, and those who only know of devices need none.
+        from vbraille.devices.framekernels import in_range
+
+        def allows(frame: NDArray[np.float64]) -> bool:
+            if frame.dtype is _DOUBLE and frame.flags.carray:  # for others nothing is compiled
+                return in_range(frame)
+            return bool(frame.min() >= 0.0 and frame.max() <= 1.0)
+
+        return allows
 
     @cached_property
     def _shape(self) -> tuple[int, int]:
@@ -264,13 +275,3 @@ class Device(ABC):
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-
-def _in_range(frame: NDArray[np.float64]) -> bool:
-    """Whether all deflections of a frame are in [0, 1]."""
-    # The bits of such a double are a number from 0 to those of 1.0; a sign, an infinity and a NaN
-    # make it larger. So one look is enough, in a third of the time.
-    usual = frame.dtype is _DOUBLE and frame.flags.c_contiguous
-    if usual and _largest(frame.view(np.uint64), axis=None) <= _ONE:
-        return True
-    return bool(frame.min() >= 0.0 and frame.max() <= 1.0)

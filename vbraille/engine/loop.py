@@ -194,6 +194,7 @@ class Loop:
         times_ns, pose = self._times_ns, self._poses[0]
         times_ns[0, 0] = now_ns
         sample = device.read() or taken
+        taking = device.taking
         if sample is None:
             pose[POSED] = 0.0
         else:
@@ -202,21 +203,21 @@ class Loop:
             if pose[POSE_THETA] and not device.display.turns:
                 raise self._nowhere()
         slot = ring.begin()
-        done = self.state.advance(
-            times_ns, self._poses, device.rested, device.taking, ring.columns, slot
-        )
+        done = self.state.advance(times_ns, self._poses, device.rested, taking, ring.columns, slot)
         if not done:
             raise self._nowhere()
         device.write(self.state.output)
         done_ns = self.clock.now_ns()
         if done_ns - now_ns > self._period_ns and self.clock.busy_ns() - busy_ns > self._period_ns:
             self.overruns += 1
-        self._finish(slot, now_ns, lateness_ns, done_ns)
+        self._finish(slot, now_ns, lateness_ns, done_ns, taking=taking)
 
-    def _finish(self, slot: int, now_ns: int, lateness_ns: int, done_ns: int) -> None:
+    def _finish(
+        self, slot: int, now_ns: int, lateness_ns: int, done_ns: int, *, taking: bool
+    ) -> None:
         """Record when a tick was done, and set when the next one is due."""
         # Deadlines stand where the start put them; one that has passed is counted, never chased.
-        self.state.now["done_ns"] = done_ns
+        self.state.done_ns[0] = done_ns
         self._deadline_ns += self._period_ns
         behind_ns = done_ns - self._deadline_ns
         if behind_ns >= self._period_ns:
@@ -224,11 +225,12 @@ class Loop:
             self.late += missed
             self._deadline_ns += missed * self._period_ns
         device, ring = self.device, self.ring
-        whole = ring.columns[0][slot]
-        whole[LATENESS], whole[WORK] = lateness_ns, done_ns - now_ns
-        whole[LATE], whole[OVERRUNS] = self.late, self.overruns
-        held = 0 if device.taking else _HELD
-        whole[FLAGS] = (int(whole[FLAGS]) & ~_HELD) | held | _PLACING[device.placing]
+        whole = ring.integers
+        whole[slot, LATENESS], whole[slot, WORK] = lateness_ns, done_ns - now_ns
+        whole[slot, LATE], whole[slot, OVERRUNS] = self.late, self.overruns
+        if not (taking and device.taking) or device.placing:  # a write may have brought it to rest
+            held = 0 if device.taking else _HELD
+            whole[slot, FLAGS] = (whole[slot, FLAGS] & ~_HELD) | held | _PLACING[device.placing]
         ring.end()
 
     def _nowhere(self) -> DeviceError:
@@ -277,7 +279,7 @@ class Loop:
         if why == serialtick.UNMADE:
             slot = ring.begin()
             self.device.write(self.state.output)
-            self._finish(slot, woken_ns, lateness_ns, self.clock.now_ns())
+            self._finish(slot, woken_ns, lateness_ns, self.clock.now_ns(), taking=True)
         elif woken_ns:
             pose = self._poses[0]
             taken = None

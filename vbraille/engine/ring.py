@@ -36,6 +36,8 @@ class Ring:
     ----------
     columns : tuple of arrays
         All records, as `vbraille.engine.record.columns_of` gives them, to be filled.
+    integers : memoryview[size, INTS]
+        Whole numbers of all records.
     published : int64[1]
         How many records may be read.
     """
@@ -44,6 +46,7 @@ class Ring:
         self.size = size
         self.published = np.frombuffer(buffer, np.int64, 1)
         self.columns = columns_of(np.frombuffer(buffer, tick_dtype(shape), size, _HEADER_BYTES))
+        self.integers = memoryview(self.columns[0])  # set one by one in half of numpy's time
         self._buffer = buffer
         self._shape = shape
         self.appended = 0

@@ -14,9 +14,9 @@ import errno
 import numpy as np
 from numba import njit
 
-from vbraille import libc
 from vbraille.caching import keep_compiled
 from vbraille.devices.serial import steady
+from vbraille.engine import libc
 from vbraille.engine.record import LATE, LATENESS, OVERRUNS, WORK
 from vbraille.engine.ticks import POSE_THETA, POSE_X, POSE_Y, POSED, advance
 

@@ -94,6 +94,8 @@ class LoopState:
     ----------
     now : record
         The numbers that a tick knows, by the names below.
+    done_ns : int64[1, …]
+        View of these numbers, of which the first is when the last frame had gone out.
     output : float64[rows, columns]
         The frame last made.
 
@@ -134,7 +136,9 @@ class LoopState:
         self._target = np.zeros(display.shape)
         self._at = np.zeros(6)
         self._scratch = scratch_for(display.shape)
+        self.done_ns = self._numbers.view(np.int64)[_STATE.names.index("done_ns") :]
         self._program = nothing(display)
+        self._arrays = self._gathered()
         self._serials = 0
         self._exposures = 0  # that were told
 
@@ -155,6 +159,7 @@ class LoopState:
         self._serials += 1
         now["serial"] = self._serials
         self._program = program
+        self._arrays = self._gathered()
 
     @property
     def paused(self) -> bool:
@@ -182,8 +187,7 @@ class LoopState:
         """Keep the frame last made, to fade from it."""
         self._held[:] = self.output
 
-    @property
-    def _arrays(self) -> _Eleven:
+    def _gathered(self) -> _Eleven:
         """The arrays that compiled code takes, in its order."""
         return (
             self._numbers,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vbraille.devices.wire import packing
+from vbraille.devices import framekernels
 from vbraille.devices.wire.codec import Levels
 
 
@@ -19,7 +19,7 @@ def fill(deflections, top, *, gain=255, inverted=0, last=None, step=math.inf):
     swing = np.broadcast_to(np.asarray(gain) / 255 * top, shape).copy()
     rest = np.broadcast_to(np.asarray(inverted) * top, shape).astype(np.int64)
     last = np.zeros(shape) if last is None else last
-    felt = packing.fill(deflections, last, wanted, step, swing, rest, levels.bits, out)
+    felt = framekernels.fill(deflections, last, wanted, step, swing, rest, levels.bits, out)
     return levels.unpack(out.tobytes()).reshape(shape), wanted, felt, out.tobytes()
 
 

@@ -11,7 +11,8 @@ import pytest
 
 from tests.cli.books import ODT, WORD, docx, odt
 from vbraille.errors import InputError
-from vbraille.translate.documents.office.annotations import ANNOTATED, annotation, tag_of
+from vbraille.translate.documents.office.annotations import ANNOTATED, annotation
+from vbraille.translate.documents.office.htmltree import tag_of
 from vbraille.translate.documents.office.officebook import open_office
 from vbraille.translate.source import BlockKind, MarkKind
 
@@ -27,7 +28,8 @@ ODT_STYLES = (
 )
 NAMES = (
     ' xmlns:style="urn:oasis:names:tc:opendocument:xmlns:style:1.0" '
-    'xmlns:fo="urn:oasis:names:tc:opendocument:xmlns:xsl-fo-compatible:1.0"'
+    'xmlns:fo="urn:oasis:names:tc:opendocument:xmlns:xsl-fo-compatible:1.0" '
+    'xmlns:table="urn:oasis:names:tc:opendocument:xmlns:table:1.0"'
 )
 
 
@@ -48,10 +50,10 @@ def opened(content, form):
     return source, blocks
 
 
-def odt_of(body):
+def odt_of(body, styles=""):
     content = ODT.format(body).replace(
         "><office:body>",
-        f"{NAMES}><office:automatic-styles>{ODT_STYLES}</office:automatic-styles><office:body>",
+        f"{NAMES}><office:automatic-styles>{ODT_STYLES}{styles}</office:automatic-styles><office:body>",
         1,
     )
     return odt(content)
@@ -187,12 +189,12 @@ def test_the_sentence_where_the_reader_is_not_installed():
         "import sys\n"
         "sys.modules['anydoc'] = None\n"
         "from vbraille.cli.main import main\n"
-        f"sys.exit(main(['page', {str(FILES / 'pandoc.odt')!r}]))\n"
+        f"sys.exit(main(['page', {str(FILES / 'pandoc.rtf')!r}]))\n"
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert said.returncode == 2
     assert said.stdout == ""
-    begun = "is in ODT, and what reads that is not installed; "
+    begun = "is in RTF, and what reads that is not installed; "
     command = said.stderr.partition(begun)[2].removesuffix(" installs it\n")
     pip, *arguments = shlex.split(command)
     assert arguments == ["install", "firecrawl-anydoc"]
@@ -203,5 +205,220 @@ def test_the_sentence_where_the_reader_is_not_installed():
 
 @pytest.mark.parametrize("form", ["docx", "odt", "rtf"])
 def test_what_is_no_such_file(form):
-    with pytest.raises(InputError, match="is damaged or no"):
+    with pytest.raises(InputError, match=r"is damaged or no|is not a whole ZIP archive"):
         opened(b"no such thing", form)
+
+
+def docx_blocks(*runs, body=None, members=None):
+    content = paragraphs(*runs) if body is None else WORD.format(body)
+    return opened(docx(content, members), "docx")[1]
+
+
+def docx_texts(*runs, **more):
+    return [str(block.text) for block in docx_blocks(*runs, **more)]
+
+
+def odt_texts(body, **more):
+    return [str(block.text) for block in opened(odt_of(body, **more), "odt")[1]]
+
+
+def test_signs_of_docx_that_are_no_text():
+    signs = (
+        '<w:r><w:t>co</w:t><w:noBreakHyphen/><w:t>op </w:t><w:sym w:font="Symbol" w:char="F061"/>'
+        '<w:t> </w:t><w:sym w:font="Wingdings" w:char="F0FE"/><w:softHyphen/><w:tab/><w:t>x </w:t>'
+        '<w:sym w:font="Wingdings 3" w:char="F099"/></w:r>'
+    )
+    (block,) = docx_blocks(signs)
+    assert str(block.text) == "co‑op α ☑ x [symbol]"
+    assert (MarkKind.UNSHOWN, "[symbol]", "symbol") in marks(block)
+
+
+def test_hidden_and_deleted_text_of_docx_is_not_read():
+    hidden = run("no", "vanish") + run("yes", 'vanish w:val="0"')
+    deleted = "<w:del><w:r><w:delText>no</w:delText></w:r></w:del><w:ins>" + run(" so") + "</w:ins>"
+    moved = "<w:moveFrom>" + run("no") + "</w:moveFrom><w:moveTo>" + run(".") + "</w:moveTo>"
+    assert docx_texts(hidden + deleted + moved) == ["yes so."]
+
+
+NUMBERING = (
+    '<w:numbering xmlns:w="http://schemas.openxmlformats.org/wordprocessingml/2006/main">{}'
+    "</w:numbering>"
+)
+LEVEL = (
+    '<w:lvl w:ilvl="{}"><w:start w:val="{}"/><w:numFmt w:val="{}"/><w:lvlText w:val="{}"/></w:lvl>'
+)
+
+
+def numbered(*lists):
+    """Members with lists, each of levels of start, form and text."""
+    made = []
+    for number, levels in enumerate(lists, 1):
+        inner = "".join(LEVEL.format(n, *level) for n, level in enumerate(levels))
+        made.append(f'<w:abstractNum w:abstractNumId="{number}">{inner}</w:abstractNum>')
+    made += (
+        f'<w:num w:numId="{number}"><w:abstractNumId w:val="{number}"/></w:num>'
+        for number in range(1, len(lists) + 1)
+    )
+    return {"word/numbering.xml": NUMBERING.format("".join(made))}
+
+
+def item(number, level, text):
+    place = f'<w:ilvl w:val="{level}"/><w:numId w:val="{number}"/>'
+    return f"<w:p><w:pPr><w:numPr>{place}</w:numPr></w:pPr>{run(text)}</w:p>"
+
+
+def test_lists_of_docx():
+    members = numbered(
+        [(3, "decimal", "%1."), (1, "lowerLetter", "%1.%2)")],
+        [(1, "bullet", "·"), (1, "bullet", "o")],
+        [(1, "bullet", " "), (1, "bullet", " ")],
+        [(1, "bullet", "☒"), (1, "bullet", "☐")],
+    )
+    body = (
+        item(1, 0, "one")
+        + item(3, 0, "more of it")
+        + item(1, 1, "inner")
+        + item(1, 1, "next")
+        + item(1, 0, "two")
+        + f"<w:p>{run('between')}</w:p>"
+        + item(1, 0, "three")
+        + item(2, 0, "dot")
+        + item(2, 1, "deeper")
+        + item(4, 0, "done")
+        + item(4, 1, "to do")
+    )
+    found = docx_blocks(body=body, members=members)
+    assert [(b.kind.value, b.level, str(b.text)) for b in found] == [
+        ("item", 1, "3. one"),
+        ("paragraph", 0, "more of it"),
+        ("item", 2, "3.a) inner"),
+        ("item", 2, "3.b) next"),
+        ("item", 1, "4. two"),
+        ("paragraph", 0, "between"),
+        ("item", 1, "5. three"),
+        ("item", 1, "• dot"),
+        ("item", 2, "• deeper"),
+        ("item", 1, "☒ done"),
+        ("item", 2, "☐ to do"),
+    ]
+
+
+def cell(text, *properties):
+    told = "".join(f"<w:{name}/>" for name in properties)
+    return f"<w:tc><w:tcPr>{told}</w:tcPr><w:p>{run(text)}</w:p></w:tc>"
+
+
+def test_cells_of_docx_keep_their_columns():
+    head = "<w:tr><w:trPr><w:tblHeader/></w:trPr>" + "".join(map(cell, "ABC")) + "</w:tr>"
+    rows = (
+        "<w:tr>" + cell("1", 'vMerge w:val="restart"') + cell("2") + cell("3") + "</w:tr>"
+        "<w:tr>" + cell("", "vMerge") + cell("") + cell("4") + "</w:tr>"
+        "<w:tr>" + cell("5", 'gridSpan w:val="2"') + cell("6") + "</w:tr>"
+    )
+    before = '<w:tr><w:trPr><w:gridBefore w:val="1"/></w:trPr>' + cell("7") + cell("8") + "</w:tr>"
+    found = docx_blocks(body=f"<w:tbl>{head}{rows}{before}</w:tbl>")
+    assert [(str(b.text), b.headers) for b in found] == [
+        ("A  B  C", ()),
+        ("1  2  3", ("A", "B", "C")),
+        ("4", ("C",)),
+        ("5  6", ("A", "C")),
+        ("7  8", ("B", "C")),
+    ]
+
+
+def test_what_stands_in_a_drawing_of_docx():
+    box = f"<w:txbxContent><w:p>{run('in a box')}</w:p></w:txbxContent>"
+    empty = "<w:r><w:drawing><x/></w:drawing></w:r>"
+    both = (
+        '<w:r><mc:AlternateContent xmlns:mc="mc"><mc:Choice><w:pict>'
+        + box
+        + "</w:pict></mc:Choice>"
+        "<mc:Fallback><w:pict>" + box + "</w:pict></mc:Fallback></mc:AlternateContent></w:r>"
+    )
+    assert docx_texts(run("one"), both, run("two ") + empty) == ["one", "in a box", "two [drawing]"]
+
+
+def test_fields_boxes_and_formulas_of_docx():
+    def mark(kind, inner=""):
+        return f'<w:r><w:fldChar w:fldCharType="{kind}">{inner}</w:fldChar></w:r>'
+
+    link = (
+        mark("begin")
+        + '<w:r><w:instrText>HYPERLINK "https://a.b" \\l "c"</w:instrText></w:r>'
+        + mark("separate")
+        + run("there")
+        + mark("end")
+    )
+    box = '<w:ffData><w:checkBox><w:default w:val="{}"/></w:checkBox></w:ffData>'
+    boxes = mark("begin", box.format(1)) + mark("end") + mark("begin", box.format(0)) + mark("end")
+    formula = (
+        '<m:oMath xmlns:m="m"><m:f><m:num><m:r><m:t>1</m:t></m:r></m:num><m:den><m:sSup><m:e><m:r>'
+        "<m:t>x</m:t></m:r></m:e><m:sup><m:r><m:t>2</m:t></m:r></m:sup></m:sSup></m:den></m:f>"
+        "</m:oMath>"
+    )
+    linked, ticked, written = docx_blocks(link + run(" on"), boxes, formula)
+    assert marks(linked) == [(MarkKind.LINK, "there", "https://a.b#c")]
+    assert str(linked.text) == "there on"
+    assert str(ticked.text) == "☑☐"
+    assert str(written.text) == "\\frac{1}{x^{2}}"
+
+
+def test_comments_and_deleted_text_of_odt_are_not_read():
+    body = (
+        "<text:tracked-changes><text:changed-region><text:deletion><text:p>no</text:p>"
+        "</text:deletion></text:changed-region></text:tracked-changes><text:p>yes"
+        "<office:annotation><text:p>a remark</text:p></office:annotation> and<text:s text:c='2'/>"
+        "so<text:tab/>on<office:annotation-end/></text:p>"
+    )
+    assert odt_texts(body) == ["yes and so on"]
+
+
+def test_lists_and_tables_of_odt():
+    levels = (
+        '<text:list-style style:name="L"><text:list-level-style-number text:level="1" '
+        'style:num-format="1" style:num-suffix="." text:start-value="4"/>'
+        '<text:list-level-style-number text:level="2" style:num-format="a" style:num-suffix=")" '
+        'text:display-levels="2"/></text:list-style>'
+    )
+    body = (
+        '<text:list text:style-name="L"><text:list-item><text:p>one</text:p><text:p>more</text:p>'
+        "<text:list><text:list-item><text:p>inner</text:p></text:list-item></text:list>"
+        "</text:list-item><text:list-item><text:p>two</text:p></text:list-item></text:list>"
+        "<table:table><table:table-header-rows><table:table-row><table:table-cell><text:p>A</text:p>"
+        "</table:table-cell><table:table-cell><text:p>B</text:p></table:table-cell>"
+        "</table:table-row></table:table-header-rows><table:table-row><table:table-cell/>"
+        "<table:table-cell><text:p>1</text:p></table:table-cell></table:table-row><table:table-row>"
+        '<table:table-cell table:number-columns-spanned="2"><text:p>2</text:p></table:table-cell>'
+        "<table:covered-table-cell/></table:table-row></table:table>"
+    )
+    _, found = opened(odt_of(body, levels), "odt")
+    assert [(b.kind.value, b.level, str(b.text), b.headers) for b in found] == [
+        ("item", 1, "4. one", ()),
+        ("paragraph", 0, "more", ()),
+        ("item", 2, "4.a) inner", ()),
+        ("item", 1, "5. two", ()),
+        ("row", 0, "A  B", ()),
+        ("row", 0, "1", ("B",)),
+        ("row", 0, "2", ("A",)),
+    ]
+
+
+@pytest.mark.parametrize("form", ["docx", "odt"])
+def test_what_is_nested_very_deep_is_read_or_refused(form):
+    tables = {
+        "docx": ("<w:tbl><w:tr><w:tc/><w:tc>", f"<w:p>{run('x')}</w:p>", "</w:tc></w:tr></w:tbl>"),
+        "odt": (
+            "<table:table><table:table-row><table:table-cell/><table:table-cell>",
+            "<text:p>x</text:p>",
+            "</table:table-cell></table:table-row></table:table>",
+        ),
+    }
+    begin, inner, end = tables[form]
+    for depth in (70, 1_000):
+        body = begin * depth + inner + end * depth
+        content = docx(WORD.format(body)) if form == "docx" else odt_of(body)
+        if depth > 100:
+            with pytest.raises(InputError, match="damaged part"):
+                opened(content, form)
+        else:
+            assert "".join(str(block.text) for block in opened(content, form)[1]) == "x"

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from vbraille.devices.framekernels import step_levels
 from vbraille.devices.latero.datagrams import BLADES, BLADES_AT, REST, full_request
 
 if TYPE_CHECKING:
@@ -42,7 +43,6 @@ class Blades:
         self.at_rest = True
         self.view = memoryview(self.request)[BLADES_AT : BLADES_AT + BLADES]
         self._grid = self.levels.reshape(ROWS, ROWS)
-        self._room = np.empty((ROWS, ROWS))
         self._at = np.full(BLADES, float(REST))  # before they are rounded
         self._grid_at = self._at.reshape(ROWS, ROWS)
         self._stepped_ns = 0
@@ -70,19 +70,8 @@ class Blades:
             self._may_go = _PACE
         steps = min(self._behind, self._may_go)
         self._may_go -= steps
-        room = self._room
-        np.multiply(frame, -float(REST), out=room)
-        np.add(room, float(REST), out=room)
-        if steps < self._behind:
-            np.subtract(room, self._grid_at, out=room)
-            np.multiply(room, steps / self._behind, out=room)
-            np.add(self._grid_at, room, out=room)
-        np.copyto(self._grid_at, room)
+        step_levels(frame, float(REST), steps / self._behind, self._grid_at, self._grid)
         self._behind -= steps
-        np.rint(room, out=room)
-        np.minimum(room, float(REST), out=room)
-        np.maximum(room, 0.0, out=room)
-        np.copyto(self._grid, room, casting="unsafe")
         self.at_rest = False
 
     def stand_at(self, levels: bytes | memoryview, now_ns: int) -> None:
@@ -104,7 +93,5 @@ class Blades:
         self._stepped_ns = now_ns
         np.add(self._at, REST * passed_ns / RAMP_NS, out=self._at)
         np.minimum(self._at, float(REST), out=self._at)
-        whole = self._room.reshape(BLADES)
-        np.ceil(self._at, out=whole)
-        np.copyto(self.levels, whole, casting="unsafe")
+        np.copyto(self.levels, np.ceil(self._at), casting="unsafe")
         self.at_rest = self.rests

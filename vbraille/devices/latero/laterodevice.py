@@ -169,6 +169,8 @@ class LateroDevice(Device):
             except OSError:  # nothing has come, or nobody is there
                 return
             self.conversation.hear(self._view[:size], now_ns)
+            if self.conversation.numbering.caught_up:  # what may be left is doubled or late
+                return
 
     def _send_due(self, now_ns: int) -> None:
         conversation, board = self.conversation, self.guarding.board

@@ -57,6 +57,11 @@ class Numbering:
         return self._next
 
     @property
+    def caught_up(self) -> bool:
+        """Whether the newest request was answered, so that nothing newer can come."""
+        return self._newest is not None and self._newest == (self._next - 1) & _U16
+
+    @property
     def lost(self) -> int:
         """How many requests were never answered, of those that are older than the last few."""
         return self._gone

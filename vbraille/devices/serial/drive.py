@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.devices import framekernels
 from vbraille.devices.calibration import correction_for
-from vbraille.devices.wire import packing
 from vbraille.devices.wire.codec import Levels, enframe, frame_head
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ class Drive:
         step = math.inf
         if self.limited:
             step = self.slew_per_ns * min(now_ns - self.last_ns, self.period_ns)
-        return packing.fill(
+        return framekernels.fill(
             deflections,
             self.last,
             self.wanted,

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 
 from vbraille.caching import keep_compiled
-from vbraille.devices.wire import packing
+from vbraille.devices import framekernels
 from vbraille.devices.wire.fields import fields_of, places_of
 from vbraille.devices.wire.messages import (
     FAULTY,
@@ -264,7 +264,7 @@ def make(deflections, now_ns, talk, actuators, out):
     step = math.inf
     if talk.slew_per_ns < math.inf:
         step = talk.slew_per_ns * min(now_ns - talk.moved_ns, talk.period_ns)
-    felt = packing.fill(
+    felt = framekernels.fill(
         deflections,
         actuators.last,
         actuators.wanted,

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 MOST_BYTES = 200_000_000  # of a member, when it is unpacked
-_MOST_MARKUP = 20_000_000  # bytes of a member that is read at once
+MOST_MARKUP = 100_000_000  # bytes of a member that is parsed
 _ENCRYPTED = 0x1
 _ENCRYPTION = "META-INF/encryption.xml"
 # Fonts are garbled in books that are open otherwise; no text is.
@@ -64,7 +64,7 @@ class Archive:
         info = self._zip.NameToInfo.get(member)
         return info.file_size if info is not None else 0
 
-    def read(self, member: str, most: int = _MOST_MARKUP) -> bytes:
+    def read(self, member: str, most: int = MOST_BYTES) -> bytes:
         """Read a member.
 
         Raises
@@ -94,6 +94,10 @@ class Archive:
                 f"{self.name} is damaged in its part {told} ({printable(str(error))}); get it again"
             ) from None
 
+    def read_if(self, member: str) -> bytes:
+        """Read a member that need not be there; without it, nothing."""
+        return self.read(member) if member in self else b""
+
     def xml(self, member: str) -> Any:
         """Parse a short member as XML, and give its root.
 
@@ -108,7 +112,7 @@ class Archive:
             resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False
         )
         try:
-            return etree.fromstring(self.read(member), parser)
+            return etree.fromstring(self.read(member, MOST_MARKUP), parser)
         except (etree.XMLSyntaxError, ValueError) as error:
             raise InputError(
                 f"{self.name} has a damaged part {printable(member)} ({printable(str(error))}); "

@@ -78,6 +78,7 @@ _UNSHOWN = {
     "object": ("embedded object", "object"),
     "embed": ("embedded object", "object"),
     "applet": ("embedded object", "object"),
+    "symbol": ("symbol", "symbol"),  # of word processors, not of HTML
 }
 _EMPTY = frozenset(("br", "hr", "img"))
 _BUTTONS = frozenset(("submit", "reset", "button"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import locale
 import re
 import sys
@@ -58,18 +59,25 @@ def open_office(stream: BinaryIO, name: str, form: str) -> Source:
             f"save it as EPUB or without its pictures"
         )
     digest = hashlib.sha256(content).hexdigest()
-    title = language = ""
-    if form == "rtf":
-        title, language = _rtf_title(content), _rtf_language(content)
-        content = _RTF_TEXT.sub(_rtf_level, content)
-    else:
-        from vbraille.translate.documents.office.officexml import annotated
+    from vbraille.translate.documents.html import HtmlBook
 
-        found = annotated(content, form)
-        content, title, language = found.content, found.title, found.language
+    if form in ("docx", "odt"):
+        from vbraille.translate.documents.markup.archive import Archive
+
+        archive = Archive(io.BytesIO(content), name)
+        if form == "docx":
+            from vbraille.translate.documents.office.docx import read_docx
+
+            root, title, language = read_docx(archive)
+        else:
+            from vbraille.translate.documents.office.odt import read_odt
+
+            root, title, language = read_odt(archive)
+        return HtmlBook(root, name, digest, title=title, language=language)
+    title, language = _rtf_title(content), _rtf_language(content)
+    content = _RTF_TEXT.sub(_rtf_level, content)
     document = _document(content, name, form)
     html = "".join(written(document, title, language)).encode("utf-8", "replace")
-    from vbraille.translate.documents.html import HtmlBook
     from vbraille.translate.documents.markup.tree import read_tree
 
     root, _ = read_tree(html, name, xml=False, encoding="utf-8")

@@ -1,7 +1,7 @@
-"""The compiled inner loop of what goes to the actuators, and nothing else.
+"""What is done to each frame on its way to actuators, compiled.
 
-It fills what it is given and allocates nothing. `vbraille.devices.wire.codec.Levels`
-packs the same in numpy.
+These functions fill what they are given and allocate nothing. `vbraille.devices.wire.codec.Levels`
+packs the same as `fill` in numpy.
 """
 
 import numpy as np
@@ -9,8 +9,46 @@ from numba import njit
 
 from vbraille.caching import keep_compiled
 
+_compiled = njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 
-@njit(cache=keep_compiled(), error_model="numpy")
+
+@_compiled
+def in_range(frame):
+    """Whether all deflections of a frame, float64[rows, columns], are numbers in [0, 1]."""
+    for row in range(frame.shape[0]):
+        for column in range(frame.shape[1]):
+            if not 0.0 <= frame[row, column] <= 1.0:  # NaN fails, too
+                return False
+    return True
+
+
+@_compiled
+def step_levels(deflections, top_level, share, stands, levels):
+    """Go some of the way to deflections whose rest is the highest level.
+
+    Parameters
+    ----------
+    deflections : float64[rows, columns]
+        Deflections that the actuators are to have, in [0, 1].
+    top_level : float64
+        Level at rest; 0 is full swing.
+    share : float64
+        Part of the way from where the actuators stand, up to 1.
+    stands : float64[rows, columns]
+        Levels where they stand, before they are rounded; they are changed.
+    levels : uint8[rows, columns]
+        Levels to send, which are filled in.
+    """
+    for row in range(deflections.shape[0]):
+        for column in range(deflections.shape[1]):
+            stand = deflections[row, column] * -top_level + top_level
+            if share < 1.0:
+                stand = stands[row, column] + (stand - stands[row, column]) * share
+            stands[row, column] = stand
+            levels[row, column] = min(max(np.rint(stand), 0.0), top_level)
+
+
+@_compiled
 def fill(deflections, last, wanted, step, swing, rest, bits, out):
     """Fill in the packed levels of a FRAME; tell whether there is anything to feel in it.
 

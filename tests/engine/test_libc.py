@@ -13,7 +13,7 @@ import numba
 import numpy as np
 import pytest
 
-from vbraille import libc
+from vbraille.engine import libc
 
 pytestmark = pytest.mark.skipif(
     numba.config.DISABLE_JIT, reason="only compiled code calls the C library"
@@ -22,7 +22,7 @@ LONG_NS = 60_000_000_000
 SCRIPT = """
 import os
 import numpy as np
-from vbraille import libc
+from vbraille.engine import libc
 reader, writer = os.pipe()
 os.write(writer, b"abc")
 out = np.zeros(8, np.uint8)
