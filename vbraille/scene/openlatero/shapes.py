@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from vbraille.scene.crossing import meeting_edges
+from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.joints import joints, rounding_radius_mm
 from vbraille.scene.measures import LEAST_MM, MOST_MM
 from vbraille.scene.openlatero.context import SURFACE_MM, swung, vibration

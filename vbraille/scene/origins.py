@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.scene.scene import Scene
-    from vbraille.scene.walking import Steps
+    from vbraille.scene.traversal import Steps
     from vbraille.toml.tomlfile import TomlFile
 
 

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tiers import heavy
-from vbraille.scene import crossing
-from vbraille.scene.crossing import meeting_edges
+from vbraille.scene import intersections
+from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.patterns import Polygon
 from vbraille.scene.strokes import Stroke
 
@@ -81,8 +81,8 @@ def test_few_edges_and_many_are_judged_alike(vertices):
     """What plain Python finds among few is what numpy finds, pair by pair."""
     if any(a == b for a, b in zip(vertices, vertices[1:] + vertices[:1], strict=True)):
         return
-    slowly = next(crossing._slowly(tuple(vertices)), None)
-    assert (slowly is None) == (crossing._quickly(tuple(vertices)) is None)
+    slowly = next(intersections._slowly(tuple(vertices)), None)
+    assert (slowly is None) == (intersections._quickly(tuple(vertices)) is None)
 
 
 def test_a_polygon_that_crosses_itself_is_refused():
@@ -91,6 +91,6 @@ def test_a_polygon_that_crosses_itself_is_refused():
 
 
 def test_examples():
-    tried = doctest.testmod(crossing)
+    tried = doctest.testmod(intersections)
     assert tried.attempted
     assert not tried.failed
