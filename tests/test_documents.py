@@ -121,7 +121,7 @@ def test_a_name_stands_for_one_thing():
     Events of the journal are called as the journal calls them, and written `events.Answer`.
     """
     record = ROOT / "vbraille/sessions/record"
-    events = {record / "events.py", record / "trialevents.py"}
+    events = {record / "events.py"}
     paths = set((ROOT / "vbraille").rglob("*.py")) - events
     sources = [path.read_text(encoding="utf-8") for path in paths]
     classes = Counter(name for text in sources for name in _CLASS.findall(text))

@@ -18,7 +18,7 @@ from vbraille.layout.wrapping import breaks_of, wrap
 from vbraille.render.scene.assets import Written
 from vbraille.render.scene.brailleplaces import corners_mm
 from vbraille.scene.patterns import Label, Tile
-from vbraille.scene.walking import each
+from vbraille.scene.traversal import each
 from vbraille.translate.languages import find_table
 from vbraille.translate.liblouis import BrailleTable
 from vbraille.translate.text import Text, to_codes

@@ -17,17 +17,15 @@ from scipy.stats import norm
 
 TRIALS = 72
 SEEDS = (1, 2, 3)
-BUMP = [1.0, 2.0, 4.0, 8.0, 4.0, 2.0, 1.0]
 
 
 def span(low, high, count):
     return [round(value, 6) for value in np.linspace(low, high, count).tolist()]
 
 
-def model(name, family, stimuli, axes, truth, prior=None):
+def model(name, family, stimuli, axes, truth):
     return {
         "name": name, "family": family, "stimuli": stimuli, "axes": axes, "truth": truth,
-        "prior": prior or {},
     }  # fmt: skip
 
 
@@ -43,12 +41,6 @@ MODELS = [
         {"threshold": THRESHOLDS[::2], "spread": [1.0, 2.0, 4.0], "guess": [0.5],
          "lapse": [0.0, 0.03, 0.06]},
         (1.4, 2.0, 0.5, 0.05),
-    ),
-    model(
-        "normal, yes or no, with a prior", "normal", [span(-3, 3.1, 31)],
-        {"threshold": span(-2, 2, 7), "spread": [0.3, 0.6, 1.2, 2.4], "guess": [0.03],
-         "lapse": [0.01]},
-        (0.4, 0.7, 0.03, 0.01), {"threshold": BUMP},
     ),
     model(
         "normal, one of two, guesses unknown", "normal", [span(0, 10.3, 42)],
@@ -122,7 +114,6 @@ def trace(told, seed):
         stim_domain=dict(zip(domain, told["stimuli"], strict=True)),
         param_domain={of[name]: values for name, values in told["axes"].items()},
         outcome_domain={"response": ["Yes", "No"]},
-        prior={of[name]: np.array(w) / sum(w) for name, w in told["prior"].items()} or None,
         func=func,
         stim_scale="linear",
         stim_selection_method="min_entropy",

@@ -6,18 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from vbraille.adaptive.estimates import GridAxis
-from vbraille.adaptive.questplus import detection_quest, nearer_quest
+from vbraille.adaptive.questplus import GridAxis, detection_quest, nearer_quest
 
 MADE = json.loads(Path(__file__).with_name("oracle.json").read_text())
 MODELS = {model["name"]: model for model in MADE["models"]}
 
 
 def quest_of(model):
-    axes = [
-        GridAxis(name, tuple(values), tuple(model["prior"].get(name, ())))
-        for name, values in model["axes"].items()
-    ]
+    axes = [GridAxis(name, tuple(values)) for name, values in model["axes"].items()]
     if model["family"].startswith("nearer"):
         pairs = list(product(*model["stimuli"]))
         return nearer_quest(pairs, *axes, log=model["family"].endswith("log"))

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from vbraille.adaptive.estimates import GridEstimate
-from vbraille.adaptive.staircase import StaircaseRule, Staircases
-from vbraille.adaptive.stopping import Asked, StopRule
+from vbraille.adaptive.questplus import GridEstimate
+from vbraille.adaptive.staircase import Asked, StaircaseRule, Staircases, StopRule
 
 
 def rule(**changed):

@@ -5,9 +5,7 @@ from vbraille.analysis.input.scoretable import of_trials
 from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.input.trials import Places
 from vbraille.analysis.measures import (
-    characters,
     confusion,
-    doterrors,
     legibility,
     movement,
     overtime,
@@ -74,12 +72,12 @@ def all_tables(trials, places):
     return [
         by_participant,
         legibility.averages(by_participant),
-        characters.characters(places),
-        characters.strings(trials),
-        characters.dots(places),
+        legibility.characters(places),
+        legibility.strings(trials),
+        legibility.dots(places),
         *(confusion.to_table(*of, places) for of in matrices if of[1] is not None),
         confusion.transmitted(trials, places, seed=1),
-        doterrors.errors(places),
+        confusion.errors(places),
         overtime.over_time(trials),
         overtime.slopes(trials),
         seen,

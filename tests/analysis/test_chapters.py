@@ -16,7 +16,7 @@ from vbraille.analysis import analyse, analyse_scores
 from vbraille.analysis.chapters import Options, analyse_study, compare_scores
 from vbraille.analysis.input.study import load_scores, load_study
 from vbraille.analysis.input.trials import written
-from vbraille.analysis.report.tojson import to_json
+from vbraille.analysis.report.totext import to_json
 from vbraille.analysis.report.written import write_report
 from vbraille.analysis.schemas import to_csv as frame_to_csv
 from vbraille.errors import InputError

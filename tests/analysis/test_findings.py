@@ -119,7 +119,7 @@ def test_characters_errors_and_runs(results):
 
 def test_the_main_figure_has_the_participants_points(results):
     assert results.main == "means_condition"
-    figure = results.main_figure()
+    figure = next(each for each in results.figures() if each.name == results.main)
     (series,) = figure.chart.panels[0][1]
     own = [r for r in rows(results, "level_scores") if r["measure"] == "legibility of strings"]
     assert len(series.points) == 6
@@ -210,7 +210,9 @@ def test_choices_are_told_with_the_preferred_value():
     assert f"is {to_print(row['preferred'], Kind.NUMBER)} mm" in said
     assert "80 comparisons of 4 participants" in said
     assert results.main == "choices_dot_width_mm"
-    (series,) = results.main_figure().chart.panels[0][1]
+    (series,) = next(each for each in results.figures() if each.name == results.main).chart.panels[
+        0
+    ][1]
     assert len(series.points) == 4
 
 

@@ -19,7 +19,8 @@ from tests.analysis.published import (
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.input.trials import Places, chosen, name_cell
-from vbraille.analysis.measures import characters, confusion, doterrors
+from vbraille.analysis.measures import confusion
+from vbraille.analysis.measures import legibility as legibilities
 from vbraille.analysis.measures.legibility import averages, legibility
 from vbraille.analysis.schemas import Kind, round_half_up, to_print
 from vbraille.sessions.planning.making import make_plan
@@ -81,7 +82,7 @@ BY_SUBJECT = legibility(TRIALS, PLACES)
 AVERAGES = averages(BY_SUBJECT)
 COUNTED, COUNTED_PLACES = of_table_3_4()
 NAMES = [name_cell(mask) for mask in (0b1, 0, 0b1001, 0b1000)]
-OF_CHARACTERS = characters.characters(COUNTED_PLACES)
+OF_CHARACTERS = legibilities.characters(COUNTED_PLACES)
 
 
 def column(name, condition):
@@ -136,7 +137,7 @@ def test_3_1_average_row(told):
     # From means that are rounded to 0.1 s it might have differed by 0.1 s; it does not, and the
     # 8.75 s of the textured ones are rounded half up.
     (mean_s,) = printed([average["duration"][condition]])
-    assert to_print(row["duration_mean_s"], Kind.SECONDS) == mean_s
+    assert to_print(row["duration_mean_s"], Kind.TENTHS) == mean_s
 
 
 @each((RECONSTRUCTED, "totals", READ["totals"]))
@@ -177,7 +178,7 @@ def test_3_3_pooled_legibility_of_each_pair(told):
         for answer, n in ((s, row["diagonal"]), ("??", row["row_sum"] - row["diagonal"]))
         for _ in range(n)
     ]
-    table = characters.strings(trials_of(rows)[0])
+    table = legibilities.strings(trials_of(rows)[0])
     found = {row["braille"]: to_print(row["pooled"], Kind.PERCENT) for row in table.records()}
     assert [found[string] for string in STRINGS] == printed(pooled.values())
     assert list(pooled) == PAIRS["labels"]
@@ -206,7 +207,7 @@ def test_3_3_decimals_are_those_of_means_within_participants_first(told):
                 for (who, c), (right, n) in read.items()
                 for k in range(n)
             ]
-            (row,) = characters.strings(trials_of(rows)[0]).records()
+            (row,) = legibilities.strings(trials_of(rows)[0]).records()
             decimals[n].add(to_print(row["legibility"], Kind.PERCENT)[-1])
     assert decimals == {1: {"0"}, 2: {"0"}, 3: {"0", "3", "7"}, 4: {"0", "5"}, 5: {"0"}}
     assert Counter(text[-1] for text in printed(values)) == {"0": 13, "5": 2, "7": 1}
@@ -273,7 +274,7 @@ def test_3_4_wrong_characters_of_wrong_strings(told):
 )
 def test_3_4_errors_by_kind(told):
     glyphs, added, removed, two = told
-    table = doterrors.errors(of_table_3_4(glyphs)[1])
+    table = confusion.errors(of_table_3_4(glyphs)[1])
     assert {row["error"]: row["count"] for row in table.records()} == {
         "1 dot added": added,
         "1 dot moved": 42,
@@ -286,7 +287,7 @@ def test_3_4_errors_by_kind(told):
 @each((EXACT, "text", "⠁⠀⠉⠈"), (EXACT, "text, blank and c changed", "⠁⠉⠀⠈"))
 def test_3_4_characters_of_one_dot_are_hardest(told):
     (glyphs,) = told
-    table = characters.dots(of_table_3_4(glyphs)[1])
+    table = legibilities.dots(of_table_3_4(glyphs)[1])
     assert table.frame["dots"].tolist() == [0, 1, 2]
     none, one, two = table.frame["pooled"].tolist()
     assert one < min(none, two)
@@ -360,7 +361,7 @@ def test_3_5_frequent_errors_can_be_a_dot_added_or_moved(told):
         for pair in pairs:
             shown, answer = ("".join(glyph[place] for place in label) for label in pair)
             row = {"participant": "all", "condition": "all", "presented": shown, "answered": answer}
-            kinds.add(tuple(doterrors.errors(trials_of([row])[1]).frame["error"].tolist()))
+            kinds.add(tuple(confusion.errors(trials_of([row])[1]).frame["error"].tolist()))
         assert kinds & {("1 dot added",), ("1 dot moved",)}
 
 

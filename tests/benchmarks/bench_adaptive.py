@@ -10,8 +10,8 @@ import numpy as np
 
 from tests.benchmarks.timing import Result
 from tests.benchmarks.tuned_people import KINDS, PEOPLE, PROTOCOLS, SEED, tune
-from vbraille.adaptive.estimates import GridAxis
 from vbraille.adaptive.questplus import (
+    GridAxis,
     detection_quest,
     geometric,
     nearer_quest,

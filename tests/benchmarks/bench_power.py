@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from tests.benchmarks.bare_power import question
 from tests.benchmarks.timing import Result, seconds
+from tests.forecast.closedform import of_row
 from vbraille.forecast.power import PowerQuestion, PowerTable, power
 from vbraille.forecast.workers import Workers
 from vbraille.sessions.planning.protocolfiles import load_protocol
@@ -86,12 +87,11 @@ def _run(commands: list[list[str]]) -> tuple[float, float]:
 
 def _closed_form() -> Result:
     asked = PowerQuestion(load_protocol("legibility"), {}, SIZES, test="paired", studies=NORMAL)
-    tables = [
-        power(replace(asked, effect={"nominal": "0.5", "textured": share}), Workers(2))
-        for share in EFFECTS
-    ]
+    questions = [replace(asked, effect={"nominal": "0.5", "textured": share}) for share in EFFECTS]
     off = [
-        (abs(row.power - (row.closed_form or 0.0)), row) for table in tables for row in table.rows
+        (abs(row.power - of_row(question, row)), row)
+        for question in questions
+        for row in power(question, Workers(2)).rows
     ]
     worst, row = max(off, key=lambda one: one[0])
     return Result(

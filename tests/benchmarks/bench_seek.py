@@ -46,12 +46,12 @@ def run() -> Iterator[Result]:
             "where the blocks of 50 MB are, found out once and kept", "measured",
             f"{_SIZE / 1e6 / took:.0f} MB/s, {kept // 1000} kB", True,
         )  # fmt: skip
-        for accents in (False, True):
+        for accents, bar in ((False, 50), (True, 50)):
             rates = sorted(_rate(fresh, accents=accents) for _ in range(3))
             how = ", accents folded" if accents else ""
             yield Result(
                 f"search through 50 MB of text to its first hit, at the end{how}",
-                "measured", f"{rates[1]:.0f} MB/s", True,
+                f"≥ {bar} MB/s", f"{rates[1]:.0f} MB/s", rates[1] >= bar,
             )  # fmt: skip
         yield _cancels(path)
         yield _commits(Path(folder), path)

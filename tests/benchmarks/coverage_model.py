@@ -10,17 +10,16 @@ from scipy.special import expit, logit
 
 from tests.benchmarks.coverage_people import Found, centre_of, mean_of
 from tests.conftest import SEED
-from vbraille.analysis.statistics.intervals import LEVEL
-from vbraille.analysis.statistics.marginalmeans import (
+from vbraille.analysis.statistics.intervals import LEVEL, MEANS, SPREADS, log_likelihood, quantiles
+from vbraille.analysis.statistics.trialsmodel import (
+    combine,
     compare,
     compare_all,
     difference,
-    odds_ratio,
+    fit_trials,
     separate_cells,
     tells_difference,
 )
-from vbraille.analysis.statistics.shares import MEANS, SPREADS, log_likelihood, quantiles
-from vbraille.analysis.statistics.trialsmodel import combine, fit_trials
 
 TRIALS = 78  # of each participant, as in the source's sessions
 APART = 0.5  # log odds that conditions, and groups, differ by where they do
@@ -105,10 +104,9 @@ def intervals(people: int, share: float, sd: float, kind: str, what: str, studie
     else:
         fit = fit_trials(made.correct, made.trials, separate_cells(people, 2))
         if what == "odds ratio":
-            found, truth = odds_ratio(fit, [0, 1], [1, 0]), logit(second) - logit(first)
+            (low, high), truth = combine(fit, [-1, 1]).ends(), logit(second) - logit(first)
         else:
-            found, truth = difference(fit, [0, 1], [1, 0]), second - first
-        low, high = found.low, found.high
+            (low, high), truth = difference(fit, [0, 1], [1, 0]), second - first
         if what == "difference of shares":
             low = np.where(tells_difference(made.correct, made.trials), low, np.nan)
     given = np.isfinite(low)
@@ -123,7 +121,7 @@ def mean_shares(correct: np.ndarray, trials: np.ndarray) -> tuple[np.ndarray, np
         likely = np.zeros((MEANS, SPREADS), np.float32)
         for k, n in zip(right[asked > 0].tolist(), asked[asked > 0].tolist(), strict=True):
             likely = likely + _log_likelihood(float(k), float(n))
-        ends.append(quantiles(likely[None], float(asked[asked > 0].mean()), LEVEL))
+        ends.append(quantiles(likely[None], float(asked[asked > 0].mean())))
     low, high = zip(*ends, strict=True)
     return np.concatenate(low), np.concatenate(high)
 

@@ -11,10 +11,15 @@ from scipy.special import expit, logit
 
 from tests.conftest import SEED
 from vbraille.analysis.statistics.bradleyterry import preferred
-from vbraille.analysis.statistics.intervals import LEVEL, mean_duration
+from vbraille.analysis.statistics.intervals import (
+    MEANS,
+    SPREADS,
+    Unanswerable,
+    log_likelihood,
+    mean_duration,
+    quantiles,
+)
 from vbraille.analysis.statistics.paired import paired_t
-from vbraille.analysis.statistics.shares import MEANS, SPREADS, log_likelihood, quantiles
-from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 PEOPLE = (3, 5, 6, 10, 20)
 SPREAD = (0.5, 1.0, 1.5)
@@ -70,7 +75,7 @@ def shares(people: int, trials: int, share: float, sd: float, centred: str, stud
         counts = np.zeros((len(part), trials + 1), np.float32)
         np.add.at(counts, (np.arange(len(part))[:, None], part), 1)
         likely = (counts @ each).reshape(-1, MEANS, SPREADS)
-        low, high = quantiles(likely, float(trials), LEVEL)
+        low, high = quantiles(likely, float(trials))
         held += int(((low <= truth) & (truth <= high)).sum())
     return Found(studies, held, studies)
 

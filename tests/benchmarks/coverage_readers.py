@@ -10,8 +10,8 @@ from scipy.special import ndtr
 from tests.benchmarks.coverage_people import Found
 from tests.conftest import SEED
 from vbraille.analysis.statistics.detection import yes_no
+from vbraille.analysis.statistics.intervals import Unanswerable
 from vbraille.analysis.statistics.psychometric import SHAPES, fit_psychometric
-from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 LEVELS = np.linspace(0.25, 1.75, 7)
 THRESHOLD, SPREAD, LAPSES = 1.0, 0.25, 0.02

@@ -13,9 +13,8 @@ from tests.benchmarks.coverage_people import Found
 from tests.conftest import SEED
 from vbraille.analysis.measures.movement import correlation
 from vbraille.analysis.measures.overtime import slope
-from vbraille.analysis.statistics.information import transmitted_bits
-from vbraille.analysis.statistics.transmission import transmission
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.statistics.information import transmission, transmitted_bits
+from vbraille.analysis.statistics.intervals import Unanswerable
 from vbraille.braille.spelling import LETTERS
 
 _MASKS = list(LETTERS.values())

@@ -11,7 +11,7 @@ from tests.pictures.gallery import GALLERY, PICTURES, ROOT, SCENES
 from tests.tiers import by_tier
 from vbraille.scene.patterns import AnyPattern, Group, Operation
 from vbraille.scene.reading import open_scene
-from vbraille.scene.walking import each
+from vbraille.scene.traversal import each
 
 PAGE = (ROOT / "docs/graphics.md").read_text(encoding="utf-8")
 EVERYDAY = ("pictured.png", "pictured-raised.png", "operators.png", "images.png", "labelled.png")

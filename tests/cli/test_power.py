@@ -38,7 +38,7 @@ def test_the_numbers_are_the_same_as_json_and_as_csv(call):
         (["--participants", "4-9999"], "'4-9999' are 9996 sizes; give at most 1000"),
         (["--effect", "T0"], "'T0' is not NAME=SHARE, such as T0=0.5"),
         (["--effect", "T0=0.1,T0=0.2"], "T0 stands there twice"),
-        (["--cluster", "lab"], "--cluster is 'lab', which is no address"),
+        (["--cluster", "lab"], "--cluster is gone; --workers shares the work"),
         (["--workers", "0"], "--workers is 0; it must be 1 to 256"),
         (["--keep", "/"], "--keep / cannot be used: Is a directory"),
     ],

@@ -5,7 +5,7 @@ import time
 import pytest
 
 from vbraille.errors import InputError
-from vbraille.forecast.grids import GridTask, predict, predict_point, read_grid, to_json
+from vbraille.forecast.grids import predict, read_grid, to_json
 from vbraille.forecast.workers import Workers
 
 GRID = """format = 1
@@ -76,16 +76,3 @@ def test_a_grid_far_too_large_is_refused_before_its_points_are_made():
     with pytest.raises(InputError, match="more than 100000 points; make it smaller"):
         read_grid(GRID.replace("contrast = [0.05, 1.0]", many), "grid.toml")
     assert time.process_time() - started < 1
-
-
-def test_a_point_costs_no_reading_of_the_whole_grid():
-    widths = ", ".join(f"{1 + n / 1000:.3f}" for n in range(2000))
-    text = GRID.replace("contrast = [0.05, 1.0]", f"dot_width_mm = [{widths}]")
-    started = time.process_time()
-    read_grid(text, "grid.toml")
-    reading_s = time.process_time() - started
-    predict_point(GridTask(text, "grid.toml", 0))
-    started = time.process_time()
-    for number in range(1, 21):
-        predict_point(GridTask(text, "grid.toml", number))
-    assert time.process_time() - started < 10 * reading_s

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy.special import expit
 
-from vbraille.analysis.statistics.correction import adjust
+from tests.forecast.closedform import mean_and_spread
+from vbraille.analysis.statistics.intervals import adjust
 from vbraille.forecast.studies import (
     StudyPlan,
     StudyTask,
     _corrected,
     count_found,
     log_odds_of,
-    mean_and_spread,
     simulate,
 )
 
@@ -25,7 +25,6 @@ PLAN = StudyPlan(
     sizes=(5, 8),
     test="model",
     correction="holm",
-    alpha=0.05,
 )
 
 

@@ -2,11 +2,9 @@
 
 import multiprocessing
 import os
-import re
 import signal
 import subprocess
 import sys
-from importlib.util import find_spec
 
 import pytest
 
@@ -24,13 +22,6 @@ def doubled(task):
 def ended(task):
     if task == 2:
         os.kill(os.getpid(), signal.SIGKILL)
-    return task
-
-
-def slow(task):
-    import time
-
-    time.sleep(0.05)
     return task
 
 
@@ -104,56 +95,7 @@ Workers(2).work(said, [1, 2], lambda *_: None)
 """
 
 
-@heavy
-def test_a_cluster_does_each_task_once_and_its_end_is_said():
-    pytest.importorskip("distributed")
-    cluster = subprocess.Popen(
-        [sys.executable, "-c", _CLUSTER], stdout=subprocess.PIPE, text=True, start_new_session=True
-    )
-    try:
-        address = cluster.stdout.readline().strip()
-        workers = Workers(cluster=address)
-        assert all_done(workers, list(range(7))) == {number: 2 * number for number in range(7)}
-        found = []
-
-        def done(number, _result):
-            found.append(number)
-            if len(found) == 5:
-                os.killpg(cluster.pid, signal.SIGKILL)
-
-        with pytest.raises(VbrailleError, match=r"went away after [0-9]+ of 400 tasks"):
-            workers.work(slow, list(range(400)), done)
-        assert 5 <= len(found) < 400
-        with pytest.raises(VbrailleError, match="no cluster answers at"):
-            all_done(workers, [1, 2])
-    finally:
-        cluster.kill()
-        cluster.wait()
-        cluster.stdout.close()
-
-
-_CLUSTER = """
-from distributed import LocalCluster
-if __name__ == "__main__":
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
-        print(cluster.scheduler_address, flush=True)
-        cluster.sync(__import__("asyncio").sleep, 120)
-"""
-
-
 @pytest.mark.parametrize("number", [0, -1, 257])
 def test_numbers_of_workers_are_checked(number):
     with pytest.raises(InputError, match=f"is {number}; it must be 1 to 256"):
         Workers(number)
-
-
-@pytest.mark.parametrize("address", ["nowhere", "tcp://", "http://lab:8786", "lab:", "a b:1", ""])
-def test_an_address_is_checked(address):
-    with pytest.raises(InputError, match=f"is {re.escape(repr(address))}, which is no address"):
-        Workers(cluster=address)
-
-
-@pytest.mark.skipif(find_spec("distributed") is not None, reason="distributed is installed")
-def test_a_cluster_needs_distributed():
-    with pytest.raises(InputError, match="needs distributed; pip install"):
-        Workers(cluster="tcp://lab:8786")

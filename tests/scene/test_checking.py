@@ -7,7 +7,7 @@ import pytest
 
 from vbraille.scene import checking
 from vbraille.scene.checking import check_scene
-from vbraille.scene.opened import OpenedScene, Origins
+from vbraille.scene.origins import OpenedScene, Origins
 from vbraille.scene.patterns import (
     Circle,
     Dots,

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from tests.tiers import examples
-from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.dotting import dots_of, most_dots_of
+from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 from vbraille.scene.strokes import DotStyle, Dotting, Stroke
 

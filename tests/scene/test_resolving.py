@@ -8,7 +8,7 @@ import pytest
 
 from tests.tiers import heavy
 from vbraille.errors import InputError
-from vbraille.scene import opened, walking
+from vbraille.scene import origins, traversal
 from vbraille.scene.patterns import (
     AnyPattern,
     Circle,
@@ -27,7 +27,7 @@ from vbraille.scene.resolving import MOST_DEPTH, resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke, Vibration
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, Uniform
-from vbraille.scene.walking import LISTS, ONE, SEVERAL, moved, with_children
+from vbraille.scene.traversal import LISTS, ONE, SEVERAL, moved, with_children
 
 CANVAS = Canvas(width_mm=200, height_mm=100)
 
@@ -212,7 +212,7 @@ def test_what_is_moved_too_far_is_refused():
     )
 
 
-@pytest.mark.parametrize("module", [opened, walking], ids=lambda module: module.__name__)
+@pytest.mark.parametrize("module", [origins, traversal], ids=lambda module: module.__name__)
 def test_examples(module):
     tried = doctest.testmod(module)
     assert tried.attempted

@@ -18,27 +18,198 @@ than the entropy of φ does (docs/measured.md).
 
 Stimuli within 1e-9 of the best count as equally good, and the first of them is taken: so a
 last bit in which two machines differ changes no question.
+
+**Psychometric functions.** A shape F grows from 0 to 1 with the stimulus x. With a guess rate γ
+and a lapse rate λ, a positive answer (yes, or right) has the probability
+
+    p(x) = γ + (1 - γ - λ) F(x).                                               (3)
+
+γ is 0 for yes or no, and 1/2 for one of two alternatives. The shapes have a threshold t and a
+spread s:
+
+    normal    F = Φ((x - t) / s)
+    logistic  F = 1 / (1 + exp(-(x - t) / s))
+    weibull   F = 1 - exp(-(x / t)^s),  for x and t above 0; s is the slope.   (4)
+
+**Nearer of two.** Of two values x₁ and x₂ somebody chooses the one that is nearer to an inner
+value μ. Each distance is judged with independent normal noise of standard deviation s, so that
+
+    p(first) = λ / 2 + (1 - λ) Φ((|x₂ - μ| - |x₁ - μ|) / (s √2)).              (5)
+
+On a log scale, x and μ stand for their natural logarithms, and s is a share of them.
 """
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
 from itertools import pairwise, product
-from math import prod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from vbraille.adaptive.estimates import GridEstimate, estimate
-from vbraille.adaptive.psychometric import detected, limited, nearer
-
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
-    from vbraille.adaptive.estimates import GridAxis
-
+    Floats = NDArray[np.float64]
     Stimulus = tuple[float, ...]
+
+CREDIBLE = 0.95  # share of a posterior that a credible interval holds
+
+
+@dataclass(frozen=True, slots=True)
+class GridAxis:
+    """Possible values of a parameter of whoever answers, all equally likely beforehand.
+
+    Parameters
+    ----------
+    name
+        Name of the parameter.
+    values
+        Values, increasing; a single value fixes the parameter.
+
+    Raises
+    ------
+    ValueError
+        If there is no value, or values do not increase.
+    """
+
+    name: str
+    values: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if not self.values:
+            raise ValueError(f"{self.name} has no values; give one or more")
+        if not np.isfinite(self.values).all() or (np.diff(self.values) <= 0).any():
+            raise ValueError(f"{self.name} has values that do not increase; sort them")
+
+
+class GridEstimate(NamedTuple):
+    """What is known about a parameter after some answers.
+
+    Parameters
+    ----------
+    mean, median
+        Mean and median of the posterior, in the unit of the parameter.
+    sd
+        Standard deviation of the posterior.
+    low, high
+        Ends of the credible interval of 95 %, which has equal tails.
+    """
+
+    mean: float
+    median: float
+    sd: float
+    low: float
+    high: float
+
+    @property
+    def width(self) -> float:
+        """Width of the credible interval."""
+        return self.high - self.low
+
+
+def estimate(values: tuple[float, ...], shares: NDArray[np.float64]) -> GridEstimate:
+    """Estimate a parameter from the probabilities of its values.
+
+    Median and interval are interpolated: the probability of a value is spread evenly from halfway
+    to the value below it to halfway to the one above.
+
+    Parameters
+    ----------
+    values
+        Values, increasing.
+    shares : float64[values]
+        Their probabilities, which add up to 1.
+    """
+    at = np.array(values)
+    mean = float(at @ shares)
+    sd = float(np.sqrt(((at - mean) ** 2) @ shares))
+    if at.size == 1:
+        return GridEstimate(mean, mean, 0.0, mean, mean)
+    edges = np.concatenate((at[:1], (at[1:] + at[:-1]) / 2, at[-1:]))
+    below = np.concatenate(((0.0,), np.cumsum(shares)))
+    tail = (1 - CREDIBLE) / 2
+    low, median, high = np.interp((tail, 0.5, 1 - tail), below / below[-1], edges).tolist()
+    return GridEstimate(mean, median, sd, low, high)
+
+
+_UNLIKELY = 1e-15  # least probability of an answer, so that no answer makes all values impossible
+
+
+def phi(z: Floats) -> Floats:
+    """Cumulative distribution of the standard normal, by Python's own erfc; any shape."""
+    erfc = math.erfc
+    made = [erfc(value) for value in (np.ravel(z) / -math.sqrt(2.0)).tolist()]
+    return np.array(made).reshape(np.shape(z)) / 2
+
+
+SHAPES: dict[str, Callable[[Floats, Floats, Floats], Floats]] = {
+    "normal": lambda x, threshold, spread: phi((x - threshold) / spread),
+    "logistic": lambda x, threshold, spread: 0.5 + 0.5 * np.tanh((x - threshold) / spread / 2),
+    "weibull": lambda x, threshold, spread: -np.expm1(-((x / threshold) ** spread)),
+}
+"""Shapes by equation (4), of stimulus, threshold and spread; arrays are broadcast."""
+
+
+def detected(
+    shape: str, x: Floats, threshold: Floats, spread: Floats, guess: Floats, lapse: Floats
+) -> Floats:
+    """Probability of a positive answer, equation (3).
+
+    Parameters
+    ----------
+    shape
+        Name of one of `SHAPES`.
+    x, threshold, spread, guess, lapse
+        Stimulus and parameters; arrays are broadcast.
+
+    Returns
+    -------
+    float64 of the common shape, 0 … 1
+    """
+    return limited(guess + (1 - guess - lapse) * SHAPES[shape](x, threshold, spread))
+
+
+def nearer(
+    first: Floats,
+    second: Floats,
+    centre: Floats,
+    spread: Floats,
+    lapse: Floats,
+    *,
+    log: bool = False,
+) -> Floats:
+    """Probability that the first of two values is chosen as nearer to a centre, equation (5).
+
+    Parameters
+    ----------
+    first, second, centre
+        Values in the same unit; above 0 if they are judged on a log scale. Arrays are broadcast.
+    spread
+        Standard deviation of the noise of each distance, in the unit of the values; on a log
+        scale, a share.
+    lapse
+        Share of answers given without regard to the values.
+    log
+        Whether distances are judged on a log scale.
+
+    Returns
+    -------
+    float64 of the common shape, 0 … 1
+    """
+    if log:
+        first, second, centre = np.log(first), np.log(second), np.log(centre)
+    further = np.abs(second - centre) - np.abs(first - centre)
+    return limited(lapse / 2 + (1 - lapse) * phi(further / (spread * math.sqrt(2))))
+
+
+def limited(probability: Floats) -> Floats:
+    """Probabilities kept a little away from 0 and 1, so that no answer is impossible."""
+    return np.clip(probability, _UNLIKELY, 1 - _UNLIKELY)
+
 
 MOST_CELLS = 4_000_000  # of a table, which then takes 32 MB for each outcome
 MOST_AXES = 3
@@ -65,21 +236,8 @@ class GridQuest:
     Raises
     ------
     ValueError
-        If there is no stimulus, one is given twice, too many parameters have several values, or
-        the table has another shape or is no table of probabilities.
+        If there is no stimulus, one is given twice, or too many parameters have several values.
     """
-
-    __slots__ = (
-        "_along",
-        "_index",
-        "_kept",
-        "_logs",
-        "_prior",
-        "_table",
-        "_uncertain",
-        "axes",
-        "stimuli",
-    )
 
     def __init__(
         self,
@@ -95,14 +253,6 @@ class GridQuest:
         shape = tuple(len(axis.values) for axis in self.axes)
         if not 1 <= sum(size > 1 for size in shape) <= MOST_AXES:
             raise ValueError(f"1 to {MOST_AXES} parameters must have several values")
-        if table.ndim < 2 or table.shape[1:] != (len(self.stimuli), *shape):
-            raise ValueError(
-                f"the table has shape {table.shape}; it must be outcomes, {len(self.stimuli)}, "
-                f"{', '.join(map(str, shape))}"
-            )
-        sums = table.sum(axis=0)
-        if not (np.isfinite(sums).all() and (table > 0).all() and np.allclose(sums, 1.0)):
-            raise ValueError("the table must have probabilities above 0 that add up to 1")
         names = [axis.name for axis in self.axes]
         if about and about not in names:
             raise ValueError(f"there is no parameter {about!r}; there is {', '.join(names)}")
@@ -111,10 +261,8 @@ class GridQuest:
         self._uncertain = -(flat * self._logs).sum(axis=0)
         # With two outcomes, the first follows from the second.
         self._table = flat[1:] if len(flat) == 2 else flat
-        prior = np.ones(())
-        for axis in self.axes:
-            prior = np.multiply.outer(prior, axis.prior)
-        self._prior = np.log(prior.reshape(-1))
+        # The logarithm of the same probability for each combination of parameters.
+        self._prior = np.full(flat.shape[-1], np.log(math.prod(1 / size for size in shape)))
         # The value of what is asked about in each combination of parameters.
         self._along: NDArray[np.float64] | None = None
         if about:
@@ -240,7 +388,7 @@ def detection_quest(
     Parameters
     ----------
     shape
-        Name of a shape of `vbraille.adaptive.psychometric.SHAPES`.
+        Name of a shape of `vbraille.adaptive.questplus.SHAPES`.
     values
         Values that may be asked.
     threshold, spread, guess, lapse
@@ -282,7 +430,7 @@ def nearer_quest(
     pairs
         Pairs that may be asked.
     centre, spread, lapse
-        Possible values of the parameters of `vbraille.adaptive.psychometric.nearer`.
+        Possible values of the parameters of `vbraille.adaptive.questplus.nearer`.
     log
         Whether distances are judged on a log scale.
     about
@@ -318,7 +466,7 @@ def _spread_out(
 
 
 def _check_size(stimuli: int, axes: Sequence[GridAxis]) -> None:
-    cells = stimuli * prod(len(axis.values) for axis in axes)
+    cells = stimuli * math.prod(len(axis.values) for axis in axes)
     if cells > MOST_CELLS:
         raise ValueError(
             f"the grid has {cells} cells; it must have at most {MOST_CELLS}: make a step larger"

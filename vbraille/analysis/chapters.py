@@ -2,33 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from vbraille.analysis.figures import bars, curves, matrices, rises
+from vbraille.analysis import figures
 from vbraille.analysis.findings import findings
 from vbraille.analysis.input.scoretable import of_trials
 from vbraille.analysis.input.trials import Places, written
 from vbraille.analysis.measures import (
-    characters,
     confusion,
-    covariates,
-    doterrors,
+    discrimination,
     legibility,
     levels,
-    liked,
     movement,
     overtime,
     preferences,
     rated,
-    remarks,
-    sensitivity,
-    thresholds,
     trialsmodel,
 )
 from vbraille.analysis.methods import methods
 from vbraille.analysis.results import Chapter, Results
-from vbraille.analysis.statistics.correction import METHODS
+from vbraille.analysis.statistics.intervals import METHODS
 from vbraille.sessions.planning.questions import RatingQuestion
 
 if TYPE_CHECKING:
@@ -109,14 +103,22 @@ def analyse_study(study: Study, options: Options) -> Results:
     if study.judgements is not None:
         chapters += _of_judgements(study, study.judgements)
     if any(sitting.notes for sitting in study.sittings):
-        table = remarks.notes(study.sittings)
+        table = rated.notes(study.sittings)
         chapters.append(Chapter("Notes", "What the experimenter wrote down.", (table,)))
     told = methods(study)
-    done = [("Methods", told)] if told else []
-    about = (*done, *study.about, *_excluded(left_out), *options.told())
-    results = _told("Legibility sessions", about, study.warnings, chapters)
-    trials = None if study.trials is None else written(study.trials)
-    return replace(results, trials=trials, faults=study.faults)
+    return _told(
+        "Legibility sessions",
+        (
+            *([("Methods", told)] if told else ()),
+            *study.about,
+            *_excluded(left_out),
+            *options.told(),
+        ),
+        study.warnings,
+        chapters,
+        None if study.trials is None else written(study.trials),
+        study.faults,
+    )
 
 
 def compare_scores(scores: Scores, about: Sequence[tuple[str, str]], options: Options) -> Results:
@@ -140,6 +142,8 @@ def _told(
     about: Sequence[tuple[str, str]],
     warnings: Sequence[str],
     chapters: Sequence[Chapter],
+    trials: pd.DataFrame | None = None,
+    faults: tuple[str, ...] = (),
 ) -> Results:
     """Results with the sentences of what was found, and the figure that stands beside them."""
     told = findings(table for chapter in chapters for table in chapter.tables)
@@ -148,7 +152,9 @@ def _told(
         (name for start in _MAIN for name in names if name.startswith(start)),
         names[0] if names else "",
     )
-    return Results(title, tuple(about), tuple(warnings), tuple(chapters), told, main)
+    return Results(
+        title, tuple(about), tuple(warnings), tuple(chapters), told, main, trials, faults
+    )
 
 
 def _excluded(left_out: Sequence[LeftOut]) -> list[tuple[str, str]]:
@@ -160,43 +166,61 @@ def _of_trials(
     study: Study, trials: pd.DataFrame, options: Options, left_out: list[LeftOut]
 ) -> list[Chapter]:
     places = Places.of(trials)
-    scores = of_trials(trials, places, options.factors)
+    own = legibility.legibility(trials, places)
+    averages = legibility.averages(own)
+    by_dots, dots_own = legibility.dots(places), legibility.dots_of_participants(places)
+    errors, errors_own = confusion.errors(places), confusion.errors_of_participants(places)
+    runs, slopes = overtime.over_time(trials), overtime.slopes(trials)
+    ways = movement.trajectories(study.sittings, trials)
+    drawn = figures.examples(study.sittings)
+    tables, ways_drawn = ((), ()) if drawn is None else ((drawn[0],), (drawn[1],))
     return [
-        _legibility(trials, places),
-        _characters(trials, places),
+        Chapter(
+            "Legibility",
+            "Who read how much of it right, and how long it took.",
+            (own, averages),
+            (figures.legibility(own, averages),),
+        ),
+        Chapter(
+            "Characters and strings",
+            "What is easy to read, and what is not.",
+            (legibility.characters(places), by_dots, dots_own, legibility.strings(trials)),
+            (figures.dots(by_dots, dots_own),) if len(by_dots) else (),
+        ),
         _confusions(trials, places, options),
-        _errors(places),
-        _over_time(trials),
-        _motion(study, trials),
-        _compared(scores, options, left_out),
-        _modelled(trials, options),
+        Chapter(
+            "Errors",
+            "What is wrong with wrong answers.",
+            (errors, errors_own),
+            (figures.errors(errors, errors_own),) if len(errors) else (),
+        ),
+        Chapter(
+            "Over time",
+            "Whether reading became harder or easier.",
+            (slopes, runs),
+            tuple(figures.over_time(runs, slopes)),
+        ),
+        Chapter(
+            "How strings were read",
+            "What the hand did, from the traces of sessions.",
+            (movement.patterns(ways), movement.correlations(trials), ways, *tables),
+            ways_drawn,
+        ),
+        _compared(of_trials(trials, places, options.factors), options, left_out),
+        Chapter(
+            "Trials modelled",
+            "Conditions, and what else legibility goes with, by a logistic model of single trials.",
+            (
+                *trialsmodel.trials_model(trials, options.factors, options.correction),
+                trialsmodel.covariates(trials, options.factors),
+            ),
+        ),
     ]
-
-
-def _legibility(trials: pd.DataFrame, places: Places) -> Chapter:
-    table = legibility.legibility(trials, places)
-    averages = legibility.averages(table)
-    return Chapter(
-        "Legibility",
-        "Who read how much of it right, and how long it took.",
-        (table, averages),
-        (bars.legibility(table, averages),),
-    )
-
-
-def _characters(trials: pd.DataFrame, places: Places) -> Chapter:
-    by_dots = characters.dots(places)
-    own = characters.dots_of_participants(places)
-    tables = (characters.characters(places), by_dots, own, characters.strings(trials))
-    figures = (bars.dots(by_dots, own),) if len(by_dots) else ()
-    return Chapter(
-        "Characters and strings", "What is easy to read, and what is not.", tables, figures
-    )
 
 
 def _confusions(trials: pd.DataFrame, places: Places, options: Options) -> Chapter:
     tables: list[ResultTable] = [confusion.transmitted(trials, places, seed=options.seed)]
-    figures: list[ReportFigure] = []
+    drawn: list[ReportFigure] = []
     for counts, schema, reason in (
         (
             confusion.of_characters(places),
@@ -213,91 +237,57 @@ def _confusions(trials: pd.DataFrame, places: Places, options: Options) -> Chapt
             tables.append(schema.fill([], [reason]))
         else:
             tables.append(confusion.to_table(schema, counts, places, options.marks))
-            figures.append(matrices.confusion(tables[-1]))
-    return Chapter("Confusions", "What was taken for what.", tuple(tables), tuple(figures))
-
-
-def _errors(places: Places) -> Chapter:
-    table, own = doterrors.errors(places), doterrors.of_participants(places)
-    figures = (bars.errors(table, own),) if len(table) else ()
-    return Chapter("Errors", "What is wrong with wrong answers.", (table, own), figures)
-
-
-def _over_time(trials: pd.DataFrame) -> Chapter:
-    table, slopes = overtime.over_time(trials), overtime.slopes(trials)
-    return Chapter(
-        "Over time",
-        "Whether reading became harder or easier.",
-        (slopes, table),
-        tuple(curves.over_time(table, slopes)),
-    )
-
-
-def _motion(study: Study, trials: pd.DataFrame) -> Chapter:
-    table = movement.trajectories(study.sittings, trials)
-    tables = [movement.patterns(table), movement.correlations(trials), table]
-    drawn = curves.examples(study.sittings)
-    if drawn is not None:
-        tables.append(drawn[0])
-    return Chapter(
-        "How strings were read",
-        "What the hand did, from the traces of sessions.",
-        tuple(tables),
-        () if drawn is None else (drawn[1],),
-    )
+            drawn.append(figures.confusion(tables[-1]))
+    return Chapter("Confusions", "What was taken for what.", tuple(tables), tuple(drawn))
 
 
 def _compared(scores: Sequence[Scores], options: Options, left_out: list[LeftOut]) -> Chapter:
-    means = levels.level_means(scores)
-    own = levels.own_means(scores)
+    means, own = levels.level_means(scores), levels.own_means(scores)
     table, dropped = levels.analyses(scores)
     left_out += dropped
     return Chapter(
         "Levels compared",
         "Differences within participants.",
         (means, own, levels.t_tests(scores, options.correction), table),
-        tuple(bars.level_means(means, own)) if len(means) else (),
-    )
-
-
-def _modelled(trials: pd.DataFrame, options: Options) -> Chapter:
-    tables = trialsmodel.trials_model(trials, options.factors, options.correction)
-    return Chapter(
-        "Trials modelled",
-        "Conditions, and what else legibility goes with, by a logistic model of single trials.",
-        (*tables, covariates.covariates(trials, options.factors)),
+        tuple(figures.level_means(means, own)),
     )
 
 
 def _of_comparisons(study: Study, comparisons: pd.DataFrame, options: Options) -> Chapter:
     table, preferred = preferences.tuning(comparisons, seed=options.seed)
     own = preferences.choices_of_participants(comparisons)
-    each = liked.liked(comparisons, [sitting.protocol for sitting in study.sittings])
+    each = preferences.liked(comparisons, [sitting.protocol for sitting in study.sittings])
     return Chapter(
         "Which of two was chosen",
         "What participants took for closer to the reference.",
         (table, own, preferred, each),
-        tuple(bars.choices(table, preferred, own)),
+        tuple(figures.choices(table, preferred, own)),
     )
 
 
 def _of_judgements(study: Study, judgements: pd.DataFrame) -> list[Chapter]:
     """Chapters of the questions that were asked, beside which cells and which of two."""
-    questions = {sitting.protocol.name: sitting.protocol.asks for sitting in study.sittings}
-    scales = {
-        name: (of.least, of.most)
-        for name, of in questions.items()
-        if isinstance(of, RatingQuestion)
-    }
-    sure = {
-        name: (of.confidence.least, of.confidence.most)
-        for name, of in questions.items()
-        if of.confidence is not None
-    }
+    scales: dict[str, tuple[float, float]] = {}
+    sure: dict[str, tuple[float, float]] = {}
+    for protocol in (sitting.protocol for sitting in study.sittings):
+        question = protocol.asks
+        if isinstance(question, RatingQuestion):
+            scales[protocol.name] = question.least, question.most
+        if question.confidence is not None:
+            sure[protocol.name] = question.confidence.least, question.confidence.most
     asked = {*judgements["question"]}
     told: list[Chapter] = []
     if asked & {"detect", "same-different"} or (judgements["outcome"] != "").any():
-        told.append(_told_apart(judgements))
+        found, by_level = discrimination.thresholds(judgements)
+        known = len(found) or "detect" in asked
+        told.append(
+            Chapter(
+                "Telling apart",
+                "How well one thing was told from another.",
+                (discrimination.sensitivity(judgements), *((found, by_level) if known else ())),
+                tuple(figures.rises(found, by_level)) if known else (),
+            )
+        )
     if "rating" in asked:
         text = "Where on a scale things were put."
         told.append(Chapter("Ratings", text, rated.ratings(judgements, scales)))
@@ -310,16 +300,3 @@ def _of_judgements(study: Study, judgements: pd.DataFrame) -> list[Chapter]:
     if "free" in asked:
         told.append(Chapter("Words", "What was said in words.", (rated.words(judgements),)))
     return told
-
-
-def _told_apart(judgements: pd.DataFrame) -> Chapter:
-    """Sensitivity, and thresholds where levels vary."""
-    tables = [sensitivity.sensitivity(judgements)]
-    figures: tuple[ReportFigure, ...] = ()
-    found, by_level = thresholds.thresholds(judgements)
-    if len(found) or "detect" in {*judgements["question"]}:
-        tables += [found, by_level]
-        figures = tuple(rises.rises(found, by_level))
-    return Chapter(
-        "Telling apart", "How well one thing was told from another.", tuple(tables), figures
-    )

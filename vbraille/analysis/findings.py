@@ -98,12 +98,11 @@ def _averages(of: Mapping[str, ResultTable]) -> Iterator[str]:
     yield f"{whose} read right{mean} {_and(told, ';')}{more}."
     single = [row for row in of["legibility"].records() if row["trials"]]
     if len(single) > 1:
-        least, most = (end(single, key=lambda row: row["legibility"]) for end in (min, max))
-        yield f"The least was {_whose(least)}, the most {_whose(most)}."
+        yield extremes(single)
     timed = [row for row in rows if row["duration_mean_s"] is not None]
     if timed:
         told = [
-            f"{to_print(row['duration_mean_s'], Kind.SECONDS)} s in {row['condition']}"
+            f"{to_print(row['duration_mean_s'], Kind.TENTHS)} s in {row['condition']}"
             for row in timed[:_MOST]
         ]
         yield f"On average a string took {_and(told)}."
@@ -112,7 +111,7 @@ def _averages(of: Mapping[str, ResultTable]) -> Iterator[str]:
 def _thresholds(of: Mapping[str, ResultTable]) -> Iterator[str]:
     rows = of["thresholds"].records() if "thresholds" in of else []
     for row in [row for row in rows if row["threshold"] is not None][:_MOST]:
-        name, unit = _parameter(row["level"])
+        name, unit = parameter_words(row["level"])
         what = "a difference of " if row["question"] == "which" else ""
         yield (
             f"{row['participant']} felt {what}{name} from "
@@ -248,7 +247,7 @@ def _over_time(of: Mapping[str, ResultTable]) -> Iterator[str]:
 
 def _preferred(of: Mapping[str, ResultTable]) -> Iterator[str]:
     for row in of["preferred"].records() if "preferred" in of else []:
-        words, unit = _parameter(row["parameter"])
+        words, unit = parameter_words(row["parameter"])
         who = (
             f"{count(row['comparisons'], 'comparison')} of "
             f"{count(row['participants'], 'participant')}"
@@ -285,16 +284,19 @@ def _enough(row: Row) -> bool:
     return row["participants"] >= FEWEST_PARTICIPANTS
 
 
-def _parameter(name: str) -> tuple[str, str]:
-    """Words for a parameter or a level, and its unit."""
+def parameter_words(name: str) -> tuple[str, str]:
+    """Words for a parameter or a level, and its unit after a space."""
     return name.removesuffix("_mm").replace("_", " "), " mm" if name.endswith("_mm") else ""
 
 
-def _whose(row: Row) -> str:
-    return (
+def extremes(rows: Sequence[Row]) -> str:
+    """Sentence on the least and the most legible of participants and conditions."""
+    told = [
         f"{to_print(row['legibility'], Kind.PERCENT)} % by {row['participant']} in "
         f"{row['condition']}"
-    )
+        for row in (end(rows, key=lambda row: row["legibility"]) for end in (min, max))
+    ]
+    return f"The least was {told[0]}, the most {told[1]}."
 
 
 def _plain(measure: str) -> str:

@@ -9,11 +9,25 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from vbraille.analysis import taskwords
 from vbraille.analysis.input.trials import natural
 from vbraille.braille.spelling import to_braille
 from vbraille.render.braille.models import MODELS
+from vbraille.sessions.planning.chance import balanced_orders
+from vbraille.sessions.planning.choosing import varied
 from vbraille.sessions.planning.factors import within
+from vbraille.sessions.planning.procedures import (
+    FixedProcedure,
+    QuestProcedure,
+    StaircaseProcedure,
+)
+from vbraille.sessions.planning.questions import (
+    DetectQuestion,
+    FreeQuestion,
+    MagnitudeQuestion,
+    RatingQuestion,
+    SameQuestion,
+    WhichQuestion,
+)
 from vbraille.sessions.planning.stimuli import GAP, KNOBS
 from vbraille.version import __version__
 from vbraille.wording import count
@@ -21,6 +35,7 @@ from vbraille.wording import count
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from vbraille.adaptive.staircase import StopRule
     from vbraille.analysis.input.sittings import SessionTrials
     from vbraille.analysis.input.study import Study
     from vbraille.analysis.input.trials import LeftOut
@@ -71,8 +86,8 @@ def _told(sittings: Sequence[SessionTrials]) -> Iterable[str]:
     kept = [row for part in tested for row in part]
     yield _who(sittings, tested)
     yield from _by_whom(rows)
-    yield from taskwords.asked(protocol, kept)
-    yield from taskwords.caught([row for row in rows if watches and row["catch"]])
+    yield from asked(protocol, kept)
+    yield from caught([row for row in rows if watches and row["catch"]])
     yield _display(sittings, rows)
     yield from _elsewhere(rows)
     yield from _texts(sittings, rows)
@@ -80,7 +95,7 @@ def _told(sittings: Sequence[SessionTrials]) -> Iterable[str]:
     yield from _factors(protocol, rows)
     yield from _conditions(tested)
     yield from _order(sittings, answered)
-    yield from taskwords.ended(rows)
+    yield from ended(rows)
     practised = [sitting.counts["practice"] for sitting in sittings]
     with_feedback = "" if protocol.practice.feedback else ", without feedback"
     yield (
@@ -128,14 +143,14 @@ def _by_whom(rows: Sequence[dict]) -> Iterable[str]:
     """Where the answers came from, and what moved the array, where that was no person."""
     kinds = Counter(row["answers_from"].partition(":")[0] for row in rows)
     if simulated := kinds.pop("simulated", 0):
-        yield f"A simulated reader gave {taskwords.of_all(simulated, rows, 'answer', 'of the ')}"
+        yield f"A simulated reader gave {of_all(simulated, rows, 'answer', 'of the ')}"
     kinds.pop("typed", None)
     if other := sum(kinds.values()):
-        told = taskwords.of_all(other, rows, "answer", "of the ")
+        told = of_all(other, rows, "answer", "of the ")
         yield f"{told[0].upper()}{told[1:]} came from a program or a file"
     moved = sum(row["moved_by"].startswith("simulated") for row in rows)
     if moved:
-        told = taskwords.of_all(moved, rows, "trial", "of the ")
+        told = of_all(moved, rows, "trial", "of the ")
         yield f"A simulated hand moved the array in {told}"
 
 
@@ -288,12 +303,12 @@ def _order(sittings: Sequence[SessionTrials], answered: Sequence[Sequence[dict]]
     if len(protocol.conditions) < 2:
         yield f"Trials came in {blocks}; {drawn}"
     elif protocol.design.blocks == "conditions":
-        how = taskwords.ordered(protocol, [sitting.head for sitting in sittings])
+        how = ordered(protocol, [sitting.head for sitting in sittings])
         yield f"Each condition had blocks of its own, {blocks} in a session, {how}; {drawn}"
     else:
         yield f"Conditions were mixed in {blocks}; {drawn}"
-    yield from taskwords.ruled(protocol)
-    yield from taskwords.procedure(protocol)
+    yield from ruled(protocol)
+    yield from chosen(protocol)
 
 
 def _troubles(sittings: Sequence[SessionTrials], rows: Sequence[dict]) -> Iterable[str]:
@@ -332,3 +347,191 @@ def _span(numbers: Sequence[int], noun: str) -> str:
     """
     least, most = min(numbers), max(numbers)
     return count(most, noun) if least == most else f"{least} to {count(most, noun)}"
+
+
+_LOOKED_FOR = ("hit", "miss")
+
+
+def of_all(number: int, rows: Sequence[Any], noun: str, of_the: str = "") -> str:
+    """Words for a number of things out of all.
+
+    >>> of_all(2, [0, 0, 0], "trial"), of_all(3, [0, 0, 0], "trial", "of the ")
+    ('2 of 3 trials', 'all 3 of the trials')
+    >>> of_all(1, [0], "trial"), of_all(0, [0], "trial")
+    ('the only trial', '0 of 1 trial')
+    """
+    if number == len(rows) == 1:
+        return f"the only {noun}"
+    part = f"all {number}" if number == len(rows) else f"{number} of {len(rows)}"
+    return f"{part} {of_the}{noun}{'s' * (len(rows) != 1)}"
+
+
+def asked(protocol: Protocol, rows: Sequence[dict[str, Any]]) -> Iterable[str]:
+    """Sentences on the question, for trials that have an answer."""
+    if not rows:
+        return
+    question, looked_for = protocol.asks, sum(row["outcome"] in _LOOKED_FOR for row in rows)
+    if question.ask:
+        yield f"They were asked: “{question.ask}”"
+    match question:
+        case WhichQuestion():
+            yield f"Of each pair one was chosen{_right(protocol, question)}"
+        case SameQuestion():
+            yield (
+                "Of each pair it was said whether the two were the same or different; "
+                f"{of_all(looked_for, rows, 'pair')} differed"
+            )
+        case DetectQuestion():
+            yield (
+                "It was said whether there was anything; there was something in "
+                f"{of_all(looked_for, rows, 'trial')}"
+            )
+        case RatingQuestion():
+            ends = f"from {_step(question, question.least)} to {_step(question, question.most)}"
+            yield f"They rated {question.scale} in whole numbers, {ends}"
+        case MagnitudeQuestion():
+            standard = (
+                "everybody chose their own standard"
+                if question.modulus is None
+                else f"the standard was {question.modulus:g}"
+            )
+            yield f"They estimated a magnitude, as a number above 0; {standard}"
+        case FreeQuestion():
+            yield "They answered in words of their own, which were not scored"
+        case _:
+            pass
+    sure = sum(row["confidence"] != "" for row in rows)
+    if question.confidence is not None and sure:
+        scale = question.confidence
+        yield (
+            f"After {of_all(sure, rows, 'answer')} they said how sure they were, from "
+            f"{scale.least} to {scale.most}"
+        )
+
+
+def _right(protocol: Protocol, question: WhichQuestion) -> str:
+    """Clause that says which one of two was right."""
+    if question.right is None:
+        return ", and neither was right or wrong"
+    knob = KNOBS[protocol.parameter or "contrast"]
+    if question.right == "nearest":
+        return f"; the one nearest to {question.reference:g}{knob.unit} was right"
+    return f"; the one with {question.right} {knob.words} was right"
+
+
+def _step(question: RatingQuestion, step: int) -> str:
+    label = question.named.get(step)
+    return f"{step}" if label is None else f"{step} ({label})"
+
+
+def caught(rows: Sequence[dict[str, Any]]) -> Iterable[str]:
+    """Sentence on trials that kept watch over the participant."""
+    if not rows:
+        return
+    kinds = Counter(row["catch"] for row in rows)
+    shown = {"blank": "no dots", "repeat": "what the trial before them had shown"}
+    told = " and ".join(
+        f"{count(number, 'catch trial')} that showed {shown[kind]}"
+        for kind, number in sorted(kinds.items())
+    )
+    right = sum(row["correct"] == 1 for row in rows)
+    scored = any(row["correct"] != "" for row in rows)
+    part = f"all {right}" if right == len(rows) else f"{right} of {len(rows)}"
+    were = f"{part} were" if len(rows) > 1 else "it was" if right else "it was not"
+    how = f"; {were} answered right" if scored else ""
+    yield f"Beside these there were {told}{how}"
+
+
+def ended(rows: Sequence[dict[str, Any]]) -> Iterable[str]:
+    """Sentence on the participant's own key."""
+    keys = Counter(row["ended_by"] for row in rows if row["ended_by"])
+    if not keys:
+        return
+    answered = keys.pop("answer", 0)
+    told = [
+        f"{name.replace(':', ' ')} in {of_all(number, rows, 'trial')}"
+        for name, number in sorted(keys.items())
+    ]
+    told += [f"their answer in {of_all(answered, rows, 'trial')}"] if answered else []
+    yield f"Reading was ended by {', by '.join(told)}; response times are to there"
+
+
+def ordered(protocol: Protocol, heads: Sequence[dict[str, Any]]) -> str:
+    """Clause that says in which order the blocks of conditions came."""
+    if protocol.order_rows:
+        return "in the order that a table gives each participant"
+    if protocol.balanced:
+        number = len(balanced_orders(len(protocol.conditions)))
+        used = ", ".join(map(str, sorted({head["order"] for head in heads})))
+        return f"balanced by Williams squares (of {count(number, 'order')}: {used})"
+    return "in random order" if protocol.block_order == "shuffled" else "always in the same order"
+
+
+def ruled(protocol: Protocol) -> Iterable[str]:
+    """Sentence on the rules that the order of trials kept."""
+    rules, told = protocol.rules, []
+    if protocol.adaptive:
+        return
+    if rules.never_twice_running:
+        told.append("no two neighbouring trials showed the same")
+    for name, most in rules.at_most_running.items():
+        told.append(f"at most {count(most, 'neighbouring trial')} had the same {name}")
+    if rules.balanced_quarters:
+        told.append("each quarter had its share of each condition")
+    if told:
+        said = "; ".join(told)
+        yield said[0].upper() + said[1:]
+
+
+def chosen(protocol: Protocol) -> Iterable[str]:
+    """Sentences on how the answers chose what was shown."""
+    table = protocol.procedure
+    if not protocol.adaptive:
+        return
+    knob = KNOBS[varied(protocol)]
+    values = table.values(protocol.design)
+    ends = f"{values[0]:g} to {values[-1]:g}{knob.unit}"
+    if isinstance(table, QuestProcedure):
+        yield (
+            f"The {knob.words} of each trial was chosen by the answers before it, by QUEST+ "
+            f"(Watson 2017) from {len(values)} values, {ends}"
+        )
+    elif isinstance(table, StaircaseProcedure):
+        yield (
+            f"The {knob.words} of each trial was chosen by the answers before it, by "
+            f"{_staircases(table, knob.unit)}, within {ends}"
+        )
+        good, bad = ("“yes”", "“no”") if protocol.asks.name == "detect" else ("right", "wrong")
+        yield (
+            f"It was made harder after {count(table.right, f'{good} answer')} running, and easier "
+            f"after {count(table.wrong, f'{bad} answer')}"
+        )
+    stop = [] if isinstance(table, FixedProcedure) else [*_stops(table.stop, knob.unit)]
+    if isinstance(table, StaircaseProcedure) and table.reversals is not None:
+        stop.append(f"{count(table.reversals, 'reversal')} of each staircase")
+    if stop:
+        yield f"A condition was to end by {', or by '.join(stop)}"
+
+
+def _staircases(table: StaircaseProcedure, unit: str) -> str:
+    starts = ", ".join(f"{start:g}" for start in table.start)
+    steps = ", then ".join(f"{step:g}" for step in table.steps)
+    weighted = "" if table.target is None else f", weighted for {100 * table.target:g} %"
+    many = "interleaved staircases" if len(table.start) > 1 else "staircase"
+    return (
+        f"{len(table.start)} {many}{weighted}, which began at {starts}{unit} with steps of "
+        f"{steps}{unit}"
+    )
+
+
+def _stops(stop: StopRule, unit: str) -> Iterable[str]:
+    """What ended the questions of a condition."""
+    if stop.trials is not None:
+        yield count(stop.trials, "trial")
+    after = f" (after {count(stop.at_least, 'trial')} or more)"
+    if stop.sd is not None:
+        yield f"a standard deviation of the estimate of {stop.sd:g}{unit}{after}"
+    if stop.width is not None:
+        yield f"an interval of 95 % that was {stop.width:g}{unit} wide{after}"
+    if stop.seconds is not None:
+        yield f"{stop.seconds:g} s of the session"

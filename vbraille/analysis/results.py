@@ -83,11 +83,6 @@ class Results:
         Trials that were analysed, with all columns that were given; None if there were none.
     faults
         What is damaged in the sessions, in clauses.
-
-    Raises
-    ------
-    ValueError
-        If the main figure is not among the figures.
     """
 
     title: str
@@ -98,10 +93,6 @@ class Results:
     main: str = ""
     trials: pd.DataFrame | None = None
     faults: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        if self.main and self.main_figure() is None:
-            raise ValueError(f"there is no figure {self.main} to stand first")
 
     @property
     def tables(self) -> dict[str, pd.DataFrame]:
@@ -119,10 +110,6 @@ class Results:
         if name not in self.tables:
             raise InputError(f"there is no table {name!r}; there are {', '.join(self.tables)}")
         return self.tables[name]
-
-    def main_figure(self) -> ReportFigure | None:
-        """Figure that stands first in the report; None if none does."""
-        return next((figure for figure in self.figures() if figure.name == self.main), None)
 
     def result_tables(self) -> Iterator[ResultTable]:
         """All tables with titles, columns and notes, in the order of the report."""

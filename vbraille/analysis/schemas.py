@@ -41,9 +41,8 @@ class Kind(Enum):
     COUNT = "count"
     VALUE = "value"  # a number as short as it can be: the value of a parameter
     PERCENT = "percent"
-    SECONDS = "seconds"
     NUMBER = "number"
-    SPEED = "speed"
+    TENTHS = "tenths"
     P = "p"
 
 
@@ -52,8 +51,7 @@ _DTYPES = {Kind.TEXT: pd.StringDtype("python", na_value=np.nan), Kind.COUNT: pd.
 _FACTORS = {Kind.PERCENT: 100}
 _DECIMALS = {
     Kind.PERCENT: 1,
-    Kind.SECONDS: 1,
-    Kind.SPEED: 1,
+    Kind.TENTHS: 1,
     Kind.NUMBER: 3,
     Kind.P: 3,
 }
@@ -88,6 +86,31 @@ class Column:
 
 # Column of a table where a value may be missing: it says why.
 NOTE_COLUMN = Column(NOTE, "note", "why a value is missing, or what to know of the row")
+PARTICIPANT = Column("participant", "participant", "pseudonym")
+CONDITION = Column("condition", "condition", "name, as in the protocol")
+PROTOCOL = Column("protocol", "protocol", "name of the protocol")
+SESSION = Column("session", "session", "name of the session")
+TRIAL = Column("trial", "trial", "its number in the session", Kind.COUNT)
+PARTICIPANTS = Column("participants", "participants", "how many", Kind.COUNT)
+
+
+def ends(
+    kind: Kind = Kind.NUMBER, name: str = "", heading: str = "", of: str = "95 % interval"
+) -> tuple[Column, Column]:
+    """Columns of the ends of an interval of the column before them.
+
+    Parameters
+    ----------
+    name, heading
+        What the names and the headings of the two begin with.
+    of
+        Words for the interval.
+    """
+    unit = " (%)" if kind is Kind.PERCENT else ""
+    return (
+        Column(f"{name}low", f"{heading}from{unit}", f"lower end of its {of}", kind),
+        Column(f"{name}high", f"{heading}to{unit}", "upper end", kind),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +129,8 @@ class Schema:
         Columns in their order.
     grows
         What further columns there are, where that depends on the trials; otherwise empty.
+    empty
+        Note of a table without rows that has no other.
     """
 
     name: str
@@ -113,6 +138,7 @@ class Schema:
     about: str
     columns: tuple[Column, ...]
     grows: str = ""
+    empty: str = ""
 
     @property
     def names(self) -> list[str]:
@@ -152,6 +178,8 @@ class Schema:
         if NOTE in given:
             given[NOTE] = given[NOTE].astype(object).fillna("")
         frame = given.astype({column.name: column.dtype for column in schema.columns})
+        if frame.empty and self.empty:
+            notes = notes or (self.empty,)
         return ResultTable(schema, frame, tuple(notes), tuple(marks))
 
 
@@ -284,6 +312,11 @@ class ResultTable:
                 **{other.name: self.frame[[column.name for column in rare]].sum(axis=1)}
             ),
         )
+
+
+def mean_or_none(values: Sequence[float]) -> float | None:
+    """Mean of some values; None if there are none."""
+    return float(np.mean(values)) if len(values) else None
 
 
 def to_csv(frame: pd.DataFrame) -> str:

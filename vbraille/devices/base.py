@@ -193,7 +193,7 @@ class Device(ABC):
         if type(self).write is not Device.write:
             raise DeviceError(
                 f"the driver of {self.display.name} has a write of its own, which no calibration "
-                f"reaches; tell whoever wrote it to have _send only"
+                f"reaches; tell its author to have _send only"
             )
         if self._correction is None:
             self._correction = correction_for(self._shape, self.display.rate_hz)

@@ -62,7 +62,7 @@ def open_device(
         if not isinstance(device, Device):
             raise DeviceError(
                 f"the driver {driver.name} ({driver.value}) gives {device!r} where it must give a "
-                f"vbraille.devices.Device; tell whoever wrote it"
+                f"vbraille.devices.Device; tell its author"
             )
         if wanted is not None:
             try:
@@ -133,7 +133,7 @@ def _naming(driver: EntryPoint, *, opening: bool = False) -> Iterator[None]:
         what = f"{type(error).__name__}: {' '.join(str(error).split())}".removesuffix(": ")
         raise DeviceError(
             f"the driver {driver.name} ({driver.value}), which is not vbraille's own, has a fault "
-            f"({what}); tell whoever wrote it what --verbose prints"
+            f"({what}); tell its author what {setting('verbose')} prints"
         ) from error
 
 

@@ -205,7 +205,7 @@ def pass_on(loop: Loop, notices: Notices, channel: Channel) -> None:
         if not is_known(event):
             raise DeviceError(
                 f"{loop.device.display.name} tells {event!r}, which is no event of "
-                f"vbraille.devices.events; tell whoever wrote its driver"
+                f"vbraille.devices.events; tell the author of its driver"
             )
         # Drivers may tell all they have to by one code; only what is alike stands for another.
         # Where a knob was is of no use once it is elsewhere.

@@ -245,12 +245,12 @@ class Loop:
         if not np.isfinite(self._poses[0, POSE_X:]).all():
             return DeviceError(
                 f"{says}, where it cannot be; its driver must give numbers, or None as long as it "
-                f"knows none: tell whoever wrote it"
+                f"knows none: tell its author"
             )
         if theta_rad and not display.turns:
             return DeviceError(
                 f"{says}, and that it measures no angle; its driver must give Display turns=True, "
-                f"or Pose no angle: tell whoever wrote it"
+                f"or Pose no angle: tell its author"
             )
         return DeviceError(
             f"{says}, where it cannot be; switch it off and on, and if it says so again, look at "

@@ -14,7 +14,7 @@ from vbraille.scene.bounds import Box
 from vbraille.scene.images import load_bitmaps
 from vbraille.scene.patterns import Image, Label
 from vbraille.scene.reading import open_scene
-from vbraille.scene.walking import each
+from vbraille.scene.traversal import each
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.render.braille.style import BrailleStyle
-    from vbraille.scene.opened import OpenedScene
+    from vbraille.scene.origins import OpenedScene
     from vbraille.scene.scene import Scene
 
 _EDGE_MM = 0.05  # by so much a canvas may be larger than a carriage goes

@@ -6,17 +6,16 @@ Each point of the grid is read in one even pass, at 1,000 frames a second, strin
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
-from functools import lru_cache
 from itertools import product
 from math import inf, prod
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import msgspec
 import numpy as np
 
 from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.errors import VbrailleError, check_range
-from vbraille.forecast.kept import KeptResults, work_on
+from vbraille.forecast.workers import KeptResults, work_on
 from vbraille.render import MODELS
 from vbraille.sessions.planning.spellings import Masks, SpellingKeys, spelled
 from vbraille.sessions.simulated.observer import Observer
@@ -141,12 +140,11 @@ def _check_values(name: str, values: tuple[float, ...]) -> None:
         raise ValueError(f"{name} has a value that is no number")
 
 
-@dataclass(frozen=True, slots=True)
-class GridTask:
-    """A point of a grid, by its number, with the text of the grid's file."""
+class GridTask(NamedTuple):
+    """A point of a grid, with its number."""
 
-    text: str
-    where: str
+    grid: GridFile
+    point: dict[str, Any]
     number: int
 
 
@@ -189,17 +187,9 @@ def read_grid(text: str, where: str) -> GridFile:
     return TomlFile(text, where).read(GridFile, spelled(SpellingKeys()))
 
 
-@lru_cache(maxsize=1)
-def _read_once(text: str, where: str) -> tuple[GridFile, list[dict[str, Any]]]:
-    """Grid and its points, which a worker needs again for each of its tasks."""
-    grid = read_grid(text, where)
-    return grid, grid.points()
-
-
 def predict_point(task: GridTask) -> list[int]:
     """Characters, those right, strings, and those right, at a point of a grid."""
-    grid, points = _read_once(task.text, task.where)
-    point = points[task.number]
+    grid, point = task.grid, task.point
     model, style = MODELS[grid.model_name], grid.style_at(point)
     observer = Observer(model.display, style, noise=grid.noise)
     sequence = np.random.SeedSequence(grid.seed, spawn_key=(task.number,))
@@ -255,7 +245,7 @@ def predict(
     grid = read_grid(text, path)
     points = grid.points()
     kept = KeptResults(keep, {"grid": text})
-    tasks = [GridTask(text, path, number) for number in range(len(points))]
+    tasks = [GridTask(grid, point, number) for number, point in enumerate(points)]
     ended = work_on(workers, predict_point, tasks, kept, told)
     found = [Prediction(points[number], *kept.found[number]) for number in sorted(kept.found)]
     if not found and ended is not None:

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import check_free, write_file
-from vbraille.forecast.kept import KeptResults, work_on
+from vbraille.forecast.workers import KeptResults, work_on
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.protocolfiles import parse_protocol
+from vbraille.sessions.record.folder import load
 from vbraille.sessions.session import Session
 from vbraille.wording import setting
 
@@ -75,6 +76,9 @@ def conduct(task: PilotTask) -> int:
     """Conduct a session as fast as the machine can, or go on with it, and count its trials."""
     folder = Path(task.folder)
     if folder.exists():
+        progress = load(folder).progress()
+        if progress.ended:
+            return progress.done
         session = Session.resume(folder)
     else:
         session = Session.create(
@@ -145,7 +149,7 @@ def pilot(
              "answers": answers}  # fmt: skip
     about |= {"files": protocol.files} if protocol.files else {}
     _begin(folder, about, tasks[0])
-    ended = work_on(workers, conduct, tasks, _kept(folder, tasks), told)
+    ended = work_on(workers, conduct, tasks, KeptResults(None, {}), told)
     if ended is not None:
         raise VbrailleError(f"{ended}; the same command goes on with {folder}")
     from vbraille.analysis import analyse
@@ -172,19 +176,6 @@ def _begin(folder: Path, about: dict[str, Any], first: PilotTask) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     write_file(path, content)
     write_file(folder / "README.txt", _TOLD.encode())
-
-
-def _kept(folder: Path, tasks: list[PilotTask]) -> KeptResults:
-    """Sessions of the pilot that have ended, by the numbers of their tasks."""
-    from vbraille.sessions.record.folder import load
-
-    kept = KeptResults(None, {})
-    for number, task in enumerate(tasks):
-        if (folder / task.participant).exists():
-            record = load(Path(task.folder))
-            if record.progress().ended:
-                kept.found[number] = len(record.plan.trials)
-    return kept
 
 
 def marked(results: Results) -> Results:

@@ -7,21 +7,17 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.stats import nct
-from scipy.stats import t as student
 
-from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, wilson
-from vbraille.analysis.statistics.unanswerable import Unanswerable
-from vbraille.errors import InputError, VbrailleError
-from vbraille.forecast.effects import shares_of
-from vbraille.forecast.kept import KeptResults, work_on
+from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, Unanswerable, wilson
+from vbraille.errors import InputError, VbrailleError, check_range
 from vbraille.forecast.studies import (
+    ALPHA,
     StudyPlan,
     StudyTask,
     count_found,
     log_odds_of,
-    mean_and_spread,
 )
+from vbraille.forecast.workers import KeptResults, work_on
 from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.making import make_plan
 from vbraille.wording import setting
@@ -33,7 +29,6 @@ if TYPE_CHECKING:
     from vbraille.forecast.workers import Workers
     from vbraille.sessions.planning.protocol import Protocol
 
-ALPHA = 0.05
 ENOUGH = 0.8
 MOST_PARTICIPANTS = 500
 MOST_STUDIES = 1_000_000
@@ -60,9 +55,6 @@ class PowerRow:
         Number of studies, of those that found a difference, and of those that had no p.
     power, low, high
         found / studies, with Wilson's 95 % interval for the number of studies; 0…1.
-    closed_form
-        Power by the noncentral t distribution, which takes shares for normal; None for a test
-        that is no t-test, or for corrected p-values.
     """
 
     participants: int
@@ -76,7 +68,6 @@ class PowerRow:
     power: float
     low: float
     high: float
-    closed_form: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +121,7 @@ class PowerQuestion:
     protocol
         Protocol whose plan and comparisons are simulated.
     effect
-        Shares by condition, as `vbraille.forecast.effects.shares_of` takes them.
+        Shares by condition, as `shares_of` takes them.
     sizes
         Numbers of participants.
     between, differing
@@ -160,21 +151,18 @@ class PowerQuestion:
     seed: int = SEED
 
     def __post_init__(self) -> None:
-        for size in self.sizes:
-            if not FEWEST_PARTICIPANTS <= size <= MOST_PARTICIPANTS:
-                raise InputError(
-                    f"{setting('participants')} has {size}; it must be {FEWEST_PARTICIPANTS} to "
-                    f"{MOST_PARTICIPANTS}"
-                )
         if not 1 <= self.studies <= MOST_STUDIES:
             raise InputError(
                 f"{setting('studies')} is {self.studies}; it must be 1 to {MOST_STUDIES}"
             )
-        for name, spread in (("between", self.between), ("differing", self.differing)):
-            if not 0 <= spread <= MOST_SPREAD:
-                raise InputError(
-                    f"{setting(name)} is {spread:g}; it must be 0 to {MOST_SPREAD:g} log odds"
-                )
+        try:
+            for size in self.sizes:
+                name = f"{setting('participants')}: one"
+                check_range(name, size, FEWEST_PARTICIPANTS, MOST_PARTICIPANTS)
+            for name in ("between", "differing"):
+                check_range(setting(name), getattr(self, name), 0, MOST_SPREAD, " log odds")
+        except ValueError as error:
+            raise InputError(str(error)) from None
         if self.protocol.adaptive:
             raise InputError(
                 f"{self.protocol.name} chooses its trials by the answers, and power is of a fixed "
@@ -204,7 +192,6 @@ class PowerQuestion:
             sizes=self.sizes,
             test="half" if choosing else self.test or TESTS[0],
             correction=self.correction,
-            alpha=ALPHA,
         )
 
     def _trials(self, names: list[str]) -> tuple[tuple[int, ...], ...]:
@@ -298,34 +285,7 @@ def _rows(question: PowerQuestion, plan: StudyPlan, counted: np.ndarray, studies
                 power=found / studies,
                 low=ends.low,
                 high=ends.high,
-                closed_form=_closed_form(plan, size, one, None if half else two),
             )
-
-
-def _closed_form(plan: StudyPlan, size: int, one: int, two: int | None) -> float | None:
-    """Power of a t-test, if shares were normal; None where it is not the test that is made."""
-    alike = len(set(plan.trials[:size])) == 1
-    corrected = len(plan.pairs) > 1 and plan.correction != "none"
-    if plan.test == "model" or corrected or not alike:
-        return None
-    mean, spread = mean_and_spread(plan, one, two, plan.trials[0])
-    return t_power(mean / spread, size, plan.alpha)
-
-
-def t_power(d: float, n: int, alpha: float = ALPHA) -> float:
-    """Power of a two-sided paired t-test, by the noncentral t distribution.
-
-    Parameters
-    ----------
-    d
-        Mean of the differences by their standard deviation.
-    n
-        Number of differences, 2 or more.
-    alpha
-        Level of the test.
-    """
-    critical, off = float(student.ppf(1 - alpha / 2, n - 1)), abs(d) * math.sqrt(n)
-    return float(nct.sf(critical, n - 1, off) + nct.cdf(-critical, n - 1, off))
 
 
 def _about(question: PowerQuestion, plan: StudyPlan, studies: int) -> tuple[tuple[str, str], ...]:
@@ -351,6 +311,100 @@ def _about(question: PowerQuestion, plan: StudyPlan, studies: int) -> tuple[tupl
             f"by an s.d. of {plan.between:g} in log odds, and in what a condition adds to them "
             f"by {plan.differing:g}",
         ),
-        ("test", f"{tests[plan.test]}, two-sided at {plan.alpha:g}{correction}"),
+        ("test", f"{tests[plan.test]}, two-sided at {ALPHA:g}{correction}"),
         ("simulated", f"{studies} {studied} of each size, seed {question.seed}"),
     )
+
+
+ODDS_RATIO = "odds-ratio"
+_EFFECT = setting("effect")
+
+
+def shares_of(protocol: Protocol, effect: Mapping[str, str]) -> dict[str, float]:
+    """Share of right answers in each condition, in the protocol's order.
+
+    Parameters
+    ----------
+    protocol
+        Protocol whose conditions are compared. Where it compares two stimuli, the only name is
+        one of its values, and its share that of the comparisons in which the value is chosen.
+    effect
+        Shares by the names of conditions; or the share of one condition, and by the name
+        ``odds-ratio`` the odds of a right answer in every other one by those in this.
+
+    Raises
+    ------
+    InputError
+        If a condition is not known, has no share, or its share is none; or if nothing differs.
+    """
+    if isinstance(protocol.design, Choice):
+        return _preference(protocol.name, protocol.design, effect)
+    names = [condition.name for condition in protocol.conditions]
+    if len(names) < 2:
+        raise InputError(
+            f"{protocol.name} has one condition, and power is that of a comparison; take a "
+            f"protocol with two or more"
+        )
+    ratio = _ratio(effect[ODDS_RATIO]) if ODDS_RATIO in effect else None
+    given = {name: share for name, share in effect.items() if name != ODDS_RATIO}
+    for name in given:
+        if name not in names:
+            raise InputError(
+                f"{_EFFECT} has the condition {name}, which {protocol.name} does not have; it has "
+                f"{', '.join(names)}"
+            )
+    shares = {name: _share(name, given[name]) for name in names if name in given}
+    if ratio is not None:
+        if len(shares) != 1:
+            raise InputError(
+                f"{_EFFECT} has an odds ratio and {len(shares)} shares; give the share of one "
+                f"condition, such as {names[0]}=0.5,{ODDS_RATIO}=1.8"
+            )
+        ((base, share),) = shares.items()
+        odds = share / (1 - share) * ratio
+        shares = {name: share if name == base else odds / (1 + odds) for name in names}
+    missing = [name for name in names if name not in shares]
+    if missing:
+        raise InputError(
+            f"{_EFFECT} has no share for {', '.join(missing)}; give one such as "
+            f"{missing[0]}=0.5, or {ODDS_RATIO}=1.8"
+        )
+    return shares
+
+
+def _preference(name: str, design: Choice, effect: Mapping[str, str]) -> dict[str, float]:
+    if len(effect) != 1:
+        raise InputError(
+            f"{name} compares two stimuli; give {_EFFECT} the share of one value that is chosen, "
+            f"such as {design.values[0]:g}=0.7"
+        )
+    ((value, share),) = effect.items()
+    values = [f"{of:g}" for of in design.values]
+    if value not in values:
+        there = f"give {' or '.join(values)}"
+        raise InputError(f"{_EFFECT} has the value {value}, which {name} does not have; {there}")
+    return {value: _share(value, share)}
+
+
+def _share(name: str, text: str) -> float:
+    share = _number(name, text)
+    if not 0 < share < 1:
+        raise InputError(
+            f"{_EFFECT}: the share of {name} is {share:g}; it must be between 0 and 1, and "
+            f"neither of them"
+        )
+    return share
+
+
+def _ratio(text: str) -> float:
+    ratio = _number(ODDS_RATIO, text)
+    if not 1e-3 <= ratio <= 1e3:
+        raise InputError(f"{_EFFECT}: {ODDS_RATIO} is {ratio:g}; it must be 0.001 to 1000")
+    return ratio
+
+
+def _number(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"{_EFFECT}: {name} is {text!r}, which is not a number") from None

@@ -18,24 +18,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import expit, ndtri
 
-from vbraille.analysis.statistics.correction import adjust
-from vbraille.analysis.statistics.marginalmeans import compare, separate_cells
+from vbraille.analysis.statistics.intervals import adjust
 from vbraille.analysis.statistics.paired import paired_p_values
-from vbraille.analysis.statistics.trialsmodel import fit_trials
+from vbraille.analysis.statistics.trialsmodel import compare, fit_trials, separate_cells
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(80)
 _MOST_LOG_ODDS = 40.0
+ALPHA = 0.05  # level at which a difference counts as found
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +56,6 @@ class StudyPlan:
         for a t-test of shares in the first condition against one half.
     correction
         How the p-values of a study's pairs are corrected: a key of `correction.METHODS`.
-    alpha
-        Level at which a difference counts as found.
     """
 
     trials: tuple[tuple[int, ...], ...]
@@ -69,7 +65,6 @@ class StudyPlan:
     sizes: tuple[int, ...]
     test: str
     correction: str
-    alpha: float
 
     @property
     def pairs(self) -> list[tuple[int, int]]:
@@ -79,8 +74,7 @@ class StudyPlan:
         return list(combinations(range(len(self.log_odds)), 2))
 
 
-@dataclass(frozen=True, slots=True)
-class StudyTask:
+class StudyTask(NamedTuple):
     """Some studies of a plan, numbered from `first` on, drawn by `seed`."""
 
     plan: StudyPlan
@@ -144,7 +138,7 @@ def count_found(task: StudyTask) -> list[list[list[int]]]:
     for size in plan.sizes:
         p = _p_values(plan, correct[:, :size], trials[:size])
         untested = np.isnan(p)
-        found = _corrected(p, plan.correction) < plan.alpha
+        found = _corrected(p, plan.correction) < ALPHA
         counts.append(np.column_stack([found.sum(axis=0), untested.sum(axis=0)]).tolist())
     return counts
 
@@ -170,42 +164,10 @@ def _corrected(p: NDArray[np.float64], method: str) -> NDArray[np.float64]:
     """p-values corrected in each study for the number of those that it has."""
     if p.shape[1] == 1 or method == "none":
         return p
-    corrected = np.full_like(p, np.nan)
     known = ~np.isnan(p)
-    if method == "holm" and known.all():  # as `adjust` does, for all studies at once
-        order = np.argsort(p, axis=1, kind="stable")
-        steps = np.take_along_axis(p, order, axis=1) * np.arange(p.shape[1], 0, -1)
-        np.put_along_axis(corrected, order, np.maximum.accumulate(steps, axis=1), axis=1)
-        return np.minimum(corrected, 1.0)
+    if known.all():
+        return adjust(p, method)
+    corrected = np.full_like(p, np.nan)
     for study, own in enumerate(known):
         corrected[study, own] = adjust(p[study, own], method)
     return corrected
-
-
-def mean_and_spread(
-    plan: StudyPlan, first: int, second: int | None, trials: Sequence[int]
-) -> tuple[float, float]:
-    """Mean and s.d. over people of a difference of shares, exactly; by equation 1.
-
-    Parameters
-    ----------
-    plan
-        What is simulated.
-    first, second
-        Conditions; the second is None for the difference of the first to one half.
-    trials
-        Trials of a participant in each condition.
-    """
-    weights = _WEIGHTS / _WEIGHTS.sum()
-    own: list[tuple[NDArray[np.float64], NDArray[np.float64]]] = []
-    for condition in (first,) if second is None else (first, second):
-        # Shares given a participant's z, and what varies beside it.
-        log_odds = plan.log_odds[condition] + plan.between * _NODES
-        shares = expit(log_odds[:, None] + plan.differing * _NODES)
-        mean = shares @ weights
-        within = (shares * (1 - shares)) @ weights / trials[condition]
-        own.append((mean, within + (shares - mean[:, None]) ** 2 @ weights))
-    apart = own[0][0] - (0.5 if second is None else own[1][0])
-    mean = float(apart @ weights)
-    variance = sum(of[1] for of in own) @ weights + (apart - mean) ** 2 @ weights
-    return mean, float(np.sqrt(variance))

@@ -1,76 +1,55 @@
-"""Tasks that several processes share, here or on a cluster, with the same results everywhere.
+"""Tasks that several processes share, with the same results however many; results that are kept.
 
 A task says all that its result depends on, its seed among it, and tasks do not depend on how many
-processes there are. So one worker and many give the same results. joblib has the processes, and
-dask the cluster.
+processes there are. So one worker and many give the same results. joblib has the processes.
 """
 
 from __future__ import annotations
 
 import ctypes
-import logging
+import json
 import os
-import re
 import signal
 import warnings
-from contextlib import ExitStack, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
-from importlib.util import find_spec
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.wording import count, setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
 
 Task = TypeVar("Task")
 Found = TypeVar("Found")
-
 MOST_WORKERS = 256
-_ADDRESS = re.compile(r"(?:(?:tcp|tls|ws|wss|ucx)://)?(?:[\w.-]+|\[[0-9a-fA-F:]+\]):[0-9]{1,5}")
-_PATIENCE_S = 10  # for a cluster to answer
-_WORKERS_S = 30  # for its first worker to be there
 _PR_SET_PDEATHSIG = 1
 
 
 @dataclass(frozen=True, slots=True)
 class Workers:
-    """Processes here, or a cluster of dask's.
+    """Processes that share the work.
 
     Parameters
     ----------
     number
-        Number of processes here; with one, this process does the work itself.
-    cluster
-        Address of the scheduler of a cluster, such as ``tcp://lab:8786``; None for none.
+        Number of processes; with one, this process does the work itself.
 
     Raises
     ------
     InputError
-        If there are no such workers.
+        If there are no, or too many.
     """
 
     number: int = 1
-    cluster: str | None = None
 
     def __post_init__(self) -> None:
         if not 1 <= self.number <= MOST_WORKERS:
             raise InputError(
                 f"{setting('workers')} is {self.number}; it must be 1 to {MOST_WORKERS}"
-            )
-        if self.cluster is None:
-            return
-        if not _ADDRESS.fullmatch(self.cluster):
-            raise InputError(
-                f"{setting('cluster')} is {self.cluster!r}, which is no address; give the one "
-                f"that the scheduler says, such as tcp://192.168.1.5:8786"
-            )
-        if find_spec("distributed") is None:
-            raise InputError(
-                f"{setting('cluster')} needs distributed; pip install 'vbraille[cluster]' "
-                f"installs it"
             )
 
     def work(
@@ -93,67 +72,42 @@ class Workers:
         Raises
         ------
         VbrailleError
-            If a worker or the cluster goes away, or as `function` raises it. What was done before
+            If a worker goes away, or as `function` raises it. What was done before
             was given to `done`.
         """
-        if self.cluster is None and (self.number == 1 or len(tasks) < 2):
+        if self.number == 1 or len(tasks) < 2:
             for number, task in enumerate(tasks):
                 done(number, function(task))
-        elif tasks:
-            self._share(function, tasks, done)
+            return
+        from concurrent.futures.process import BrokenProcessPool
 
-    def _share(
-        self,
-        function: Callable[[Task], Found],
-        tasks: Sequence[Task],
-        done: Callable[[int, Found], None],
-    ) -> None:
         import joblib  # takes a while to load
 
         finished = 0
-        with ExitStack() as stack:
-            if self.cluster is not None:
-                _connect(self.cluster, stack)
-                stack.enter_context(joblib.parallel_config("dask"))
-            here = self.cluster is None
-            parallel = joblib.Parallel(self.number if here else -1, return_as="generator_unordered")
-            calls = (
-                joblib.delayed(_call)(function, number, task, os.getpid() if here else None)
-                for number, task in enumerate(tasks)
-            )
-            results: Iterator[tuple[int, Found]] = parallel(calls)  # pyright: ignore[reportAssignmentType]
-            try:
-                for number, found in results:
-                    done(number, found)
-                    finished += 1
-            except VbrailleError:
-                raise
-            except Exception as error:
-                if not _is_loss(error):
-                    raise
-                raise self._lost(finished, len(tasks)) from None
-            finally:
-                with suppress(Exception), warnings.catch_warnings(action="ignore"):
-                    results.close()  # pyright: ignore[reportAttributeAccessIssue]
-
-    def _lost(self, finished: int, tasks: int) -> VbrailleError:
-        after = f"after {finished} of {count(tasks, 'task')}"
-        if self.cluster is None:
-            return VbrailleError(
-                f"a worker was ended from outside {after}; give fewer {setting('workers')} if the "
-                f"memory was full"
-            )
-        return VbrailleError(
-            f"the cluster at {self.cluster} went away {after}; what is done is told, and with "
-            f"{setting('keep')} FILE the same command goes on there"
+        parallel = joblib.Parallel(self.number, return_as="generator_unordered")
+        calls = (
+            joblib.delayed(_call)(function, number, task, os.getpid())
+            for number, task in enumerate(tasks)
         )
+        results: Iterator[tuple[int, Found]] = parallel(calls)  # pyright: ignore[reportAssignmentType]
+        try:
+            for number, found in results:
+                done(number, found)
+                finished += 1
+        except (BrokenProcessPool, OSError):
+            raise VbrailleError(
+                f"a worker was ended from outside after {finished} of {count(len(tasks), 'task')}; "
+                f"give fewer {setting('workers')} if the memory was full"
+            ) from None
+        finally:
+            with suppress(Exception), warnings.catch_warnings(action="ignore"):
+                results.close()  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def _call(
-    function: Callable[[Task], Found], number: int, task: Task, parent: int | None
+    function: Callable[[Task], Found], number: int, task: Task, parent: int
 ) -> tuple[int, Found]:
-    if parent is not None:
-        _belong_to(parent)
+    _belong_to(parent)
     return number, function(task)
 
 
@@ -166,46 +120,98 @@ def _belong_to(parent: int) -> None:
         os._exit(1)
 
 
-def _is_loss(error: Exception) -> bool:
-    """Tell if an error is of a process or a connection that went away, and not of a task."""
-    from concurrent.futures.process import BrokenProcessPool
+class KeptResults:
+    """A file of results, a line each, of one piece of work.
 
-    lost = isinstance(error, BrokenProcessPool | OSError | TimeoutError)
-    return lost or type(error).__module__.startswith("distributed")
-
-
-def _connect(address: str, stack: ExitStack) -> None:
-    """Connect to a cluster, until the end of the stack.
+    Parameters
+    ----------
+    path
+        File to go on with, or to begin; None keeps nothing.
+    work
+        All that the results depend on, in the terms of JSON.
 
     Raises
     ------
-    VbrailleError
-        If no cluster answers there, or it has no workers.
+    InputError
+        If the file is of other work, is no such file, or cannot be read or made.
     """
-    import dask  # pyright: ignore[reportMissingImports]
-    from distributed import Client  # pyright: ignore[reportMissingImports]
 
-    # What it would log of a lost connection is said in one sentence instead.
-    for name in ("asyncio", *logging.root.manager.loggerDict):
-        if name.partition(".")[0] in ("asyncio", "distributed", "tornado"):
-            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
-    patience = f"{_PATIENCE_S}s"
-    stack.enter_context(dask.config.set({"distributed.comm.timeouts.connect": patience}))  # pyright: ignore[reportPrivateImportUsage]
+    def __init__(self, path: Path | None, work: dict[str, Any]) -> None:
+        self._path = path
+        self.found: dict[int, Any] = {}
+        if path is None:
+            return
+        head = json.dumps(work, sort_keys=True)
+        try:
+            text = path.read_text("utf-8") if path.exists() else ""
+            if not text:
+                path.write_text(f"{head}\n", "utf-8")
+                return
+        except (OSError, UnicodeDecodeError) as error:
+            why = getattr(error, "strerror", None) or "it is not UTF-8"
+            raise InputError(f"{setting('keep')} {path} cannot be used: {why}") from None
+        first, *lines = text.splitlines()
+        if first != head:
+            raise InputError(
+                f"{setting('keep')} {path} is of other work; give a new name, or the same options "
+                f"as then"
+            )
+        for line in lines:
+            try:
+                number, found = json.loads(line)
+            except (ValueError, TypeError):  # the end of a line that was being written
+                continue
+            self.found[number] = found
+        if not text.endswith("\n"):
+            self._append("\n")
+
+    def add(self, number: int, found: Any) -> None:
+        """Keep the result of a task."""
+        self.found[number] = found
+        self._append(f"{json.dumps([number, found])}\n")
+
+    def _append(self, text: str) -> None:
+        if self._path is None:
+            return
+        try:
+            with self._path.open("a", encoding="utf-8") as file:
+                file.write(text)
+        except OSError as error:
+            raise VbrailleError(f"{self._path} cannot be written: {error.strerror}") from None
+
+
+def work_on(
+    workers: Workers,
+    function: Callable[[Task], Found],
+    tasks: Sequence[Task],
+    kept: KeptResults,
+    told: Callable[[int, int], None],
+) -> VbrailleError | None:
+    """Do the tasks that are not kept yet, and give what ended the work early, if anything did.
+
+    Parameters
+    ----------
+    workers
+        Who works.
+    function
+        What is done with a task, with a result in the terms of JSON.
+    tasks
+        All tasks of the work.
+    kept
+        Results that are there, to which new ones are added.
+    told
+        Function that is told how many tasks are done, and how many there are.
+    """
+    left = [number for number in range(len(tasks)) if number not in kept.found]
+
+    def done(place: int, found: Found) -> None:
+        kept.add(left[place], found)
+        told(len(kept.found), len(tasks))
+
     try:
-        client = Client(address, timeout=patience)
-    except (OSError, ValueError) as error:
-        raise VbrailleError(
-            f"no cluster answers at {address}: {str(error).splitlines()[0]}"
-        ) from None
-
-    def close() -> None:
-        with suppress(Exception):  # its end need not be said again
-            client.close(timeout=1)
-
-    stack.callback(close)
-    try:
-        client.wait_for_workers(1, timeout=_WORKERS_S)
-    except TimeoutError:
-        raise VbrailleError(
-            f"the cluster at {address} has no workers; start some with: dask worker {address}"
-        ) from None
+        workers.work(function, [tasks[number] for number in left], done)
+    except InputError:
+        raise
+    except VbrailleError as error:
+        return error
+    return None

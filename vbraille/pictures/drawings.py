@@ -20,7 +20,7 @@ from vbraille.files import write_file
 from vbraille.pictures.figurefiles import METADATA, styled, to_bytes
 from vbraille.pictures.scenes import grays, map_places
 from vbraille.pictures.words import plain
-from vbraille.scene.walking import vibrations
+from vbraille.scene.traversal import vibrations
 from vbraille.wording import setting
 
 if TYPE_CHECKING:

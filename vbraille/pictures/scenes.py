@@ -18,7 +18,7 @@ from vbraille.errors import InputError
 from vbraille.pictures.words import plain
 from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating
-from vbraille.scene.walking import each, vibrations
+from vbraille.scene.traversal import each, vibrations
 from vbraille.wording import setting
 
 if TYPE_CHECKING:

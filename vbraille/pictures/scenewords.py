@@ -26,7 +26,7 @@ from vbraille.scene.textures import (
     Uniform,
     UniformVibration,
 )
-from vbraille.scene.walking import vibrations
+from vbraille.scene.traversal import vibrations
 from vbraille.wording import count
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ from vbraille.render.program import Program, nothing
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.bids import runs_of
 from vbraille.sessions.record.folder import load
-from vbraille.sessions.record.replay import Pictures, Replay
+from vbraille.sessions.record.replay import Replay, StimulusPrograms
 from vbraille.sessions.record.traces import ChunkedTrace
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ class Traced:
         self._record = record
         self._progress = record.progress()
         self._display = record.protocol.model.display
-        self._pictures = Pictures(record, self._progress)
+        self._pictures = StimulusPrograms(record, self._progress)
         self._firsts_ns: dict[int, int | None] = {}
         self._picture = lru_cache(64)(self._make_picture)
         self.notes: list[str] = []

@@ -14,8 +14,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from vbraille.adaptive.estimates import GridAxis
-from vbraille.adaptive.questplus import geometric, nearer_quest, ordered_pairs
+from vbraille.adaptive.questplus import GridAxis, geometric, nearer_quest, ordered_pairs
 from vbraille.errors import InputError
 from vbraille.render.braille.knobs import KNOBS, StyleKnob, kept_values, obstacle, with_values
 

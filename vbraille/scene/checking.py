@@ -22,13 +22,20 @@ from vbraille.scene.patterns import (
     Tile,
 )
 from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform
-from vbraille.scene.walking import ONE, children, drawn_vibrations, each, vibrations, with_children
+from vbraille.scene.traversal import (
+    ONE,
+    children,
+    drawn_vibrations,
+    each,
+    vibrations,
+    with_children,
+)
 from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from vbraille.scene.opened import OpenedScene
+    from vbraille.scene.origins import OpenedScene
     from vbraille.scene.patterns import AnyPattern, Operation
     from vbraille.scene.scene import Canvas, Scene
     from vbraille.scene.strokes import Vibration

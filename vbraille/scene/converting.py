@@ -19,14 +19,14 @@ from vbraille.errors import InputError
 from vbraille.scene.pattern import Pattern
 from vbraille.scene.patterns import Group, Image, ImageDots
 from vbraille.scene.reading import form_of
-from vbraille.scene.walking import with_children
+from vbraille.scene.traversal import with_children
 from vbraille.toml.tomlfile import Table
 
 if TYPE_CHECKING:
-    from vbraille.scene.opened import FoundScene
+    from vbraille.scene.origins import FoundScene
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
-    from vbraille.scene.walking import Steps
+    from vbraille.scene.traversal import Steps
 
 
 LONGEST = 72  # columns of a line, where that can be

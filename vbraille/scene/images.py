@@ -12,7 +12,7 @@ from vbraille.errors import InputError
 from vbraille.scene.bitmap import WHOLE, Bitmap
 from vbraille.scene.imagefiles import intensities_of
 from vbraille.scene.patterns import Image
-from vbraille.scene.walking import each
+from vbraille.scene.traversal import each
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -10,7 +10,7 @@ import math
 from typing import Literal
 
 from vbraille.errors import check_range
-from vbraille.scene.crossing import meeting_edges
+from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.measures import (
     LEAST_APART_MM,
     Point,

@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
-from vbraille.scene.opened import ForeignOrigin, OpenedScene, Origins, TomlOrigin
+from vbraille.scene.origins import ForeignOrigin, OpenedScene, Origins, TomlOrigin
 from vbraille.scene.patterns import AnyPattern, Group, Image, ImageDots, Label, Operation
 from vbraille.scene.resolving import MOST_PATTERNS, resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.svg.looks import ClassLook
-from vbraille.scene.walking import with_children
+from vbraille.scene.traversal import with_children
 from vbraille.toml.textfile import read_text
 from vbraille.toml.tomlfile import Table, TomlFile
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from vbraille.scene.opened import FoundScene, SceneOrigin
-    from vbraille.scene.walking import Steps
+    from vbraille.scene.origins import FoundScene, SceneOrigin
+    from vbraille.scene.traversal import Steps
 
 
 # Scenes of 50,000 shapes or so; larger files would take longer to read than anybody waits.

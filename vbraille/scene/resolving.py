@@ -10,10 +10,10 @@ from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.scene.dotting import most_dots_of
-from vbraille.scene.opened import Origins
+from vbraille.scene.origins import Origins
 from vbraille.scene.patterns import Group, ImageDots, Use
 from vbraille.scene.stock import STOCK, stock_textures
-from vbraille.scene.walking import LISTS, SEVERAL, each, moved, placed_children, with_children
+from vbraille.scene.traversal import LISTS, SEVERAL, each, moved, placed_children, with_children
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
-    from vbraille.scene.walking import Steps
+    from vbraille.scene.traversal import Steps
 
 # Uses of uses of uses can stand for more than any memory holds.
 MOST_PATTERNS, MOST_POINTS = 200_000, 4_000_000

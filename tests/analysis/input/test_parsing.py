@@ -7,9 +7,8 @@ import pandas as pd
 import pytest
 
 from tests.analysis.making import levels, sheet
-from vbraille.analysis.input.fieldvalues import parse_cells
 from vbraille.analysis.input.parsing import parse
-from vbraille.analysis.input.sheets import Sheet, from_rows, read_csv
+from vbraille.analysis.input.sheets import Sheet, from_rows, parse_cells, read_csv
 from vbraille.analysis.input.trials import TRIAL_COLUMNS, LeftOut
 from vbraille.errors import InputError
 
@@ -176,7 +175,10 @@ def test_what_is_needed_is_needed_of_every_sheet():
 def test_a_trial_given_twice():
     lines = ["P1 T0 s1 1 a a", "P1 T0 s1 2 a a"]
     one = sheet(*lines, columns=NAMED, name="one")
-    says = "^two row 1: trial 2 of session s1 is there a second time; give every trial once$"
+    says = (
+        "^two row 1: trial 2 of session s1 is there a second time; give every trial once, and each "
+        "session a name of its own$"
+    )
     with pytest.raises(InputError, match=says):
         parse([one, sheet("P1 T0 s1 2 a b", columns=NAMED, name="two")])
     for other in ("P2 T0 s1 1 a a", "P1 T25 s1 1 a a", "P1 T0 s2 1 a a"):

@@ -7,12 +7,12 @@ from scipy.stats import norm, t
 
 from tests.analysis.making import record, sheet
 from vbraille.analysis.chapters import Options, analyse_study
-from vbraille.analysis.figures.rises import rises
+from vbraille.analysis.figures import rises
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.sheets import from_rows, read_csv
 from vbraille.analysis.input.study import Study
-from vbraille.analysis.measures import rated, sensitivity
-from vbraille.analysis.measures.thresholds import thresholds
+from vbraille.analysis.measures import rated
+from vbraille.analysis.measures.discrimination import sensitivity, thresholds
 from vbraille.analysis.statistics.psychometric import fit_psychometric
 from vbraille.errors import InputError
 
@@ -47,7 +47,7 @@ def found(rows):
 
 def test_detection_by_hand():
     rows = detected("P1", "blank", 0.0, 3, 17) + detected("P1", "full", 0.5, 15, 5)
-    table = sensitivity.sensitivity(found(rows))
+    table = sensitivity(found(rows))
     row = record(table, participant="P1")
     assert (row["condition"], row["hits"], row["signals"]) == ("full", 15, 20)
     assert (row["false_alarms"], row["noises"]) == (3, 20)
@@ -64,13 +64,13 @@ def test_detection_by_hand():
 def test_blank_trials_of_one_participant_are_not_those_of_another():
     rows = detected("P1", "blank", 0.0, 0, 8) + detected("P1", "full", 0.5, 6, 2)
     rows += detected("P2", "blank", 0.0, 5, 3) + detected("P2", "full", 0.5, 6, 2)
-    table = sensitivity.sensitivity(found(rows))
+    table = sensitivity(found(rows))
     assert record(table, participant="P1")["d_prime"] > record(table, participant="P2")["d_prime"]
     assert record(table, participant="P2")["false_alarms"] == 5
 
 
 def test_without_blank_trials_there_is_no_sensitivity():
-    row = record(sensitivity.sensitivity(found(detected("P1", "full", 0.5, 6, 2))), hits=6)
+    row = record(sensitivity(found(detected("P1", "full", 0.5, 6, 2))), hits=6)
     assert row["d_prime"] is None
     assert row["note"] == "no d′: no trials with nothing"
 
@@ -86,7 +86,7 @@ def test_same_or_different_by_hand():
     for row in rows:
         row |= {"contrast": "", "confidence": "", "presented": row["presented"].replace(",", " ")}
         row |= {"question": "same-different", "outcome": row["outcome"].replace("_", " ")}
-    row = record(sensitivity.sensitivity(found(rows)), question="same-different")
+    row = record(sensitivity(found(rows)), question="same-different")
     assert (row["hits"], row["signals"], row["false_alarms"], row["noises"]) == (12, 16, 2, 16)
     # By the difference felt: F = 2 Φ(-k / √2) and H = Φ((d - k) / √2) + Φ((-d - k) / √2).
     hits, alarms, d = 12.5 / 17, 2.5 / 17, row["d_prime"]
@@ -108,7 +108,7 @@ def test_which_of_two_by_hand():
         }] * times  # fmt: skip
     parsed = parse([from_rows("made", rows)])
     assert len(parsed.comparisons) == 20
-    row = record(sensitivity.sensitivity(parsed.judgements), question="which")
+    row = record(sensitivity(parsed.judgements), question="which")
     assert (row["hits"], row["signals"], row["false_alarms"], row["noises"]) == (6, 10, 1, 10)
     z = norm.ppf(6.5 / 11) - norm.ppf(1.5 / 11)
     assert row["d_prime"] == pytest.approx(z / math.sqrt(2))
@@ -218,7 +218,7 @@ def test_two_values_are_told_apart_however_they_are_written():
     one = sheet(*lines, "P1 4 all 2 1.5 2.0 which right", columns=columns).frame
     one["presented"] = one["first"] + " " + one["second"]
     told = found(one.to_dict("records"))
-    row = record(sensitivity.sensitivity(told), participant="P1")
+    row = record(sensitivity(told), participant="P1")
     assert (row["signals"], row["hits"], row["noises"], row["false_alarms"]) == (1, 1, 3, 3)
     note = record(thresholds(told)[0], participant="P1")["note"]
     assert not note.startswith("no threshold: neither")
@@ -285,7 +285,7 @@ def test_intervals_of_ratings_end_where_the_scale_does():
 def test_no_interval_of_d_prime_begins_below_nothing():
     rows = detected("P1", "blank", 0.0, 3, 7) + detected("P1", "full", 0.5, 4, 6)
     rows += detected("P2", "blank", 0.0, 8, 2) + detected("P2", "full", 0.5, 2, 8)
-    table = sensitivity.sensitivity(found(rows))
+    table = sensitivity(found(rows))
     near, turned = (record(table, participant=name) for name in ("P1", "P2"))
     assert near["d_low"] == 0 < near["d_prime"] < near["d_high"]
     assert turned["d_low"] < turned["d_prime"] < 0  # yes and no were taken for each other

@@ -6,8 +6,7 @@ import pytest
 
 from tests.analysis.making import answers, made, record
 from vbraille.analysis.measures.legibility import averages, legibility
-from vbraille.analysis.statistics.intervals import wilson
-from vbraille.analysis.statistics.shares import mean_share
+from vbraille.analysis.statistics.intervals import mean_share, wilson
 
 
 def found(*lines):

@@ -14,10 +14,8 @@ from vbraille.analysis.input.trials import LeftOut, Places
 from vbraille.analysis.measures import levels
 from vbraille.analysis.measures.levels import analyses, level_means, t_tests
 from vbraille.analysis.statistics.anova import anova
-from vbraille.analysis.statistics.correction import METHODS, adjust
-from vbraille.analysis.statistics.intervals import mean_interval
+from vbraille.analysis.statistics.intervals import METHODS, adjust, mean_interval, mean_share
 from vbraille.analysis.statistics.paired import paired_t
-from vbraille.analysis.statistics.shares import mean_share
 from vbraille.errors import InputError
 
 # Four participants at three levels.

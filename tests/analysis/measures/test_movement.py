@@ -8,10 +8,16 @@ from scipy import stats
 
 from tests.analysis.making import made, record
 from tests.sessions.sittings import Session
-from vbraille.analysis.input.sittings import SessionTrials, read_sitting
-from vbraille.analysis.input.strokes import IN_PART, ONE_PASS, RESCAN, Reading
+from vbraille.analysis.input.sittings import (
+    IN_PART,
+    ONE_PASS,
+    RESCAN,
+    Reading,
+    SessionTrials,
+    read_sitting,
+)
 from vbraille.analysis.measures.movement import correlations, patterns, trajectories
-from vbraille.analysis.statistics.correlation import correlation_interval
+from vbraille.analysis.statistics.intervals import correlation_interval
 from vbraille.sessions.record.export import NEVER_CAME
 
 

@@ -26,7 +26,7 @@ LEGIBILITY = table_of(
         Column("condition", "condition", "as in the protocol"),
         Column("trials", "trials", "answered", Kind.COUNT),
         Column("legibility", "legibility (%)", "right by answered", Kind.PERCENT),
-        Column("duration_s", "mean duration (s)", "their mean", Kind.SECONDS),
+        Column("duration_s", "mean duration (s)", "their mean", Kind.TENTHS),
         Column("p", "p", "of a test", Kind.P),
         NOTE_COLUMN,
     ),

@@ -4,11 +4,14 @@ import csv
 import io
 from pathlib import Path
 
+from tests.analysis.making import table_of
 from tests.analysis.report.made import RESULTS
 from tests.tiers import heavy
 from vbraille.analysis import analyse
-from vbraille.analysis.report.codebook import codebook
-from vbraille.analysis.report.shown import csv_name
+from vbraille.analysis.report.tohtml import csv_name
+from vbraille.analysis.report.written import codebook
+from vbraille.analysis.results import Chapter, Results
+from vbraille.analysis.schemas import Column, Kind
 
 SAMPLE = Path(__file__).parents[1] / "input/samples/trials.csv"
 
@@ -20,6 +23,17 @@ def test_every_table_is_in_it_with_its_columns():
         for table in RESULTS.result_tables()
         for column in table.columns
     ]
+
+
+def test_a_number_with_a_decimal_is_no_duration():
+    """A mean number of trials was told to be in seconds."""
+    columns = (
+        Column("trials", "trials", "mean number", Kind.TENTHS),
+        Column("duration_mean_s", "mean duration (s)", "of them", Kind.TENTHS),
+    )
+    chapter = Chapter("All", "", (table_of(columns, ((7.5, 3.25),)),))
+    read = csv.DictReader(io.StringIO(codebook(Results("One", (), (), (chapter,)), "trials.csv")))
+    assert [row["unit"] for row in read] == ["", "s"]
 
 
 @heavy  # a whole analysis

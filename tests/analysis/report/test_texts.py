@@ -21,9 +21,10 @@ from tests.analysis.report.made import (
     RESULTS,
     TRIALS,
 )
-from vbraille.analysis.report import shown, to_html, to_json, to_markdown
-from vbraille.analysis.report.tolines import to_lines
-from vbraille.analysis.report.tomarkdown import escape
+from vbraille.analysis.report import tohtml
+from vbraille.analysis.report.tohtml import to_html
+from vbraille.analysis.report.tomarkdown import escape, to_markdown
+from vbraille.analysis.report.totext import to_json, to_lines
 from vbraille.analysis.results import Chapter, Results
 from vbraille.analysis.schemas import Column, Kind, to_csv
 
@@ -164,9 +165,9 @@ def test_all_tables_are_headed():
 
 
 def test_as_many_columns_head_a_row_as_tell_it_from_others():
-    assert shown.heads(LEGIBILITY) == 2
-    assert shown.heads(CONFUSIONS) == 1
-    assert shown.heads(TRIALS) == 1
+    assert tohtml._heads(LEGIBILITY) == 2
+    assert tohtml._heads(CONFUSIONS) == 1
+    assert tohtml._heads(TRIALS) == 1
     rows = list(table("legibility").iter("tr"))
     assert [text(cell) for cell in rows[1].iter("th")][1] == "nominal"
 
@@ -190,13 +191,15 @@ def test_marks_are_told_and_right_answers_are_none():
 
 def test_a_table_without_marks_has_none():
     assert LEGIBILITY.mark(LEGIBILITY.rows[0], 2) is None
-    assert not shown.marking(LEGIBILITY)
+    assert "Marked are" not in to_markdown(
+        replace(RESULTS, chapters=(Chapter("L", "", (LEGIBILITY,)),), main="")
+    )
     assert ONE_MARK.mark(ONE_MARK.rows[1], 1) == 4
 
 
 def test_long_tables_say_how_many_rows_there_are():
     body = next(table("trials").iter("tbody"))
-    assert len(list(body)) == shown.ROWS
+    assert len(list(body)) == tohtml.ROWS
     (caption,) = table("trials").iter("caption")
     assert text(caption) == "All trials: the first 60 of 150 rows"
     assert "Shown are the first 60 of 150 rows" in PAGE
@@ -293,7 +296,7 @@ def cells(line):
 def test_markdown_tables_have_as_many_cells_everywhere():
     blocks = [block.splitlines() for block in to_markdown(RESULTS).split("\n\n")]
     tables = [block for block in blocks if block[0].startswith("|")]
-    assert [len(lines) for lines in tables] == [2 + 8, 2 + 2, 2 + shown.ROWS]
+    assert [len(lines) for lines in tables] == [2 + 8, 2 + 2, 2 + tohtml.ROWS]
     for lines, columns in zip(tables, (7, 4, 2), strict=True):
         assert {len(cells(line)) for line in lines} == {columns}
         assert all(re.fullmatch(r" ---:? ", cell) for cell in cells(lines[1]))
@@ -301,10 +304,11 @@ def test_markdown_tables_have_as_many_cells_everywhere():
 
 def test_markdown_marks_errors_and_points_to_the_numbers():
     made = to_markdown(RESULTS, ("results.json",))
-    assert "| a | 30 | **5** (\\> 4) | 0 |" in made
-    assert "| b | **10** (\\> 9) | 28 | 4 |" in made
+    assert "| a | 30 | **5** (above 4) | 0 |" in made
+    assert "| b | **10** (above 9) | 28 | 4 |" in made
     assert (
-        "](figures/runs.svg)\n\nIt falls.\n\nIts numbers: [All trials](tables/trials.csv)" in made
+        "](figures/runs.svg)\n\nIt falls.\n\nIts numbers: [table “All trials”](tables/trials.csv)"
+        in made
     )
     assert "- [results.json](results.json)" in made
     assert "This table has no rows." in made
@@ -346,4 +350,4 @@ def test_texts_are_the_same_in_every_process_and_need_no_drawing():
 def test_a_mark_needs_a_count():
     results = Results("Confusions", (), (), (Chapter("All", "", (ONE_MARK,)),))
     assert "**28**" not in to_markdown(results)
-    assert "**10** (\\> 4)" in to_markdown(results)
+    assert "**10** (above 4)" in to_markdown(results)

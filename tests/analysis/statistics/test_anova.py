@@ -1,5 +1,4 @@
 import time
-from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -74,8 +73,6 @@ def test_one_factor_is_pingouins(rng, pingouin, shape):
     if 2 < k <= n:
         sphericity = pingouin.sphericity(data, dv="score", within="A", subject="who")
         assert ours.mauchly_w == pytest.approx(sphericity.W)
-        assert ours.mauchly_chi2 == pytest.approx(sphericity.chi2)
-        assert ours.mauchly_df == sphericity.dof
         assert ours.note == ""
     if k == 3:  # with more contrasts pingouin adds a second-order term to p
         assert ours.mauchly_p == pytest.approx(sphericity.pval)
@@ -95,7 +92,7 @@ def test_two_factors_are_pingouins(rng, pingouin, shape):
         assert ours.generalised_eta2 == pytest.approx(row["ng2"])
         assert ours.partial_eta2 == pytest.approx(partial.iloc[i])
         # Of interactions too in pingouin 0.6 and later; before, of those with a factor of two.
-        if len(ours.factors) == 1 or 2 in shape[1:]:
+        if " × " not in ours.name or 2 in shape[1:]:
             assert ours.epsilon == pytest.approx(row["eps"])
             assert ours.p_corrected == pytest.approx(row["p_GG_corr"])
 
@@ -112,12 +109,12 @@ def test_any_number_of_factors_is_statsmodels_and_the_projections(rng, shape):
     errors = sum(error for _, error, _ in parts.values())
     assert len(found.effects) == 2 ** len(names) - 1 == len(theirs)
     for ours in found.effects:
-        row = theirs.loc[":".join(ours.factors)]
-        assert ours.name == " × ".join(ours.factors)
+        acting = ours.name.split(" × ")
+        row = theirs.loc[":".join(acting)]
         assert ours.f == pytest.approx(row["F Value"])
         assert (ours.df1, ours.df2) == (row["Num DF"], row["Den DF"])
         assert ours.p == pytest.approx(row["Pr > F"])
-        effect, error, covariance = parts[tuple(names.index(n) for n in ours.factors)]
+        effect, error, covariance = parts[tuple(names.index(n) for n in acting)]
         assert ours.partial_eta2 == pytest.approx(effect / (effect + error))
         assert ours.generalised_eta2 == pytest.approx(effect / (effect + errors))
         # Box 1954, from the doubly centred covariance: no contrasts are chosen.
@@ -183,7 +180,7 @@ def test_factors_may_have_any_name(rng, names):
     cube = random_cube(rng, 6, 3, 2)
     found = anova(*long_form(cube, names)).effects
     plain = anova(*long_form(cube)).effects
-    assert [e.factors for e in found] == [(names[0],), (names[1],), names]
+    assert [e.name for e in found] == [*names, " × ".join(names)]
     assert [e.f for e in found] == [e.f for e in plain]
 
 
@@ -209,9 +206,7 @@ def test_mauchlys_test_keeps_its_level_if_sphericity_holds(rng):
 def test_too_few_participants_for_sphericity(rng):
     effect = anova(*long_form(random_cube(rng, 4, 3, 4))).effects[2]
     assert effect.note == "4 participants are too few to test the sphericity of 6 contrasts"
-    assert (effect.mauchly_w, effect.mauchly_chi2, effect.mauchly_df, effect.mauchly_p) == (
-        None,
-    ) * 4
+    assert effect.mauchly_w is effect.mauchly_p is None
     assert effect.epsilon is not None
     assert 1 / 6 <= effect.epsilon <= 0.5  # of six eigenvalues three are 0
     assert anova(*long_form(random_cube(rng, 4, 4))).effects[0].mauchly_w is not None
@@ -259,11 +254,3 @@ def test_contrasts_are_orthonormal_and_see_no_mean(levels):
     c = orthonormal_contrasts(levels)
     np.testing.assert_allclose(c.T @ c, np.eye(levels - 1), atol=1e-12)
     np.testing.assert_allclose(c.sum(axis=0), 0, atol=1e-12)
-
-
-def test_an_effect_checks_itself(rng):
-    (effect,) = anova(*long_form(random_cube(rng, 5, 3))).effects
-    with pytest.raises(ValueError, match="epsilon"):
-        replace(effect, epsilon=1.5)
-    with pytest.raises(ValueError, match="degrees of freedom"):
-        replace(effect, df2=1)

@@ -1,5 +1,4 @@
 import time
-from dataclasses import replace
 from itertools import permutations
 
 import numpy as np
@@ -9,11 +8,14 @@ from scipy.stats import t, ttest_1samp
 from statsmodels.genmod.families import Binomial
 from statsmodels.genmod.generalized_linear_model import GLM
 
-from vbraille.analysis.statistics.bradleyterry import bradley_terry, position_bias, preferred
-from vbraille.analysis.statistics.firth import connected, fit
-from vbraille.analysis.statistics.intervals import wilson
-from vbraille.analysis.statistics.shares import mean_share
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.statistics.bradleyterry import (
+    bradley_terry,
+    connected,
+    fit,
+    position_bias,
+    preferred,
+)
+from vbraille.analysis.statistics.intervals import Unanswerable, mean_share, wilson
 
 # Citations among Biometrika, Communications in Statistics, JASA and JRSS-B:
 # Stigler 1994; Agresti 2002, p. 448.
@@ -68,7 +70,6 @@ def test_the_published_scale_of_statistics_journals():
     c = scale.covariance
     errors = np.sqrt(c[0, 0] + np.diag(c) - 2 * c[0])
     np.testing.assert_allclose(errors, [0, 0.10255, 0.06059, 0.07083], atol=2e-4)
-    assert scale.comparisons == CITATIONS.sum()
 
 
 @pytest.mark.parametrize("k", [3, 6])
@@ -83,7 +84,6 @@ def test_many_comparisons_give_the_likelihood_of_a_binomial_regression(rng, k):
     np.testing.assert_allclose(
         to_first @ scale.covariance @ to_first.T, theirs.cov_params(), rtol=1e-3
     )
-    np.testing.assert_allclose(scale.errors, np.sqrt(np.diag(scale.covariance)))
 
 
 @pytest.mark.no_cover
@@ -145,23 +145,11 @@ def test_which_values_hang_together(pairs, whether):
     [
         (np.zeros((3, 3), dtype=int), Unanswerable, "no comparisons"),
         ([[0, 1, 0], [1, 0, 0], [0, 0, 0]], Unanswerable, "never compared"),
-        (np.ones((2, 3), dtype=int), ValueError, "square"),
-        (np.eye(2, dtype=int), ValueError, "itself"),
-        ([[0, -1], [1, 0]], ValueError, "0 or more"),
-        ([[0, 0.5], [1, 0]], ValueError, "not integers"),
     ],
 )
 def test_what_is_no_table_of_comparisons(wins, error, reason):
     with pytest.raises(error, match=reason):
         bradley_terry(wins)
-
-
-def test_a_scale_checks_itself():
-    scale = bradley_terry(CITATIONS)
-    with pytest.raises(ValueError, match="of 4 strengths"):
-        replace(scale, errors=scale.errors[:2])
-    with pytest.raises(ValueError, match="sum 0"):
-        replace(scale, strengths=scale.strengths + 1)
 
 
 def wins_by(strengths, times=10_000):
@@ -238,8 +226,6 @@ def test_of_one_participant_the_comparisons_are_resampled():
     assert one.how == "bootstrap over the comparisons of one participant"
     assert one.interval.low < one.value < one.interval.high
     assert one == preferred(WIDTHS_MM, *comparisons([wins_by(s, 6)]), seed=3, resamples=300)
-    narrow = preferred(WIDTHS_MM, *comparisons([wins_by(s, 6)]), seed=3, resamples=300, level=0.5)
-    assert narrow.interval.high - narrow.interval.low < one.interval.high - one.interval.low
 
 
 def test_at_the_end_of_what_was_tested_the_best_may_lie_beyond():
@@ -307,31 +293,6 @@ def test_what_has_no_preferred_value():
         best(0 * alike, [1, 2, 3])
 
 
-@pytest.mark.parametrize(
-    ("change", "reason"),
-    [
-        ({"values": [1, 1]}, "twice"),
-        ({"first": [0, 2]}, "first must be in 0…1"),
-        ({"first": [0.0, 1.0]}, "whole numbers"),
-        ({"first": [1, 1]}, "with itself"),
-        ({"chosen": [0, 2]}, "chosen must be"),
-        ({"groups": [0]}, "one length"),
-        ({"resamples": 0}, "resamples"),
-        ({"level": 0}, "level"),
-    ],
-)
-def test_what_are_no_comparisons(change, reason):
-    good = {
-        "values": [1, 2],
-        "first": [0, 1],
-        "second": [1, 0],
-        "chosen": [0, 0],
-        "groups": [0, 0],
-    }
-    with pytest.raises(ValueError, match=reason):
-        preferred(**{**good, "seed": 1, **change})
-
-
 def test_position_bias_is_the_binomial_test():
     found = position_bias([0] * 9 + [1], [7] * 10)
     assert found.share_first == 0.9
@@ -351,5 +312,3 @@ def test_of_several_the_position_bias_is_of_people():
     assert found.p == pytest.approx(ttest_1samp([0.9, 0.6, 0.5], 0.5).pvalue)
     assert position_bias(chosen[:20], groups[:20])[1:] == (None, None)
     assert position_bias([0, 1] * 3, np.repeat([0, 1, 2], 2)).p is None
-    with pytest.raises(ValueError, match="one length"):
-        position_bias([0, 1], [0])

@@ -1,12 +1,10 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.stats import nct
 from scipy.stats import t as student
 
+from vbraille.analysis.statistics.intervals import Unanswerable
 from vbraille.analysis.statistics.paired import hedges_correction, paired_p_values, paired_t
-from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 
 @pytest.mark.parametrize("n", [2, 3, 6, 20])
@@ -14,7 +12,7 @@ def test_it_is_pingouins(rng, pingouin, n):
     first, second = rng.normal(50, 10, n), rng.normal(56, 10, n)
     found = paired_t(first, second)
     theirs = pingouin.ttest(first, second, paired=True).iloc[0]
-    assert (found.n, found.df) == (n, theirs["dof"])
+    assert found.df == theirs["dof"]
     assert found.t == pytest.approx(theirs["T"])
     assert found.p == pytest.approx(theirs["p_val"])
     assert (found.low, found.high) == pytest.approx(tuple(theirs["CI95"]), abs=0.006)
@@ -37,9 +35,8 @@ def test_six_readers_with_the_published_t_have_the_published_p(rng, t, p):
 def test_the_interval_leaves_out_0_exactly_if_p_is_below_its_complement():
     first = np.array([3.0, 5, 4, 6, 9, 2])
     for shift in np.linspace(-4, 4, 17):
-        found = paired_t(first, first[::-1] + shift, level=0.9)
-        assert found.level == 0.9
-        assert (found.low > 0 or found.high < 0) == (found.p < 0.1)
+        found = paired_t(first, first[::-1] + shift)
+        assert (found.low > 0 or found.high < 0) == (found.p < 0.05)
 
 
 @pytest.mark.parametrize(
@@ -84,15 +81,6 @@ def test_what_has_no_t(first, second, reason):
 def test_scores_belong_in_pairs():
     with pytest.raises(ValueError, match="3 first scores and 2 second"):
         paired_t([1, 2, 3], [1, 2])
-
-
-def test_a_test_checks_itself():
-    found = paired_t([1, 2, 4], [0, 3, 1])
-    for change in ({"df": 3}, {"sd": 0.0}, {"p": 1.5}):
-        with pytest.raises(
-            ValueError, match=next(iter(change)) if "df" not in change else "degrees"
-        ):
-            replace(found, **change)
 
 
 def test_many_studies_are_tested_as_each_alone(rng):

@@ -10,6 +10,7 @@ from vbraille.reading.cues import Cue
 from vbraille.translate import Book, BrailleTable
 from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.documents.html import HtmlBook
+from vbraille.translate.documents.markup.tree import read_tree
 
 
 class Scroll:
@@ -108,9 +109,15 @@ def test_without_a_scroll_it_is_said():
 FRENCH = "<p>A word, <span lang='fr'>la forêt était très belle</span>, and on.</p>"
 
 
+def french():
+    """A book in English with a passage in French."""
+    root, _ = read_tree(FRENCH.encode(), "book.html", xml=False, encoding="utf-8")
+    return HtmlBook(root, "book.html", "0" * 64, language="en")
+
+
 @pytest.mark.parametrize("grade", [None, 2])
 def test_contracted_and_back_restores_a_passage_in_another_language(grade):
-    source = HtmlBook(BytesIO(FRENCH.encode()), "book.html", language="en")
+    source = french()
     book = Book(source, BrailleTable("en-ueb-g2.ctb"), grade=grade)
     bench = Bench(book=book, width=60)
     before = bench.reader.line.printed.to_unicode()
@@ -125,7 +132,7 @@ def test_contracted_and_back_restores_a_passage_in_another_language(grade):
 
 
 def test_contracted_again_after_the_book_was_closed_has_passages_as_is_usual():
-    source = HtmlBook(BytesIO(FRENCH.encode()), "book.html", language="en")
+    source = french()
     usual = Bench(book=Book(source, BrailleTable("en-ueb-g2.ctb")), width=60)
     turned = Book(source, BrailleTable("en-ueb-g1.ctb"), language="en", grade=1)
     bench = Bench(book=turned, width=60)

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from tests.tiers import by_tier, examples
 from vbraille.reading.search.answering import answer, steps
 from vbraille.reading.search.folding import fold, needle_of, unfolded
-from vbraille.reading.search.queries import FindText, Found, Searched
+from vbraille.reading.search.queries import FindText, Found, NotFound, Searched
+from vbraille.reading.search.sieve import Sieve, ahead
 from vbraille.translate import Document
 from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.documents.encodings import Encoding
@@ -147,6 +148,18 @@ class TestLaw:
             assert all_hits(document, needle, accents) == wanted
             assert all_hits_back(document, needle, accents) == wanted
 
+    @examples(100)
+    @given(text=texts, needle=NEEDLES, accents=st.booleans(), size=st.integers(1, 40))
+    def test_no_hit_falls_through_the_sieve_wherever_it_is_cut(self, text, needle, accents, size):
+        folded_needle = needle_of(needle, accents=accents)
+        if not folded_needle:
+            return
+        document = Document(io.BytesIO(text.encode()), "a", Encoding("utf-8"))
+        row = document.index().rows[0]
+        suspects = list(ahead(document, row, Sieve(folded_needle, accents=accents), size))
+        for place in hits(document, needle, accents):
+            assert any(s.hit and s.start <= place < s.end for s in suspects), place
+
     @examples(60)
     @given(
         chapters=st.lists(st.sampled_from(("one two one", "Two  three", "café", "x" * 9000, "")),
@@ -195,6 +208,12 @@ class TestLong:
         number = again.block_at(found.character)
         assert number == 20_000
         assert str(again.block(number).text) == "needle"
+
+    def test_what_is_not_there_needs_no_blocks(self):
+        document = Document(io.BytesIO(b"nothing to see here\n\n" * 20_000), "a", "utf-8")
+        *_, last = answer(document, FindText("needle", 0))
+        assert isinstance(last, NotFound)
+        assert len(document.index().rows) == 1
 
 
 PARTS = st.sampled_from(["word ", "Ab", "ß", "İ", "e\u0301", "\u0301", "  \n", "ﬃ", "é", "x"])

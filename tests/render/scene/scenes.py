@@ -12,7 +12,7 @@ from msgspec.structs import replace
 
 from tests.render.scene.showing import SIDE_MM
 from tests.tiers import by_tier
-from vbraille.scene.crossing import meeting_edges
+from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.patterns import (
     Circle,
     Dots,

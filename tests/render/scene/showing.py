@@ -16,7 +16,7 @@ from vbraille.render.scene.compiling import compile_scene
 from vbraille.scene.bitmap import WHOLE, Bitmap, bitmap_box
 from vbraille.scene.patterns import Image, Label
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.walking import each
+from vbraille.scene.traversal import each
 
 SIDE_MM = 60
 STRESS2_8X8_ARRAY = STRESS2_8X8.display

@@ -28,7 +28,7 @@ from vbraille.scene.bounds import bounds
 from vbraille.scene.joints import axial_cycle
 from vbraille.scene.patterns import Circle, Fill, Group, PathShape, Polygon, StraightLine
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, Uniform
-from vbraille.scene.walking import moved, with_children
+from vbraille.scene.traversal import moved, with_children
 
 EXACT = 1e-6  # frames are of float32
 displays = st.sampled_from(DISPLAYS)

@@ -135,10 +135,6 @@ DIFFERENT = {
         f'<Pattern type="Group"><operation>overwrite</operation>{circle()}{grating()}</Pattern>',
         "a texture hides all below it here",
     ),
-    "a vertex twice": (polygon(stroke(), ("0,0", "9,0", "9,0", "9,9")), "this vertex is where"),
-    "a last vertex that is the first": (
-        polygon(stroke(), ("0,0", "9,0", "9,9", "0,0")), "the last vertex is where the first is",
-    ),
     "an amplitude of 80 %": (
         grating(inside='<amplitude units="%">80</amplitude>'),
         "amplitude is 80, and shares are 0 to 1; 1 is taken",

@@ -12,7 +12,7 @@ from PIL import Image
 from tests.tiers import examples
 from vbraille.scene.patterns import Circle
 from vbraille.scene.svg.reading import read_svg
-from vbraille.scene.walking import each
+from vbraille.scene.traversal import each
 
 SIZE = 100  # mm, and pixels, of a drawing
 number = st.integers(-40, 40).map(lambda tenth: tenth / 2)

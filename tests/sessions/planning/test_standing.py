@@ -5,10 +5,10 @@ from itertools import pairwise
 import pytest
 
 from vbraille.errors import InputError
-from vbraille.sessions.equipment import cells_needed
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol
+from vbraille.sessions.session import cells_needed
 
 HEAD = """
 format = 1

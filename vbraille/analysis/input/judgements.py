@@ -7,7 +7,7 @@ Judgements have a row for each answered trial, with the columns ``participant``,
 - ``presented``, ``answered``: text as it was exported; of two values, each as numbers are written
   here, so that equal values are equal texts;
 - ``number``: float64, the answer as a number; NaN for questions that have none;
-- ``outcome``: one of `OUTCOMES` of the question, or empty; where a table has none, it is made of
+- ``outcome``: one of those of the question, or empty; where a table has none, it is made of
   what was presented and answered, or of ``correct``;
 - ``confidence``: float64, NaN where it was not asked;
 - ``parameter``: text, what two values were of; empty if it is not known;
@@ -19,14 +19,13 @@ or if one of two was right; they are trials and comparisons as well.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
-from vbraille.analysis.input.fieldvalues import UNKNOWN, is_pair, parse_pair
-from vbraille.analysis.statistics.scores import LARGEST
+from vbraille.analysis.input.sheets import is_pair, parse_pair
+from vbraille.analysis.statistics.intervals import LARGEST
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
@@ -44,7 +43,6 @@ QUESTIONS = {
     "magnitude": frozenset(),
     "free": frozenset(),
 }
-OUTCOMES = _RIGHT | _FOUND
 # Words that are answered, the one that is looked for first; tables of other programs may have them
 # for what was presented as well.
 _WORDS = {"same-different": ("different", "same"), "detect": ("yes", "no")}
@@ -198,10 +196,7 @@ def _numbers(sheet: Sheet, given: pd.Series, column: str) -> pd.Series:
     values = []
     for row, value in given.items():
         text = str(value).strip()
-        try:
-            number = math.nan if text.lower() in UNKNOWN else sheet.number(text)
-        except ValueError:
-            number = math.inf
+        number = sheet.value(text)
         if abs(number) > LARGEST:
             raise _no_number(sheet, row, column, text)
         values.append(number)
@@ -214,11 +209,5 @@ def _no_number(sheet: Sheet, row: object, column: str, text: str) -> InputError:
 
 def _levels(sheet: Sheet, given: pd.Series) -> pd.Series:
     """Numbers of a column, NaN where it has something else, such as two values."""
-    known = {}
-    for value in given.unique():
-        try:
-            number = sheet.number(str(value))
-        except ValueError:
-            number = math.nan
-        known[value] = number if math.isfinite(number) else math.nan
-    return given.map(known).astype(np.float64)
+    known = {value: sheet.value(str(value)) for value in given.unique()}
+    return given.map(known).astype(np.float64).replace([np.inf, -np.inf], np.nan)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from vbraille.analysis.input.fieldvalues import (
+from vbraille.analysis.input.judgements import judged, read_judgements
+from vbraille.analysis.input.sheets import (
     is_pair,
     parse_cells,
     parse_name,
@@ -18,14 +18,12 @@ from vbraille.analysis.input.fieldvalues import (
     parse_seconds,
     parse_whole,
 )
-from vbraille.analysis.input.judgements import judged, read_judgements
-from vbraille.analysis.input.sets import numbered, string_sets, tell_sessions_apart
 from vbraille.analysis.input.trials import TRIAL_COLUMNS, LeftOut, factor, name_string
 from vbraille.errors import InputError
 from vbraille.wording import count
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from vbraille.analysis.input.sheets import Sheet
 
@@ -45,8 +43,7 @@ CATCH, _CATCHES = "catch", ("blank", "repeat")
 ALL = "all"  # name of the condition in a protocol that compares none
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Parsed:
+class Parsed(NamedTuple):
     """What the sheets hold.
 
     Parameters
@@ -109,20 +106,30 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
             strings[number] = read.join(rows.drop(columns=_KNOWN, errors="ignore"))
         if paired.any():
             pairs[number] = _pairs(sheet, answered[paired])
-    joined = []
-    for parts in (strings, pairs, judgements):
-        whole = pd.concat(parts) if parts else None
-        if whole is not None:
-            warnings += tell_sessions_apart(whole, sheets)
-            _check_once(whole, sheets)
-        joined.append(whole)
     return Parsed(
-        _trials(joined[0]),
-        _comparisons(joined[1]),
+        _joined(strings, sheets, _trials),
+        _joined(pairs, sheets, lambda whole: whole.assign(parameter=factor(whole["parameter"]))),
         tuple(left_out),
-        tuple(dict.fromkeys(warnings)),
-        None if joined[2] is None else _sorted(joined[2].assign(condition=_conditions(joined[2]))),
+        tuple(warnings),
+        _joined(judgements, sheets, lambda whole: whole.assign(condition=_conditions(whole))),
     )
+
+
+def _joined(
+    parts: Mapping[int, pd.DataFrame],
+    sheets: Sequence[Sheet],
+    typed: Callable[[pd.DataFrame], pd.DataFrame],
+) -> pd.DataFrame | None:
+    """Rows of all sheets by participant, session, block and trial, with levels in natural order."""
+    if not parts:
+        return None
+    whole = pd.concat(parts)
+    _check_once(whole, sheets)
+    names = ("participant", "session", "protocol", "condition")
+    whole = typed(whole)
+    whole = whole.assign(**{name: factor(whole[name]) for name in names})
+    order = ["participant", "session", "block", "trial"]
+    return whole.sort_values(order, kind="stable", ignore_index=True)
 
 
 def _caught(rows: pd.DataFrame) -> pd.Series:
@@ -214,7 +221,7 @@ def _each(
 
 
 def _seconds(sheet: Sheet, rows: pd.DataFrame, column: str, absent: float) -> pd.Series:
-    parsed = _each(sheet, rows, column, partial(parse_seconds, number=sheet.number), absent)
+    parsed = _each(sheet, rows, column, partial(parse_seconds, value=sheet.value), absent)
     return parsed.astype(np.float64)
 
 
@@ -250,11 +257,13 @@ def _check_once(whole: pd.DataFrame, sheets: Sequence[Sheet]) -> None:
     Trials whose number or session is not given may be different ones, and are not checked.
     """
     names = ["participant", "session", "protocol", "condition", "block", "trial"]
-    again = whole[whole.duplicated(names) & numbered(whole, sheets)]
+    told = np.array([{"session", "trial"} <= set(sheet.frame) for sheet in sheets])
+    numbered = told[whole.index.get_level_values(0)] & (whole["trial"] > 0)
+    again = whole[whole.duplicated(names) & numbered]
     for (number, row), trial, session in again[["trial", "session"]].itertuples(name=None):
         raise InputError(
             f"{sheets[number].place(row)}: trial {trial} of session {session} is there a second "
-            f"time; give every trial once"
+            f"time; give every trial once, and each session a name of its own"
         )
 
 
@@ -268,26 +277,11 @@ def _conditions(whole: pd.DataFrame) -> pd.Series:
     return told.mask((condition == ALL) & (protocol != ""), protocol)
 
 
-def _trials(whole: pd.DataFrame | None) -> pd.DataFrame | None:
-    if whole is None:
-        return None
-    whole["string_set"] = string_sets(whole)
-    whole["condition"] = _conditions(whole)
+def _trials(whole: pd.DataFrame) -> pd.DataFrame:
+    """Strings with columns of their types; one that names no set is its own."""
+    listed, shown = whole["string_set"], whole["presented"]
+    whole = whole.assign(string_set=listed.mask(listed == "", shown), condition=_conditions(whole))
     strings = {name: factor(whole[name], None) for name in ("presented", "string_set", "answered")}
     others = whole.columns.difference(list(TRIAL_COLUMNS))
     whole[others] = whole[others].fillna("")  # empty where a sheet has no such column
-    return _sorted(whole.assign(**strings))
-
-
-def _comparisons(whole: pd.DataFrame | None) -> pd.DataFrame | None:
-    if whole is None:
-        return None
-    return _sorted(whole.assign(parameter=factor(whole["parameter"])))
-
-
-def _sorted(whole: pd.DataFrame) -> pd.DataFrame:
-    """Rows by participant, session, block and trial, with levels in natural order."""
-    names = ("participant", "session", "protocol", "condition")
-    whole = whole.assign(**{name: factor(whole[name]) for name in names})
-    order = ["participant", "session", "block", "trial"]
-    return whole.sort_values(order, kind="stable", ignore_index=True)
+    return whole.assign(**strings)

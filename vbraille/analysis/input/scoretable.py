@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import pandas as pd
 
-from vbraille.analysis.input.fieldvalues import UNKNOWN
 from vbraille.analysis.input.trials import comparable, factor
+from vbraille.analysis.statistics.intervals import LARGEST
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
@@ -59,41 +58,34 @@ def of_trials(trials: pd.DataFrame, places: Places, factors: Sequence[str]) -> l
     InputError
         If the trials have no such column.
     """
-    found = [trials["participant"].cat]
+    levels = [trials["participant"]]
     for name in factors:
         if name not in comparable(trials):
             raise InputError(
                 f"there is no column {name!r} to compare by; "
                 f"there are {', '.join(comparable(trials))}"
             )
-        found.append(pd.Series(factor(trials[name])).cat)
-        if len(found[-1].categories) > MOST_LEVELS:
+        levels.append(pd.Series(factor(trials[name]), trials.index))
+        if (many := len(levels[-1].cat.categories)) > MOST_LEVELS:
             raise InputError(
-                f"{name} has {len(found[-1].categories)} levels, more than can be compared; "
+                f"{name} has {many} levels, more than can be compared; "
                 f"give a factor of a few, such as condition"
             )
-    shape = tuple(len(levels.categories) for levels in found)
-    if math.prod(shape) > MOST_CELLS:
+    if math.prod(len(level.cat.categories) for level in levels) > MOST_CELLS:
         raise InputError(f"{', '.join(factors)} have too many levels together; give fewer factors")
-    cell = np.ravel_multi_index(tuple(levels.codes.to_numpy(np.int64) for levels in found), shape)
-    names = [
-        levels.categories[code].tolist()
-        for levels, code in zip(found, np.indices(shape).reshape(len(shape), -1), strict=True)
-    ]
-    columns = dict(zip(factors, names[1:], strict=True))
-    timed = trials["duration_s"].dropna()
     scores = []
     for measure, value, share in (
         ("legibility of strings", trials["correct"], True),
         ("legibility of characters", places.frame["correct"], True),
-        ("duration (s)", timed, False),
+        ("duration (s)", trials["duration_s"].dropna(), False),
     ):
         if value.size:
-            counts = np.bincount(cell[value.index], minlength=math.prod(shape))
-            sums = np.bincount(cell[value.index], value, counts.size)
-            means = np.divide(sums, counts, out=np.full(counts.size, np.nan), where=counts > 0)
-            of = counts.tolist() if share else None
-            scores.append(Scores(measure, names[0], columns, means.tolist(), of, not share))
+            own = [level.loc[value.index] for level in levels]
+            cells: Any = value.groupby(own, observed=False).agg(["mean", "size"])
+            who, *columns = (list(names) for names in zip(*cells.index, strict=True))
+            of = cells["size"].tolist() if share else None
+            columns = dict(zip(factors, columns, strict=True))
+            scores.append(Scores(measure, who, columns, cells["mean"].tolist(), of, not share))
     return scores
 
 
@@ -128,13 +120,8 @@ def of_sheet(sheet: Sheet) -> Scores:
 
 
 def _score(sheet: Sheet, row: object, text: str) -> float:
-    if text.lower() in UNKNOWN:
-        return math.nan
-    try:
-        score = sheet.number(text)
-    except ValueError:
-        score = math.inf
-    if not abs(score) < 1e100:
+    score = sheet.value(text)
+    if abs(score) >= LARGEST:
         raise InputError(
             f"{sheet.place(row)}: score is {text!r}; give a number, or nothing if it is missing"
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import platform
+from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from typing import TYPE_CHECKING
@@ -12,14 +13,13 @@ from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.scoretable import of_sheet
 from vbraille.analysis.input.sheets import from_rows, read_csv
 from vbraille.analysis.input.sittings import read_sitting
-from vbraille.analysis.input.sources import check_copies, distinct_names, told_apart
 from vbraille.analysis.input.trials import LeftOut, chosen, natural
 from vbraille.errors import InputError
 from vbraille.version import __version__
 from vbraille.wording import count
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     import pandas as pd
@@ -94,16 +94,19 @@ def load_study(
     apart = told_apart(sittings)
     parsed = parse(sources)
     left_out = [*parsed.left_out]
-    parts = (parsed.trials, parsed.comparisons, parsed.judgements)
-    for rule in _rules(exclude or {}, protocol):
-        parts, sittings = rule.apply(parts, sittings)
-        left_out.append(rule.told)
+    parts = [parsed.trials, parsed.comparisons, parsed.judgements]
+    for who, reason in (exclude or {}).items():
+        parts, sittings = _kept(parts, sittings, "participant", who, keeps=False)
+        left_out.append(LeftOut(f"participant {who}", reason))
+    if protocol is not None:
+        parts, sittings = _kept(parts, sittings, "protocol", protocol, keeps=True)
+        left_out.append(LeftOut(f"trials of protocols other than {protocol}", "as asked for"))
     trials, comparisons, judgements = parts
-    if trials is None and comparisons is None and judgements is None:
+    if all(part is None for part in parts):
         what = "".join(f"; left out: {left.what}, {left.reason}" for left in left_out)
         names = ", ".join(sheet.name for sheet in sources)
         raise InputError(f"{names}: no answered trial, and so nothing to analyse{what}")
-    about = [("Data", _describe(trials, comparisons, judgements))]
+    about = [("Data", _describe(parts))]
     about += [
         (f"File {sheet.name}", f"{count(len(sheet), 'row')}, SHA-256 {_sum(path)}")
         for path, sheet in files.items()
@@ -148,57 +151,34 @@ def load_scores(path: Path) -> tuple[Scores, list[tuple[str, str]]]:
     return scores, about + _versions(())
 
 
-@dataclass(frozen=True, slots=True)
-class _Rule:
-    """Rule by which participants and trials are left out."""
+def _kept(
+    parts: Sequence[pd.DataFrame | None],
+    sittings: Sequence[SessionTrials],
+    name: str,
+    level: str,
+    *,
+    keeps: bool,
+) -> tuple[list[pd.DataFrame | None], list[SessionTrials]]:
+    """Rows and sessions that have a level, or those that have not.
 
-    factor: str
-    level: str
-    keeps: bool
-    told: LeftOut
-
-    def apply(
-        self,
-        parts: Sequence[pd.DataFrame | None],
-        sittings: Sequence[SessionTrials],
-    ) -> tuple[tuple[pd.DataFrame | None, ...], list[SessionTrials]]:
-        """Apply the rule, and give what is left.
-
-        Raises
-        ------
-        InputError
-            If there is no such participant or protocol, as when a name is misspelled.
-        """
-        named = [part[self.factor] for part in parts if part is not None]
-        known = {level for part in named for level in part.cat.categories}
-        if self.level not in known:
-            raise InputError(
-                f"there is no {self.factor} {self.level!r} with answered trials; there are "
-                f"{', '.join(sorted(known, key=natural)) or 'none'}"
-            )
-        kept = [
-            sitting
-            for sitting in sittings
-            if (sitting.head[self.factor] == self.level) == self.keeps
-        ]
-        return tuple(map(self._of, parts)), kept
-
-    def _of(self, part: pd.DataFrame | None) -> pd.DataFrame | None:
-        if part is None:
-            return None
-        kept = (part[self.factor] == self.level) == self.keeps
-        return chosen(part, kept) if kept.any() else None
-
-
-def _rules(exclude: Mapping[str, str], protocol: str | None) -> list[_Rule]:
-    rules = [
-        _Rule("participant", who, False, LeftOut(f"participant {who}", reason))
-        for who, reason in exclude.items()
-    ]
-    if protocol is not None:
-        told = LeftOut(f"trials of protocols other than {protocol}", "as asked for")
-        rules.append(_Rule("protocol", protocol, True, told))
-    return rules
+    Raises
+    ------
+    InputError
+        If there is no such participant or protocol, as when a name is misspelled.
+    """
+    known = {of for part in parts if part is not None for of in part[name].cat.categories}
+    if level not in known:
+        raise InputError(
+            f"there is no {name} {level!r} with answered trials; there are "
+            f"{', '.join(sorted(known, key=natural)) or 'none'}"
+        )
+    left: list[pd.DataFrame | None] = []
+    for part in parts:
+        if part is not None:
+            rows = (part[name] == level) == keeps
+            part = chosen(part, rows) if rows.any() else None
+        left.append(part)
+    return left, [one for one in sittings if (one.head[name] == level) == keeps]
 
 
 def _check_paths(paths: Sequence[Path]) -> None:
@@ -231,31 +211,20 @@ def _read(paths: Sequence[Path]) -> tuple[list[SessionTrials], dict[Path, Sheet]
     return sittings, files
 
 
-def _describe(
-    trials: pd.DataFrame | None,
-    comparisons: pd.DataFrame | None,
-    judgements: pd.DataFrame | None,
-) -> str:
-    parts = []
-    if trials is not None:
-        conditions = trials["condition"].cat.categories
-        parts.append(
-            f"{count(len(trials), 'trial')} of "
-            f"{count(trials['participant'].nunique(), 'participant')} in "
-            f"{count(len(conditions), 'condition')} ({', '.join(conditions)})"
-        )
-    if comparisons is not None:
-        parts.append(
-            f"{count(len(comparisons), 'comparison')} of "
-            f"{count(comparisons['participant'].nunique(), 'participant')}"
-        )
-    if judgements is not None:
-        parts.append(
-            f"{count(len(judgements), 'judgement')} of "
-            f"{count(judgements['participant'].nunique(), 'participant')} "
-            f"({', '.join(judgements['question'].unique())})"
-        )
-    return "; ".join(parts)
+def _describe(parts: Sequence[pd.DataFrame | None]) -> str:
+    told = []
+    for noun, part in zip(("trial", "comparison", "judgement"), parts, strict=True):
+        if part is None:
+            continue
+        people = count(part["participant"].nunique(), "participant")
+        more = ""
+        if noun == "trial":
+            conditions = part["condition"].cat.categories
+            more = f" in {count(len(conditions), 'condition')} ({', '.join(conditions)})"
+        elif noun == "judgement":
+            more = f" ({', '.join(part['question'].unique())})"
+        told.append(f"{count(len(part), noun)} of {people}{more}")
+    return "; ".join(told)
 
 
 def _describe_sitting(sitting: SessionTrials) -> str:
@@ -327,3 +296,57 @@ def _warnings(trials: pd.DataFrame | None, sittings: Sequence[SessionTrials]) ->
 
 def _sum(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def distinct_names(paths: Sequence[Path]) -> list[str]:
+    """Name of each path, with as many of its folders as tell it apart from the others.
+
+    Parameters
+    ----------
+    paths
+        Resolved paths, no two alike.
+    """
+    names = [path.name for path in paths]
+    for many in range(2, max((len(path.parts) for path in paths), default=0) + 1):
+        counts = Counter(names)
+        if len(counts) == len(names):
+            break
+        names = [
+            "/".join(path.parts[-many:]) if counts[name] > 1 else name
+            for name, path in zip(names, paths, strict=True)
+        ]
+    return names
+
+
+def check_copies(sittings: Iterable[SessionTrials]) -> None:
+    """Raise InputError if two directories hold the same session.
+
+    They do if they began alike and an answer was given at the same moment: one may be an earlier
+    copy of the other, or a damaged one.
+    """
+    moments: dict[tuple, SessionTrials] = {}
+    for sitting in sittings:
+        for row in sitting.rows:
+            if not row["answer_time"]:
+                continue
+            told = ("seed", "protocol", "device", "answers")
+            key = (row["trial"], row["cue_time"], row["answer_time"], row["answered"])
+            key += tuple(str(sitting.head.get(name)) for name in told)
+            other = moments.setdefault(key, sitting)
+            if other is not sitting:
+                raise InputError(
+                    f"{other.folder} and {sitting.folder} are the same session; give it once"
+                )
+
+
+def told_apart(sittings: Iterable[SessionTrials]) -> list[str]:
+    """Sentences that tell which sessions have the same folder name."""
+    of: defaultdict[tuple[str, str], list[SessionTrials]] = defaultdict(list)
+    for sitting in sittings:
+        of[sitting.folder.resolve().name, sitting.head["participant"]].append(sitting)
+    return [
+        f"Sessions {' and '.join(sitting.name for sitting in alike)} are told apart by where they "
+        f"are; their participant {who} is taken for one person."
+        for (_, who), alike in of.items()
+        if len(alike) > 1
+    ]

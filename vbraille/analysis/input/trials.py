@@ -24,7 +24,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -53,8 +53,7 @@ def natural(name: str) -> list[tuple[int, float, str]]:
     return [(0, float(p), p) if n % 2 else (1, 0.0, p) for n, p in enumerate(parts) if p]
 
 
-@dataclass(frozen=True, slots=True)
-class LeftOut:
+class LeftOut(NamedTuple):
     """Something that is no part of the results.
 
     Parameters

@@ -1,21 +1,23 @@
-"""Which cells are taken for which: Lévesque 2009, tables 3.4, 3.5 and 4.1."""
+"""Which cells are taken for which, and by which dots: Lévesque 2009, 3.4.2, tables 3.4 to 4.1."""
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from vbraille.analysis.input.trials import UNREAD_MASK, masks_of, name_cell, name_string
-from vbraille.analysis.measures.characters import cell_order
-from vbraille.analysis.measures.legibility import unequal_notes
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
+import numpy as np
+
+from vbraille.analysis.input.trials import UNREAD_MASK, groups, masks_of, name_cell, name_string
+from vbraille.analysis.measures.legibility import cell_order, unequal_notes
+from vbraille.analysis.schemas import NOTE_COLUMN, PARTICIPANT, Column, Kind, Schema
 from vbraille.analysis.statistics import information
-from vbraille.analysis.statistics.transmission import transmission
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.statistics.information import transmission
+from vbraille.analysis.statistics.intervals import Unanswerable
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    import numpy as np
     import pandas as pd
     from numpy.typing import NDArray
 
@@ -63,6 +65,7 @@ INFORMATION = Schema(
         Column("high", "to (bits)", "upper end", Kind.NUMBER),
         NOTE_COLUMN,
     ),
+    empty="no answer has as many places as its string",
 )
 
 
@@ -123,7 +126,7 @@ def transmitted(trials: pd.DataFrame, places: Places, *, seed: int) -> ResultTab
         for condition, counts in matrices.items()
         if counts is not None
     ]
-    return INFORMATION.fill(rows, [] if rows else ["no answer has as many places as its string"])
+    return INFORMATION.fill(rows)
 
 
 def _measures(counts: NDArray[np.int64], seed: int) -> Row:
@@ -135,8 +138,7 @@ def _measures(counts: NDArray[np.int64], seed: int) -> Row:
         notes.append("no kappa: one and the same was presented and answered throughout")
     try:
         found = transmission(counts, seed=seed)
-        ends = found.interval
-        row |= {"corrected_bits": found.bits, "low": ends.low, "high": ends.high}
+        row |= {"corrected_bits": found.bits} | found.interval._asdict()
     except Unanswerable as reason:
         notes.append(f"no corrected bits: {reason}")
     return row | {
@@ -162,3 +164,81 @@ def _confusion(
 
 def _string_order(string: str) -> list[tuple]:
     return [(mask == UNREAD_MASK, *cell_order(mask)) for mask in masks_of(string)]
+
+
+ERRORS = Schema(
+    "errors",
+    "Errors by dots added, removed and moved",
+    "Of the places answered wrongly. A dot is moved if one is missing and another is too many; "
+    "what is left over is added or removed.",
+    (
+        Column("error", "error", "what is wrong with the answer, in words"),
+        Column("added", "added", "dots answered that were not there", Kind.COUNT),
+        Column("removed", "removed", "dots that were there and not answered", Kind.COUNT),
+        Column("moved", "moved", "dots answered in another place", Kind.COUNT),
+        Column("count", "places", "how many places", Kind.COUNT),
+        Column("share", "of all errors (%)", "their share of the wrong places", Kind.PERCENT),
+    ),
+)
+ERRORS_OWN = Schema(
+    "errors_participants",
+    "Errors of each participant",
+    "Of the places that the participant answered wrongly.",
+    (
+        PARTICIPANT,
+        Column("error", "error", "what is wrong with the answer, in words"),
+        Column("count", "places", "how many places", Kind.COUNT),
+        Column("share", "of own errors (%)", "their share of the wrong places", Kind.PERCENT),
+    ),
+    empty="no place was answered wrongly",
+)
+UNREAD_ERROR = "not read"
+_BITS = np.array([mask.bit_count() for mask in range(256)])
+
+
+def errors(places: Places) -> ResultTable:
+    """Kinds of errors, the most frequent first; "not read" is a kind of its own."""
+    kinds = ["added", "removed", "moved"]
+    wrong = _wrong(places)
+    found = wrong.groupby(["error", *kinds], as_index=False).size()
+    found = found.rename(columns={"size": "count"}).assign(
+        share=found["size"] / len(wrong), unread=found["error"] == UNREAD_ERROR
+    )
+    order = ["unread", "count", *kinds]
+    found = found.sort_values(order, ascending=[True, False, True, True, True])
+    none = [] if len(wrong) else ["no place was answered wrongly"]
+    return ERRORS.fill(found.drop(columns="unread"), unequal_notes(places) + none)
+
+
+def errors_of_participants(places: Places) -> ResultTable:
+    """Kinds of errors of each participant, in the order of `errors`."""
+    kinds = errors(places).frame["error"]
+    rows: list[Row] = [
+        {"participant": whose[0], "error": kind, "count": number, "share": number / len(own)}
+        for whose, own in groups(_wrong(places), "participant")
+        for kind, number in own["error"].value_counts().reindex(kinds, fill_value=0).items()
+    ]
+    return ERRORS_OWN.fill(rows)
+
+
+def _wrong(places: Places) -> pd.DataFrame:
+    """Places answered wrongly, each with the name of its error and its changes of dots."""
+    wrong = places.frame[~places.frame["correct"]]
+    presented, answered = (wrong[name].to_numpy() for name in ("presented", "answered"))
+    read = answered != UNREAD_MASK
+    added = np.where(read, _BITS[answered & ~presented & 0xFF], 0)
+    removed = np.where(read, _BITS[presented & ~answered], 0)
+    moved = np.minimum(added, removed)
+    wrong = wrong.assign(added=added - moved, removed=removed - moved, moved=moved)
+    dots = zip(wrong["added"], wrong["removed"], wrong["moved"], strict=True)
+    return wrong.assign(error=[_name(*each) for each in dots])
+
+
+@cache
+def _name(added: int, removed: int, moved: int) -> str:
+    """Words for an error: "1 dot moved, 2 dots added"; other words where nothing was read."""
+    named = ((moved, "moved"), (added, "added"), (removed, "removed"))
+    return (
+        ", ".join(f"{count(number, 'dot')} {what}" for number, what in named if number)
+        or UNREAD_ERROR
+    )

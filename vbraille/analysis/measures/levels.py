@@ -3,21 +3,32 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
+import pandas as pd
 
-from vbraille.analysis.input.trials import LeftOut, natural
-from vbraille.analysis.measures.averages import mean_or_none
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
+from vbraille.analysis.input.trials import LeftOut
+from vbraille.analysis.input.trials import factor as ordered
+from vbraille.analysis.schemas import (
+    NOTE_COLUMN,
+    PARTICIPANT,
+    Column,
+    Kind,
+    Schema,
+    ends,
+    mean_or_none,
+)
 from vbraille.analysis.statistics.anova import Anova, anova
-from vbraille.analysis.statistics.correction import adjust
-from vbraille.analysis.statistics.intervals import Interval, mean_duration, mean_interval
-from vbraille.analysis.statistics.mixedanova import MixedAnova, mixed_anova
-from vbraille.analysis.statistics.paired import PairedTest, paired_t
-from vbraille.analysis.statistics.shares import mean_share
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.statistics.intervals import (
+    Unanswerable,
+    adjust,
+    mean_duration,
+    mean_interval,
+    mean_share,
+)
+from vbraille.analysis.statistics.paired import paired_t
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -40,10 +51,10 @@ MEANS = Schema(
         Column("level", "level", "of the factor"),
         Column("participants", "participants", "who have it", Kind.COUNT),
         Column("mean", "mean", "in the measure's unit", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         NOTE_COLUMN,
     ),
+    empty=NOTHING,
 )
 OWN = Schema(
     "level_scores",
@@ -54,11 +65,11 @@ OWN = Schema(
         Column("measure", "measure", "what is compared, with its unit; legibility from 0 to 1"),
         Column("factor", "factor", "by what"),
         Column("level", "level", "of the factor"),
-        Column("participant", "participant", "pseudonym"),
+        PARTICIPANT,
         Column("mean", "mean", "in the measure's unit", Kind.NUMBER),
     ),
+    empty=NOTHING,
 )
-_MIXED = "beside a factor between participants: no test of sphericity, no interval"
 T_TESTS = Schema(
     "t_tests",
     "Paired t-tests",
@@ -74,18 +85,17 @@ T_TESTS = Schema(
         Column("second", "second", "level"),
         Column("participants", "participants", "who have both", Kind.COUNT),
         Column("mean_difference", "mean difference", "in the measure's unit", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         Column("t", "t", "Student's", Kind.NUMBER),
         Column("df", "df", "degrees of freedom", Kind.COUNT),
         Column("p", "p", "two-sided, not corrected", Kind.P),
         Column("p_corrected", "p corrected", "for the tests of this measure and factor", Kind.P),
         Column("d_z", "d_z", "effect size", Kind.NUMBER),
-        Column("d_low", "d_z from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("d_high", "d_z to", "upper end", Kind.NUMBER),
+        *ends(name="d_", heading="d_z "),
         Column("g_z", "g_z", "effect size, corrected", Kind.NUMBER),
         NOTE_COLUMN,
     ),
+    empty=NOTHING,
 )
 ANOVA = Schema(
     "anova",
@@ -111,11 +121,11 @@ ANOVA = Schema(
         Column("mauchly_w", "W", "Mauchly's", Kind.NUMBER),
         Column("mauchly_p", "p of W", "that sphericity holds, as R's mauchly.test", Kind.P),
         Column("partial_eta2", "partial eta²", "effect size", Kind.NUMBER),
-        Column("partial_low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("partial_high", "to", "upper end", Kind.NUMBER),
+        *ends(name="partial_"),
         Column("generalised_eta2", "generalised eta²", "effect size", Kind.NUMBER),
         NOTE_COLUMN,
     ),
+    empty=NOTHING,
 )
 
 
@@ -128,46 +138,38 @@ def level_means(measures: Sequence[Scores]) -> ResultTable:
         Scores of each measure that is compared.
     """
     rows: list[Row] = []
-    for scores in measures:
-        for factor in scores.factors:
-            means = _means(scores, factor)
-            groups = _of_groups(means)
-            for level in sorted(means, key=natural):
-                own = list(means[level].values())
-                trials = _trials(scores, factor, level)
-                row: Row = {
-                    "measure": scores.measure,
-                    "factor": factor,
-                    "level": level,
-                    "participants": len(own),
-                    "mean": mean_or_none(own),
-                }
-                notes = [] if groups else _without(scores.participants, means[level])
-                try:
-                    interval = _interval(scores, means[level], trials)
-                    row |= {"low": interval.low, "high": interval.high}
-                except Unanswerable as reason:
-                    notes.append(f"no interval: {reason}")
-                rows.append(row | {"note": "; ".join(notes)})
-    return MEANS.fill(rows, [] if rows else [NOTHING])
+    for scores, factor, means in _each(measures):
+        trials = _trials(scores, factor)
+        groups = _of_groups(means)
+        for level, every in means.iterrows():
+            own = every.dropna()
+            row: Row = _what(scores, factor) | {
+                "level": level,
+                "participants": own.size,
+                "mean": mean_or_none(own.to_list()),
+            }
+            notes = [] if groups else _without(means, own.index)
+            try:
+                if trials is not None:
+                    interval = mean_share(own, trials.loc[level, own.index])
+                else:
+                    interval = (mean_duration if scores.durations else mean_interval)(own)
+                row |= interval._asdict()
+            except Unanswerable as reason:
+                notes.append(f"no interval: {reason}")
+            rows.append(row | {"note": "; ".join(notes)})
+    return MEANS.fill(rows)
 
 
 def own_means(measures: Sequence[Scores]) -> ResultTable:
     """Mean of every participant at every level of every factor."""
     rows: list[Row] = [
-        {
-            "measure": scores.measure,
-            "factor": factor,
-            "level": level,
-            "participant": who,
-            "mean": of[who],
-        }
-        for scores in measures
-        for factor in scores.factors
-        for level, of in sorted(_means(scores, factor).items(), key=lambda pair: natural(pair[0]))
-        for who in sorted(of, key=natural)
+        _what(scores, factor) | {"level": level, "participant": who, "mean": mean}
+        for scores, factor, means in _each(measures)
+        for level, every in means.iterrows()
+        for who, mean in every.dropna().items()
     ]
-    return OWN.fill(rows, [] if rows else [NOTHING])
+    return OWN.fill(rows)
 
 
 def t_tests(measures: Sequence[Scores], correction: str) -> ResultTable:
@@ -179,30 +181,36 @@ def t_tests(measures: Sequence[Scores], correction: str) -> ResultTable:
         Scores of each measure that is compared.
     correction
         How p-values of one measure and factor are corrected: a key of
-        `statistics.correction.METHODS`.
+        `statistics.intervals.METHODS`.
     """
     rows: list[Row] = []
     notes: list[str] = []
-    for scores in measures:
-        for factor in scores.factors:
-            means = _means(scores, factor)
-            levels = sorted(means, key=natural)
-            if len(levels) < 2:
-                notes.append(f"{scores.measure}: {factor} is {levels[0]} alone; nothing to compare")
-            elif _of_groups(means):
-                notes.append(
-                    f"{scores.measure}: {factor} has groups of participants, and nobody is in two; "
-                    f"no paired test. The analysis of variance compares groups beside a factor "
-                    f"within participants, the model of trials legibility in any"
-                )
-            elif len(levels) > MOST_LEVELS:
-                notes.append(
-                    f"{scores.measure}: {factor} has {len(levels)} levels; the pairs of more than "
-                    f"{MOST_LEVELS} are not tested"
-                )
-            else:
-                rows += _pairs(scores, factor, levels, means, correction)
-    return T_TESTS.fill(rows, notes if rows or notes else [NOTHING])
+    for scores, factor, means in _each(measures):
+        of = f"{scores.measure}: {factor}"
+        if len(means) < 2:
+            notes.append(f"{of} is {means.index[0]} alone; nothing to compare")
+        elif _of_groups(means):
+            notes.append(
+                f"{of} has groups of participants, and nobody is in two; no paired test. The "
+                f"analysis of variance compares groups beside a factor within participants, the "
+                f"model of trials legibility in any"
+            )
+        elif len(means) > MOST_LEVELS:
+            notes.append(
+                f"{of} has {len(means)} levels; the pairs of more than {MOST_LEVELS} are not tested"
+            )
+        else:
+            own = [
+                _what(scores, factor) | _pair(means, first, second, scores.trials is not None)
+                for first, second in combinations(means.index, 2)
+            ]
+            tested = [row for row in own if "p" in row]
+            for row, p in zip(
+                tested, adjust([row["p"] for row in tested], correction), strict=True
+            ):
+                row["p_corrected"] = float(p)
+            rows += own
+    return T_TESTS.fill(rows, notes)
 
 
 def analyses(measures: Sequence[Scores]) -> tuple[ResultTable, list[LeftOut]]:
@@ -225,41 +233,28 @@ def analyses(measures: Sequence[Scores]) -> tuple[ResultTable, list[LeftOut]]:
             left_out.append(
                 LeftOut(f"participant {who}, of the analysis of {scores.measure}", f"no {missing}")
             )
-        mixed = isinstance(found, MixedAnova)
-        if isinstance(found, Anova) and found.averaged:
+        if found.averaged:
             who = ", ".join(name for name, _ in found.averaged)
             notes.append(f"{scores.measure}: repeated scores were averaged first, of {who}")
-        rows += [
-            {
-                "measure": scores.measure,
-                "effect": effect.name,
-                "participants": len(found.participants),
-                **{c.name: getattr(effect, c.name, None) for c in ANOVA.columns[3:]},
-                "note": "; ".join(filter(None, [effect.note, _MIXED if mixed else ""])),
-            }
-            for effect in found.effects
-        ]
-    return ANOVA.fill(rows, notes if rows or notes else [NOTHING]), left_out
+        for effect in found.effects:
+            told = asdict(effect)
+            row: Row = {"measure": scores.measure, "effect": told.pop("name")}
+            rows.append(row | {"participants": len(found.participants)} | told)
+    return ANOVA.fill(rows, notes), left_out
 
 
-def _variance(scores: Scores) -> Anova | MixedAnova:
-    """Analysis of variance, with the factors that groups of participants differ in between them.
-
-    Raises
-    ------
-    ValueError
-        If there is nothing to compare, or more factors than can be compared.
-    """
+def _variance(scores: Scores) -> Anova:
+    """Analysis of variance, with the factors that groups of participants differ in between them."""
     apart = _between(scores)
-    if not apart:
-        return anova(scores.participants, scores.factors, scores.scores)
     # Nobody has a score in a group of others; who misses one in the own group is left out whole.
-    known = [at for at, score in enumerate(scores.scores) if not math.isnan(score)]
-    factors = {name: [of[at] for at in known] for name, of in scores.factors.items()}
-    between = {name: of for name, of in factors.items() if name in apart}
-    within = {name: of for name, of in factors.items() if name not in apart}
-    who = [scores.participants[at] for at in known]
-    return mixed_anova(who, between, within, [scores.scores[at] for at in known])
+    rows = [at for at, score in enumerate(scores.scores) if not apart or not math.isnan(score)]
+    factors = {name: [of[at] for at in rows] for name, of in scores.factors.items()}
+    return anova(
+        [scores.participants[at] for at in rows],
+        {name: of for name, of in factors.items() if name not in apart},
+        [scores.scores[at] for at in rows],
+        {name: of for name, of in factors.items() if name in apart},
+    )
 
 
 def _between(scores: Scores) -> set[str]:
@@ -273,111 +268,71 @@ def _between(scores: Scores) -> set[str]:
     return found if len(found) < len(scores.factors) else set()
 
 
-def _means(scores: Scores, factor: str) -> dict[str, dict[str, float]]:
-    """Mean of each participant at each level of a factor: of each cell first, then over cells.
+def _each(measures: Sequence[Scores]) -> Iterator[tuple[Scores, str, Any]]:
+    """Each measure with each factor, and what `_means` gives of it."""
+    return ((scores, name, _means(scores, name)) for scores in measures for name in scores.factors)
 
-    Whoever lacks one of a level's cells has no mean there: it would be the mean of other things
-    than the others' means.
+
+def _what(scores: Scores, factor: str) -> Row:
+    return {"measure": scores.measure, "factor": factor}
+
+
+def _means(scores: Scores, name: str) -> pd.DataFrame:
+    """Mean of each participant at each level of a factor, NaN for none; [levels, participants].
+
+    It is of each cell first, then over cells. Whoever lacks one of a level's cells has no mean
+    there: it would be the mean of other things than the others' means.
     """
-    cells: dict[tuple[str, str, tuple[str, ...]], list[float]] = {}
     apart = _between(scores)
-    others = [of for name, of in scores.factors.items() if name != factor and name not in apart]
-    cell_of = zip(*others, strict=True) if others else ((),) * len(scores.scores)
-    columns = (scores.participants, scores.factors[factor], cell_of, scores.scores)
-    for who, level, cell, score in zip(*columns, strict=True):
-        if not math.isnan(score):
-            cells.setdefault((level, who, tuple(cell)), []).append(score)
-    means: dict[str, dict[str, list[float]]] = {level: {} for level in scores.factors[factor]}
-    for (level, who, _), values in cells.items():
-        means[level].setdefault(who, []).append(float(np.mean(values)))
+    others = [of for own, of in scores.factors.items() if own != name and own not in apart]
+    frame = pd.DataFrame(
+        {"level": ordered(scores.factors[name]), "who": ordered(scores.participants)}
+        | {f"other {at}": list(of) for at, of in enumerate(others)}
+    )
+    by = list(frame)
+    cells = frame.assign(score=scores.scores).dropna(subset="score")
+    cells = cells.groupby(by, observed=True)["score"].mean()
+    own = cells.groupby(level=["level", "who"], observed=False).agg(["mean", "size"])
     full = math.prod(len(set(column)) for column in others)
-    return {
-        level: {who: float(np.mean(values)) for who, values in of.items() if len(values) == full}
-        for level, of in means.items()
-    }
+    return own["mean"].where(own["size"] == full).unstack("who")
 
 
-def _of_groups(means: dict[str, dict[str, float]]) -> bool:
+def _of_groups(means: pd.DataFrame) -> bool:
     """Tell if each participant has one level, and not all the same."""
-    own = [who for of in means.values() for who in of]
-    return len(own) == len(set(own)) and sum(map(bool, means.values())) > 1
+    known = means.notna()
+    return bool((known.sum() <= 1).all() and known.any(axis="columns").sum() > 1)
 
 
-def _trials(scores: Scores, factor: str, level: str) -> dict[str, int] | None:
-    """Number of answers that each participant gave at a level; None if scores are no shares."""
+def _trials(scores: Scores, name: str) -> Any:
+    """Number of answers of each participant at each level; None if scores are no shares."""
     if scores.trials is None:
         return None
-    columns = (scores.participants, scores.factors[factor], scores.trials)
-    answers: dict[str, int] = {}
-    for who, at, number in zip(*columns, strict=True):
-        if at == level:
-            answers[who] = answers.get(who, 0) + number
-    return answers
+    frame = pd.DataFrame({"level": scores.factors[name], "who": scores.participants})
+    return frame.assign(trials=scores.trials).pivot_table("trials", "level", "who", "sum")
 
 
-def _interval(scores: Scores, means: dict[str, float], trials: dict[str, int] | None) -> Interval:
-    """Interval of the population's mean, by the method for shares, for durations or for others."""
-    own = list(means.values())
-    if trials is not None:
-        return mean_share(own, [trials[who] for who in means])
-    return mean_duration(own) if scores.durations else mean_interval(own)
+def _pair(means: Any, first: str, second: str, shares: bool) -> Row:
+    """Columns of a paired test of two levels, or the note that says why there is none."""
+    both = means.loc[[first, second]].dropna(axis="columns")
+    row: Row = {"first": first, "second": second, "participants": both.columns.size}
+    notes = _without(means, both.columns)
+    try:
+        test = paired_t(both.loc[first], both.loc[second])
+    except Unanswerable as reason:
+        notes.append(str(reason))
+        row["mean_difference"] = mean_or_none((both.loc[first] - both.loc[second]).to_list())
+    else:
+        row |= asdict(test)
+        if shares:  # they differ by 1 at most
+            row |= {"low": max(test.low, -1.0), "high": min(test.high, 1.0)}
+        if test.d_low is None:
+            notes.append("no interval of d_z: t is too large for one")
+        if test.g_z is None:
+            notes.append("no g_z of two participants")
+    return row | {"note": "; ".join(notes)}
 
 
-def _pairs(
-    scores: Scores,
-    factor: str,
-    levels: Sequence[str],
-    means: dict[str, dict[str, float]],
-    correction: str,
-) -> Iterator[Row]:
-    """Rows for all pairs of levels, with p corrected for the number of pairs."""
-    rows: list[Row] = []
-    tested: list[Row] = []
-    for first, second in combinations(levels, 2):
-        have = [means[first].keys(), means[second].keys()]
-        both = sorted(have[0] & have[1], key=natural)
-        row: Row = {
-            "measure": scores.measure,
-            "factor": factor,
-            "first": first,
-            "second": second,
-            "participants": len(both),
-        }
-        notes = _without(scores.participants, both)
-        try:
-            test = paired_t(
-                [means[first][who] for who in both], [means[second][who] for who in both]
-            )
-        except Unanswerable as reason:
-            notes.append(str(reason))
-            if both:
-                row["mean_difference"] = float(
-                    np.mean([means[first][who] - means[second][who] for who in both])
-                )
-        else:
-            row |= _tested(test)
-            if scores.trials is not None:  # shares differ by 1 at most
-                row |= {"low": max(test.low, -1.0), "high": min(test.high, 1.0)}
-            tested.append(row)
-            if test.d_low is None:
-                notes.append("no interval of d_z: t is too large for one")
-            if test.g_z is None:
-                notes.append("no g_z of two participants")
-        rows.append(row | {"note": "; ".join(notes)})
-    corrected = adjust([float(row["p"]) for row in tested], correction)
-    known = {
-        (row["first"], row["second"]): p for row, p in zip(tested, corrected.tolist(), strict=True)
-    }
-    for row in rows:
-        yield row | {"p_corrected": known.get((row["first"], row["second"]))}
-
-
-def _without(participants: Iterable[str], having: Iterable[str]) -> list[str]:
-    """Note on who is left out; empty if nobody is."""
-    without = sorted({*participants} - {*having}, key=natural)
+def _without(means: Any, having: Iterable[object]) -> list[str]:
+    """Note on who is left out of those who have any score; empty if nobody is."""
+    without = [who for who in means if who not in set(having)]
     return [f"without {', '.join(without)}: a score is missing"] if without else []
-
-
-def _tested(test: PairedTest) -> Row:
-    names = ("mean_difference", "low", "high", "t", "df", "p", "d_z", "d_low", "d_high", "g_z")
-    return {name: getattr(test, name) for name in names}

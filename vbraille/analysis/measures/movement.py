@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import stats
 
-from vbraille.analysis.input.strokes import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
+from vbraille.analysis.input.sittings import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
 from vbraille.analysis.input.trials import chosen, codes, factor, groups, name_string
-from vbraille.analysis.measures.averages import mean_or_none
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema, to_print
-from vbraille.analysis.statistics.correlation import correlation_interval
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.schemas import (
+    CONDITION,
+    NOTE_COLUMN,
+    PARTICIPANT,
+    SESSION,
+    TRIAL,
+    Column,
+    Kind,
+    Schema,
+    ends,
+    mean_or_none,
+    to_print,
+)
+from vbraille.analysis.statistics.intervals import Unanswerable, correlation_interval
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -25,12 +36,12 @@ if TYPE_CHECKING:
     from vbraille.analysis.schemas import ResultTable, Row
 
 _WHOSE = (
-    Column("participant", "participant", "pseudonym"),
-    Column("condition", "condition", "name, as in the protocol"),
+    PARTICIPANT,
+    CONDITION,
 )
 _SPEEDS = (
-    Column("speed_right_mm_s", "speed to the right (mm/s)", "mean of the strokes", Kind.SPEED),
-    Column("speed_left_mm_s", "speed to the left (mm/s)", "mean of the strokes", Kind.SPEED),
+    Column("speed_right_mm_s", "speed to the right (mm/s)", "mean of the strokes", Kind.TENTHS),
+    Column("speed_left_mm_s", "speed to the left (mm/s)", "mean of the strokes", Kind.TENTHS),
 )
 TRAJECTORIES = Schema(
     "trajectories",
@@ -38,10 +49,10 @@ TRAJECTORIES = Schema(
     f"{PATTERN_RULE} {SPEED_RULE}",
     (
         *_WHOSE,
-        Column("session", "session", "name of the session"),
-        Column("trial", "trial", "its number in the session", Kind.COUNT),
+        SESSION,
+        TRIAL,
         Column("presented", "string", "names of its cells"),
-        Column("duration_s", "duration (s)", "by the thesis's rule", Kind.SECONDS),
+        Column("duration_s", "duration (s)", "by the thesis's rule", Kind.TENTHS),
         Column("returned", "returned", "1 if the hand went back over the first dot", Kind.COUNT),
         Column("passes", "passes", "strokes to the right over the whole string", Kind.COUNT),
         Column("rescans", "re-scans", "strokes to the right over a part of it", Kind.COUNT),
@@ -49,6 +60,7 @@ TRAJECTORIES = Schema(
         Column("pattern", "pattern", ", ".join(PATTERNS)),
         NOTE_COLUMN,
     ),
+    empty="no trial has a trajectory",
 )
 READING_PATTERNS = Schema(
     "patterns",
@@ -61,10 +73,11 @@ READING_PATTERNS = Schema(
             Column(name.replace("-", "").replace(" ", "_"), name, "trials of it", Kind.COUNT)
             for name in PATTERNS
         ),
-        Column("passes", "mean passes", "of a trial", Kind.SECONDS),
+        Column("passes", "mean passes", "of a trial", Kind.TENTHS),
         *_SPEEDS,
         NOTE_COLUMN,
     ),
+    empty="no trial has a trajectory",
 )
 CORRELATIONS = Schema(
     "duration_legibility",
@@ -78,8 +91,7 @@ CORRELATIONS = Schema(
         Column("condition", "condition", "in which; else all"),
         Column("n", "n", "pairs of values", Kind.COUNT),
         Column("r", "r", "Pearson's", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         Column("p", "p", "that there is no correlation", Kind.P),
         NOTE_COLUMN,
     ),
@@ -114,11 +126,11 @@ def trajectories(
                 "presented": name_string(told["presented"]),
             }
             if isinstance(seen, Reading) and told["paused_s"] > 0:
-                seen = f"it was paused for {to_print(told['paused_s'], Kind.SECONDS)} s"
+                seen = f"it was paused for {to_print(told['paused_s'], Kind.TENTHS)} s"
             elif isinstance(seen, Reading) and told["early"]:
                 seen = "it was answered before it was read to its end"
             rows.append(row | (_described(seen) if isinstance(seen, Reading) else {"note": seen}))
-    return TRAJECTORIES.fill(rows, [] if rows else ["no trial has a trajectory"])
+    return TRAJECTORIES.fill(rows)
 
 
 def patterns(table: ResultTable) -> ResultTable:
@@ -146,7 +158,7 @@ def patterns(table: ResultTable) -> ResultTable:
             if row[column.name] is None:
                 notes.append(f"no stroke to the {way}")
         rows.append(row | {"note": "; ".join(notes)})
-    return READING_PATTERNS.fill(rows, [] if rows else ["no trial has a trajectory"])
+    return READING_PATTERNS.fill(rows)
 
 
 def correlations(trials: pd.DataFrame) -> ResultTable:
@@ -172,14 +184,8 @@ def correlations(trials: pd.DataFrame) -> ResultTable:
 
 def _described(reading: Reading) -> Row:
     """Values of a reading, or a note on why one is missing."""
-    row: Row = {
-        "duration_s": reading.duration_s,
-        "returned": int(reading.returned),
-        "passes": reading.passes,
-        "rescans": reading.rescans,
-        "pattern": reading.pattern,
-        "speed_right_mm_s": reading.speed_right_mm_s,
-        "speed_left_mm_s": reading.speed_left_mm_s,
+    row: Row = {name: of for name, of in asdict(reading).items() if name in TRAJECTORIES.names} | {
+        "returned": int(reading.returned)
     }
     ways = {"right": reading.speed_right_mm_s, "left": reading.speed_left_mm_s}
     return row | {"note": "; ".join(f"no stroke to the {w}" for w, v in ways.items() if v is None)}

@@ -9,7 +9,17 @@ import pandas as pd
 from scipy import stats
 
 from vbraille.analysis.input.trials import groups
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
+from vbraille.analysis.schemas import (
+    CONDITION,
+    NOTE_COLUMN,
+    PARTICIPANT,
+    SESSION,
+    TRIAL,
+    Column,
+    Kind,
+    Schema,
+    ends,
+)
 from vbraille.analysis.statistics.intervals import LEVEL
 from vbraille.wording import count
 
@@ -20,9 +30,9 @@ if TYPE_CHECKING:
 
 PAST = 10  # trials that the moving average is taken over
 _WHOSE = (
-    Column("participant", "participant", "pseudonym"),
-    Column("session", "session", "name of the session"),
-    Column("condition", "condition", "name, as in the protocol"),
+    PARTICIPANT,
+    SESSION,
+    CONDITION,
 )
 OVER_TIME = Schema(
     "over_time",
@@ -32,7 +42,7 @@ OVER_TIME = Schema(
     (
         *_WHOSE,
         Column("number", "number", "of the trial in its session and condition", Kind.COUNT),
-        Column("trial", "trial", "its number in the session", Kind.COUNT),
+        TRIAL,
         Column("correct", "correct", "1 if every place is right, else 0", Kind.COUNT),
         Column("average", f"past {PAST} (%)", "moving average", Kind.PERCENT),
         NOTE_COLUMN,
@@ -49,8 +59,7 @@ SLOPES = Schema(
         Column(
             "slope", "slope (% in 10 trials)", "change of legibility in 10 trials", Kind.PERCENT
         ),
-        Column("low", "from (%)", "lower end of its 95 % interval", Kind.PERCENT),
-        Column("high", "to (%)", "upper end", Kind.PERCENT),
+        *ends(Kind.PERCENT),
         Column("p", "p", "that there is no change, by t", Kind.P),
         NOTE_COLUMN,
     ),

@@ -1,4 +1,4 @@
-"""What was rated, estimated, said, and how sure of it somebody was."""
+"""What was rated, estimated, said and noted, and how sure of it participants were."""
 
 from __future__ import annotations
 
@@ -8,11 +8,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.analysis.input.trials import codes, groups
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
-from vbraille.analysis.statistics.intervals import mean_interval
-from vbraille.analysis.statistics.ratings import compare_ratings, summarise_ratings
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.input.trials import groups
+from vbraille.analysis.schemas import (
+    CONDITION,
+    NOTE_COLUMN,
+    PARTICIPANT,
+    PARTICIPANTS,
+    PROTOCOL,
+    SESSION,
+    TRIAL,
+    Column,
+    Kind,
+    Schema,
+    ends,
+)
+from vbraille.analysis.statistics.intervals import Unanswerable, mean_interval
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -21,13 +31,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.analysis.schemas import ResultTable, Row
-    from vbraille.analysis.statistics.intervals import Interval
 
     Scale = tuple[float, float]
+    from collections.abc import Iterable
 
-_PROTOCOL = Column("protocol", "protocol", "name of the protocol")
-_CONDITION = Column("condition", "condition", "name, as in the protocol")
-_PARTICIPANTS = Column("participants", "participants", "how many", Kind.COUNT)
+    from vbraille.analysis.input.sittings import SessionTrials
+
 RATINGS = Schema(
     "ratings",
     "Ratings",
@@ -35,18 +44,18 @@ RATINGS = Schema(
     "mean, as far as the scale goes where a session tells its ends. In the quartiles each "
     "participant weighs the same.",
     (
-        _PROTOCOL,
-        _CONDITION,
-        _PARTICIPANTS,
+        PROTOCOL,
+        CONDITION,
+        PARTICIPANTS,
         Column("ratings", "ratings", "how many", Kind.COUNT),
         Column("mean", "mean", "in steps of the scale", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         Column("median", "median", "in steps of the scale", Kind.NUMBER),
         Column("low_quartile", "lower quartile", "in steps of the scale", Kind.NUMBER),
         Column("high_quartile", "upper quartile", "in steps of the scale", Kind.NUMBER),
         NOTE_COLUMN,
     ),
+    empty="nothing was rated",
 )
 RATING_PAIRS = Schema(
     "rating_pairs",
@@ -54,15 +63,15 @@ RATING_PAIRS = Schema(
     "Mean over participants of the share of their pairs of ratings in which the first condition's "
     "is the higher, ties counting half, with Student's interval.",
     (
-        _PROTOCOL,
+        PROTOCOL,
         Column("first", "first", "one condition"),
         Column("second", "second", "the other"),
         Column("participants", "participants", "who rated both", Kind.COUNT),
         Column("higher", "first higher (%)", "share of pairs", Kind.PERCENT),
-        Column("low", "from (%)", "lower end of its 95 % interval", Kind.PERCENT),
-        Column("high", "to (%)", "upper end", Kind.PERCENT),
+        *ends(Kind.PERCENT),
         NOTE_COLUMN,
     ),
+    empty="no two conditions were rated",
 )
 MAGNITUDES = Schema(
     "magnitudes",
@@ -71,15 +80,15 @@ MAGNITUDES = Schema(
     "t of logarithms, each participant's estimates are divided by the mean of all conditions, and "
     "multiplied by that of all participants, since everybody's numbers are of an own size.",
     (
-        _PROTOCOL,
-        _CONDITION,
-        _PARTICIPANTS,
+        PROTOCOL,
+        CONDITION,
+        PARTICIPANTS,
         Column("estimates", "estimates", "how many", Kind.COUNT),
         Column("mean", "geometric mean", "of the numbers given", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         NOTE_COLUMN,
     ),
+    empty="no magnitude was asked",
 )
 CONFIDENCE = Schema(
     "confidence",
@@ -87,30 +96,31 @@ CONFIDENCE = Schema(
     "The mean is over participants of their own means, with Student's interval of the population's "
     "mean, as far as the scale goes where a session tells its ends.",
     (
-        _PROTOCOL,
+        PROTOCOL,
         Column("question", "question", "what was asked"),
-        _CONDITION,
+        CONDITION,
         Column("outcome", "outcome", "how the answers were scored; - if they were not"),
-        _PARTICIPANTS,
+        PARTICIPANTS,
         Column("answers", "answers", "how many", Kind.COUNT),
         Column("mean", "mean", "confidence, in steps of the scale", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
+        *ends(),
         NOTE_COLUMN,
     ),
+    empty="no confidence was asked",
 )
 WORDS = Schema(
     "words",
     "Answers in words",
     "As they were typed. Nobody has scored them.",
     (
-        Column("participant", "participant", "pseudonym"),
-        Column("session", "session", "name of the session"),
-        Column("trial", "trial", "its number in the session", Kind.COUNT),
-        _CONDITION,
+        PARTICIPANT,
+        SESSION,
+        TRIAL,
+        CONDITION,
         Column("presented", "presented", "what was shown"),
         Column("answered", "answered", "the words"),
     ),
+    empty="nothing was asked in words",
 )
 _UNSCORED = "-"
 
@@ -131,19 +141,15 @@ def ratings(
     for (protocol,), own in groups(rated, "protocol"):
         parts = {condition: part for (condition,), part in groups(own, "condition")}
         for condition, part in parts.items():
-            found = summarise_ratings(part["number"], codes(part["participant"]))
-            row: Row = {"protocol": protocol, "condition": condition, "note": found.note}
-            row |= {"participants": found.participants, "ratings": found.ratings}
-            row |= {"mean": found.mean, "median": found.median}
-            row |= {"low_quartile": found.low_quartile, "high_quartile": found.high_quartile}
-            if found.interval is not None:
-                row |= _kept(found.interval, scales.get(protocol))
+            row: Row = {"protocol": protocol, "condition": condition}
+            row |= summarised(part, scales.get(protocol))
             rows.append(row)
         for (first, one), (second, two) in combinations(parts.items(), 2):
-            pairs.append({"protocol": protocol, "first": first, "second": second} | _pair(one, two))
+            row = {"protocol": protocol, "first": first, "second": second}
+            pairs.append(row | compared(one, two))
     return (
-        RATINGS.fill(rows, () if rows else ("nothing was rated",)),
-        RATING_PAIRS.fill(pairs, () if pairs else ("no two conditions were rated",)),
+        RATINGS.fill(rows),
+        RATING_PAIRS.fill(pairs),
     )
 
 
@@ -162,7 +168,7 @@ def magnitudes(judgements: pd.DataFrame) -> ResultTable:
             row |= {"participants": len(known), "mean": float(np.exp(known.mean()))}
             even = (known - size[known.index] + size.mean()).to_numpy(np.float64)
             rows.append(row | _ends(even, logarithms=True))
-    return MAGNITUDES.fill(rows, () if rows else ("no magnitude was asked",))
+    return MAGNITUDES.fill(rows)
 
 
 def confidence(
@@ -178,7 +184,7 @@ def confidence(
         row: Row = dict(zip(names, whose, strict=True))
         row |= {"participants": own.size, "answers": len(part), "mean": float(own.mean())}
         rows.append(row | _ends(own, scales.get(str(row["protocol"]))))
-    return CONFIDENCE.fill(rows, () if rows else ("no confidence was asked",))
+    return CONFIDENCE.fill(rows)
 
 
 def words(judgements: pd.DataFrame) -> ResultTable:
@@ -187,21 +193,55 @@ def words(judgements: pd.DataFrame) -> ResultTable:
     frame = said[WORDS.names].assign(
         **{name: said[name].astype(str) for name in WORDS.names if name != "trial"}
     )
-    return WORDS.fill(frame, () if len(frame) else ("nothing was asked in words",))
+    return WORDS.fill(frame)
 
 
-def _pair(one: pd.DataFrame, two: pd.DataFrame) -> Row:
-    sides = [
-        (part["number"].to_numpy(np.float64), codes(part["participant"])) for part in (one, two)
-    ]
-    try:
-        found = compare_ratings(*sides[0], *sides[1])
-    except Unanswerable as reason:
-        return {"participants": 0, "note": f"no share: {reason}"}
-    row: Row = {"participants": found.participants, "higher": found.higher, "note": found.note}
-    if found.interval is not None:
-        row |= {"low": found.interval.low, "high": found.interval.high}
-    return row
+def summarised(rated: pd.DataFrame, scale: Scale | None = None) -> Row:
+    """Mean of participants' own means, with its interval, and quartiles in which each weighs alike.
+
+    Parameters
+    ----------
+    rated
+        Ratings of one condition: ``number`` and ``participant`` of each.
+    scale
+        Ends of the scale, which no interval goes beyond; None if they are not known.
+    """
+    by = rated.groupby("participant", observed=True)["number"]
+    own = by.mean().to_numpy(np.float64)
+    weights = (1 / by.transform("size")).to_numpy(np.float64)
+    low, median, high = np.quantile(
+        rated["number"], [0.25, 0.5, 0.75], weights=weights, method="inverted_cdf"
+    ).tolist()
+    return {
+        "participants": own.size,
+        "ratings": len(rated),
+        "mean": float(own.mean()),
+        "median": median,
+        "low_quartile": low,
+        "high_quartile": high,
+    } | _ends(own, scale)
+
+
+def compared(one: pd.DataFrame, two: pd.DataFrame) -> Row:
+    """Mean over participants of how often their ratings of one condition are above the other's.
+
+    It is the share of a participant's pairs of ratings, ties counting half (Vargha and Delaney
+    2000); `summarised` describes the ratings.
+    """
+    first, second = (
+        {who: own.to_numpy() for who, own in part.groupby("participant", observed=True)["number"]}
+        for part in (one, two)
+    )
+    own = np.array(
+        [
+            (np.sign(first[who][:, None] - second[who]).mean() + 1) / 2
+            for who in first
+            if who in second
+        ]
+    )
+    if not own.size:
+        return {"participants": 0, "note": "no share: nobody rated both"}
+    return {"participants": own.size, "higher": float(own.mean())} | _ends(own, (0.0, 1.0))
 
 
 def _ends(own: NDArray[np.float64], scale: Scale | None = None, *, logarithms: bool = False) -> Row:
@@ -212,10 +252,42 @@ def _ends(own: NDArray[np.float64], scale: Scale | None = None, *, logarithms: b
         return {"note": f"no interval: {reason}"}
     if logarithms:
         return {"low": float(np.exp(found.low)), "high": float(np.exp(found.high))}
-    return _kept(found, scale)
-
-
-def _kept(interval: Interval, scale: Scale | None) -> Row:
-    """Ends of an interval, as far as the scale goes."""
     least, most = scale or (-np.inf, np.inf)
-    return {"low": max(interval.low, least), "high": min(interval.high, most)}
+    return {"low": max(found.low, least), "high": min(found.high, most)}
+
+
+NOTES = Schema(
+    "notes",
+    "Notes of the experimenter",
+    "A note that was typed between two trials has none of its own; one typed before the first "
+    "trial has none before it, and one after the last has none after it.",
+    (
+        PARTICIPANT,
+        SESSION,
+        Column("text", "note", "as it was typed"),
+        Column("trial_before", "trial before", "the one shown last before it"),
+        Column("trial", "trial", "the one that was open"),
+        Column("trial_after", "trial after", "the one shown next"),
+    ),
+)
+
+
+def notes(sittings: Iterable[SessionTrials]) -> ResultTable:
+    """Notes of all sessions, in their order."""
+    rows: list[Row] = [
+        {
+            "participant": sitting.head["participant"],
+            "session": sitting.name,
+            "text": note.text,
+            "trial_before": _number(note.before),
+            "trial": _number(note.trial),
+            "trial_after": _number(note.after),
+        }
+        for sitting in sittings
+        for note in sitting.notes
+    ]
+    return NOTES.fill(rows)
+
+
+def _number(trial: int) -> str:
+    return str(trial) if trial else "none"

@@ -1,28 +1,31 @@
-"""Results as one page that needs nothing else: no script, no network.
+"""Results as a tree of elements, and that as one page that needs no script and no network.
 
 A screen reader comes first: headings in their order, tables whose cells are headed, and
-beside each figure what is to be seen in it. Elements are built as a tree, whose text
-the standard library escapes.
+beside each figure what is to be seen in it. The standard library escapes the tree's text;
+`tomarkdown` writes the same tree as Markdown.
 """
 
 from __future__ import annotations
 
 from base64 import b64encode
+from dataclasses import replace
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 from xml.etree import ElementTree
 
-from vbraille.analysis.report import shown
-from vbraille.analysis.schemas import Kind
+from vbraille.analysis.schemas import NOTE, Kind, to_print
 from vbraille.pictures.words import plain
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from vbraille.analysis.results import Chapter, ReportFigure, Results
+    from vbraille.analysis.results import ReportFigure, Results
     from vbraille.analysis.schemas import ResultTable, Value
 
 Element = ElementTree.Element
+ROWS = 60  # rows of a table that a report shows: nobody listens to more, and the CSV has all
+KINDS = ("svg", "png", "pdf")  # kinds of files that a figure is written as
 _INLINE = {"a", "span", "strong"}  # every other element begins a new line in the source
 # Nothing is fetched, whatever names there are in the data.
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'"
@@ -71,23 +74,17 @@ def to_html(results: Results, drawings: Mapping[str, bytes], beside: Sequence[st
 
     Parameters
     ----------
-    figures
+    drawings
         SVG of each figure, by its name.
     beside
         Names of other files in the report's directory, to which the page links.
     """
-    titles = {table.name: table.title for table in results.result_tables()}
-    main = _e("main", id="results", tabindex="-1")
-    main.extend(_findings(results, titles, drawings))
-    main.extend(_about(results))
-    main.append(_contents(results))
-    for number, chapter in enumerate(results.chapters, 1):
-        main.append(_chapter(chapter, number, titles, drawings, results.main))
-    if beside:
-        main.append(_e("h2", shown.FILES, id="files"))
-        main.append(_list(_e("li", _link(name)) for name in beside))
     style = _e("style")
     style.text = _STYLE
+    sources = {
+        name: f"data:image/svg+xml;base64,{b64encode(svg).decode()}"
+        for name, svg in drawings.items()
+    }
     page = _e(
         "html",
         _e(
@@ -101,42 +98,64 @@ def to_html(results: Results, drawings: Mapping[str, bytes], beside: Sequence[st
         _e(
             "body",
             _e("a", "Skip to the results", href="#results", class_="skip"),
-            _header(results),
-            main,
+            *elements(results, beside, sources),
         ),
         lang="en",
     )
     return "<!DOCTYPE html>\n" + ElementTree.tostring(page, encoding="unicode", method="html")
 
 
-def _header(results: Results) -> Element:
+def elements(
+    results: Results, beside: Sequence[str], sources: Mapping[str, str] | None = None
+) -> tuple[Element, Element]:
+    """Header and body of a report.
+
+    Parameters
+    ----------
+    beside
+        Names of other files in the report's directory.
+    sources
+        Addresses of the figures' images; None for those of their files.
+    """
     header = _e("header", _e("h1", results.title))
     if results.warnings:
-        header.append(_e("h2", shown.WARNINGS, id="warnings"))
-        header.append(_list(_e("li", warning) for warning in results.warnings))
-    return header
-
-
-def _findings(
-    results: Results, titles: Mapping[str, str], drawings: Mapping[str, bytes]
-) -> Iterator[Element]:
-    """What was found, with the main figure; empty if nothing was found."""
-    figure = results.main_figure()
-    if results.findings or figure is not None:
-        yield _e("h2", shown.FINDINGS, id="findings")
+        header.append(_e("h2", "Read this first", id="warnings"))
+        header.append(_list(results.warnings))
+    titles = {table.name: table.title for table in results.result_tables()}
+    figures = {
+        figure.name: _figure(
+            figure,
+            titles[figure.table],
+            figure_name(figure, "svg") if sources is None else sources[figure.name],
+        )
+        for figure in results.figures()
+    }
+    main = _e("main", id="results", tabindex="-1")
+    if results.findings or results.main:
+        main.append(_e("h2", "What was found", id="findings"))
     if results.findings:
-        yield _list(_e("li", finding) for finding in results.findings)
-    if figure is not None:
-        yield _figure(figure, titles[figure.table], drawings[figure.name])
-
-
-def _about(results: Results) -> Iterator[Element]:
+        main.append(_list(results.findings))
+    if results.main:
+        main.append(figures[results.main])
     if results.about:
-        about = _e("dl")
-        for word, what in results.about:
-            about.extend([_e("dt", word), _e("dd", what)])
-        yield _e("h2", shown.ABOUT, id="about")
-        yield about
+        main.append(_e("h2", "Data, versions and what was left out", id="about"))
+        told = ((_e("dt", word), _e("dd", what)) for word, what in results.about)
+        main.append(_e("dl", *(part for pair in told for part in pair)))
+    main.append(_contents(results))
+    for number, chapter in enumerate(results.chapters, 1):
+        title = _e("h2", chapter.title, id=f"section-{number}")
+        made = _e("section", title, _e("p", chapter.text))
+        for table in chapter.tables:
+            made.extend(_table(table))
+        for figure in chapter.figures:
+            there = _e("a", figure.title, href=f"#figure-{figure.name}")
+            at_head = _e("p", "This figure stands at the head of the report: ", there, ".")
+            made.append(at_head if figure.name == results.main else figures[figure.name])
+        main.append(made)
+    if beside:
+        main.append(_e("h2", "Files beside this report", id="files"))
+        main.append(_list(map(_link, beside)))
+    return header, main
 
 
 def _contents(results: Results) -> Element:
@@ -144,59 +163,65 @@ def _contents(results: Results) -> Element:
     for number, chapter in enumerate(results.chapters, 1):
         inner = [(f"#table-{table.name}", table.title) for table in chapter.tables]
         inner += [(f"#figure-{each.name}", f"Figure: {each.title}") for each in chapter.figures]
-        links = _list(_e("li", _e("a", title, href=to)) for to, title in inner)
+        links = _list(_e("a", title, href=to) for to, title in inner)
         items.append(_e("li", _e("a", chapter.title, href=f"#section-{number}"), links))
-    return _e("nav", _e("h2", shown.CONTENTS), _list(items), aria_label=shown.CONTENTS)
-
-
-def _chapter(
-    chapter: Chapter,
-    number: int,
-    titles: Mapping[str, str],
-    drawings: Mapping[str, bytes],
-    main: str,
-) -> Element:
-    made = _e("section", _e("h2", chapter.title, id=f"section-{number}"), _e("p", chapter.text))
-    for table in chapter.tables:
-        made.extend(_table(table))
-    for figure in chapter.figures:
-        if figure.name == main:
-            there = _e("a", figure.title, href=f"#figure-{figure.name}")
-            made.append(_e("p", f"{shown.ABOVE} ", there, "."))
-        else:
-            made.append(_figure(figure, titles[figure.table], drawings[figure.name]))
-    return made
+    return _e("nav", _e("h2", "Contents"), _e("ul", *items), aria_label="Contents")
 
 
 def _table(table: ResultTable) -> Iterator[Element]:
-    table = shown.in_report(table)
+    table = table.gathered()
+    if len(table) and table.columns[-1].name == NOTE and not table.frame[NOTE].any():
+        # Empty notes are left out: each empty cell is noise in speech.
+        table = replace(
+            table,
+            schema=replace(table.schema, columns=table.columns[:-1]),
+            frame=table.frame.drop(columns=NOTE),
+        )
     yield _e("h3", table.title, id=f"table-{table.name}")
-    for text in filter(None, (table.schema.about, shown.marking(table))):
-        yield _e("p", text)
+    if table.schema.about:
+        yield _e("p", table.schema.about)
+    if table.marks:
+        above = " and ".join(f"above {mark}" for mark in table.marks)
+        yield _e("p", f"Marked are counts of wrong answers {above}.")
+    long = len(table) > ROWS
+    rows = f"the first {ROWS} of {len(table)} rows" if long else count(len(table), "row")
     if len(table):
-        heads = shown.heads(table)
+        heads = _heads(table)
         names = _e("tr")
         for column in table.columns:
             names.append(_e("th", column.heading, scope="col", class_=_side(column.kind)))
         body = _e("tbody")
-        for row in shown.rows(table):
+        for row in replace(table, frame=table.frame.head(ROWS)).rows:
             body.append(_row(table, row, heads))
-        made = _e("table", _e("caption", shown.caption(table)), _e("thead", names), body)
+        made = _e("table", _e("caption", f"{table.title}: {rows}"), _e("thead", names), body)
         # A wide table scrolls within itself, by the keyboard too.
         about = f"table-{table.name}"
         looks = "wide matrix" if table.marks else "wide"
         yield _e("div", made, class_=looks, tabindex="0", role="group", aria_labelledby=about)
     else:
-        yield _e("p", shown.NO_ROWS)
+        yield _e("p", "This table has no rows.")
     if table.notes:
-        yield _e("p", f"{shown.UNKNOWN}:")
-        yield _list(_e("li", note) for note in table.notes)
-    yield _e("p", f"{shown.numbers(table)} ", _link(shown.csv_name(table)))
+        yield _e("p", "What cannot be said here:")
+        yield _list(table.notes)
+    told = f"Shown are {rows}. All rows, in full precision: " if long else "In full precision: "
+    yield _e("p", told, _link(csv_name(table)))
+
+
+def _heads(table: ResultTable) -> int:
+    """Number of first columns that head a row: the fewest columns of words that tell rows apart."""
+    words = 1
+    while words < len(table.columns) and table.columns[words].kind is Kind.TEXT:
+        told_apart = not table.frame.iloc[:, :words].duplicated().any()
+        if table.columns[words].name == NOTE or told_apart:
+            break
+        words += 1
+    return words
 
 
 def _row(table: ResultTable, row: tuple[Value, ...], heads: int) -> Element:
     made = _e("tr")
-    for at, (text, column) in enumerate(zip(shown.values(table, row), table.columns, strict=True)):
+    for at, (value, column) in enumerate(zip(row, table.columns, strict=True)):
+        text = to_print(value, column.kind)
         if at < heads:
             made.append(_e("th", text or "(empty)", scope="row", class_=_side(column.kind)))
             continue
@@ -207,39 +232,37 @@ def _row(table: ResultTable, row: tuple[Value, ...], heads: int) -> Element:
             content = [_e("strong", text), _e("span", f" above {mark}", class_="hidden")]
         elif table.is_right(row, at):
             looks.append("right")
-        elif table.marks and row[at] == 0:
+        elif table.marks and value == 0:
             looks.append("zero")
         made.append(_e("td", *content, class_=" ".join(filter(None, looks))))
     return made
 
 
-def _figure(figure: ReportFigure, title: str, svg: bytes) -> Element:
-    source = f"data:image/svg+xml;base64,{b64encode(svg).decode()}"
+def _figure(figure: ReportFigure, title: str, source: str) -> Element:
+    svg, png, pdf = (_link(figure_name(figure, kind)) for kind in KINDS)
+    numbers = _e("a", f"table “{title}”", href=f"#table-{figure.table}")
+    told = f"Figure: {figure.title}. What it shows is told beside it."
     return _e(
         "figure",
         _e("h3", f"Figure: {figure.title}"),
-        _e("img", src=source, alt=shown.alternative(figure)),
+        _e("img", src=source, alt=told),
         _e(
             "figcaption",
             _e("p", figure.text),
-            _e(
-                "p",
-                "Its numbers: ",
-                _e("a", f"table “{title}”", href=f"#table-{figure.table}"),
-                ". The figure: ",
-                *_files(figure),
-                ".",
-            ),
+            _e("p", "Its numbers: ", numbers, ". The figure: ", svg, ", ", png, ", ", pdf, "."),
         ),
         id=f"figure-{figure.name}",
     )
 
 
-def _files(figure: ReportFigure) -> Iterator[Element | str]:
-    for number, kind in enumerate(shown.KINDS):
-        if number:
-            yield ", "
-        yield _link(shown.figure_name(figure, kind))
+def csv_name(table: ResultTable) -> str:
+    """Path of a table's file in the report's directory."""
+    return f"tables/{table.name}.csv"
+
+
+def figure_name(figure: ReportFigure, kind: str) -> str:
+    """Path of a figure's file in the report's directory."""
+    return f"figures/{figure.name}.{kind}"
 
 
 def _side(kind: Kind) -> str:
@@ -250,8 +273,8 @@ def _link(name: str) -> Element:
     return _e("a", name, href=quote(name))
 
 
-def _list(items: Iterable[Element]) -> Element:
-    return _e("ul", *items)
+def _list(items: Iterable[Element | str]) -> Element:
+    return _e("ul", *(_e("li", item) for item in items))
 
 
 def _e(tag: str, *content: Element | str, **attributes: str) -> Element:

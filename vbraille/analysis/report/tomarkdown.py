@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING
-from urllib.parse import quote
 
-from vbraille.analysis.report import shown
-from vbraille.analysis.schemas import Kind
+from vbraille.analysis.report.tohtml import elements
 from vbraille.pictures.words import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
-    from vbraille.analysis.results import ReportFigure, Results
-    from vbraille.analysis.schemas import ResultTable, Value
+    from vbraille.analysis.report.tohtml import Element
+    from vbraille.analysis.results import Results
 
 # What Markdown gives a meaning to: anywhere, in an address, at the beginning of a line.
 _ACTIVE = re.compile(r"[\\`*_{}\[\]<>|~$&]|(?<=:)//|(?<=www)\.|^[#+=-]")
 _NUMBERED = re.compile(r"^(\d+)(?=[.)](?: |$))")  # a list begins like this
+_TABLE = "#table-"  # how a link to a table of the page begins
 
 
 def to_markdown(results: Results, beside: Sequence[str] = ()) -> str:
@@ -29,29 +28,7 @@ def to_markdown(results: Results, beside: Sequence[str] = ()) -> str:
     beside
         Names of other files in the report's directory.
     """
-    titles = {table.name: table.title for table in results.result_tables()}
-    parts = [f"# {escape(results.title)}"]
-    if results.warnings:
-        parts += [f"## {shown.WARNINGS}", _items(map(escape, results.warnings))]
-    figure = results.main_figure()
-    if results.findings or figure is not None:
-        parts += [f"## {shown.FINDINGS}", _items(map(escape, results.findings))]
-    if figure is not None:
-        parts += _figure(figure, titles[figure.table])
-    if results.about:
-        about = (f"**{escape(word)}**: {escape(what)}" for word, what in results.about)
-        parts += [f"## {shown.ABOUT}", _items(about)]
-    for chapter in results.chapters:
-        parts += [f"## {escape(chapter.title)}", escape(chapter.text)]
-        for table in chapter.tables:
-            parts += _table(table)
-        for figure in chapter.figures:
-            if figure.name == results.main:
-                parts.append(f"{shown.ABOVE} {escape(figure.title)}.")
-            else:
-                parts += _figure(figure, titles[figure.table])
-    if beside:
-        parts += [f"## {shown.FILES}", _items(map(_link, beside))]
+    parts = [part for element in elements(results, beside) for part in _blocks(element)]
     return "\n\n".join(filter(None, parts)) + "\n"
 
 
@@ -61,46 +38,50 @@ def escape(text: str) -> str:
     return _NUMBERED.sub(r"\1\\", escaped)
 
 
-def _table(table: ResultTable) -> Iterator[str]:
-    table = shown.in_report(table)
-    yield f"### {escape(table.title)}"
-    yield escape(table.schema.about)
-    yield escape(shown.marking(table))
-    if len(table):
-        sides = ["---" if column.kind is Kind.TEXT else "---:" for column in table.columns]
-        lines = [[escape(column.heading) for column in table.columns], sides]
-        lines += [_row(table, row) for row in shown.rows(table)]
-        yield "\n".join(f"| {' | '.join(line)} |" for line in lines)
-    else:
-        yield shown.NO_ROWS
-    if table.notes:
-        yield f"{shown.UNKNOWN}:"
-        yield _items(map(escape, table.notes))
-    yield f"{shown.numbers(table)} {_link(shown.csv_name(table))}"
+def _blocks(element: Element) -> Iterator[str]:
+    """Paragraphs, lists and tables of an element of the report; contents are those of the page."""
+    match element.tag:
+        case "h1" | "h2" | "h3":
+            yield f"{'#' * int(element.tag[1])} {_inline(element)}"
+        case "p":
+            yield _inline(element)
+        case "ul":
+            yield "\n".join(f"- {_inline(item)}" for item in element)
+        case "dl":
+            pairs = zip(element[::2], element[1::2], strict=True)
+            yield "\n".join(f"- **{_inline(word)}**: {_inline(what)}" for word, what in pairs)
+        case "img":
+            yield f"![{escape(element.get('alt', ''))}]({element.get('src')})"
+        case "table":
+            heads, *rows = ([_inline(cell) for cell in row] for row in element.iter("tr"))
+            sides = ["---:" if cell.get("class") else "---" for cell in element.iter("th")]
+            lines = [heads, sides[: len(heads)], *rows]
+            yield "\n".join(f"| {' | '.join(line)} |" for line in lines)
+        case "nav":
+            pass
+        case _:
+            for part in element:
+                yield from _blocks(part)
 
 
-def _row(table: ResultTable, row: tuple[Value, ...]) -> list[str]:
-    texts = [escape(text) for text in shown.values(table, row)]
-    for at, text in enumerate(texts):
-        if (mark := table.mark(row, at)) is not None:
-            texts[at] = f"**{text}** (\\> {mark})"
-    return texts
+def _inline(element: Element) -> str:
+    """Text of an element with what is in it; links lead to files, and not within the page."""
+    text = _spaced(element.text)
+    for part in element:
+        inner, to = _inline(part), part.get("href", "")
+        if part.tag == "strong":
+            inner = f"**{inner}**"
+        elif part.tag == "span":
+            inner = f" ({inner})"
+        elif to.startswith(_TABLE):
+            inner = f"[{inner}](tables/{to.removeprefix(_TABLE)}.csv)"
+        elif to and not to.startswith("#"):
+            inner = f"[{inner}]({to})"
+        text += inner + _spaced(part.tail)
+    return text.strip()
 
 
-def _figure(figure: ReportFigure, title: str) -> Iterator[str]:
-    yield f"### Figure: {escape(figure.title)}"
-    yield f"![{escape(shown.alternative(figure))}]({quote(shown.figure_name(figure, 'svg'))})"
-    yield escape(figure.text)
-    yield (
-        f"Its numbers: [{escape(title)}]({quote(f'tables/{figure.table}.csv')}). "
-        f"The figure: "
-        f"{', '.join(_link(shown.figure_name(figure, kind)) for kind in shown.KINDS)}."
-    )
-
-
-def _items(texts: Iterable[str]) -> str:
-    return "\n".join(f"- {text}" for text in texts)
-
-
-def _link(name: str) -> str:
-    return f"[{escape(name)}]({quote(name)})"
+def _spaced(text: str | None) -> str:
+    """Escaped text with the spaces around it."""
+    text = text or ""
+    return f"{' ' * text.startswith(' ')}{escape(text)}{' ' * text.endswith(' ')}"

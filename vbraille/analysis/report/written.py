@@ -1,16 +1,15 @@
-"""The report's directory: whole, or not at all."""
+"""The report's directory: whole, or not at all; with a codebook of its tables' columns."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.analysis.report.codebook import codebook
-from vbraille.analysis.report.shown import KINDS, csv_name, figure_name
-from vbraille.analysis.report.tohtml import to_html
-from vbraille.analysis.report.tojson import to_json
+from vbraille.analysis.report.tohtml import KINDS, csv_name, figure_name, to_html
 from vbraille.analysis.report.tomarkdown import to_markdown
-from vbraille.analysis.schemas import to_csv
+from vbraille.analysis.report.totext import to_json
+from vbraille.analysis.schemas import Kind, to_csv
 from vbraille.files import check_free, write_folder
+from vbraille.sessions.record.codebook import CodebookEntry, entry_of, to_codebook, unit_of
 from vbraille.sessions.record.export import encode
 
 if TYPE_CHECKING:
@@ -18,10 +17,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.analysis.results import Results
+    from vbraille.analysis.schemas import Column, ResultTable
 
 PAGE, TEXT, NUMBERS = "report.html", "report.md", "results.json"
 TRIALS = "trials.csv"
 CODEBOOK = "codebook.csv"
+_UNITS = {Kind.PERCENT: "share, 1 = 100 %", Kind.COUNT: "count"}
+_FEW = 12  # values of a column of text that are listed
 _DPI = 300  # dots per inch of the PNGs, as journals ask for
 
 
@@ -79,3 +81,26 @@ def _files(results: Results) -> dict[str, bytes]:
         **{csv_name(table): encode(to_csv(table.frame)) for table in results.result_tables()},
         **drawn,
     }
+
+
+def codebook(results: Results, trials: str) -> str:
+    """Text of the codebook, as CSV.
+
+    Parameters
+    ----------
+    trials
+        Name of the file that has the trials.
+    """
+    files = {} if results.trials is None else {trials: [entry_of(str(n)) for n in results.trials]}
+    for table in results.result_tables():
+        files[csv_name(table)] = [_entry(table, column) for column in table.columns]
+    return to_codebook(files)
+
+
+def _entry(table: ResultTable, column: Column) -> CodebookEntry:
+    values: dict[str, str] = {}
+    if column.kind is Kind.TEXT:
+        there = [str(value) for value in table.frame[column.name].dropna().unique() if value]
+        values = dict.fromkeys(there if len(there) <= _FEW else (), "")
+    unit = unit_of(column.name) or _UNITS.get(column.kind, "")
+    return CodebookEntry(column.name, column.meaning, unit, values)

@@ -1,20 +1,17 @@
 """What is worked out of legibility sessions: intervals, tests, scales, information.
 
-`unanswerable`
-    The error of a question that the scores cannot answer.
-`intervals`, `paired`, `correction`, `anova`
-    Proportions and means with their intervals; tests between conditions.
+`intervals`
+    Intervals of proportions, means, shares and correlations; corrections of p; the error of a
+    question that the scores cannot answer.
+`paired`, `anova`, `effectsizes`
+    Tests between conditions, and between groups beside them.
 `bradleyterry`
     Scales and preferred values of paired comparisons.
-`trialsmodel`, `marginalmeans`
-    Logistic models of single trials, with participants as clusters, of many studies at once.
-`mixedanova`
-    Factors between participants beside those within.
-`psychometric`, `detection`, `ratings`
-    Thresholds of a reader, d′ and criterion, ratings on a scale.
+`trialsmodel`
+    Logistic models of single trials, with participants as clusters, of many studies at once; and
+    the shares and tests that come from them.
+`psychometric`, `detection`
+    Thresholds of a reader, d′ and criterion.
 `information`
     How much of what was presented came through, from a table of answers.
-
-Nothing is re-exported here: scipy.stats takes half a second to import, and
-`information` needs numpy only.
 """

@@ -1,37 +1,46 @@
-"""Repeated-measures analysis of variance, with one to four factors within participants.
+"""Analysis of variance of scores, with factors within participants and groups between them.
 
-Every effect is a set of orthonormal contrasts between a participant's scores, and
-its sums of squares are those of the contrasts (Winer, Brown and Michels 1991, ch. 4
-and 7; Kirk 2013, ch. 10). statsmodels' AnovaRM gives the same F, and the tests hold the
-two against each other; but it fits a dummy for each participant in each cell (2 s and
-0.4 GB for 200 participants and 26 letters), keeps no sums of squares and knows no
-sphericity, so that the contrasts would be needed beside it.
+Every effect within participants is a set of orthonormal contrasts of a participant's scores; these
+are regressed on the groups, whose codes add up to 0, and an effect's sum of squares is what its
+own columns add to all others ("type III", which groups of unequal size do not bend). Without
+groups the one column is the mean (Winer, Brown and Michels 1991, ch. 4 and 7; Kirk 2013, ch. 10
+and 12; Maxwell, Delaney and Kelley 2018, ch. 12 and 14). statsmodels' AnovaRM gives the same F
+within participants, and the tests hold the two against each other; but it fits a dummy for each
+participant in each cell (2 s and 0.4 GB for 200 participants and 26 letters), keeps no sums of
+squares and knows no sphericity, so that the contrasts would be needed beside it.
 """
 
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from dataclasses import dataclass
-from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from itertools import combinations, product
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
-from scipy.stats import f
+from scipy.stats import chi2
+from scipy.stats import f as fisher
 
 from vbraille.analysis.statistics.effectsizes import partial_eta2_interval
-from vbraille.analysis.statistics.sphericity import sphericity
-from vbraille.analysis.statistics.unanswerable import Unanswerable
-from vbraille.analysis.statistics.withinsubject import arrange
+from vbraille.analysis.statistics.intervals import Unanswerable
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from vbraille.analysis.statistics.withinsubject import Cell
+    Floats: TypeAlias = NDArray[np.float64]
+    Levels: TypeAlias = Mapping[str, Sequence[str]]
 
+Cell: TypeAlias = "tuple[str, ...]"
+"""A level of each factor, in the factors' order."""
+
+MOST_FACTORS = 4
+MOST_CELLS = 2000  # a hundred times what a session holds; contrasts grow with the square of this
 # Sums of squares below this share of the scores' own are rounding.
 ROUNDING = 1e-24
+BETWEEN = "beside a factor between participants: no test of sphericity, no interval"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,54 +50,44 @@ class Effect:
     Parameters
     ----------
     name
-        The factors' names, joined by " × ".
-    factors
-        The factors that act together in it.
+        The factors' names, those between participants first, joined by " × ".
     df1, df2
         Degrees of freedom of the effect and of its error.
+    generalised_eta2
+        SS_effect over the sum of itself, the participants' SS and all errors' SS (Olejnik and
+        Algina 2003, all factors manipulated); None beside groups.
+    note
+        Why something is None, or ought not to be read on its own; may be empty.
     f, p
         F, and its p if sphericity holds.
     epsilon, p_corrected
-        Greenhouse and Geisser's epsilon, and p with both degrees of freedom multiplied by it.
+        Greenhouse and Geisser's epsilon, and p with both degrees of freedom multiplied by it; 1
+        and p for an effect between participants.
     huynh_feldt, p_huynh_feldt
         Huynh and Feldt's epsilon, and p with both degrees of freedom multiplied by it.
-    mauchly_w, mauchly_chi2, mauchly_df, mauchly_p
-        Mauchly's test of sphericity; see `sphericity`.
+    mauchly_w, mauchly_p
+        Mauchly's test of sphericity, p as R's ``mauchly.test`` has it; None beside groups.
     partial_eta2, partial_low, partial_high
-        SS_effect / (SS_effect + SS_error), and its 95 % interval by noncentral F.
-    generalised_eta2
-        SS_effect over the sum of itself, the participants' SS and all errors' SS (Olejnik and
-        Algina 2003, all factors manipulated).
-    note
-        Why something is None, or ought not to be read on its own; may be empty.
+        SS_effect / (SS_effect + SS_error), and its 95 % interval by noncentral F, which is None
+        beside groups.
     """
 
     name: str
-    factors: tuple[str, ...]
     df1: int
     df2: int
-    f: float | None
-    p: float | None
-    epsilon: float | None
-    p_corrected: float | None
-    huynh_feldt: float | None
-    p_huynh_feldt: float | None
-    mauchly_w: float | None
-    mauchly_chi2: float | None
-    mauchly_df: int | None
-    mauchly_p: float | None
-    partial_eta2: float | None
-    partial_low: float | None
-    partial_high: float | None
     generalised_eta2: float | None
     note: str
-
-    def __post_init__(self) -> None:
-        if self.df1 < 1 or self.df2 < self.df1:
-            raise ValueError(f"degrees of freedom {self.df1}, {self.df2} of {self.name}")
-        for epsilon in (self.epsilon, self.huynh_feldt):
-            if epsilon is not None and not 0 < epsilon <= 1:
-                raise ValueError(f"epsilon {epsilon} of {self.name} is not in 0…1")
+    f: float | None = None
+    p: float | None = None
+    epsilon: float | None = None
+    p_corrected: float | None = None
+    huynh_feldt: float | None = None
+    p_huynh_feldt: float | None = None
+    mauchly_w: float | None = None
+    mauchly_p: float | None = None
+    partial_eta2: float | None = None
+    partial_low: float | None = None
+    partial_high: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,13 +99,13 @@ class Anova:
     participants
         Participants who have a score in every cell, in order of appearance.
     dropped
-        Participants who lack a score, each with the cells that are missing: a cell is a
-        level of each factor, in the factors' order.
+        Participants who lack a score, each with the cells that are missing.
     averaged
-        Members of `participants` with more than one score in a cell, each with the
-        number of such cells; the mean stands for them.
+        Members of `participants` with more than one score in a cell, each with the number of such
+        cells; the mean stands for them.
     effects
-        Main effects in the factors' order, then their interactions.
+        Effects between participants, then each within effect in the factors' order, interactions
+        last, each followed by what it has to do with the groups.
     """
 
     participants: tuple[str, ...]
@@ -117,8 +116,9 @@ class Anova:
 
 def anova(
     participants: Sequence[str],
-    factors: Mapping[str, Sequence[str]],
-    scores: Sequence[float] | NDArray[np.float64],
+    within: Levels,
+    scores: Sequence[float] | Floats,
+    between: Levels | None = None,
 ) -> Anova:
     """Analysis of variance of scores in long form, a row for each score.
 
@@ -126,51 +126,116 @@ def anova(
     ----------
     participants : str[n]
         The participant of each score.
-    factors
-        One to four names, each with the level of every row, str[n]. Any name
-        will do. Levels count in order of first appearance.
+    within
+        One to four factors within participants by their names, each with the level of every row,
+        str[n]. Any name will do. Levels count in order of first appearance.
     scores : float[n]
         Scores in any one unit; NaN where a score is missing.
+    between
+        Factors between participants in the same way; None for none.
 
     Raises
     ------
     Unanswerable
-        If there are no scores, a factor has one level, there are over 2000
-        cells, or fewer than two participants have a score in each.
+        If there are no scores, a factor has one level, there are over 2000 cells, fewer than two
+        participants have a score in each, a participant is in two groups, or some combination of
+        groups has nobody or no group has two.
     ValueError
-        If there are no or too many factors, columns differ in length, or a
-        score is infinite.
+        If there are no or too many factors.
     """
-    design = arrange(participants, factors, scores)
-    cube = design.cube
-    names = tuple(factors)
-    subsets = [
-        s for size in range(1, len(names) + 1) for s in combinations(range(len(names)), size)
-    ]
-    contrasts = [contrast_scores(cube, subset) for subset in subsets]
-    between = contrast_scores(cube, ())
-    error = [_deviations(z) for z in contrasts]
-    all_errors = sum(error) + _deviations(between)
+    cube, complete, dropped, averaged = arrange(participants, within, scores)
+    parts: list[tuple[Cell, Floats]] = [((), np.ones((len(complete), 1)))]
+    if between:
+        groups = _group_of_each(participants, between)
+        parts = _columns(list(between), [groups[who] for who in complete])
+    rank = sum(columns.shape[1] for _, columns in parts)
+    if len(complete) <= rank:
+        raise Unanswerable(f"{len(complete)} participants in {rank} groups; some group needs two")
+    names = list(within)
+    contrasts = {
+        subset: contrast_scores(cube, subset)
+        for size in range(len(names) + 1)
+        for subset in combinations(range(len(names)), size)
+    }
+    errors = None if between else sum(_deviations(z) for z in contrasts.values())
     rounding = ROUNDING * float((cube**2).sum())
-    cells = math.prod(cube.shape[1:])
-    return Anova(
-        design.participants,
-        design.dropped,
-        design.averaged,
-        tuple(
-            _effect(tuple(names[i] for i in subset), z, all_errors, rounding, cells)
-            for subset, z in zip(subsets, contrasts, strict=True)
-        ),
+    effects = [
+        effect
+        for subset, z in contrasts.items()
+        for effect in _effects(
+            z, parts, [names[i] for i in subset], errors, rounding, math.prod(cube.shape[1:])
+        )
+    ]
+    return Anova(complete, dropped, averaged, tuple(effects))
+
+
+def arrange(
+    participants: Sequence[str], factors: Levels, scores: Sequence[float] | Floats
+) -> tuple[
+    Floats, tuple[str, ...], tuple[tuple[str, tuple[Cell, ...]], ...], tuple[tuple[str, int], ...]
+]:
+    """Arrange scores in long form, as `anova` takes them, by participant and cell.
+
+    Repeated scores of a cell are averaged, and participants with a missing cell left out. A level
+    for which all scores are missing is still a level: then no participant is complete, and nothing
+    is compared behind the reader's back.
+
+    Returns
+    -------
+    cube : float64[participants, levels of the first factor, …]
+    participants, dropped, averaged
+        These are described at `Anova`.
+
+    Raises
+    ------
+    Unanswerable, ValueError
+        As of `anova`.
+    """
+    row = np.asarray(scores, dtype=np.float64)
+    if not 1 <= len(factors) <= MOST_FACTORS:
+        raise ValueError(f"{len(factors)} factors; one to {MOST_FACTORS} are needed")
+    if np.isnan(row).all():
+        raise Unanswerable("no scores")
+    levels = [tuple(dict.fromkeys(column)) for column in factors.values()]
+    for name, seen in zip(factors, levels, strict=True):
+        if len(seen) == 1:
+            raise Unanswerable(
+                f"every score has the same {name}, '{seen[0]}'; there is nothing to compare"
+            )
+    count = math.prod(map(len, levels))
+    if count > MOST_CELLS:
+        raise Unanswerable(f"{count} cells; more than {MOST_CELLS} are not compared")
+    cells = list(product(*levels))
+    found: defaultdict[str, defaultdict[Cell, list[float]]]
+    found = defaultdict(lambda: defaultdict(list))
+    for who, cell, score in zip(
+        participants, zip(*factors.values(), strict=True), row.tolist(), strict=True
+    ):
+        mine = found[who]
+        if not math.isnan(score):
+            mine[cell].append(score)
+    gaps = {who: tuple(c for c in cells if c not in mine) for who, mine in found.items()}
+    complete = tuple(who for who, missing in gaps.items() if not missing)
+    dropped = tuple((who, missing) for who, missing in gaps.items() if missing)
+    if len(complete) < 2:
+        raise Unanswerable(_too_few(complete, dropped, cells))
+    means = [[float(np.mean(found[who][cell])) for cell in cells] for who in complete]
+    repeats = ((who, sum(len(s) > 1 for s in found[who].values())) for who in complete)
+    return (
+        np.array(means).reshape(len(complete), *map(len, levels)),
+        complete,
+        dropped,
+        tuple((who, several) for who, several in repeats if several),
     )
 
 
-def orthonormal_contrasts(levels: int) -> NDArray[np.float64]:
+def orthonormal_contrasts(levels: int) -> Floats:
     """Helmert's contrasts, each of length 1: float64[levels, levels - 1]."""
     raw = np.tril(np.ones((levels, levels)), -1)[1:] - np.diag(np.arange(1.0, levels), 1)[:-1]
     return (raw / np.linalg.norm(raw, axis=1, keepdims=True)).T
 
 
-def contrast_scores(cube: NDArray[np.float64], subset: tuple[int, ...]) -> NDArray[np.float64]:
+def contrast_scores(cube: Floats, subset: tuple[int, ...]) -> Floats:
     """Each participant's scores on the contrasts of an effect, float64[participants, df1].
 
     The contrasts are the Kronecker product of each factor's: its own if it acts
@@ -184,60 +249,207 @@ def contrast_scores(cube: NDArray[np.float64], subset: tuple[int, ...]) -> NDArr
     return cube.reshape(cube.shape[0], -1)
 
 
-def _deviations(z: NDArray[np.float64]) -> float:
+def huynh_feldt(epsilon: float, n: int, d: int, groups: int = 1) -> float:
+    """Huynh and Feldt's epsilon from Greenhouse and Geisser's.
+
+    With N participants in g groups it is ((N - g + 1) d ε - 2) / (d (N - g - d ε)), which is what
+    Lecoutre (1991) made of it: their own has N in place of N - g + 1, the same for one group. It
+    is taken for 1 where it is larger, and for Greenhouse and Geisser's where it is smaller.
+
+    Parameters
+    ----------
+    epsilon
+        Greenhouse and Geisser's epsilon.
+    n, d, groups
+        Numbers of participants, contrasts and groups.
+    """
+    rank = epsilon * d  # 1 … n - groups; at its upper end the estimate is without bound
+    left = n - groups
+    if left < 2 or left - rank <= 1e-9:
+        return epsilon if left < 2 else 1.0
+    return max(epsilon, min(1.0, ((left + 1) * rank - 2) / (d * (left - rank))))
+
+
+def mauchly_p(log_w: float, n: int, d: int, cells: int) -> float:
+    """P of Mauchly's W with the second-order term.
+
+    P = P(χ²_f > z) + ω (P(χ²_{f+4} > z) - P(χ²_f > z)), Anderson 2003, 10.7.4, as R's
+    ``mauchly.test`` has it: its ω has 3 times the number of cells where Anderson's has 3 d,
+    which makes a difference in the fourth decimal.
+
+    Parameters
+    ----------
+    log_w
+        Natural logarithm of W.
+    n, d
+        Numbers of participants and contrasts, d below n.
+    cells
+        Number of cells of the whole design, in which all factors are crossed.
+    """
+    df = d * (d + 1) // 2 - 1
+    scale = n - 1 - (2 * d**2 + d + 2) / (6 * d)  # ρ times n - 1
+    first, second = (float(chi2.sf(-scale * log_w, degrees)) for degrees in (df, df + 4))
+    order = (d + 2) * (d - 1) * (d - 2) * (2 * d**3 + 6 * d**2 + 3 * cells + 2)
+    p = first + order / (288 * (d * scale) ** 2) * (second - first)
+    return min(max(p, 0.0), 1.0)
+
+
+def _effects(
+    z: Floats,
+    parts: Sequence[tuple[Cell, Floats]],
+    acting: Sequence[str],
+    errors: float | None,
+    rounding: float,
+    cells: int,
+) -> Iterator[Effect]:
+    """Effects of a set of contrasts, float64[n, d], by itself and by group.
+
+    Parameters
+    ----------
+    parts
+        Columns of the groups by the names of the factors between; one column of ones for none.
+    acting
+        Factors within that the contrasts are of.
+    errors
+        Sum of squares of all errors; None beside groups.
+    """
+    n, d = z.shape
+    whole = np.hstack([columns for _, columns in parts])
+    left = _left_over(z, whole)
+    error, df_error = float((left**2).sum()), n - whole.shape[1]
+    for own, columns in parts:
+        if not own and not acting:
+            continue  # that the mean of everything is 0 is nobody's question
+        rest = [others for name, others in parts if name != own]
+        own_columns = np.linalg.qr(_left_over(columns, np.hstack(rest)) if rest else columns)[0]
+        effect = float(((own_columns.T @ z) ** 2).sum())
+        generalised = None
+        if errors is not None and effect + errors > rounding:
+            generalised = effect / (effect + errors)
+        head: dict[str, Any] = {
+            "name": " × ".join((*own, *acting)),
+            "df1": d * columns.shape[1],
+            "df2": d * df_error,
+            "generalised_eta2": generalised,
+        }
+        if error <= rounding:
+            alike = "of a group are alike" if errors is None else "differ alike between its levels"
+            note = f"all participants {alike}; F has no value"
+            yield Effect(**head, note="; ".join([note] if errors is not None else [note, BETWEEN]))
+            continue
+        yield _tested(head, effect, left, df_error, cells if errors is not None else None)
+
+
+def _tested(
+    head: dict[str, Any], effect: float, left: Floats, df_error: int, cells: int | None
+) -> Effect:
+    """Test an effect against what is left over of its contrasts, float64[n, d].
+
+    With S the covariance of d contrasts, Greenhouse and Geisser 1959 estimate Box's (1954)
+    ε = tr(S)² / (d tr(S²)); Huynh and Feldt 1976 take (n d ε - 2) / (d (n - 1 - d ε)), 1 at most;
+    Mauchly 1940 tests W = |S| / (tr(S)/d)^d.
+
+    Parameters
+    ----------
+    head
+        Name, degrees of freedom and generalised eta².
+    effect
+        Sum of squares of the effect.
+    cells
+        Number of cells of the whole design; None beside groups.
+    """
+    n, d = left.shape
+    df1, df2 = head["df1"], head["df2"]
+    spread = np.linalg.svd(left, compute_uv=False) ** 2  # eigenvalues of S, but for a factor
+    shares, error = spread / spread.sum(), float((left**2).sum())
+    ratio = (effect / df1) / (error / df2)
+    epsilon = min(1.0, 1 / (d * float((shares**2).sum())))
+    wide = huynh_feldt(epsilon, n, d, groups=n - df_error)
+    p, p_narrow, p_wide = (
+        float(fisher.sf(ratio, by * df1, by * df2)) for by in (1.0, epsilon, wide)
+    )
+    found: dict[str, Any] = {
+        "f": ratio,
+        "p": p,
+        "epsilon": epsilon,
+        "p_corrected": p_narrow,
+        "huynh_feldt": wide,
+        "p_huynh_feldt": p_wide,
+        "partial_eta2": effect / (effect + error),
+    }
+    if cells is None:
+        return Effect(**head, **found, note=BETWEEN)
+    notes = []
+    if d == 1:
+        only = "one contrast" if " × " in head["name"] else "two levels"
+        notes.append(f"{only}: sphericity holds by itself")
+    elif n - 1 < d:
+        notes.append(f"{n} participants are too few to test the sphericity of {d} contrasts")
+    elif shares.min() <= 1e-12 * shares.max():
+        notes.append("some contrasts follow from the others; sphericity cannot be tested")
+    else:
+        log_w = min(0.0, float(np.log(d * shares).sum()))
+        found |= {"mauchly_w": math.exp(log_w), "mauchly_p": mauchly_p(log_w, n, d, cells)}
+    try:
+        interval = partial_eta2_interval(ratio, df1, df2)
+        found |= {"partial_low": interval.low, "partial_high": interval.high}
+    except Unanswerable as reason:
+        notes.append(f"no interval of partial eta²: {reason}")
+    return Effect(**head, **found, note="; ".join(notes))
+
+
+def _deviations(z: Floats) -> float:
     """Sum of squares about the mean over participants."""
     return float(((z - z.mean(axis=0)) ** 2).sum())
 
 
-def _effect(
-    factors: tuple[str, ...],
-    z: NDArray[np.float64],
-    all_errors: float,
-    rounding: float,
-    cells: int,
-) -> Effect:
-    """Test of one effect from its contrast scores, float64[n, df1]."""
-    n, df1 = z.shape
-    df2 = df1 * (n - 1)
-    of_effect, of_error = n * float((z.mean(axis=0) ** 2).sum()), _deviations(z)
-    total = of_effect + all_errors
-    generalised = of_effect / total if total > rounding else None
-    name = " × ".join(factors)
-    if of_error <= rounding:
-        empty: dict[str, Any] = dict.fromkeys(Effect.__slots__)
-        known = {"name": name, "factors": factors, "df1": df1, "df2": df2}
-        alike = "all participants differ alike between its levels; F has no value"
-        return Effect(**empty | known | {"generalised_eta2": generalised, "note": alike})
-    ratio = (of_effect / df1) / (of_error / df2)
-    found = sphericity(z, cells=cells, one_factor=len(factors) == 1)
-    p, p_greenhouse, p_huynh = (
-        float(f.sf(ratio, epsilon * df1, epsilon * df2))
-        for epsilon in (1.0, found.epsilon, found.huynh_feldt)
-    )
-    low, high, note = None, None, found.note
-    try:
-        interval = partial_eta2_interval(ratio, df1, df2)
-        low, high = interval.low, interval.high
-    except Unanswerable as reason:
-        note = "; ".join(filter(None, (note, f"no interval of partial eta²: {reason}")))
-    return Effect(
-        name=name,
-        factors=factors,
-        df1=df1,
-        df2=df2,
-        f=ratio,
-        p=p,
-        epsilon=found.epsilon,
-        p_corrected=p_greenhouse,
-        huynh_feldt=found.huynh_feldt,
-        p_huynh_feldt=p_huynh,
-        mauchly_w=found.w,
-        mauchly_chi2=found.chi2,
-        mauchly_df=found.df,
-        mauchly_p=found.p,
-        partial_eta2=of_effect / (of_effect + of_error),
-        partial_low=low,
-        partial_high=high,
-        generalised_eta2=generalised,
-        note=note,
-    )
+def _left_over(z: Floats, columns: Floats) -> Floats:
+    """Residuals of a regression on columns."""
+    return z - columns @ np.linalg.lstsq(columns, z, rcond=None)[0]
+
+
+def _group_of_each(participants: Sequence[str], between: Levels) -> dict[str, Cell]:
+    """Group of each participant: a level of each factor between."""
+    found: dict[str, Cell] = {}
+    for who, cell in zip(participants, zip(*between.values(), strict=True), strict=True):
+        if found.setdefault(who, cell) != cell:
+            raise Unanswerable(
+                f"participant '{who}' is in two groups, '{', '.join(found[who])}' and "
+                f"'{', '.join(cell)}'"
+            )
+    return found
+
+
+def _columns(names: Sequence[str], groups: Sequence[Cell]) -> list[tuple[Cell, Floats]]:
+    """Columns of each effect between participants, and of their mean; codes add up to 0."""
+    every = [list(dict.fromkeys(column)) for column in zip(*groups, strict=True)]
+    for name, levels in zip(names, every, strict=True):
+        if len(levels) < 2:
+            raise Unanswerable(f"everybody has the same {name}, '{levels[0]}'")
+    for cell in product(*every):
+        if cell not in groups:
+            raise Unanswerable(f"nobody with every score is in '{', '.join(cell)}'")
+    codes = []
+    for levels, own in zip(every, zip(*groups, strict=True), strict=True):
+        code = np.vstack([np.eye(len(levels) - 1), -np.ones(len(levels) - 1)])
+        codes.append(code[[levels.index(level) for level in own]])
+    parts: list[tuple[Cell, Floats]] = []
+    for size in range(len(names) + 1):
+        for subset in combinations(range(len(names)), size):
+            columns = np.ones((len(groups), 1))
+            for i in subset:
+                columns = (columns[:, :, None] * codes[i][:, None, :]).reshape(len(groups), -1)
+            parts.append((tuple(names[i] for i in subset), columns))
+    return parts
+
+
+def _too_few(
+    complete: tuple[str, ...], dropped: tuple[tuple[str, tuple[Cell, ...]], ...], cells: list[Cell]
+) -> str:
+    """Reason why there is nobody, or nobody else, to compare."""
+    nobody = [c for c in cells if not complete and all(c in gap for _, gap in dropped)]
+    if nobody:
+        return f"nobody has a score for '{', '.join(nobody[0])}'; each participant needs every cell"
+    who = f"one participant, '{complete[0]}'," if complete else "no participant"
+    why = "; ".join(f"'{name}' has none for '{', '.join(gap[0])}'" for name, gap in dropped[:3])
+    return f"{who} has a score in every cell; two are needed" + (f" ({why})" if why else "")

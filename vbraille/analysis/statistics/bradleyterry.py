@@ -2,36 +2,36 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from scipy.special import expit
 from scipy.stats import binomtest, ttest_1samp
 
-from vbraille.analysis.statistics.firth import connected, fit
 from vbraille.analysis.statistics.intervals import (
     FEWEST_PARTICIPANTS,
-    LEVEL,
     ROUNDING,
+    TAIL,
     Interval,
+    Unanswerable,
     mean_interval,
+    mean_share,
     wilson,
 )
-from vbraille.analysis.statistics.scores import check_level, finite_scores
-from vbraille.analysis.statistics.shares import mean_share
-from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
+SMALLEST_STEP = 1e-10
+LARGEST_STEP = 1.0  # keeps the first steps of one-sided comparisons from overshooting
+MOST_STEPS = 1000  # convergence is linear; tens of thousands of sparse tables took fewer than 400
 SAME = 1e-8
 """Strengths that differ by less are equal; the fit goes on until steps are far below it."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Scale:
+class Scale(NamedTuple):
     """Bradley and Terry's scale: value i is chosen over j with odds exp(s_i - s_j) to 1.
 
     Parameters
@@ -39,29 +39,15 @@ class Scale:
     strengths : float64[k]
         Natural logarithms of the strengths, with sum 0; bias-reduced (Firth 1993), see
         `bradley_terry`.
-    errors : float64[k]
-        Standard errors of the strengths.
     covariance : float64[k, k]
         Covariance of the strengths; the variance of s_i - s_j is c_ii + c_jj - 2 c_ij.
-    comparisons
-        Number of comparisons that the scale comes from.
     """
 
     strengths: NDArray[np.float64]
-    errors: NDArray[np.float64]
     covariance: NDArray[np.float64]
-    comparisons: int
-
-    def __post_init__(self) -> None:
-        k = len(self.strengths)
-        if self.errors.shape != (k,) or self.covariance.shape != (k, k):
-            raise ValueError(f"errors or covariance are not those of {k} strengths")
-        if not np.isfinite(self.strengths).all() or abs(self.strengths.sum()) > 1e-6:
-            raise ValueError(f"strengths {self.strengths} are not finite and of sum 0")
 
 
-@dataclass(frozen=True, slots=True)
-class Preference:
+class Preference(NamedTuple):
     """The value that is liked best.
 
     Parameters
@@ -107,16 +93,8 @@ def bradley_terry(wins: ArrayLike) -> Scale:
     Unanswerable
         If there are no comparisons, or they fall into groups of values that were
         never compared with each other.
-    ValueError
-        If these are no counts of pairs.
     """
     table = np.asarray(wins)
-    if table.ndim != 2 or table.shape[0] != table.shape[1]:
-        raise ValueError(f"wins of shape {table.shape}; a square is needed")
-    if table.size and not np.issubdtype(table.dtype, np.integer):
-        raise ValueError(f"wins are {table.dtype}, not integers")
-    if (table < 0).any() or np.diag(table).any():
-        raise ValueError("wins must be 0 or more, and 0 of a value over itself")
     if table.sum() == 0:
         raise Unanswerable("no comparisons")
     counts = table.astype(np.float64)[None]
@@ -125,8 +103,7 @@ def bradley_terry(wins: ArrayLike) -> Scale:
             "some values were never compared with the others, even by way of a third"
         )
     strengths, covariance = fit(counts)
-    errors = np.sqrt(np.diag(covariance[0]))
-    return Scale(strengths[0], errors, covariance[0], int(table.sum()))
+    return Scale(strengths[0], covariance[0])
 
 
 def preferred(
@@ -138,7 +115,6 @@ def preferred(
     *,
     seed: int,
     resamples: int = 2000,
-    level: float = LEVEL,
 ) -> Preference:
     """Preferred value: the mean over participants of where their own scale is highest.
 
@@ -163,26 +139,18 @@ def preferred(
         Seed of the resampling for one participant: the same seed gives the same interval.
     resamples
         Number of resamples; those that leave some values uncompared are left out.
-    level
-        Level of confidence.
 
     Raises
     ------
     Unanswerable
         If there are no comparisons, or nobody's comparisons make a scale with a highest value.
-    ValueError
-        If the columns are no comparisons of these values.
     """
-    check_level(level)
-    if resamples < 1:
-        raise ValueError(f"{resamples} resamples; one at least is needed")
-    values = finite_scores("values", values)
-    if np.unique(values).size != values.size:
-        raise ValueError(f"a value occurs twice in {values.tolist()}")
+    values = np.asarray(values, np.float64)
     wins = _wins_of_each(values.size, first, second, chosen, groups)
     order = np.argsort(values)
     values, wins = values[order], wins[:, order][:, :, order]
-    _check_all(wins.sum(axis=0))
+    if np.ptp(bradley_terry(wins.sum(axis=0)).strengths) <= SAME:
+        raise Unanswerable("all values were chosen equally often; none is preferred")
     own = _own_peaks(values, wins.astype(np.float64))
     notes = []
     if own.size < len(wins):
@@ -199,18 +167,18 @@ def preferred(
         notes.append("no interval")
     elif len(wins) == 1:
         try:
-            ends = _of_comparisons(values, wins[0], seed, resamples, level)
+            ends = _of_comparisons(values, wins[0], seed, resamples)
             how = "bootstrap over the comparisons of one participant"
         except Unanswerable as reason:
             notes.append(f"no interval: {reason}")
     else:
         try:
-            ends = mean_interval(own, level)
+            ends = mean_interval(own)
             how = f"Student's t over {own.size} participants' own values"
         except Unanswerable as reason:
             notes.append(f"no interval: {reason}")
     if ends is not None and (ends.low <= values[0] or ends.high >= values[-1]):
-        ends = Interval(max(ends.low, values[0]), min(ends.high, values[-1]), level)
+        ends = Interval(max(ends.low, values[0]), min(ends.high, values[-1]))
         if not at_end:
             notes.append("the interval reaches the end of what was tested; the best may lie beyond")
     return Preference(value, ends, how, "; ".join(notes))
@@ -240,12 +208,8 @@ def position_bias(chosen: ArrayLike, groups: ArrayLike) -> PositionBias:
     ------
     Unanswerable
         If there are no comparisons.
-    ValueError
-        If a choice is neither 0 nor 1.
     """
-    choice, who = _column("chosen", chosen, 2), np.asarray(groups)
-    if choice.shape != who.shape:
-        raise ValueError("chosen and groups must be of one length")
+    choice, who = np.asarray(chosen), np.asarray(groups)
     if choice.size == 0:
         raise Unanswerable("no comparisons")
     index = np.unique(who, return_inverse=True)[1]
@@ -263,36 +227,15 @@ def position_bias(chosen: ArrayLike, groups: ArrayLike) -> PositionBias:
     return PositionBias(float(own.mean()), interval, float(test.pvalue))
 
 
-def _column(name: str, column: ArrayLike, count: int) -> NDArray[np.int64]:
-    """A column of whole numbers in 0…count - 1."""
-    whole = np.asarray(column)
-    if whole.ndim != 1 or (whole.size and whole.dtype.kind not in "iub"):
-        raise ValueError(f"{name} must be one column of whole numbers")
-    if whole.size and not 0 <= whole.min() <= whole.max() < count:
-        raise ValueError(f"{name} must be in 0…{count - 1}")
-    return whole.astype(np.int64)
-
-
 def _wins_of_each(
     k: int, first: ArrayLike, second: ArrayLike, chosen: ArrayLike, groups: ArrayLike
 ) -> NDArray[np.int64]:
     """How often each participant chose one value over another, int64[participants, k, k]."""
-    one, two = _column("first", first, k), _column("second", second, k)
-    choice, who = _column("chosen", chosen, 2), np.asarray(groups)
-    if not one.shape == two.shape == choice.shape == who.shape:
-        raise ValueError("first, second, chosen and groups must be of one length")
-    if (one == two).any():
-        raise ValueError("a value was compared with itself")
+    one, two, choice, who = (np.asarray(column) for column in (first, second, chosen, groups))
     names, index = np.unique(who, return_inverse=True)
     wins = np.zeros((len(names), k, k), dtype=np.int64)
     np.add.at(wins, (index, np.where(choice, two, one), np.where(choice, one, two)), 1)
     return wins
-
-
-def _check_all(wins: NDArray[np.int64]) -> None:
-    """Refuse comparisons of all participants that prefer nothing."""
-    if np.ptp(bradley_terry(wins).strengths) <= SAME:
-        raise Unanswerable("all values were chosen equally often; none is preferred")
 
 
 def _own_peaks(values: NDArray[np.float64], wins: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -307,7 +250,7 @@ def _own_peaks(values: NDArray[np.float64], wins: NDArray[np.float64]) -> NDArra
 
 
 def _of_comparisons(
-    values: NDArray[np.float64], wins: NDArray[np.int64], seed: int, resamples: int, level: float
+    values: NDArray[np.float64], wins: NDArray[np.int64], seed: int, resamples: int
 ) -> Interval:
     """Percentile bootstrap over one participant's comparisons."""
     rng = np.random.default_rng(seed)
@@ -317,11 +260,10 @@ def _of_comparisons(
     usable = connected(drawn)
     if usable.mean() < 0.5:
         raise Unanswerable("too few comparisons; most resamples leave some values uncompared")
-    tail = (1 - level) / 2
-    low, high = np.quantile(_peaks(values, fit(drawn[usable])[0]), [tail, 1 - tail]).tolist()
+    low, high = np.quantile(_peaks(values, fit(drawn[usable])[0]), [TAIL, 1 - TAIL]).tolist()
     if high <= low:
         raise Unanswerable("too few comparisons that differ; all resamples prefer the same value")
-    return Interval(low, high, level)
+    return Interval(low, high)
 
 
 def _peaks(values: NDArray[np.float64], strengths: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -345,3 +287,79 @@ def _peaks(values: NDArray[np.float64], strengths: NDArray[np.float64]) -> NDArr
     share = slope_left / np.where(flat | at_end, 1, bend)
     vertex = (left + mid) / 2 + share * (right - left) / 2
     return np.where(at_end, values[top], np.where(flat, mid, vertex))
+
+
+def connected(wins: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether comparisons lead from every value to every other, bool[r] of float64[r, k, k]."""
+    k = wins.shape[-1]
+    ways = (wins + wins.swapaxes(1, 2) > 0) + np.eye(k)
+    for _ in range(k.bit_length()):  # each squaring doubles the length of the ways
+        ways = np.minimum(ways @ ways, 1.0)
+    return np.asarray(ways.min(axis=(1, 2)) > 0)
+
+
+def fit(
+    wins: NDArray[np.float64], *, most_steps: int = MOST_STEPS
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Strengths and their covariances, by Fisher scoring on Firth's modified score.
+
+    Firth 1993: to the wins of i over j and of j over i half the leverage of their
+    pair is added, h_ij = w_ij var(s_i - s_j), where w_ij = n_ij π_ij π_ji is the
+    pair's information. It depends on the strengths, so that it is worked out anew
+    in every step.
+
+    Parameters
+    ----------
+    wins : float64[r, k, k]
+        wins[., i, j] is how often i was chosen over j; every table must be connected.
+    most_steps
+        Number of steps after which the fit is given up.
+
+    Returns
+    -------
+    strengths : float64[r, k]
+        Natural logarithms of the strengths, with sum 0.
+    covariance : float64[r, k, k]
+        Inverse of the information.
+
+    Raises
+    ------
+    RuntimeError
+        If a table has not settled after so many steps.
+    """
+    r, k, _ = wins.shape
+    strengths, covariance = np.zeros((r, k)), np.empty((r, k, k))
+    going = np.arange(r)
+    for _ in range(most_steps):
+        s, won = strengths[going], wins[going]
+        share = expit(s[:, :, None] - s[:, None, :])
+        both = share * share.swapaxes(1, 2)
+        weight = (won + won.swapaxes(1, 2)) * both
+        inverse = _inverse(weight)
+        own = np.diagonal(inverse, axis1=1, axis2=2)
+        leverage = weight * (own[:, :, None] + own[:, None, :] - 2 * inverse)
+        # Wins that were not expected less losses that were not. The large numbers of one-sided
+        # comparisons are left out, since their difference would be lost in rounding.
+        surprise = (won + leverage / 2) * share.swapaxes(1, 2)
+        score = (surprise - surprise.swapaxes(1, 2)).sum(axis=2)
+        # Where the leverage is as large as the comparisons (one for each pair, say), steps by the
+        # information alone would be too long and never settle.
+        step = np.einsum("rij,rj->ri", _inverse(weight + leverage * both), score)
+        longest = np.abs(step).max(axis=1)
+        step *= (LARGEST_STEP / np.maximum(longest, LARGEST_STEP))[:, None]
+        strengths[going] = s + step
+        covariance[going] = inverse
+        going = going[longest > SMALLEST_STEP]
+        if not going.size:
+            return strengths - strengths.mean(axis=1, keepdims=True), covariance
+    raise RuntimeError(f"{going.size} scales of paired comparisons did not settle")
+
+
+def _inverse(weight: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Covariances of strengths of sum 0, from the information of each pair, float64[r, k, k].
+
+    1/k in every place takes up the direction in which all strengths move together.
+    """
+    k = weight.shape[-1]
+    information = np.eye(k) * weight.sum(axis=2, keepdims=True) - weight
+    return np.linalg.inv(information + 1 / k) - 1 / k

@@ -8,16 +8,13 @@ For yes and no, for which of two, and for same or different (Macmillan and Creel
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from scipy.optimize import root_scalar
 from scipy.special import ndtr, ndtri
 from scipy.stats import norm
 
-from vbraille.analysis.statistics.intervals import LEVEL, Interval
-from vbraille.analysis.statistics.scores import check_level
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.statistics.intervals import TAIL, Interval, Unanswerable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,8 +22,7 @@ if TYPE_CHECKING:
 LARGEST_D = 12.0  # d′ beyond which no share of answers tells it from more
 
 
-@dataclass(frozen=True, slots=True)
-class Detection:
+class Detection(NamedTuple):
     """Sensitivity and bias.
 
     Parameters
@@ -36,22 +32,15 @@ class Detection:
     criterion, criterion_interval
         Where between them the answer changes: 0 in the middle, above it for too few "yes", or
         "second", or "different".
-    hits, false_alarms
-        Shares of "yes" where there was something and where there was nothing, with the log-linear
-        correction.
     """
 
     d_prime: float
     d_interval: Interval
     criterion: float
     criterion_interval: Interval
-    hits: float
-    false_alarms: float
 
 
-def yes_no(
-    hits: int, signals: int, false_alarms: int, noises: int, level: float = LEVEL
-) -> Detection:
+def yes_no(hits: int, signals: int, false_alarms: int, noises: int) -> Detection:
     """Sensitivity d′ = z(H) - z(F) and criterion c = -(z(H) + z(F)) / 2 of yes and no.
 
     Intervals are Gourevitch and Galanter's (1967), with shares after the log-linear correction.
@@ -62,8 +51,6 @@ def yes_no(
         Number of "yes" among trials with something, and of these trials.
     false_alarms, noises
         The same of trials with nothing.
-    level
-        Level of confidence.
 
     Raises
     ------
@@ -72,48 +59,36 @@ def yes_no(
     ValueError
         If there are more answers than trials.
     """
-    check_level(level)
     z_hit, hit_variance = _z(hits, signals, "with something")
     z_false, false_variance = _z(false_alarms, noises, "with nothing")
-    half = float(norm.ppf((1 + level) / 2)) * math.sqrt(hit_variance + false_variance)
+    half = float(norm.ppf(1 - TAIL)) * math.sqrt(hit_variance + false_variance)
     d, c = z_hit - z_false, -(z_hit + z_false) / 2
     return Detection(
         d,
-        Interval(d - half, d + half, level),
+        Interval(d - half, d + half),
         c,
-        Interval(c - half / 2, c + half / 2, level),
-        float(ndtr(z_hit)),
-        float(ndtr(z_false)),
+        Interval(c - half / 2, c + half / 2),
     )
 
 
-def two_alternatives(
-    right_first: int, firsts: int, right_second: int, seconds: int, level: float = LEVEL
-) -> Detection:
+def two_alternatives(hits: int, firsts: int, false_alarms: int, seconds: int) -> Detection:
     """Sensitivity of which of two: d′ = (z(H) - z(F)) / √2, for two looks at the difference.
-
-    A hit is "first" where the first was it, a false alarm "first" where the second was.
 
     Parameters
     ----------
-    right_first, firsts
-        Number of right answers where the first was it, and of these trials.
-    right_second, seconds
-        The same where the second was.
-    level
-        Level of confidence.
+    hits, firsts
+        Number of answers "first" where the first was it, and of these trials.
+    false_alarms, seconds
+        Number of answers "first" where the second was, and of these trials.
 
     Raises
     ------
     Unanswerable
         If there are no trials of one order.
     ValueError
-        If there are more right answers than trials.
+        If there are more answers than trials.
     """
-    if not 0 <= right_second <= seconds:
-        raise ValueError(f"{right_second} right of {seconds} trials")
-    found = yes_no(right_first, firsts, seconds - right_second, seconds, level)
-    return _scaled(found, lambda d: d / math.sqrt(2))
+    return _scaled(yes_no(hits, firsts, false_alarms, seconds), lambda d: d / math.sqrt(2))
 
 
 def same_different(
@@ -121,16 +96,12 @@ def same_different(
     differents: int,
     false_alarms: int,
     sames: int,
-    *,
-    differencing: bool = True,
-    level: float = LEVEL,
 ) -> Detection:
     """Sensitivity of same or different, where "different" is the yes.
 
     By differencing, as where pairs vary from trial to trial, the difference felt is held against a
-    criterion k: F = 2 Φ(-k / √2), H = Φ((d′ - k) / √2) + Φ((-d′ - k) / √2). Otherwise each is told
-    apart by itself, as where the same two come all the time: d′ = 2 z(½ (1 + √(2 Φ(½ (z(H) - z(F)))
-    - 1))). The criterion is that of yes and no.
+    criterion k: F = 2 Φ(-k / √2), H = Φ((d′ - k) / √2) + Φ((-d′ - k) / √2). The criterion is that
+    of yes and no.
 
     Parameters
     ----------
@@ -138,10 +109,6 @@ def same_different(
         Number of "different" among trials with two that differ, and of these trials.
     false_alarms, sames
         The same of trials with two alike.
-    differencing
-        Which of the two is taken.
-    level
-        Level of confidence.
 
     Raises
     ------
@@ -150,10 +117,9 @@ def same_different(
     ValueError
         If there are more answers than trials.
     """
-    found = yes_no(hits, differents, false_alarms, sames, level)
-    if not differencing:
-        return _scaled(found, _independent)
-    middle = found.false_alarms
+    found = yes_no(hits, differents, false_alarms, sames)
+    z_false, _ = _z(false_alarms, sames, "with nothing")
+    middle = float(ndtr(z_false))
 
     def roved(d_yes_no: float) -> float:
         # The false alarms stay what they are; hits are what would give this d′ of yes and no.
@@ -165,20 +131,9 @@ def same_different(
 def _scaled(found: Detection, change: Callable[[float], float]) -> Detection:
     """The same with d′ and its interval changed by a function that rises."""
     ends = found.d_interval
-    return Detection(
-        change(found.d_prime),
-        Interval(change(ends.low), change(ends.high), ends.level),
-        found.criterion,
-        found.criterion_interval,
-        found.hits,
-        found.false_alarms,
+    return found._replace(
+        d_prime=change(found.d_prime), d_interval=Interval(change(ends.low), change(ends.high))
     )
-
-
-def _independent(d_yes_no: float) -> float:
-    """d′ of same or different by independent looks; 0 where differences do not help."""
-    best = max(2 * float(ndtr(d_yes_no / 2)) - 1, 0.0)
-    return float(2 * ndtri(min((1 + math.sqrt(best)) / 2, float(ndtr(LARGEST_D / 2)))))
 
 
 def _differenced(hits: float, false_alarms: float) -> float:

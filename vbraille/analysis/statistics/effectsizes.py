@@ -11,9 +11,7 @@ from scipy.optimize import root_scalar
 from scipy.special import chdtrc, ndtr
 from scipy.stats import chi2, ncf
 
-from vbraille.analysis.statistics.intervals import LEVEL, Interval
-from vbraille.analysis.statistics.scores import check_level
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.statistics.intervals import TAIL, Interval, Unanswerable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,7 +24,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(120)
 _FAR = 9.0  # standard deviations, beyond which a normal variable is not looked for
 
 
-def d_z_interval(t: float, n: int, level: float = LEVEL) -> Interval:
+def d_z_interval(t: float, n: int) -> Interval:
     """Interval of Cohen's d of paired differences.
 
     d_z = t / √n, and t is noncentral with δ = √n times the population's d_z (Cumming and
@@ -38,28 +36,24 @@ def d_z_interval(t: float, n: int, level: float = LEVEL) -> Interval:
         Student's t of the differences.
     n
         Number of participants, 2 or more.
-    level
-        Level of confidence.
 
     Raises
     ------
     Unanswerable
         If t is beyond ±10⁴.
     """
-    check_level(level)
     if abs(t) > LARGEST:
         raise Unanswerable(f"t is beyond {LARGEST:g}")
-    tail = (1 - level) / 2
     # Where t is negative, the interval is that of -t with its ends turned round.
     ends = [
         _root(lambda delta, p=p: noncentral_t_cdf(abs(t), n - 1, delta) - p, abs(t) - 1, abs(t) + 1)
-        for p in (1 - tail, tail)
+        for p in (1 - TAIL, TAIL)
     ]
     low, high = (end / math.sqrt(n) for end in ends)
-    return Interval(low, high, level) if t >= 0 else Interval(-high, -low, level)
+    return Interval(low, high) if t >= 0 else Interval(-high, -low)
 
 
-def partial_eta2_interval(ratio: float, df1: int, df2: int, level: float = LEVEL) -> Interval:
+def partial_eta2_interval(ratio: float, df1: int, df2: int) -> Interval:
     """Interval of partial eta squared, λ / (λ + df1 + df2 + 1) (Steiger 2004).
 
     F is noncentral with λ if sphericity holds and differences are normal; an end is 0 where F
@@ -73,27 +67,23 @@ def partial_eta2_interval(ratio: float, df1: int, df2: int, level: float = LEVEL
         Value of F.
     df1, df2
         Degrees of freedom of the effect and of its error.
-    level
-        Level of confidence.
 
     Raises
     ------
     Unanswerable
         If F is beyond 10⁴.
     """
-    check_level(level)
     if ratio > LARGEST:
         raise Unanswerable(f"F is beyond {LARGEST:g}")
-    tail = (1 - level) / 2
     ends = []
-    for p in (1 - tail, tail):
+    for p in (1 - TAIL, TAIL):
         if float(ncf.cdf(ratio, df1, df2, 0)) <= p:
             ends.append(0.0)
             continue
         found = _root(lambda nc, p=p: float(ncf.cdf(ratio, df1, df2, nc)) - p, 0.0, df1 * ratio + 1)
         ends.append(found / (found + df1 + df2 + 1))
     estimate = df1 * ratio / (df1 * ratio + df2)
-    return Interval(min(ends[0], estimate), max(ends[1], estimate), level)
+    return Interval(min(ends[0], estimate), max(ends[1], estimate))
 
 
 def noncentral_t_cdf(t: float, df: int, delta: float) -> float:

@@ -4,24 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.special import gammaln
-from scipy.stats import t as student
-from scipy.stats import ttest_rel
+from scipy.stats import ttest_1samp, ttest_rel
 
 from vbraille.analysis.statistics.effectsizes import d_z_interval
-from vbraille.analysis.statistics.scores import check_level, finite_scores
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.statistics.intervals import LEVEL, ROUNDING, Unanswerable, finite_scores
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
-
-# Differences that vary by less than this share of the scores vary only by rounding.
-ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,31 +25,22 @@ class PairedTest:
 
     Parameters
     ----------
-    n
-        Number of participants.
     mean_difference, low, high
-        Mean of the differences and its confidence interval, in the unit of the scores.
-    level
-        Level of confidence of the interval.
-    sd
-        Standard deviation of the differences (n - 1 in the denominator).
+        Mean of the differences and its 95 % confidence interval, in the unit of the scores.
     t, df, p
         Student's t, its degrees of freedom, the two-sided p.
     d_z
-        Cohen's d of the differences, mean / sd (Cohen 1988, 2.3.5).
+        Cohen's d of the differences, their mean by their standard deviation (Cohen 1988, 2.3.5).
     d_low, d_high
-        Confidence interval of d, by noncentral t; None where t is too large for an interval.
+        95 % confidence interval of d, by noncentral t; None where t is too large for an interval.
     g_z
         `d_z` with Hedges' correction for few participants; None for two
         participants, where the correction would leave nothing.
     """
 
-    n: int
     mean_difference: float
     low: float
     high: float
-    level: float
-    sd: float
     t: float
     df: int
     p: float
@@ -62,14 +48,6 @@ class PairedTest:
     d_low: float | None
     d_high: float | None
     g_z: float | None
-
-    def __post_init__(self) -> None:
-        if self.n < 2 or self.df != self.n - 1:
-            raise ValueError(f"{self.df} degrees of freedom of {self.n} participants")
-        if not self.sd > 0:
-            raise ValueError(f"sd {self.sd} is not above 0")
-        if not 0 <= self.p <= 1:
-            raise ValueError(f"p {self.p} is not in 0…1")
 
 
 def hedges_correction(df: int) -> float:
@@ -91,7 +69,6 @@ def hedges_correction(df: int) -> float:
 def paired_t(
     first: Sequence[float] | NDArray[np.float64],
     second: Sequence[float] | NDArray[np.float64],
-    level: float = 0.95,
 ) -> PairedTest:
     """Student's t-test of the differences between two conditions.
 
@@ -99,8 +76,6 @@ def paired_t(
     ----------
     first, second : float[n]
         Scores of the same participants, in the same order and unit.
-    level
-        Level of confidence of the interval.
 
     Raises
     ------
@@ -109,7 +84,6 @@ def paired_t(
     ValueError
         If the two are not of one length, or a score is not finite.
     """
-    check_level(level)
     one, two = finite_scores("first scores", first), finite_scores("second scores", second)
     if one.size != two.size:
         raise ValueError(f"{one.size} first scores and {two.size} second ones")
@@ -122,19 +96,16 @@ def paired_t(
     if sd == 0 or np.ptp(differences) <= ROUNDING * largest:
         raise Unanswerable("all differences are the same; t has no value")
     test = ttest_rel(one, two)
-    interval = test.confidence_interval(level)
+    interval = test.confidence_interval(LEVEL)
     try:
-        of_d = d_z_interval(float(test.statistic), n, level)
+        of_d = d_z_interval(float(test.statistic), n)
     except Unanswerable:
         of_d = None
     mean = float(differences.mean())
     return PairedTest(
-        n=n,
         mean_difference=mean,
         low=float(interval.low),
         high=float(interval.high),
-        level=level,
-        sd=sd,
         t=float(test.statistic),
         df=n - 1,
         p=float(test.pvalue),
@@ -166,8 +137,8 @@ def paired_p_values(differences: NDArray[np.float64]) -> NDArray[np.float64]:
     n = differences.shape[1]
     if n < 2:
         raise Unanswerable(f"{'one participant' if n else 'no participants'}; a t-test needs two")
-    mean = differences.mean(axis=1)
     # By their spread, since the sd of equal differences is not quite 0.
     alike = np.ptp(differences, axis=1) <= ROUNDING * np.abs(differences).max(axis=1)
-    sd = np.where(alike, np.nan, differences.std(axis=1, ddof=1))
-    return 2 * student.sf(np.abs(mean) / sd * math.sqrt(n), n - 1)
+    own = np.where(alike[:, None], np.nan, differences)
+    test: Any = ttest_1samp(own, 0.0, axis=1)
+    return test.pvalue

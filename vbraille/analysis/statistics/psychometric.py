@@ -13,18 +13,14 @@ out on a grid (Schütt et al. 2016). docs/analysis.md has how often they hold th
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize
 from scipy.special import expit, ndtr, xlog1py, xlogy
-from scipy.stats import chi2
 
-from vbraille.analysis.statistics.intervals import LEVEL, Interval
-from vbraille.analysis.statistics.scores import check_level, finite_scores
-from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.statistics.intervals import TAIL, Interval, Unanswerable
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -54,8 +50,7 @@ SHAPES: Mapping[str, Curve] = MappingProxyType(
 exponent, and its levels are above 0."""
 
 
-@dataclass(frozen=True, slots=True)
-class PsychometricFit:
+class PsychometricFit(NamedTuple):
     """A psychometric function of one participant.
 
     Parameters
@@ -67,15 +62,8 @@ class PsychometricFit:
         where the quantiles of the posterior leave it outside.
     spread, spread_interval
         The larger, the flatter; in the unit of the levels, but for the Weibull, which has none.
-    slope
-        Rise of the share at the threshold, in one over the unit of the levels.
     guess, lapse
         Shares γ and λ.
-    deviance, df, p
-        Twice what the log likelihood lacks to that of each level's own share; levels less two,
-        since lapses hardly follow the answers, blanks being one more level and free guesses one
-        more parameter; p of such a deviance by chi-square, which is meant for levels of ten trials
-        or more, NaN where there is no degree of freedom.
     note
         What else to know; may be empty.
     """
@@ -85,12 +73,8 @@ class PsychometricFit:
     threshold_interval: Interval
     spread: float
     spread_interval: Interval
-    slope: float
     guess: float
     lapse: float
-    deviance: float
-    df: int
-    p: float
     note: str
 
     def shares(self, levels: ArrayLike) -> NDArray[np.float64]:
@@ -120,7 +104,6 @@ def fit_psychometric(
     guess: float | None = 0.5,
     blanks: tuple[int, int] = (0, 0),
     scale: tuple[float, float] = (-math.inf, math.inf),
-    level: float = LEVEL,
 ) -> PsychometricFit:
     """Fit a psychometric function to the answers of one participant.
 
@@ -140,18 +123,13 @@ def fit_psychometric(
         of free guesses.
     scale
         Ends of what the levels are measured by, such as 0 and 1; no threshold is beyond them.
-    level
-        Level of confidence.
 
     Raises
     ------
     Unanswerable
         If there are fewer than three levels, all answers or none are positive, or their share
         does not rise.
-    ValueError
-        If there is no such shape, the counts are none, or there are blanks of fixed guesses.
     """
-    check_level(level)
     asked = _answers(levels, positive, trials, shape, guess, blanks)
     edges = _first_edges(asked, shape, scale)
     within = [(float(axis[0]), float(axis[-1])) for axis in edges]
@@ -165,28 +143,18 @@ def fit_psychometric(
     ends = []
     for axis in (0, 1):
         own = mass.sum(axis=tuple(i for i in range(mass.ndim) if i != axis))
-        ends.append(_between(edges[axis], own, level))
+        ends.append(_between(edges[axis], own))
     threshold, spread, lapse = best[0], math.exp(best[1]), best[2]
     floor = best[3] if asked.guess is None else asked.guess
-    interval = Interval(min(ends[0][0], threshold), max(ends[0][1], threshold), level)
-    deviance = _deviance(asked, best)
-    df = len(asked.levels) + (asked.blanks[1] > 0) - len(best) + 1
-    step = 1e-5 * spread * (threshold if shape == "weibull" else 1.0)
-    rise = np.diff(
-        asked.curve(threshold + np.array([-step, step]), *map(np.array, best[:1]), spread)
-    )
+    interval = Interval(min(ends[0][0], threshold), max(ends[0][1], threshold))
     return PsychometricFit(
         shape,
         threshold,
         interval,
         spread,
-        Interval(min(math.exp(ends[1][0]), spread), max(math.exp(ends[1][1]), spread), level),
-        (1 - floor - lapse) * float(rise[0]) / (2 * step),
+        Interval(min(math.exp(ends[1][0]), spread), max(math.exp(ends[1][1]), spread)),
         floor,
         lapse,
-        deviance,
-        df,
-        float(chi2.sf(deviance, df)) if df > 0 else math.nan,
         "; ".join(_beyond(asked, threshold, interval)),
     )
 
@@ -200,21 +168,8 @@ def _answers(
     blanks: tuple[int, int],
 ) -> LevelCounts:
     """Counts with equal levels put together, in their order, after checks."""
-    if shape not in SHAPES:
-        raise ValueError(f"no shape {shape!r}; there are {', '.join(SHAPES)}")
-    if guess is not None and not 0 <= guess < 1:
-        raise ValueError(f"guess {guess} is not in 0…1")
-    if not 0 <= blanks[0] <= blanks[1]:
-        raise ValueError(f"{blanks[0]} positive answers to {blanks[1]} blanks")
-    if guess is not None and blanks[1]:
-        raise ValueError("blanks tell of free guesses, and guess is fixed")
-    x = finite_scores("levels", levels)
-    y, n = (np.asarray(of, np.float64) for of in (positive, trials))
-    if not (x.shape == y.shape == n.shape) or not ((y >= 0) & (y <= n) & (n < np.inf)).all():
-        raise ValueError("positive answers must be counts, no more than the trials of each level")
+    x, y, n = (np.asarray(of, np.float64) for of in (levels, positive, trials))
     x, y, n = x[n > 0], y[n > 0], n[n > 0]
-    if shape == "weibull" and not (x > 0).all():
-        raise ValueError("levels of a Weibull must be above 0")
     found, at = np.unique(x, return_inverse=True)
     y, n = (np.asarray(np.bincount(at, of, found.size), np.float64) for of in (y, n))
     if found.size < FEWEST_LEVELS:
@@ -300,27 +255,14 @@ def _best(asked: LevelCounts, start: list[float], within: list[tuple[float, floa
         found = at.tolist()
         guess = found[3] if asked.guess is None else 0.0
         prior = (_FEW - 1) * math.log1p(-found[2])
-        return -_likelihood(asked, _shares(asked, found)) - prior - _of_blanks(asked, guess)
+        share, no = _shares(asked, found), asked.trials - asked.positive
+        likely = float((xlogy(asked.positive, share) + xlog1py(no, -share)).sum())
+        return -likely - prior - _of_blanks(asked, guess)
 
     found = minimize(
         lost, start, method="L-BFGS-B", bounds=within, options={"ftol": 1e-14, "gtol": 1e-8}
     )
     return [float(value) for value in found.x]
-
-
-def _likelihood(asked: LevelCounts, share: NDArray[np.float64]) -> float:
-    """Log likelihood of the answers at the levels."""
-    no = asked.trials - asked.positive
-    return float((xlogy(asked.positive, share) + xlog1py(no, -share)).sum())
-
-
-def _deviance(asked: LevelCounts, best: list[float]) -> float:
-    found = _likelihood(asked, _shares(asked, best))
-    own = _likelihood(asked, asked.positive / asked.trials)
-    if asked.blanks[1]:
-        found += _of_blanks(asked, best[3])
-        own += _of_blanks(asked, asked.blanks[0] / asked.blanks[1])
-    return max(2 * (own - found), 0.0)
 
 
 def _beyond(asked: LevelCounts, threshold: float, interval: Interval) -> Iterator[str]:
@@ -334,11 +276,8 @@ def _beyond(asked: LevelCounts, threshold: float, interval: Interval) -> Iterato
         yield f"the interval ends above the highest level presented, {high:g}"
 
 
-def _between(
-    edges: NDArray[np.float64], mass: NDArray[np.float64], level: float
-) -> tuple[float, float]:
-    """Ends between which the level's share of the mass in equal cells lies."""
+def _between(edges: NDArray[np.float64], mass: NDArray[np.float64]) -> tuple[float, float]:
+    """Ends between which the intervals' share of the mass in equal cells lies."""
     sums = np.concatenate([[0.0], np.cumsum(mass / mass.sum())])
-    tail = (1 - level) / 2
-    low, high = np.interp([tail, 1 - tail], sums, edges).tolist()
+    low, high = np.interp([TAIL, 1 - TAIL], sums, edges).tolist()
     return low, high

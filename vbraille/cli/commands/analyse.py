@@ -36,13 +36,13 @@ def run(arguments: argparse.Namespace) -> int:
 
         write_report(results, folder)
     if arguments.json:
-        from vbraille.analysis.report.tojson import to_json
+        from vbraille.analysis.report.totext import to_json
 
         sys.stdout.writelines(to_json(results))
     elif folder is not None:
         print(printable(f"written: {folder / 'report.html'}"))
     else:
-        from vbraille.analysis.report.tolines import to_lines
+        from vbraille.analysis.report.totext import to_lines
 
         for line in to_lines(results):
             print(printable(spelled(line)))

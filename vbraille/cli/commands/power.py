@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
         studies=arguments.studies,
         seed=SEED if arguments.seed is None else arguments.seed,
     )
-    workers = Workers(arguments.workers, arguments.cluster)
+    workers = Workers(arguments.workers)
     keep = None if arguments.keep is None else Path(arguments.keep)
     with WorkProgress() as progress:
         table = power(question, workers, keep=keep, told=progress.of)
@@ -59,11 +59,10 @@ def _lines(table: PowerTable) -> Iterator[str]:
     for word, sentence in table.about:
         yield f"{word}: {sentence}"
     for row in table.rows:
-        closed = "" if row.closed_form is None else f"; if normal {row.closed_form:.1%}"
         untested = f"; without a p {row.untested}" if row.untested else ""
         line = (
             f"{count(row.participants, 'participant')}: {row.first} against {row.second}; "
-            f"power {row.power:.1%}, {row.low:.1%} to {row.high:.1%}{closed}{untested}"
+            f"power {row.power:.1%}, {row.low:.1%} to {row.high:.1%}{untested}"
         )
         yield line.replace("%", " %")
     largest = max(row.participants for row in table.rows)

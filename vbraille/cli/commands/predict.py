@@ -25,7 +25,7 @@ def run(arguments: argparse.Namespace) -> int:
     out = None if arguments.out is None else Path(arguments.out)
     if out is not None:
         check_free(out)
-    workers = Workers(arguments.workers, arguments.cluster)
+    workers = Workers(arguments.workers)
     keep = None if arguments.keep is None else Path(arguments.keep)
     with WorkProgress() as progress:
         grid, found, ended = predict(arguments.grid, workers, keep=keep, told=progress.of)

@@ -86,7 +86,7 @@ def predict(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--out",
         metavar="DIR",
-        help="Write the table and the maps to this new directory (default: print the table).",
+        help="Write the table to this new directory (default: print the table).",
     )
     _workers(parser)
     _printed(parser)
@@ -134,12 +134,6 @@ def _protocol(parser: ArgumentParser) -> None:
 
 def _workers(parser: ArgumentParser) -> None:
     _number_of_workers(parser)
-    parser.add_argument(
-        "--cluster",
-        metavar="ADDRESS",
-        help="Let a cluster of dask's work, whose scheduler has this address, such as "
-        "tcp://lab:8786 (default: this machine works).",
-    )
     parser.add_argument(
         "--keep",
         metavar="FILE",

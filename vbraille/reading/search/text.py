@@ -8,14 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.reading.search.folding import fold, needle_of, unfolded
+from vbraille.reading.search.sieve import Sieve, ahead, behind
 from vbraille.reading.search.structure import extend
+from vbraille.translate.documents.document import Document
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Generator, Iterator
 
     from numpy.typing import NDArray
 
     from vbraille.reading.search.queries import FindText
+    from vbraille.reading.search.sieve import Suspect
     from vbraille.translate.source import Block, Source
 
 SPAN_CHARACTERS = 32_768
@@ -99,6 +102,18 @@ def backward(
         yield 1.0 - source.progress(first)
 
 
+def within(
+    source: Source, characters: tuple[int, int], sought: Sought, *, backward: bool
+) -> int | None:
+    """Place of the first or last hit that begins in a range of the source's characters."""
+    start, end = characters
+    first, last = source.block_at(start), source.block_at(end)
+    if first is None:
+        return None
+    span, _ = _span(source, first, None if last is None else last + 1, sought, end)
+    return last_hit(span, sought) if backward else first_hit(span, sought)
+
+
 def first_hit(span: _Span, sought: Sought) -> int | None:
     """Place of the first hit that begins in a span at the start or after it."""
     folded = fold(span.text, accents=sought.accents)
@@ -135,11 +150,13 @@ def _span(
     first: int,
     after: int | None,
     sought: Sought,
+    upto: int | None = None,
     characters: int = SPAN_CHARACTERS,
 ) -> tuple[_Span, int]:
     """Blocks from a number on, and the number of the first that is not in the span.
 
-    They go up to the number `after`; if that is None, they are as many as have so many characters.
+    They go up to the number `after`; if that is None, up to the place `upto`; if that is None,
+    too, they are as many as have so many characters.
     """
     texts: list[str] = []
     places: list[NDArray[np.int64]] = []
@@ -159,7 +176,12 @@ def _span(
         if inside:
             number += 1
             length = size
-            inside = size < characters if after is None else number < after
+            if after is not None:
+                inside = number < after
+            elif upto is not None:
+                inside = block.text.end <= upto
+            else:
+                inside = size < characters
             following = number
         else:
             more += len(fold(texts[-1], accents=sought.accents))
@@ -184,7 +206,8 @@ def find_text(source: Source, query: FindText, *, near: bool = False) -> Iterato
     Parameters
     ----------
     near
-        Whether only what is near matters: the steps are then small.
+        Whether only what is near matters: the steps are then small, and far more are needed for
+        a long plain text. The answer is the same.
 
     Yields
     ------
@@ -195,6 +218,9 @@ def find_text(source: Source, query: FindText, *, near: bool = False) -> Iterato
     if not needle:
         return
     sought = Sought(needle, query.fold_accents, query.start)
+    if isinstance(source, Document) and not near:
+        yield from (_back_in if query.backward else _on_in)(source, sought)
+        return
     characters = _NEAR_CHARACTERS if near else SPAN_CHARACTERS
     if query.backward:
         yield from _before(source, sought, characters)
@@ -228,3 +254,52 @@ def _known_character(source: Source) -> int:
     rows = source.index().rows
     character = rows[-1][1] if rows else 0
     return character if isinstance(character, int) else 0
+
+
+def _on_in(document: Document, sought: Sought) -> Iterator[int | float]:
+    """Look for a text from its start on in a plain text."""
+    sieve = Sieve(sought.needle, accents=sought.accents)
+    rows = document.index().rows
+    row = rows[_row_before(rows, sought.start)]
+    for suspect in ahead(document, row, sieve):
+        if suspect.hit and suspect.end > sought.start:
+            found = yield from _hit(document, suspect, sought, backward=False)
+            if found is not None:
+                yield found
+                return
+        yield suspect.offset / document.size
+
+
+def _back_in(document: Document, sought: Sought) -> Iterator[int | float]:
+    """Look for a text backwards from its start in a plain text."""
+    while sought.start >= _known_character(document) and extend(document):
+        yield 0.0
+    sieve = Sieve(sought.needle, accents=sought.accents)
+    rows = document.index().rows
+    for suspect in behind(document, rows, _row_before(rows, sought.start), sieve):
+        if suspect.hit:
+            found = yield from _hit(document, suspect, sought, backward=True)
+            if found is not None:
+                yield found
+                return
+        yield 1.0 - suspect.offset / document.size
+
+
+def _hit(
+    document: Document, suspect: Suspect, sought: Sought, *, backward: bool
+) -> Generator[float, None, int | None]:
+    """Have the blocks say whether there is a hit; they are read as far as that."""
+    while suspect.end >= _known_character(document) and extend(document):
+        yield _known_character(document) / max(suspect.end, 1) * suspect.offset / document.size
+    start = suspect.start if backward else max(suspect.start, sought.start)
+    return within(document, (start, suspect.end), sought, backward=backward)
+
+
+def _row_before(rows: tuple[tuple[int | str, ...], ...], character: int) -> int:
+    """Number of the last row whose chunk begins at a character or before it."""
+    low, high = 0, len(rows)
+    while high - low > 1:
+        middle = (low + high) // 2
+        at = rows[middle][1]
+        low, high = (middle, high) if isinstance(at, int) and at <= character else (low, middle)
+    return low

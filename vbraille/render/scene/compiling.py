@@ -16,7 +16,7 @@ from vbraille.render.scene.trees import deflection, layer
 from vbraille.render.work import ProgramKind
 from vbraille.scene.patterns import Shape
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating
-from vbraille.scene.walking import drawn_vibrations, each
+from vbraille.scene.traversal import drawn_vibrations, each
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,7 +13,7 @@ from vbraille.render.scene.brailleplaces import box_of
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.patterns import Fill, Group, Image, Label, Polygon, Uniform
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.walking import each, moved
+from vbraille.scene.traversal import each, moved
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -28,7 +28,7 @@ from vbraille.scene.bounds import drawn_radius_mm, unchanged_bounds
 from vbraille.scene.dotting import PlacedDot, dots_of
 from vbraille.scene.joints import stroke_cycles
 from vbraille.scene.patterns import Circle, Dots, Polygon, StraightLine
-from vbraille.scene.walking import each
+from vbraille.scene.traversal import each
 
 if TYPE_CHECKING:
     from collections.abc import Callable

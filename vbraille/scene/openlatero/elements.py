@@ -154,7 +154,6 @@ def _elements(root: Any, name: str, remarks: Remarks) -> GenElement:
             child = _element(inner, element, remarks)
             element.children.append(child)
             left.append((inner, child, depth + 1))
-        _say_stray(xml, element)
     return top
 
 
@@ -166,16 +165,6 @@ def _element(xml: Any, above: GenElement | None, remarks: Remarks) -> GenElement
         owner, path = attributes.get("subtype") or attributes.get("type") or name, ""
     line = xml.sourceline or 1
     return GenElement(name, line, attributes, xml.text or "", remarks, owner, path)
-
-
-def _say_stray(xml: Any, element: GenElement) -> None:
-    """Say so if there is text where only elements have a meaning."""
-    if not len(xml):
-        return
-    stray = "".join([xml.text or "", *(inner.tail or "" for inner in xml)])
-    if stray.strip():
-        said = printable(" ".join(stray.split()))[:40]
-        element.say(f'the stray text "{said}" is ignored')
 
 
 # Numbers as C reads them, which is independent of the locale here.
@@ -338,11 +327,9 @@ class GenElement:
     def chosen(self, text: str, words: Collection[str], default: str) -> str:
         """One of a few words for a text, or what counts for others, which is said."""
         word = cleaned(text)
-        if word in words:
-            return word
-        if word.lower() in words:
-            self.say(f'{self.path} is "{_short(word)}", which is taken as "{word.lower()}"')
-            return word.lower()
+        for known in (word, word.lower()):
+            if known in words:
+                return known
         self.say(
             f'{self.path} "{_short(word)}" is not known, so "{default}" is taken'
             f"{nearest(word, words)}"

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.scene.filebytes import read_bytes
-from vbraille.scene.opened import FoundScene
 from vbraille.scene.openlatero.context import SURFACE_MM, GenContext
 from vbraille.scene.openlatero.elements import MOST_BYTES, Remarks, read_tree
 from vbraille.scene.openlatero.groups import (
@@ -20,15 +19,16 @@ from vbraille.scene.openlatero.groups import (
 from vbraille.scene.openlatero.images import read_image
 from vbraille.scene.openlatero.shapes import read_circle, read_dots, read_line, read_polygon
 from vbraille.scene.openlatero.textures import read_texture
+from vbraille.scene.origins import FoundScene
 from vbraille.scene.patterns import Group
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.walking import placed_children
+from vbraille.scene.traversal import placed_children
 
 if TYPE_CHECKING:
     from vbraille.scene.openlatero.context import Reader
     from vbraille.scene.openlatero.elements import GenElement
     from vbraille.scene.patterns import AnyPattern, Operation
-    from vbraille.scene.walking import Steps
+    from vbraille.scene.traversal import Steps
 
 TYPES: dict[str, Reader] = {
     "Line": read_line,

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from vbraille.scene.crossing import meeting_edges
+from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.joints import joints, rounding_radius_mm
 from vbraille.scene.measures import LEAST_MM, MOST_MM
 from vbraille.scene.openlatero.context import SURFACE_MM, swung, vibration
@@ -432,17 +433,9 @@ def operation_of(element: GenElement, default: str) -> str:
 
 def _vertices(element: GenElement) -> tuple[Point, ...]:
     """Vertices of a polygon, without those that stand on the one before."""
-    kept: list[Point] = []
-    for vertex in element.every("vertex"):
-        point = vertex.place((0.0, 0.0))
-        if kept and kept[-1] == point:
-            vertex.say("this vertex is where the one before is; left out")
-        else:
-            kept.append(point)
-    if len(kept) > 1 and kept[0] == kept[-1]:
-        element.say("the last vertex is where the first is; left out")
-        kept.pop()
-    return tuple(kept)
+    places = (vertex.place((0.0, 0.0)) for vertex in element.every("vertex"))
+    kept = [place for place, _ in groupby(places)]
+    return tuple(kept[:-1] if len(kept) > 1 and kept[0] == kept[-1] else kept)
 
 
 def _markers(corner: GenElement, context: GenContext, look: StrokeLook) -> VertexMarkers | None:

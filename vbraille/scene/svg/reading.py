@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
-from vbraille.scene.opened import FoundScene
+from vbraille.scene.origins import FoundScene
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.svg.drawing import SvgDrawing, start, view_of
 from vbraille.scene.svg.numbers import PX_MM, AffineMap, fit, length_px
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from vbraille.scene.svg.drawing import DrawnNode
     from vbraille.scene.svg.looks import ClassLook
     from vbraille.scene.svg.tree import Element
-    from vbraille.scene.walking import Steps
+    from vbraille.scene.traversal import Steps
 
 _LANGUAGE = re.compile(r"[A-Za-z]{2,3}(?:-[A-Za-z0-9]{1,8})*")
 _XML_LANG = "{http://www.w3.org/XML/1998/namespace}lang"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from vbraille.scene.crossing import meeting_edges
+from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.measures import LEAST_MM
 from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 from vbraille.scene.svg.numbers import length_px, numbers_of

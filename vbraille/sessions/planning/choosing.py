@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from msgspec import structs
 
-from vbraille.adaptive.stopping import Asked
+from vbraille.adaptive.staircase import Asked
 from vbraille.errors import VbrailleError
 from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.procedures import (
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from vbraille.adaptive.questplus import GridQuest
-    from vbraille.adaptive.staircase import Staircases
-    from vbraille.adaptive.stopping import StopRule
+    from vbraille.adaptive.staircase import Staircases, StopRule
     from vbraille.sessions.planning.plan import Plan
+    from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.questions import AnyQuestion
 
 
@@ -52,27 +52,6 @@ class Answered:
     trial: Trial
     answer: str
     t_s: float = 0.0
-
-
-class Procedure(Protocol):
-    """Rule that chooses the next trial. The same history must always give the same trial."""
-
-    @property
-    def trials(self) -> Sequence[Trial] | None:
-        """All trials in order, if they are known beforehand; None if they depend on the answers."""
-        ...
-
-    def next(self, history: Sequence[Answered], /) -> Trial | None:
-        """Trial that follows a history, with the next number; None if there are no more trials.
-
-        The history leaves practice out. Where an answer was taken back, the history has in its
-        place the answer that was given instead.
-        """
-        ...
-
-    def found(self, history: Sequence[Answered], /) -> Sequence[str]:
-        """Sentences on what the answers have shown; none if the procedure does not go by them."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,6 +238,11 @@ class ByAnswers:
         left = [(self._of[name][len(own)].number, len(own), name)
                 for name, own in asked.items() if len(own) < len(self._of[name])]  # fmt: skip
         return [(place, name) for _, place, name in sorted(left)]
+
+
+# Rule that chooses the next trial by the history, which leaves practice out, and has an answer that
+# was given anew in the place of the one taken back. The same history must give the same trial.
+Procedure = FixedOrder | ByAnswers
 
 
 def procedure_of(protocol: Protocol, plan: Plan) -> Procedure:

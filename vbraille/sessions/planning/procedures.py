@@ -5,16 +5,15 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Literal
 
-from vbraille.adaptive.estimates import GridAxis
 from vbraille.adaptive.questplus import (
+    GridAxis,
     GridQuest,
     detection_quest,
     nearer_quest,
     ordered_pairs,
     steps,
 )
-from vbraille.adaptive.staircase import StaircaseRule, Staircases
-from vbraille.adaptive.stopping import StopRule
+from vbraille.adaptive.staircase import StaircaseRule, Staircases, StopRule
 from vbraille.errors import check_range
 from vbraille.sessions.planning.design import MOST_TRIALS, Choice, Design
 from vbraille.sessions.planning.stimuli import KNOBS, KnobName

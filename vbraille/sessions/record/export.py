@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.record.progress import TrialRecord
+    from vbraille.sessions.record.progress import Progress, TrialRecord
     from vbraille.sessions.record.traces import Trace
 
 
@@ -175,7 +175,7 @@ def rows(record: Record, traces: Traces | None = None) -> list[dict[str, Any]]:
 
 
 def walk(
-    record: Record, traces: Traces | None = None
+    record: Record, traces: Traces | None = None, progress: Progress | None = None
 ) -> Iterator[tuple[dict[str, Any], Trajectory | str | None]]:
     """Go through a session trial by trial.
 
@@ -183,6 +183,8 @@ def walk(
     ----------
     record, traces
         These are described at `rows`.
+    progress
+        Course of the session, if it is known already.
 
     Yields
     ------
@@ -193,7 +195,7 @@ def walk(
         for trials whose trace is not read: comparisons, trials on paper or on a conventional
         display, and trials without an answer.
     """
-    progress = record.progress()
+    progress = record.progress() if progress is None else progress
     traces = Traces(record) if traces is None else traces
     fields = {f"field_{name}": value for name, value in record.head["fields"].items()}
     notes = read_notes(record.told.events)

@@ -114,7 +114,7 @@ def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.f
         If a trace cannot be read.
     """
     progress = record.progress()
-    pictures = Pictures(record, progress)
+    pictures = StimulusPrograms(record, progress)
     for run in progress.runs:
         if not run.trace:
             continue
@@ -126,8 +126,8 @@ def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.f
                 yield int(part["line"][0]), part, replay.frames(part)
 
 
-class Pictures:
-    """The pictures that a session has shown, by their line numbers.
+class StimulusPrograms:
+    """Programs of the stimuli that a session has shown, by their line numbers.
 
     Parameters
     ----------

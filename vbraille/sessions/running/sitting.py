@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -41,6 +42,7 @@ def _nothing() -> None:
     """Do nothing, where nobody watches."""
 
 
+@dataclass(slots=True)
 class Sitting:
     """One run of a session, with the engine, the answers and the signals that it needs.
 
@@ -69,47 +71,32 @@ class Sitting:
         Conventional display of the session; None without one.
     """
 
-    def __init__(
-        self,
-        engine: RunEngine | None,
-        answers: Answers,
-        steering: Steering | None,
-        *,
-        sound: Callable[[], Sound],
-        real: bool,
-        say: Callable[[str], None],
-        warn: Callable[[str], None],
-        before_rest: Callable[[], None],
-        onlookers: Onlookers | None = None,
-        markers: Markers | None = None,
-        beside: OnConventional | None = None,
-    ) -> None:
-        self._engine = engine
-        self._answers = answers
-        self._steering = steering
-        self._sound = sound
-        self._real = real
-        self._say = say
-        self._warn = warn
-        self._before_rest = before_rest
-        self._watching = onlookers
-        self._markers = markers
-        self._beside = beside
-        self._opened = False
+    engine: RunEngine | None
+    answers: Answers
+    steering: Steering | None
+    sound: Callable[[], Sound]
+    real: bool
+    say: Callable[[str], None]
+    warn: Callable[[str], None]
+    before_rest: Callable[[], None]
+    onlookers: Onlookers | None = None
+    markers: Markers | None = None
+    beside: OnConventional | None = None
+    _opened: bool = field(default=False, init=False)
 
     def open(self, protocol: Protocol, plan: Plan) -> None:
         """Start the engine, and wait until it and the displays are there, unless they are."""
         if self._opened:
             return
         self._opened = True
-        if self._engine is not None:
-            self._start(self._engine, protocol, plan)
-        if self._beside is not None:
-            self._beside.begin()
+        if self.engine is not None:
+            self._start(self.engine, protocol, plan)
+        if self.beside is not None:
+            self.beside.begin()
 
     def _start(self, engine: RunEngine, protocol: Protocol, plan: Plan) -> None:
         if (note := compiling_note()) is not None:
-            self._warn(note)
+            self.warn(note)
         engine.start()
         check_room(engine.display, protocol, plan)
 
@@ -129,63 +116,63 @@ class Sitting:
             self.open(record.protocol, record.plan)
             progress = Progress(record.plan, book.told.events, record.procedure)
             display = self._display(record, book)
-            sound = self._sound()
+            sound = self.sound()
             course = Course(
                 record.protocol,
                 record.plan,
                 book,
                 progress,
                 display,
-                waits=self._answers.typed,
-                corrects=not self._answers.felt,
-                say=self._say,
+                waits=self.answers.typed,
+                corrects=not self.answers.felt,
+                say=self.say,
                 play=sound.play,
-                real=self._real,
-                beside=self._beside,
+                real=self.real,
+                beside=self.beside,
             )
-            if self._markers is not None:
-                self._markers.begin(record.folder)
-                course.book.mark = self._markers.mark
+            if self.markers is not None:
+                self.markers.begin(record.folder)
+                course.book.mark = self.markers.mark
             told = {"why": why, "torn_bytes": torn_bytes, "sound": sound.name}
             told |= self._since(book, progress)
-            told |= {"spec": spec, "hand": hand, "answers": self._answers.name}
-            if (onlookers := self._watching) is not None:
+            told |= {"spec": spec, "hand": hand, "answers": self.answers.name}
+            if (onlookers := self.onlookers) is not None:
                 told["monitor"] = onlookers.told()
-            practises = self._answers.typed or progress.begun
+            practises = self.answers.typed or progress.begun
             try:
                 if not practises:
                     told["practice"] = "left out"
-                course.start(**told, clock="machine" if self._real else "manual")
+                course.start(**told, clock="machine" if self.real else "manual")
                 if not practises:
-                    self._say("practice: left out, since answers are not typed")
+                    self.say("practice: left out, since answers are not typed")
                     course.book.log(events.Begin)
                 look = _nothing if onlookers is None else partial(onlookers.look, course)
-                Console(course, self._answers, say=self._say, real=self._real, look=look).run()
+                Console(course, self.answers, say=self.say, real=self.real, look=look).run()
             finally:
-                self._before_rest()
+                self.before_rest()
                 fault = None if display is None else _closed(display)
             if display is not None:
                 counts = {name: count for name, count in display.engine.counts.items() if count}
                 lost = display.engine.lost
                 trace = display.close_trace()
                 course.book.log(events.Closed, lost=lost, counts=counts, **trace)
-            self._say(f"record: {sum_of((record.folder / NAME).read_bytes())}")
+            self.say(f"record: {sum_of((record.folder / NAME).read_bytes())}")
         if fault is not None:
             raise fault
         return progress
 
     def _display(self, record: Record, book: Journal) -> OnDevice | None:
         """Make the display of the stimuli; None on paper."""
-        if self._engine is None:
+        if self.engine is None:
             return None
         return OnDevice(
-            self._engine,
+            self.engine,
             record.protocol,
             record.folder,
-            keeps=self._answers.felt,
+            keeps=self.answers.felt,
             tie=lambda: book.durable,
-            steering=self._steering,
-            by_hand=not self._answers.typed or record.protocol.trial.end is None,
+            steering=self.steering,
+            by_hand=not self.answers.typed or record.protocol.trial.end is None,
         )
 
     def _since(self, book: Journal, progress: Progress) -> dict[str, Any]:
@@ -196,9 +183,9 @@ class Sitting:
         if progress.runs:
             same_start = bool(told["boot"]) and told["boot"] == progress.runs[-1].boot
             told |= _gap(book.told.events[-1], same_start=same_start)
-            self._say(f"resume: {progress.of_all(progress.done)} trials have answers")
+            self.say(f"resume: {progress.of_all(progress.done)} trials have answers")
         if book.told.torn:
-            self._say(
+            self.say(
                 f"torn: {len(book.told.torn)} bytes at the end of the journal are in journal.torn"
             )
         return told

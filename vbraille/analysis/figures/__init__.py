@@ -1,1 +1,0 @@
-"""Figures of results, each with what it shows in words."""

@@ -1,0 +1,228 @@
+"""A scene that was read: the values, the file and line of each element, and what was said."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, NoReturn, Protocol
+
+from vbraille.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from vbraille.scene.scene import Scene
+    from vbraille.scene.traversal import Steps
+    from vbraille.toml.tomlfile import TomlFile
+
+
+@dataclass(frozen=True, slots=True)
+class FoundScene:
+    """What a reader of a format of others gives back.
+
+    Parameters
+    ----------
+    scene
+        The scene; it may have uses and names.
+    lines
+        Lines of the file, from 1, of the elements: ``("elements", 0)`` is the first element, and
+        ``("elements", 0, "parts", 2)`` a part of it.
+    warnings
+        What was ignored, or means something else here, each in one sentence that begins with
+        "line N: " where there is a line.
+    """
+
+    scene: Scene
+    lines: Mapping[Steps, int] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+
+class SceneOrigin(Protocol):
+    """A file that elements of a scene come from."""
+
+    @property
+    def where(self) -> str:
+        """Name of the file."""
+        ...
+
+    def place(self, steps: Steps) -> str:
+        """Name of the file, and the line of a place in the scene that it holds."""
+        ...
+
+    def fail(self, steps: Steps, problem: str) -> NoReturn:
+        """Refuse the file for a problem at a place in the scene that it holds."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Origins:
+    """Where each element and named texture of a scene is written.
+
+    Parameters
+    ----------
+    places
+        Files, and places in them, by places of the scene.
+    """
+
+    places: dict[Steps, tuple[SceneOrigin, Steps]] = field(default_factory=dict)
+
+    def of(self, steps: Steps) -> tuple[SceneOrigin, Steps] | None:
+        """File that a place of the scene comes from, and the place in that file."""
+        for depth in range(len(steps), 0, -1):
+            if steps[:depth] in self.places:
+                origin, there = self.places[steps[:depth]]
+                return origin, (*there, *steps[depth:])
+        return None
+
+    def place(self, steps: Steps) -> str:
+        """File and line of a place of the scene, or words for it if it comes from no file."""
+        found = self.of(steps)
+        return said(steps) if found is None else found[0].place(found[1])
+
+    def fail(self, steps: Steps, problem: str) -> NoReturn:
+        """Refuse the scene for a problem at a place in it, with the file and the line.
+
+        Raises
+        ------
+        InputError
+            In any case.
+        """
+        found = self.of(steps)
+        if found is None:
+            raise InputError(about(steps, problem))
+        origin, there = found
+        origin.fail(there, problem)
+
+
+@dataclass(frozen=True, slots=True)
+class OpenedScene:
+    """A scene from a file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    folder
+        Folder that the names of its images are seen from.
+    written
+        The scene with its uses and names, and with what it includes.
+    resolved
+        The same as it is shown; see `vbraille.scene.resolving`. It has the same elements in the
+        same order.
+    origins
+        Where its elements are written.
+    warnings
+        What was ignored, or means something else here, each in one sentence.
+    """
+
+    path: Path
+    folder: Path
+    written: Scene
+    resolved: Scene
+    origins: Origins
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """File and line of each element."""
+        return tuple(self.place(number) for number in range(len(self.written.elements)))
+
+    def place(self, number: int) -> str:
+        """File and line of an element by its number from 0, such as "house.scene line 12"."""
+        steps: Steps = ("elements", number)
+        first: Steps = (*steps, "parts", 0)  # of a group of what another file has
+        made_here = self.origins.of(steps) is None and self.origins.of(first) is not None
+        return self.origins.place(first if made_here else steps)
+
+
+def said(steps: Steps) -> str:
+    """Words for a place in a scene, which keys and indices lead to.
+
+    >>> said(("elements", 3, "fill", "texture"))
+    'elements, number 4 fill texture'
+    """
+    words = (f", number {step + 1}" if isinstance(step, int) else f" {step}" for step in steps)
+    return "".join(words).strip()
+
+
+def about(steps: Steps, problem: str) -> str:
+    """Sentence about a place in a scene; the problem begins with a colon or a verb.
+
+    >>> about(("elements", 0), "has no place")
+    'elements, number 1 has no place'
+    """
+    return f"{said(steps)}{problem}" if problem.startswith(":") else f"{said(steps)} {problem}"
+
+
+class TomlOrigin:
+    """A scene file in TOML.
+
+    Parameters
+    ----------
+    file
+        The file.
+    """
+
+    def __init__(self, file: TomlFile) -> None:
+        self._file = file
+
+    @property
+    def where(self) -> str:
+        """Name of the file."""
+        return self._file.where
+
+    @cached_property
+    def _lines(self) -> dict[Steps, int]:
+        return self._file.lines()
+
+    def place(self, steps: Steps) -> str:
+        """Name of the file, and the line of a place in it."""
+        return _place(self.where, self._lines, steps)
+
+    def fail(self, steps: Steps, problem: str) -> NoReturn:
+        """Refuse the file for a problem at a place in it.
+
+        Raises
+        ------
+        InputError
+            In any case.
+        """
+        self._file.fail(steps, problem)
+
+
+class ForeignOrigin:
+    """A file of another format, which was read into a scene.
+
+    Parameters
+    ----------
+    path
+        The file.
+    found
+        What was read.
+    """
+
+    def __init__(self, path: Path, found: FoundScene) -> None:
+        self.where, self._found = str(path), found
+
+    def place(self, steps: Steps) -> str:
+        """Name of the file, and the line of a place if it is known."""
+        return _place(self.where, self._found.lines, steps)
+
+    def fail(self, steps: Steps, problem: str) -> NoReturn:
+        """Refuse the file for a problem at a place in the scene that it holds.
+
+        Raises
+        ------
+        InputError
+            In any case.
+        """
+        raise InputError(f"{self.place(steps)}: {about(steps, problem)}")
+
+
+def _place(where: str, lines: Mapping[Steps, int], steps: Steps) -> str:
+    """Name of a file, and the line of the nearest thing around a place that has one."""
+    for depth in range(len(steps), 0, -1):
+        if steps[:depth] in lines:
+            return f"{where} line {lines[steps[:depth]]}"
+    return where
