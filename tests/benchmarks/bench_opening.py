@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from tests.benchmarks.big_texts import big_text
 from tests.benchmarks.timing import Result
 from vbraille.reading.places import BookOptions, KeptPlaces, resume
-from vbraille.translate.opening import open_source
+from vbraille.translate.formats import open_source
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -18,7 +18,7 @@ from vbraille.render import STRESS2, STRESS2_8X8, model_of
 from vbraille.render.braille.straying import Straying
 from vbraille.scene.reading import open_scene
 from vbraille.translate import Book
-from vbraille.translate.opening import open_source
+from vbraille.translate.formats import open_source
 
 PITCH_MM = STRESS2_8X8.style.geometry.line_pitch_mm
 SCENE = """

@@ -3,8 +3,8 @@
 import pytest
 
 from vbraille.translate import Book, BrailleTable, Document
-from vbraille.translate.guessing import guess_language
 from vbraille.translate.languages import has_tables
+from vbraille.translate.scripts import guess_language
 
 DECLARATION = {
     "en": "All human beings are born free and equal in dignity and rights. They are endowed with "

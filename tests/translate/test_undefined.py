@@ -9,7 +9,7 @@ from tests.translate.test_liblouis import sample_of_unicode
 from vbraille.translate import BrailleTable, Cells, Document, Undefined, find_table, list_tables
 from vbraille.translate.languages import table_note
 from vbraille.translate.scripts import script_of
-from vbraille.translate.undefined import describe, likenesses
+from vbraille.translate.substitutes import describe, likenesses
 
 SIX_DOT_TABLES = ("en-ueb-g2.ctb", "fr-bfu-comp6.utb", "ru-litbrl.ctb", "ko-g2.ctb", "bh.tbl")
 

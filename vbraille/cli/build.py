@@ -11,8 +11,7 @@ from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line, choose_table
-from vbraille.layout.unknown import Unknown
-from vbraille.layout.unshown import Unshown
+from vbraille.layout.unshown import Unknown, Unshown
 from vbraille.render import MAPPINGS, Model, Profile, single_row
 from vbraille.translate import (
     Book,
@@ -20,8 +19,8 @@ from vbraille.translate import (
     Undefined,
     six_dot_table,
 )
+from vbraille.translate.formats import open_source, open_stream
 from vbraille.translate.languages import has_tables
-from vbraille.translate.opening import open_source, open_stream
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ import numpy as np
 
 from vbraille.braille.cells import Cells
 from vbraille.braille.dots import mask_of
-from vbraille.layout.indents import indents
-from vbraille.layout.wrapping import breaks_of, wrap
+from vbraille.layout.wrapping import breaks_of, indents, wrap
 from vbraille.translate.source import BlockKind
 
 if TYPE_CHECKING:

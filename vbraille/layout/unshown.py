@@ -1,15 +1,19 @@
-"""What is said of things that a format holds and that cannot be shown, such as formulas."""
+"""Sentences on what cannot be shown: formulas and the like, and unknown characters."""
 
 from __future__ import annotations
 
+import unicodedata
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from vbraille.translate import Undefined
 from vbraille.translate.source import MarkKind
-from vbraille.wording import count
+from vbraille.translate.substitutes import describe, is_emoji
+from vbraille.wording import count, setting
 
 if TYPE_CHECKING:
     from vbraille.layout.pages import Line
+    from vbraille.translate import BrailleTable
 
 _NAMED = 5  # at most so many kinds are named in the sentence, the most frequent
 
@@ -50,3 +54,77 @@ class Unshown:
             f"not shown: {count(total, 'thing')} ({', '.join(named)}); "
             f"each is marked where it stands"
         )
+
+
+_CHARACTERS_NAMED = 3  # at most so many characters are named in the sentence, the most frequent
+
+
+class Unknown:
+    """Count the characters on lines that the table does not know, each line once.
+
+    Parameters
+    ----------
+    table
+        Table that translates the lines; it knows which characters it does not know.
+    how
+        What was written for these characters.
+    """
+
+    def __init__(self, table: BrailleTable, how: Undefined) -> None:
+        self._table = table
+        self._how = how
+        self._last = 0
+        self._counts: Counter[str] = Counter()
+
+    def see(self, line: Line) -> None:
+        """Count the unknown characters of a line, unless it or a later one was counted before."""
+        if line.number > self._last:
+            self._last = line.number
+            if self._table.undefined:
+                composed = unicodedata.normalize("NFC", line.text)
+                self._counts.update(c for c in composed if ord(c) in self._table.undefined)
+
+    @property
+    def sentence(self) -> str | None:
+        """Sentence on how many there were and what stands for them; None if there were none."""
+        sentences = [self._of_unknown(), self._of_endless()]
+        return "; ".join(filter(None, sentences)) or None
+
+    def _of_endless(self) -> str:
+        words = sorted(self._table.endless)
+        if not words:
+            return ""
+        named = ", ".join(map(repr, words[:_CHARACTERS_NAMED]))
+        others = "" if len(words) <= _CHARACTERS_NAMED else ", and others"
+        return (
+            f"liblouis does not come to an end with {count(len(words), 'word')} ({named}{others}), "
+            f"marked {self._table.marker}"
+        )
+
+    def _of_unknown(self) -> str:
+        total = self._counts.total()
+        if not total:
+            return ""
+        named = [f"{n} of {describe(c)}" for c, n in self._counts.most_common(_CHARACTERS_NAMED)]
+        others = total - sum(n for _, n in self._counts.most_common(_CHARACTERS_NAMED))
+        if others:
+            named.append(f"{others} of others")
+        return (
+            f"the table {self._table.name} does not know {total} "
+            f"character{'' if total == 1 else 's'} ({', '.join(named)}), {self._written()}; "
+            f"{setting('undefined')} chooses mark, name, code or drop"
+        )
+
+    def _written(self) -> str:
+        match self._how:
+            case Undefined.MARK:
+                if not any(map(is_emoji, self._counts)):
+                    return f"marked {self._table.marker}"
+                others = not all(map(is_emoji, self._counts))
+                return "emoji by their names" + (f", others {self._table.marker}" if others else "")
+            case Undefined.NAME:
+                return "written as names in brackets"
+            case Undefined.CODE:
+                return "written as numbers in brackets"
+            case Undefined.DROP:
+                return "left out"

@@ -1,4 +1,4 @@
-"""Where the lines of a block of cells begin and end."""
+"""Where the lines of a block of cells begin and end, and how far they are indented."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.translate.source import BlockKind
 from vbraille.translate.text import NO_BREAK_SPACE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vbraille.braille.cells import Cells
+    from vbraille.translate.source import Block
     from vbraille.translate.text import Text
 
 _SOLID = 0xFF  # in a search for blanks: a cell at which a line must not break
@@ -104,3 +106,34 @@ def _around(breaks: bytes, start: int, at: int) -> tuple[int, int]:
     """One past the last cell before a place that is not blank, and the first such cell after it."""
     stop = start + len(breaks[start:at].rstrip(b"\0"))
     return stop, len(breaks) - len(breaks[at:].lstrip(b"\0"))
+
+
+STEP = 2  # cells
+
+
+def indents(block: Block, width: int) -> tuple[int, int]:
+    """Numbers of blank cells before a block's first line and before its other lines.
+
+    They are less than half of a line, so that there is room for words: a larger indent of the
+    kind is cut to the largest even number of cells that is.
+
+    Parameters
+    ----------
+    width
+        Number of cells in a line.
+    """
+    match block.kind:
+        case BlockKind.PARAGRAPH | BlockKind.NOTE:
+            first, others = STEP, 0
+        case BlockKind.QUOTE:
+            first, others = (block.level + 1) * STEP, block.level * STEP
+        case BlockKind.HEADING:
+            first, others = 2 * STEP, 2 * STEP
+        case BlockKind.ITEM:
+            first, others = (block.level - 1) * STEP, block.level * STEP
+        case BlockKind.ROW | BlockKind.LINE:
+            first, others = 0, STEP
+        case BlockKind.PAGE:
+            first, others = 0, 0
+    most = (width - 1) // (2 * STEP) * STEP
+    return min(first, most), min(others, most)

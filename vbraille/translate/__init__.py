@@ -6,8 +6,8 @@ from vbraille.translate.documents.document import Document
 from vbraille.translate.languages import find_table, six_dot_table, tables_of
 from vbraille.translate.liblouis import BrailleTable, TableInfo, list_tables
 from vbraille.translate.source import Block, BlockKind, Source
+from vbraille.translate.substitutes import Undefined
 from vbraille.translate.text import Text
-from vbraille.translate.undefined import Undefined
 
 __all__ = [
     "Block",

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.errors import VbrailleError
-from vbraille.translate.guessing import guess_language
 from vbraille.translate.languages import has_tables, table_note
 from vbraille.translate.library import EndlessError, call, limit_s
+from vbraille.translate.scripts import guess_language
 from vbraille.translate.switching import Translator
 from vbraille.wording import setting
 

@@ -13,20 +13,64 @@ import numpy as np
 
 from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.errors import InputError, VbrailleError
-from vbraille.translate.emphasis import CLASSES, typeforms
 from vbraille.translate.levels import Superscripts
 from vbraille.translate.library import LIBRARY, EndlessError, call, limit_s
 from vbraille.translate.scripts import all_letters, native_letters
-from vbraille.translate.substitutes import Substitutes
+from vbraille.translate.source import MarkKind
+from vbraille.translate.substitutes import Substitutes, Undefined
 from vbraille.translate.text import NO_BREAK_SPACE, SPACE, Text, to_codes, to_text
-from vbraille.translate.undefined import Undefined
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
     from numpy.typing import NDArray
 
     from vbraille.translate.scripts import Script
     from vbraille.translate.source import Mark
+
+# Names that tables give the classes. Few tables have the last two.
+CLASSES = {
+    MarkKind.ITALIC: "italic",
+    MarkKind.BOLD: "bold",
+    MarkKind.UNDERLINE: "underline",
+    MarkKind.SUPERSCRIPT: "super",
+    MarkKind.SUBSCRIPT: "sub",
+}
+
+
+def typeforms(
+    marks: Iterable[Mark], places: NDArray[np.int64], form_of: Callable[[str], int]
+) -> NDArray[np.uint16] | None:
+    """Emphasis of each character, as liblouis takes it; None if none is emphasised.
+
+    Parameters
+    ----------
+    marks
+        Marks of the text; those that are no emphasis are left out.
+    places : int64[n]
+        Place of each character in the source, never decreasing.
+    form_of
+        Function that gives the bit that a table has for a class; 0 if it has no such class.
+
+    Returns
+    -------
+    uint16[n] or None
+        The bits of all classes that each character is in.
+    """
+    forms = None
+    for mark in marks:
+        name = CLASSES.get(mark.kind)
+        bit = 0 if name is None else form_of(name)
+        if not bit:
+            continue
+        start, stop = np.searchsorted(places, (mark.start, mark.end)).tolist()
+        if start < stop:
+            if forms is None:
+                forms = np.zeros(places.size, np.uint16)
+            forms[start:stop] |= bit
+    return forms
+
 
 # In bytes; liblouis puts a name, with a folder before it, into 2 kB without checking that it fits.
 _LONGEST_NAME = 1_000

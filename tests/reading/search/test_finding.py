@@ -16,7 +16,7 @@ from vbraille.reading.search.sieve import Sieve, ahead
 from vbraille.translate import Document
 from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.documents.encodings import Encoding
-from vbraille.translate.opening import open_source
+from vbraille.translate.formats import open_source
 
 PIECES = (
     "one two", "well-", "known", "Straße", "STRASSE", "ﬁne", "fine", "café", "cafe\u0301", "CAFÉ",

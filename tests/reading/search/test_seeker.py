@@ -27,7 +27,7 @@ from vbraille.reading.search.queries import (
 )
 from vbraille.reading.search.seeker import Seeker
 from vbraille.translate import Book, BrailleTable, Document
-from vbraille.translate.opening import open_source
+from vbraille.translate.formats import open_source
 
 PATIENCE_S = 60.0
 LONG = "nothing to see here\n\n" * 30_000

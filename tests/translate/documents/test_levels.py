@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from vbraille.translate import Book, BrailleTable
-from vbraille.translate.opening import open_source
+from vbraille.translate.formats import open_source
 from vbraille.translate.source import MarkKind
 
 FILES = Path(__file__).parent / "files" / "levels"

@@ -9,7 +9,7 @@ import mammoth
 import pytest
 from lxml import etree
 
-from vbraille.translate.opening import open_source
+from vbraille.translate.formats import open_source
 from vbraille.translate.source import BlockKind, MarkKind
 
 FILES = Path(__file__).parent / "files"

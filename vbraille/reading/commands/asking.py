@@ -10,7 +10,7 @@ from vbraille.reading.search.structure import within
 from vbraille.reading.whereabouts import block_of, whereabouts
 from vbraille.translate.documents.markup.tables import BETWEEN
 from vbraille.translate.source import BlockKind
-from vbraille.translate.undefined import describe
+from vbraille.translate.substitutes import describe
 
 if TYPE_CHECKING:
     from vbraille.layout.pages import Line

@@ -24,7 +24,7 @@ from vbraille.reading.search.queries import (
     Told,
 )
 from vbraille.translate import Book, Undefined
-from vbraille.translate.opening import open_source
+from vbraille.translate.formats import open_source
 from vbraille.workers import begin
 
 if TYPE_CHECKING:

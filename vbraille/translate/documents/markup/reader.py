@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
 from vbraille.translate.documents.markup import attributes as attribute
-from vbraille.translate.documents.markup.lists import BULLET, Numbering, numbering_of, whole
+from vbraille.translate.documents.markup.tables import BULLET, Numbering, numbering_of, whole
 from vbraille.translate.documents.markup.writing import Writing
 from vbraille.translate.source import BlockKind, MarkKind
 

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 
 from vbraille.translate.documents.chapters import Passage
 from vbraille.translate.documents.markup.flow import Flow
-from vbraille.translate.documents.markup.lists import BULLET
-from vbraille.translate.documents.markup.tables import BETWEEN, TableState
+from vbraille.translate.documents.markup.tables import BETWEEN, BULLET, TableState
 from vbraille.translate.source import BlockKind, Mark, MarkKind
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.translate.documents.markup.lists import Numbering
+    from vbraille.translate.documents.markup.tables import Numbering
 
 BREAK = "* * *"  # a break in the text, which print shows by a line or by stars
 _LONGEST_LEAD = 40  # characters before an item: its number, and those of the items it begins

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from vbraille.translate.documents.markup.lists import numeral
+from vbraille.translate.documents.markup.tables import numeral
 from vbraille.translate.documents.office.formulas import tex_of
 from vbraille.translate.documents.office.htmltree import (
     CODES,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from lxml import etree
 
 from vbraille.errors import InputError
-from vbraille.translate.documents.markup.lists import numeral, whole
+from vbraille.translate.documents.markup.tables import numeral, whole
 from vbraille.translate.documents.office.htmltree import (
     DEEPEST,
     Notes,

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from vbraille.errors import InputError
-from vbraille.translate.forms import Form, find_form
+from vbraille.translate.formats import find_format
 
 FILES = Path(__file__).parent / "documents" / "files"
 OLE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(504)
@@ -35,79 +35,79 @@ def kindle(lock):
 @pytest.mark.parametrize(
     ("name", "form"),
     [
-        ("harbour.md", Form.MARKDOWN),
-        ("pandoc-2.epub", Form.EPUB),
-        ("pandoc-3.epub", Form.EPUB),
-        ("libreoffice.epub", Form.EPUB),
-        ("pandoc.docx", Form.DOCX),
-        ("libreoffice.docx", Form.DOCX),
-        ("pythondocx.docx", Form.DOCX),
-        ("pandoc.odt", Form.ODT),
-        ("libreoffice.odt", Form.ODT),
-        ("pandoc.rtf", Form.RTF),
-        ("libreoffice.rtf", Form.RTF),
-        ("pandoc.html", Form.HTML),
-        ("libreoffice.html", Form.HTML),
-        ("word.html", Form.HTML),
-        ("hand.html", Form.HTML),
-        ("dtbook.xml", Form.DTBOOK),
-        ("brailleutils.pef", Form.PEF),
-        ("file2brl.brf", Form.BRF),
+        ("harbour.md", "markdown"),
+        ("pandoc-2.epub", "epub"),
+        ("pandoc-3.epub", "epub"),
+        ("libreoffice.epub", "epub"),
+        ("pandoc.docx", "docx"),
+        ("libreoffice.docx", "docx"),
+        ("pythondocx.docx", "docx"),
+        ("pandoc.odt", "odt"),
+        ("libreoffice.odt", "odt"),
+        ("pandoc.rtf", "rtf"),
+        ("libreoffice.rtf", "rtf"),
+        ("pandoc.html", "html"),
+        ("libreoffice.html", "html"),
+        ("word.html", "html"),
+        ("hand.html", "html"),
+        ("dtbook.xml", "dtbook"),
+        ("brailleutils.pef", "pef"),
+        ("file2brl.brf", "brf"),
     ],
 )
 def test_the_form_of_each_writers_book(name, form):
     content = (FILES / name).read_bytes()
-    assert find_form(io.BytesIO(content), name) is form
-    if form not in (Form.MARKDOWN, Form.BRF) and name != "hand.html":
-        assert find_form(io.BytesIO(content), "standard input") is form
-        assert find_form(io.BytesIO(content), "misnamed.txt") is form
+    assert find_format(io.BytesIO(content), name).name == form
+    if form not in ("markdown", "brf") and name != "hand.html":
+        assert find_format(io.BytesIO(content), "standard input").name == form
+        assert find_format(io.BytesIO(content), "misnamed.txt").name == form
 
 
 @pytest.mark.parametrize(
     ("content", "name", "form"),
     [
-        (b"", "book.epub", Form.TEXT),
-        (b"# One\n", "book.txt", Form.TEXT),
-        (b"# One\n", "standard input", Form.TEXT),
-        (b"# One\n", "book.MARKDOWN", Form.MARKDOWN),
-        (b"One <b>two</b>", "book", Form.TEXT),
-        (b"One <b>two</b>", "book.htm", Form.HTML),
-        (b"<p>One", "book.txt", Form.TEXT),
-        (b"<htmlish>", "book.txt", Form.TEXT),
-        (b"\n <!-- a -->\n<!DOCTYPE html>\n<p>One", "book.txt", Form.HTML),
-        (b"<HTML LANG=en><P>One", "book", Form.HTML),
-        (b"<?xml version='1.0'?><html xmlns='x'/>", "book", Form.HTML),
-        ("\ufeff<html>".encode(), "book", Form.HTML),
-        ("<html>".encode("utf-16"), "book", Form.HTML),
-        (b"<?xml version='1.0'?><dtb:dtbook xmlns:dtb='x'>", "book", Form.DTBOOK),
-        (b"<!DOCTYPE dtbook [<!ENTITY a 'b'>]><dtbook/>", "book", Form.DTBOOK),
-        (b"<?xml version='1.0'?><poem/>", "book.xml", Form.TEXT),
-        (b",! ,h>b|r\n", "book.txt", Form.TEXT),
-        (b",! ,h>b|r\n", "BOOK.BRL", Form.BRF),
-        ("⠠⠮ ⠠⠓⠜⠃\n".encode(), "book.txt", Form.UNICODE_BRAILLE),
-        ("⠠⠮ ⠠⠓⠜⠃\n".encode("utf-16"), "book.brf", Form.UNICODE_BRAILLE),
-        ("The letter b is ⠃ in braille.\n".encode(), "book.txt", Form.TEXT),
-        (b"CONTENTS\n", "book.txt", Form.TEXT),
-        (zip_of("OEBPS/a.opf", "META-INF/container.xml"), "book", Form.EPUB),
-        (zip_of("package.opf", mimetype="application/wrong"), "book.ebrl", Form.EPUB),
-        (zip_of(mimetype="application/ebrl+zip"), "book", Form.EPUB),
-        (zip_of("notes.txt"), "book.docx", Form.TEXT),
+        (b"", "book.epub", "text"),
+        (b"# One\n", "book.txt", "text"),
+        (b"# One\n", "standard input", "text"),
+        (b"# One\n", "book.MARKDOWN", "markdown"),
+        (b"One <b>two</b>", "book", "text"),
+        (b"One <b>two</b>", "book.htm", "html"),
+        (b"<p>One", "book.txt", "text"),
+        (b"<htmlish>", "book.txt", "text"),
+        (b"\n <!-- a -->\n<!DOCTYPE html>\n<p>One", "book.txt", "html"),
+        (b"<HTML LANG=en><P>One", "book", "html"),
+        (b"<?xml version='1.0'?><html xmlns='x'/>", "book", "html"),
+        ("\ufeff<html>".encode(), "book", "html"),
+        ("<html>".encode("utf-16"), "book", "html"),
+        (b"<?xml version='1.0'?><dtb:dtbook xmlns:dtb='x'>", "book", "dtbook"),
+        (b"<!DOCTYPE dtbook [<!ENTITY a 'b'>]><dtbook/>", "book", "dtbook"),
+        (b"<?xml version='1.0'?><poem/>", "book.xml", "text"),
+        (b",! ,h>b|r\n", "book.txt", "text"),
+        (b",! ,h>b|r\n", "BOOK.BRL", "brf"),
+        ("⠠⠮ ⠠⠓⠜⠃\n".encode(), "book.txt", "unicode-braille"),
+        ("⠠⠮ ⠠⠓⠜⠃\n".encode("utf-16"), "book.brf", "unicode-braille"),
+        ("The letter b is ⠃ in braille.\n".encode(), "book.txt", "text"),
+        (b"CONTENTS\n", "book.txt", "text"),
+        (zip_of("OEBPS/a.opf", "META-INF/container.xml"), "book", "epub"),
+        (zip_of("package.opf", mimetype="application/wrong"), "book.ebrl", "epub"),
+        (zip_of(mimetype="application/ebrl+zip"), "book", "epub"),
+        (zip_of("notes.txt"), "book.docx", "text"),
     ],
 )
 def test_content_goes_before_the_name(content, name, form):
-    assert find_form(io.BytesIO(content), name) is form
+    assert find_format(io.BytesIO(content), name).name == form
 
 
 @pytest.mark.parametrize("name", ["a.scene", "a.SVG", "a.svgz", "a.gen", "a.tx"])
 def test_a_picture_is_known_by_its_name(name):
     with pytest.raises(InputError, match=f"^{name} is a picture, not a text; vbraille feel"):
-        find_form(io.BytesIO(b"not finished yet"), name)
+        find_format(io.BytesIO(b"not finished yet"), name)
 
 
 def test_a_text_about_pictures_is_a_text():
     text = b"# How to draw\n\nBegin with\n\n[canvas]\nwidth_mm = 9\n"
-    assert find_form(io.BytesIO(text), "drawing.txt") is Form.TEXT
-    assert find_form(io.BytesIO(b"[canvas]\nwidth_mm = 9\n"), "a.md") is Form.MARKDOWN
+    assert find_format(io.BytesIO(text), "drawing.txt").name == "text"
+    assert find_format(io.BytesIO(b"[canvas]\nwidth_mm = 9\n"), "a.md").name == "markdown"
 
 
 @pytest.mark.parametrize(
@@ -142,7 +142,7 @@ def test_a_text_about_pictures_is_a_text():
 )
 def test_books_that_cannot_be_read_are_called_by_name(content, said):
     with pytest.raises(InputError, match=r"^book is ") as caught:
-        find_form(io.BytesIO(content), "book")
+        find_format(io.BytesIO(content), "book")
     assert said in str(caught.value)
     assert "; " in str(caught.value)  # it says what to do
 
@@ -152,7 +152,7 @@ def test_a_plain_text_loads_no_parser(tmp_path):
     path.write_text("One two three.\n")
     code = (
         "import sys\n"
-        "from vbraille.translate.opening import open_source\n"
+        "from vbraille.translate.formats import open_source\n"
         f"assert open_source({str(path)!r}).block(0) is not None\n"
         "print([name for name in ('lxml', 'zipfile', 'markdown_it', 'sqlite3')"
         " if name in sys.modules])"
