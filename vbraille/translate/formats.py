@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 
-class Options(NamedTuple):
+class FormatOptions(NamedTuple):
     """What a user says of how a file is read; see `open_source`."""
 
     encoding: str | None = None
@@ -52,7 +52,7 @@ class Format:
     """
 
     name: str
-    read: Callable[[BinaryIO, str, Options], Source]
+    read: Callable[[BinaryIO, str, FormatOptions], Source]
     suffixes: tuple[str, ...] = ()
     root: str = ""
     has_lines: bool = False
@@ -62,36 +62,36 @@ class Format:
 # Readers are loaded when a book needs them.
 
 
-def _read_text(stream: BinaryIO, name: str, options: Options) -> Source:
+def _read_text(stream: BinaryIO, name: str, options: FormatOptions) -> Source:
     return Document(stream, name, options.encoding, keep_lines=options.keep_lines)
 
 
-def _read_markdown(stream: BinaryIO, name: str, options: Options) -> Source:
+def _read_markdown(stream: BinaryIO, name: str, options: FormatOptions) -> Source:
     from vbraille.translate.documents.markdown import read_markdown
 
     return read_markdown(stream, name, encoding=options.encoding)
 
 
-def _read_html(stream: BinaryIO, name: str, options: Options) -> Source:
+def _read_html(stream: BinaryIO, name: str, options: FormatOptions) -> Source:
     from vbraille.translate.documents.html import HtmlBook
 
     return HtmlBook.open(stream, name, encoding=options.encoding)
 
 
-def _read_dtbook(stream: BinaryIO, name: str, options: Options) -> Source:  # noqa: ARG001
+def _read_dtbook(stream: BinaryIO, name: str, options: FormatOptions) -> Source:  # noqa: ARG001
     from vbraille.translate.documents.html import HtmlBook
 
     return HtmlBook.open(stream, name, is_dtbook=True)
 
 
-def _read_epub(stream: BinaryIO, name: str, options: Options) -> Source:  # noqa: ARG001
+def _read_epub(stream: BinaryIO, name: str, options: FormatOptions) -> Source:  # noqa: ARG001
     from vbraille.translate.documents.epub import EpubBook
 
     return EpubBook.open(stream, name)
 
 
-def _office(form: str) -> Callable[[BinaryIO, str, Options], Source]:
-    def read(stream: BinaryIO, name: str, options: Options) -> Source:  # noqa: ARG001
+def _office(form: str) -> Callable[[BinaryIO, str, FormatOptions], Source]:
+    def read(stream: BinaryIO, name: str, options: FormatOptions) -> Source:  # noqa: ARG001
         from vbraille.translate.documents.office.officebook import open_office
 
         return open_office(stream, name, form)
@@ -99,7 +99,7 @@ def _office(form: str) -> Callable[[BinaryIO, str, Options], Source]:
     return read
 
 
-def _read_brf(stream: BinaryIO, name: str, options: Options) -> Source:
+def _read_brf(stream: BinaryIO, name: str, options: FormatOptions) -> Source:
     from vbraille.translate.braillefiles.lines import open_brf
 
     if options.encoding is not None:
@@ -107,13 +107,13 @@ def _read_brf(stream: BinaryIO, name: str, options: Options) -> Source:
     return open_brf(stream, name, table=options.brf_table)
 
 
-def _read_unicode_braille(stream: BinaryIO, name: str, options: Options) -> Source:
+def _read_unicode_braille(stream: BinaryIO, name: str, options: FormatOptions) -> Source:
     from vbraille.translate.braillefiles.lines import open_unicode_braille
 
     return open_unicode_braille(stream, name, options.encoding)
 
 
-def _read_pef(stream: BinaryIO, name: str, options: Options) -> Source:  # noqa: ARG001
+def _read_pef(stream: BinaryIO, name: str, options: FormatOptions) -> Source:  # noqa: ARG001
     from vbraille.translate.braillefiles.pef import PefBook
 
     return PefBook.open(stream, name)
@@ -381,7 +381,7 @@ def open_source(
     form
         Name of the form that the book is in; None to find it out.
     wishes
-        Options, of ``encoding`` and ``keep_lines``, that are passed over in a form that has no use
+        FormatOptions, of ``encoding`` and ``keep_lines``, that are passed over in a form that has no use
         for them.
 
     Raises
@@ -389,7 +389,7 @@ def open_source(
     InputError
         If there is no such file or form, the book cannot be read, or an option is not for it.
     """
-    options = Options(encoding, keep_lines, brf_table)
+    options = FormatOptions(encoding, keep_lines, brf_table)
     return _open(open_file(file), name or str(file), options, form, wishes)
 
 
@@ -419,7 +419,7 @@ def open_stream(
     InputError
         If the stream or the book cannot be read, there is no such form, or an option is not for it.
     """
-    options = Options(encoding, keep_lines, brf_table)
+    options = FormatOptions(encoding, keep_lines, brf_table)
     return _open(keep_stream(stream, name), name, options, form, wishes)
 
 
@@ -433,7 +433,7 @@ def named_format(name: str) -> Format:
 
 
 def _open(
-    stream: BinaryIO, name: str, options: Options, form: str | None, wishes: Collection[str]
+    stream: BinaryIO, name: str, options: FormatOptions, form: str | None, wishes: Collection[str]
 ) -> Source:
     encoding, keep_lines, brf_table = options
     try:
@@ -456,7 +456,7 @@ def _open(
                     f"{name} is read as {found.name}, for which there is no {setting(option)}; "
                     f"leave it out"
                 )
-        return found.read(stream, name, Options(encoding, keep_lines, brf_table))
+        return found.read(stream, name, FormatOptions(encoding, keep_lines, brf_table))
     except BaseException:
         stream.close()
         raise

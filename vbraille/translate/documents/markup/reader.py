@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
 from vbraille.translate.documents.markup import attributes as attribute
-from vbraille.translate.documents.markup.tables import BULLET, Numbering, numbering_of, whole
+from vbraille.translate.documents.markup.tables import BULLET, ListNumbers, numbering_of, whole
 from vbraille.translate.documents.markup.writing import Writing
 from vbraille.translate.source import BlockKind, MarkKind
 
@@ -430,7 +430,7 @@ def _list(reader: MarkupReader, element: Element, name: str, found: Mapping[str,
     yield from reader.inside(element)
 
 
-def _begin_list(reader: MarkupReader, numbering: Numbering | None) -> None:
+def _begin_list(reader: MarkupReader, numbering: ListNumbers | None) -> None:
     writing, place = reader.writing, reader.writing.place
     if place.items < _DEEPEST_LISTS:
         group = place.group if place.items else writing.group()

@@ -133,7 +133,7 @@ _ROMANS = (
 
 
 @dataclass(slots=True)
-class Numbering:
+class ListNumbers:
     """How the items of a list that is being read are numbered.
 
     Parameters
@@ -161,26 +161,26 @@ class Numbering:
         return f"{numeral(number, attributes.get('type') or self.style)}. "
 
 
-def numbering_of(name: str, attributes: Mapping[str, str]) -> Numbering:
-    """Numbering of the list that an element begins."""
+def numbering_of(name: str, attributes: Mapping[str, str]) -> ListNumbers:
+    """ListNumbers of the list that an element begins."""
     style = attributes.get("style", "")
     numbering = "1" if name == "ol" else "•"
     if "list-style" in style:
         words = style.partition("list-style")[2].partition(";")[0].replace(":", " ").split()
         if "none" in words:
-            return Numbering("")
+            return ListNumbers("")
         numbering = next((_STYLES[word] for word in words if word in _STYLES), numbering)
     if name != "ol":
-        return Numbering(numbering)
+        return ListNumbers(numbering)
     numbering = attributes.get("type") or attributes.get("enum") or numbering
     if numbering not in {"1", "a", "A", "i", "I"}:
         numbering = "1"
     if "reversed" not in attributes:
-        return Numbering(numbering, whole(attributes.get("start"), 1))
+        return ListNumbers(numbering, whole(attributes.get("start"), 1))
     # How many items a list has, from which it would count down, is not known where it begins.
     if "start" not in attributes:
-        return Numbering("•")
-    return Numbering(numbering, whole(attributes.get("start"), 1), -1)
+        return ListNumbers("•")
+    return ListNumbers(numbering, whole(attributes.get("start"), 1), -1)
 
 
 def whole(text: str | None, otherwise: int) -> int:

@@ -14,7 +14,7 @@ from vbraille.translate.source import BlockKind, Mark, MarkKind
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.translate.documents.markup.tables import Numbering
+    from vbraille.translate.documents.markup.tables import ListNumbers
 
 BREAK = "* * *"  # a break in the text, which print shows by a line or by stars
 _LONGEST_LEAD = 40  # characters before an item: its number, and those of the items it begins
@@ -23,7 +23,7 @@ _BLANK = re.compile(r"[ \t\n\r\f]")
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class Role:
     """Role of the text that is being read, by the elements around it.
 
     Parameters
@@ -58,7 +58,7 @@ class Place:
     quotes: int = 0
     items: int = 0
     sections: int = 0
-    numbering: Numbering | None = None
+    numbering: ListNumbers | None = None
     table: TableState | None = None
     is_note: bool = False
     in_notes: bool = False
@@ -86,7 +86,7 @@ class Writing:
     ----------
     flow : Flow
         Text of the block that is being read.
-    place : Place
+    place : Role
         Role of the text that is being read.
     given : str
         Tag of the language of the whole source, of which no block says that it is in it.
@@ -108,7 +108,7 @@ class Writing:
         self._resolve = resolve
         self.flow = Flow()
         self.given = self.flow.language = language
-        self.place = Place(language=language)
+        self.place = Role(language=language)
         self.starts_lines = False
         self._passages: list[Passage] = []
         self._anchors = list(anchors)
