@@ -381,7 +381,7 @@ def open_source(
     form
         Name of the form that the book is in; None to find it out.
     wishes
-        FormatOptions, of ``encoding`` and ``keep_lines``, that are passed over in a form that has no use
+        Options, of ``encoding`` and ``keep_lines``, that are passed over in a form that has no use
         for them.
 
     Raises

@@ -162,7 +162,7 @@ class ListNumbers:
 
 
 def numbering_of(name: str, attributes: Mapping[str, str]) -> ListNumbers:
-    """ListNumbers of the list that an element begins."""
+    """Numbering of the list that an element begins."""
     style = attributes.get("style", "")
     numbering = "1" if name == "ol" else "•"
     if "list-style" in style:
