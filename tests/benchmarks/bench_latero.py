@@ -24,7 +24,7 @@ import numpy as np
 from tests.benchmarks.bench_engine import BLOCK_S, cyclictest_us
 from tests.benchmarks.latero_page import ROOM, page, spec
 from tests.benchmarks.timing import Result
-from vbraille.devices.latero.laterodevice import DISPLAY
+from vbraille.devices.latero.device import DISPLAY
 from vbraille.engine.host import Host, HostDiedError
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 BLOCKS = 12
 KILLS = 50
-# The guardian's 50 ms, its ramp of 20, and a period.
+# The watchdog's 50 ms, its ramp of 20, and a period.
 LIMIT_MS = 71.0
 _PATIENCE_S = 30.0
 _FELT = 0.1

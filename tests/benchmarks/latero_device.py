@@ -18,8 +18,8 @@ import numpy as np
 
 from tests.benchmarks.latero_page import page
 from vbraille.carriers import latero
-from vbraille.devices.latero.datagrams import FULL
-from vbraille.devices.latero.laterodevice import DISPLAY
+from vbraille.devices.latero.device import DISPLAY
+from vbraille.devices.latero.wire import FULL
 from vbraille.simulation.lateroboard import LateroBoard
 from vbraille.simulation.tray import OFFSETS
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.devices.latero.laterodevice import DISPLAY
+from vbraille.devices.latero.device import DISPLAY
 from vbraille.render import STRESS2, Tuning
 from vbraille.simulation.tray import OFFSETS
 

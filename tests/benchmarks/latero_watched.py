@@ -2,7 +2,7 @@
 
 A line for each: milliseconds from the last FULL of the host with anything to feel until all blades
 were at rest, and until motor power was off as well. The host is whoever has sent most since the
-last time; the guardian has another port.
+last time; the watchdog has another port.
 """
 
 from __future__ import annotations

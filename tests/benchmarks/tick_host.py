@@ -17,7 +17,7 @@ import numpy as np
 
 import vbraille
 from tests.benchmarks import latero_page, tick_page
-from vbraille.devices.latero.laterodevice import DISPLAY as LATERO
+from vbraille.devices.latero.device import DISPLAY as LATERO
 from vbraille.engine.host import Host
 
 _SETTLED_S = 1.0

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from tests.tiers import by_tier, examples
 from vbraille.carriers import latero
-from vbraille.devices.latero.hearing import WHERE
+from vbraille.devices.latero.conversation import WHERE
 from vbraille.errors import InputError
 
 COUNTS = st.integers(0, 2**32 - 1)

@@ -29,7 +29,7 @@ from vbraille.devices.events import (
     shortened,
     to_json,
 )
-from vbraille.devices.latero.laterodevice import DISPLAY as LATERO
+from vbraille.devices.latero.device import DISPLAY as LATERO
 from vbraille.devices.saying import placing_sentence, say, told
 from vbraille.display import Display
 

@@ -10,7 +10,7 @@ import pytest
 from tests.devices.latero.peers import simulated, until
 from tests.tiers import by_tier
 from vbraille.carriers import latero as arms
-from vbraille.devices.latero.datagrams import parse_answer
+from vbraille.devices.latero.wire import parse_answer
 from vbraille.errors import InputError
 from vbraille.simulation.lateroboard import LateroBoard
 from vbraille.simulation.laterosim import LateroFaults, LateroSimulator, Network

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from vbraille.devices.latero.datagrams import (
+from vbraille.devices.latero.wire import (
     BLADES,
     BUTTONS,
     CONTROLLER,

@@ -14,7 +14,7 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.latero.datagrams import FULLR0, PORT, VERSION, Answer, pack_answer
+from vbraille.devices.latero.wire import FULLR0, PORT, VERSION, Answer, pack_answer
 from vbraille.errors import InputError, check_range
 from vbraille.simulation.lateroboard import LateroBoard
 from vbraille.simulation.script import Controls

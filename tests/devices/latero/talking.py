@@ -8,7 +8,7 @@ import numpy as np
 
 from vbraille.carriers import latero
 from vbraille.devices.latero.conversation import LateroConversation
-from vbraille.devices.latero.datagrams import Answer, Foreign, parse_answer
+from vbraille.devices.latero.wire import Answer, Foreign, parse_answer
 from vbraille.simulation.lateroboard import LateroBoard
 from vbraille.simulation.laterosim import LateroFaults, Network
 

@@ -15,7 +15,13 @@ from vbraille.devices.events import (
     Unplugged,
     WatchdogTripped,
 )
-from vbraille.devices.latero.hearing import ENCODERS, NO_SWITCH, OTHER_VERSION, POWER, LateroStage
+from vbraille.devices.latero.conversation import (
+    ENCODERS,
+    NO_SWITCH,
+    OTHER_VERSION,
+    POWER,
+    LateroStage,
+)
 from vbraille.simulation.laterosim import LateroFaults
 
 SHOWN = np.rint(150 * (1 - FELT)).astype(np.uint8).ravel()
@@ -202,7 +208,7 @@ def test_a_register_that_is_not_the_status_word_is_never_written():
     assert talk.board.raws == raws
 
 
-def test_a_stall_goes_to_rest_from_where_the_guardian_left_the_blades():
+def test_a_stall_goes_to_rest_from_where_the_watchdog_left_the_blades():
     talk = Talk().run(50)
     talk.now_ns += 60 * MS
     halfway = np.full(64, 100, np.uint8)
@@ -226,7 +232,7 @@ def test_what_is_felt_is_not_held_by_reading_alone():
     talk.frame = None
     begun = talk.board.fulls
     talk.run(30)
-    assert talk.board.fulls == begun  # so that the guardian hears no beat
+    assert talk.board.fulls == begun  # so that the watchdog hears no beat
     assert (talk.board.levels == SHOWN).all()
 
 

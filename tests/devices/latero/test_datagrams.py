@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vbraille.devices.latero.datagrams import (
+from vbraille.devices.latero.wire import (
     FULL,
     FULLR0,
     FULLR1,

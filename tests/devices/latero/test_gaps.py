@@ -8,8 +8,8 @@ import pytest
 from tests.devices.latero.talking import MS, Talk
 from tests.wired import CATCH_UP, DOT_MM, waves
 from vbraille.devices.base import Device
-from vbraille.devices.latero.datagrams import REST
-from vbraille.devices.latero.laterodevice import AHEAD_NS, DISPLAY
+from vbraille.devices.latero.device import AHEAD_NS, DISPLAY
+from vbraille.devices.latero.wire import REST
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.constants import FADE_S
 from vbraille.engine.loop import Loop
@@ -24,7 +24,7 @@ ALLOWED_AT_RANDOM = (CATCH_UP + 1) * ASKED + 1
 
 
 class OnLatero(Device):
-    """A Latero in memory, without its guardian."""
+    """A Latero in memory, without its watchdog."""
 
     acknowledges = True
     ahead_ns = AHEAD_NS

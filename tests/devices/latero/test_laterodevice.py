@@ -1,4 +1,4 @@
-"""A Latero as a device: at a real port, with a real guardian."""
+"""A Latero as a device: at a real port, with a real watchdog."""
 
 import os
 import signal
@@ -11,10 +11,9 @@ import pytest
 
 from tests.devices.latero.peers import address_of, simulated, until
 from vbraille.devices.events import Back, Button, Placing, Silent
-from vbraille.devices.latero.datagrams import REST, full_request
-from vbraille.devices.latero.hearing import LateroStage
-from vbraille.devices.latero.laterodevice import DISPLAY
-from vbraille.devices.latero.openlatero import open_latero
+from vbraille.devices.latero.conversation import LateroStage
+from vbraille.devices.latero.device import DISPLAY, open_latero
+from vbraille.devices.latero.wire import REST, full_request
 from vbraille.devices.registry import open_device
 from vbraille.errors import DeviceError, InputError
 from vbraille.simulation.lateroboard import LateroBoard
@@ -63,7 +62,7 @@ def test_it_reads_shows_and_takes_leave(latero):
         assert device.acknowledges
         assert "offsets=4452,4294960000,120034" in device.particulars.encoder
         assert device.particulars.firmware == "controller 1.0, I/O interface 1.0"
-        watching = device.guarding.process_id
+        watching = device.watchdog.process_id
     assert latero.board.at_rest
     assert not latero.board.powered
     with pytest.raises(ProcessLookupError):
@@ -92,11 +91,11 @@ def test_buttons_reach_the_reader():
         assert events.count(Button(2, True)) == 1
 
 
-def test_a_client_whose_guardian_was_killed_stops(latero):
+def test_a_client_whose_watchdog_was_killed_stops(latero):
     with open_latero(address_of(latero), None) as device:
         ticks(device)
-        os.kill(device.guarding.process_id, signal.SIGKILL)
-        with pytest.raises(DeviceError, match="guardian"):
+        os.kill(device.watchdog.process_id, signal.SIGKILL)
+        with pytest.raises(DeviceError, match="watchdog"):
             ticks(device, found=lambda *_: False)
         device.write(FELT)  # a loop fades by frames
     assert latero.board.at_rest
@@ -128,7 +127,7 @@ def test_two_programs_on_one_latero(latero):
 
 
 class Stopping:
-    """A wait in which the driver is stopped once for longer than the guardian waits."""
+    """A wait in which the driver is stopped once for longer than the watchdog waits."""
 
     def __init__(self, latero):
         self.latero, self.done, self.levels = latero, False, []
@@ -142,7 +141,7 @@ class Stopping:
 
 
 @pytest.mark.parametrize("end", ["rest", "close"])
-def test_a_driver_that_is_stopped_on_its_way_to_rest_goes_on_from_where_the_guardian_was(
+def test_a_driver_that_is_stopped_on_its_way_to_rest_goes_on_from_where_the_watchdog_was(
     latero, end
 ):
     stopping = Stopping(latero)
@@ -153,7 +152,7 @@ def test_a_driver_that_is_stopped_on_its_way_to_rest_goes_on_from_where_the_guar
     assert set(after) == {150}
 
 
-def test_what_ends_the_taking_of_leave_leaves_the_blades_to_the_guardian(latero):
+def test_what_ends_the_taking_of_leave_leaves_the_blades_to_the_watchdog(latero):
     def pause(seconds):
         time.sleep(seconds)
         if not latero.board.at_rest:
@@ -247,7 +246,7 @@ def test_a_host_that_is_none():
         open_latero("nowhere.invalid", None)
 
 
-def test_a_rate_at_which_the_guardian_would_act_is_refused(latero):
+def test_a_rate_at_which_the_watchdog_would_act_is_refused(latero):
     with pytest.raises(InputError, match="40 or more"):
         open_latero(address_of(latero), replace(DISPLAY, rate_hz=30.0))
 

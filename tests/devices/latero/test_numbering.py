@@ -1,6 +1,6 @@
 """What an answer's number says: new, late, doubled, or nobody's."""
 
-from vbraille.devices.latero.numbering import KEPT, LATE_NS, Fate, Numbering
+from vbraille.devices.latero.conversation import KEPT, LATE_NS, Fate, Numbering
 
 MS = 1_000_000
 

@@ -7,10 +7,8 @@ from hypothesis import strategies as st
 
 from vbraille.carriers import latero
 from vbraille.devices.events import Placing
-from vbraille.devices.latero.address import LateroAddress, parse_latero_address
-from vbraille.devices.latero.armplace import ArmPlace
-from vbraille.devices.latero.blades import Blades
-from vbraille.devices.latero.debouncing import Debounced
+from vbraille.devices.latero.conversation import ArmPlace, Blades, Debounced
+from vbraille.devices.latero.device import LateroAddress, parse_latero_address
 from vbraille.errors import InputError
 
 MS = 1_000_000

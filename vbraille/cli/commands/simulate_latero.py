@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 from vbraille.cli.controlkeys import ControlKeys
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
-from vbraille.devices.latero.datagrams import BUTTONS, PORT
-from vbraille.devices.latero.laterodevice import DISPLAY
+from vbraille.devices.latero.device import DISPLAY
+from vbraille.devices.latero.wire import BUTTONS, PORT
 from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
 from vbraille.render.braille.models import LATERO

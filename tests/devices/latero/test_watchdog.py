@@ -1,4 +1,4 @@
-"""The guardian: what it sends, step by step, and as a process that outlives its driver."""
+"""The watchdog: what it sends, step by step, and as a process that outlives its driver."""
 
 import os
 import select
@@ -14,29 +14,29 @@ import numpy as np
 import pytest
 
 from tests.devices.latero.peers import PATIENCE_S, address_of, simulated, until
-from vbraille.devices.latero import guardian
+from vbraille.devices.latero import watchdog
 from vbraille.devices.latero.conversation import power_off
-from vbraille.devices.latero.datagrams import FULL, RAW, full_request, parse_request
-from vbraille.devices.latero.guarding import Guarding
+from vbraille.devices.latero.device import WatchdogProcess
+from vbraille.devices.latero.wire import FULL, RAW, full_request, parse_request
 from vbraille.simulation.lateroboard import LateroBoard
 
 MS = 1_000_000
 
 
 class Guarded:
-    """A guardian in memory, and the Latero that it speaks with."""
+    """A watchdog in memory, and the Latero that it speaks with."""
 
     def __init__(self, *, power=True, deaf=False):
         self.latero = LateroBoard()
-        self.board = guardian.Board(bytearray(guardian.MEMORY_BYTES))
+        self.board = watchdog.Board(bytearray(watchdog.MEMORY_BYTES))
         self.board.full[:] = full_request()
         self.board.off[:] = power_off(0)
-        self.board.words[guardian.POWER] = power
+        self.board.words[watchdog.POWER] = power
         levels = bytes(np.linspace(0, 150, 64).astype(np.uint8))
         self.board.levels[:] = levels
         self.latero.levels[:] = np.frombuffer(levels, np.uint8)
         self.sent, self.answers, self.deaf = [], [], deaf
-        self.guardian = guardian.Guardian(self.board, self.send, self.receive)
+        self.watchdog = watchdog.Watchdog(self.board, self.send, self.receive)
 
     def send(self, datagram):
         self.sent.append(parse_request(bytes(datagram)))
@@ -50,8 +50,8 @@ class Guarded:
     def act(self, begun_ns=0):
         """Have it do its work; give how long that took, in ms."""
         now_ns = begun_ns
-        self.guardian.begin(now_ns)
-        while (due_ns := self.guardian.step(now_ns)) is not None:
+        self.watchdog.begin(now_ns)
+        while (due_ns := self.watchdog.step(now_ns)) is not None:
             now_ns = max(due_ns, now_ns + 1)
         return (now_ns - begun_ns) / MS
 
@@ -67,7 +67,7 @@ def test_blades_go_along_the_ramp_and_power_off():
     assert steps.min() >= 0
     assert steps.max() <= 8
     assert levels[0].min() <= 8
-    assert guarded.board.words[guardian.TRIPS] == 1
+    assert guarded.board.words[watchdog.TRIPS] == 1
     assert bytes(guarded.board.levels) == bytes((150,)) * 64
 
 
@@ -98,18 +98,18 @@ def test_its_requests_are_numbered_and_never_twice_alike():
 
 def test_it_stops_when_its_driver_beats_again():
     guarded = Guarded()
-    guarded.guardian.begin(0)
-    guarded.guardian.step(0)
-    guarded.guardian.step(5 * MS)
-    guarded.board.words[guardian.BEAT] = 5 * MS
-    assert guarded.guardian.step(6 * MS) is None
+    guarded.watchdog.begin(0)
+    guarded.watchdog.step(0)
+    guarded.watchdog.step(5 * MS)
+    guarded.board.words[watchdog.BEAT] = 5 * MS
+    assert guarded.watchdog.step(6 * MS) is None
     assert len(guarded.sent) == 2
-    assert guarded.board.words[guardian.ACTING] == 0
+    assert guarded.board.words[watchdog.ACTING] == 0
 
 
 def test_a_driver_that_is_killed_just_as_it_goes_on_is_not_taken_for_back():
     """The beat of a driver that went on from a stop, and then ended, is not that it lives."""
-    board = guardian.Board(bytearray(guardian.MEMORY_BYTES))
+    board = watchdog.Board(bytearray(watchdog.MEMORY_BYTES))
     board.full[:] = full_request()
     board.off[:] = power_off(0)
     latero, felt = LateroBoard(), bytes(64)
@@ -117,13 +117,13 @@ def test_a_driver_that_is_killed_just_as_it_goes_on_is_not_taken_for_back():
     ours, its = socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)
     its.setblocking(False)
     board.levels[:] = felt
-    board.words[guardian.BEAT] = 1  # long ago
-    watching = threading.Thread(target=guardian.watch, args=(board, lifeline, its.fileno()))
+    board.words[watchdog.BEAT] = 1  # long ago
+    watching = threading.Thread(target=watchdog.watch, args=(board, lifeline, its.fileno()))
     watching.start()
     latero.receive(ours.recv(256))  # it acts
     os.close(driver)
     board.levels[:] = felt
-    board.words[guardian.BEAT] = time.monotonic_ns()
+    board.words[watchdog.BEAT] = time.monotonic_ns()
     ours.settimeout(0.01)
     while watching.is_alive():
         with suppress(TimeoutError):
@@ -142,63 +142,63 @@ def latero():
 
 
 @pytest.fixture
-def guarding(latero):
-    """A guardian's process, whose driver has shown something."""
+def process(latero):
+    """A watchdog's process, whose driver has shown something."""
     line = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     line.connect(latero._socket.getsockname())
-    guarding = Guarding(bytes(full_request()), bytes(power_off(0)), line.fileno())
-    guarding.board.words[guardian.POWER] = 1
-    guarding.beat(time.monotonic_ns())
+    process = WatchdogProcess(bytes(full_request()), bytes(power_off(0)), line.fileno())
+    process.board.words[watchdog.POWER] = 1
+    process.beat(time.monotonic_ns())
     latero.board.levels[:] = 0
-    guarding.board.levels[:] = bytes(64)
+    process.board.levels[:] = bytes(64)
     try:
-        yield guarding
+        yield process
     finally:
-        if guarding.alive:
-            guarding.close()
+        if process.alive:
+            process.close()
         line.close()
 
 
-def test_a_driver_that_falls_silent_is_not_waited_for(latero, guarding):
+def test_a_driver_that_falls_silent_is_not_waited_for(latero, process):
     until(lambda: latero.board.at_rest and not latero.board.powered)
-    assert guarding.trips == 1
-    assert guarding.alive
+    assert process.trips == 1
+    assert process.alive
     latero.board.levels[:] = 0
-    guarding.board.levels[:] = bytes(64)
-    guarding.beat(time.monotonic_ns())
-    until(lambda: guarding.trips == 2 and latero.board.at_rest)
+    process.board.levels[:] = bytes(64)
+    process.beat(time.monotonic_ns())
+    until(lambda: process.trips == 2 and latero.board.at_rest)
 
 
-def test_a_driver_that_takes_leave_has_it_end_without_a_word(latero, guarding):
+def test_a_driver_that_takes_leave_has_it_end_without_a_word(latero, process):
     for _ in range(20):
-        guarding.beat(time.monotonic_ns())
+        process.beat(time.monotonic_ns())
         time.sleep(0.001)
-    trips, fulls = guarding.trips, latero.board.fulls
-    guarding.close()
-    assert not guarding.alive
+    trips, fulls = process.trips, latero.board.fulls
+    process.close()
+    assert not process.alive
     if not trips:  # the machine has let us beat in time
         assert latero.board.fulls == fulls
 
 
-def test_it_has_a_session_of_its_own_and_cannot_be_stopped_kindly(guarding):
-    assert os.getsid(guarding.process_id) == guarding.process_id
+def test_it_has_a_session_of_its_own_and_cannot_be_stopped_kindly(process):
+    assert os.getsid(process.process_id) == process.process_id
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        os.kill(guarding.process_id, number)
+        os.kill(process.process_id, number)
     time.sleep(0.05)
-    assert guarding.alive
+    assert process.alive
 
 
 _DRIVER = """
 import sys, time
 import numpy as np
-from vbraille.devices.latero.openlatero import open_latero
+from vbraille.devices.latero.device import open_latero
 device = open_latero(sys.argv[1], None)
 frame = np.ones((8, 8))
 while True:
     device.read()
     device.write(frame)
     if not device.conversation.blades.rests:
-        print(device.guarding.process_id, flush=True)
+        print(device.watchdog.process_id, flush=True)
     time.sleep(0.001)
 """
 

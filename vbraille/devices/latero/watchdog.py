@@ -1,19 +1,21 @@
-"""The Latero's guardian: a process that does nothing but bring its blades to rest.
+"""The Latero's watchdog: a process that does nothing but bring its blades to rest.
 
 Nothing documents a watchdog in the Latero: a blade stays where the last datagram put it. So this
 file is run by itself, beside the process that drives the Latero, before that sends anything to
 feel. The driver beats in shared memory with each datagram. When it has not for `WATCHDOG_NS`, or
-its end of the pipe is closed because it has ended, the guardian takes the blades from their last
+its end of the pipe is closed because it has ended, the watchdog takes the blades from their last
 levels to rest along a ramp, switches motor power off, and says so again until the Latero has
 answered both, or for `PATIENCE_NS`. Then it ends, or, if the driver lives, watches again.
 
 It is given the datagrams ready-made and imports next to nothing, so that it is there at once:
 
-    python -I -S guardian.py MEMORY LIFELINE SOCKET
+    python -I -S watchdog.py MEMORY LIFELINE SOCKET
 
 These are descriptors; further ones that it inherits stay open as long as it lives. It answers with
 a byte on standard output when it watches.
 """
+
+from __future__ import annotations
 
 import mmap
 import os
@@ -47,7 +49,7 @@ _ABOVE_THE_HOST = 42
 
 
 class Board:
-    """Memory that the driver and its guardian share.
+    """Memory that the driver and its watchdog share.
 
     Parameters
     ----------
@@ -68,8 +70,8 @@ def ramped(level, passed_ns):
     return min(REST, level + -(-REST * passed_ns // RAMP_NS))
 
 
-class Guardian:
-    """What the guardian does, one step after the other; `watch` does nothing else.
+class Watchdog:
+    """What the watchdog does, one step after the other; `watch` does nothing else.
 
     Parameters
     ----------
@@ -180,24 +182,24 @@ def watch(board, lifeline, socket):
         except OSError:
             return b""
 
-    guardian = Guardian(board, send, receive)
+    watchdog = Watchdog(board, send, receive)
     words = board.words
     ended, tripped_ns = False, 0  # without any beat there is nothing to bring to rest
     while True:
         now_ns = time.monotonic_ns()
         beat_ns = words[BEAT]
-        if guardian.acting:
-            due_ns = guardian.step(now_ns)
+        if watchdog.acting:
+            due_ns = watchdog.step(now_ns)
             if due_ns is None:
                 # A driver that beat again may have been killed right after that: then once more.
-                if ended and words[BEAT] == guardian.beat_ns:
+                if ended and words[BEAT] == watchdog.beat_ns:
                     return
-                tripped_ns = guardian.beat_ns
+                tripped_ns = watchdog.beat_ns
                 continue
         elif ended:
             if words[STATE] == CLOSED:
                 return
-            guardian.begin(now_ns)
+            watchdog.begin(now_ns)
             continue
         elif beat_ns == tripped_ns:
             due_ns = now_ns + LOOK_NS
@@ -205,11 +207,11 @@ def watch(board, lifeline, socket):
             felt = min(board.levels) < REST
             due_ns = beat_ns + (WATCHDOG_NS if felt else REST_WATCHDOG_NS)
             if now_ns >= due_ns:
-                guardian.begin(now_ns)
+                watchdog.begin(now_ns)
                 continue
             if not felt:
                 due_ns = min(due_ns, now_ns + WATCHDOG_NS // 2)
-        waits = [socket] if guardian.acting else []
+        waits = [socket] if watchdog.acting else []
         if not ended:
             waits.append(lifeline)
         left_s = max(due_ns - time.monotonic_ns(), 0) / 1e9
