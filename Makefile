@@ -42,7 +42,7 @@ test-all: .venv/tests
 
 all-tests: .venv/tests .venv/compiled
 	TESTS=all $(PYTEST) --cov --cov-branch --cov-report=term
-	TESTS=all NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/wire/test_packing.py tests/devices/wire/test_wirekernels.py tests/devices/serial/test_steady.py
+	TESTS=all NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/test_framekernels.py tests/devices/wire/test_wirekernels.py tests/devices/serial/test_steady.py
 
 # Hours: hundreds of killed sessions, laws and fuzzing fifty times as long, runs of ten minutes.
 soak: .venv/tests .venv/compiled

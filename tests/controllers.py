@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tests.devices.pagecontroller import Make, PageController
-from vbraille.devices.wire.messages import TRIPPED
+from vbraille.devices.serial.wire import TRIPPED
 from vbraille.simulation.firmware import Controller
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.devices.wire.messages import Frame, Info
+    from vbraille.devices.serial.wire import Frame, Info
 
 
 class HastyController(Controller):

@@ -36,7 +36,7 @@ def test_a_conversation_s_transitions_are_lines_of_a_file(keep, tmp_path):
     lines = (tmp_path / "log").read_text().splitlines()
     found = [LINE.fullmatch(line) for line in lines]
     assert all(found)
-    assert {line[2] for line in found} == {"vbraille.devices.serial.listening"}
+    assert {line[2] for line in found} == {"vbraille.devices.serial.conversation"}
     assert [line[3].partition(":")[0] for line in found] == [
         "GREETING to ASKED",
         "ASKED to RAMPING",

@@ -31,13 +31,12 @@ from tests.controllers import HastyController
 from tests.troubles import Troubles, troubles_of_host, troubles_of_line
 from vbraille.braille.geometry import Geometry
 from vbraille.devices.serial.conversation import Conversation
-from vbraille.devices.serial.openserial import greet
-from vbraille.devices.serial.ports import Address
-from vbraille.devices.serial.serialdevice import SerialDevice
-from vbraille.devices.wire.codec import Decoder
-from vbraille.devices.wire.messages import (
+from vbraille.devices.serial.device import SerialDevice, greet
+from vbraille.devices.serial.port import Address
+from vbraille.devices.serial.wire import (
     RAMP_MS,
     WATCHDOG_MS,
+    Decoder,
     Encoder,
     Frame,
 )

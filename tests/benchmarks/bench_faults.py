@@ -43,7 +43,7 @@ from vbraille.engine.realtime import come_first
 from vbraille.simulation.carriage import area_of
 from vbraille.simulation.described import describe
 from vbraille.simulation.hand import Sweep
-from vbraille.devices.wire.messages import Encoder
+from vbraille.devices.serial.wire import Encoder
 from vbraille.simulation.pty import Link, Port
 from vbraille.simulation.simulator import Simulator
 display = DISPLAYS[sys.argv[2]]

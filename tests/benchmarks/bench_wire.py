@@ -8,8 +8,7 @@ import numpy as np
 
 from tests.benchmarks.timing import Result
 from tests.conftest import SEED
-from vbraille.devices.wire.codec import Decoder, encode
-from vbraille.devices.wire.messages import Frame, Hello, Rest, State, Watchdog
+from vbraille.devices.serial.wire import Decoder, Frame, Hello, Rest, State, Watchdog, encode
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

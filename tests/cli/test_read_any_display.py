@@ -12,7 +12,7 @@ from tests.cli import program
 from tests.render.reader import read_back
 from tests.shown import LATERO, array_of
 from tests.tiers import heavy
-from vbraille.devices.wire.messages import Encoder
+from vbraille.devices.serial.wire import Encoder
 from vbraille.render.braille.models import model_of
 from vbraille.simulation.described import describe
 from vbraille.simulation.firmware import Controller

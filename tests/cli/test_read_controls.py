@@ -9,7 +9,7 @@ from threading import Event, Thread
 import numpy as np
 
 from tests.cli import program
-from vbraille.devices.wire.messages import Encoder
+from vbraille.devices.serial.wire import Encoder
 from vbraille.render import STRESS2
 from vbraille.simulation.described import describe
 from vbraille.simulation.pty import Port

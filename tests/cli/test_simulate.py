@@ -15,8 +15,17 @@ import numpy as np
 import pytest
 
 from tests.cli import program
-from vbraille.devices.wire.codec import Decoder, Levels, encode
-from vbraille.devices.wire.messages import Encoder, Frame, Hello, Info, State, Watchdog
+from vbraille.devices.serial.wire import (
+    Decoder,
+    Encoder,
+    Frame,
+    Hello,
+    Info,
+    Levels,
+    State,
+    Watchdog,
+    encode,
+)
 
 PATIENCE_S = 30.0
 

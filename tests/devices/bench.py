@@ -9,17 +9,16 @@ import numpy as np
 
 from tests.engine.test_loop import info
 from vbraille.devices.saying import told
-from vbraille.devices.serial.openserial import begin
-from vbraille.devices.serial.ports import parse_address
-from vbraille.devices.wire.codec import Decoder
-from vbraille.devices.wire.messages import Encoder
+from vbraille.devices.serial.device import begin
+from vbraille.devices.serial.port import parse_address
+from vbraille.devices.serial.wire import Decoder, Encoder
 from vbraille.simulation.described import describe
 from vbraille.simulation.firmware import Controller
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.devices.serial.serialdevice import SerialDevice
+    from vbraille.devices.serial.device import SerialDevice
     from vbraille.pose import Pose
 
 HOME_MM = -5.4  # of the centre of the array, which is 10.8 mm long, at the left stop

@@ -22,7 +22,7 @@ from tests.devices.pagecontroller import (
 )
 from vbraille.devices.events import Button, Knob
 from vbraille.devices.saying import told
-from vbraille.devices.wire.codec import Decoder
+from vbraille.devices.serial.wire import Decoder
 from vbraille.simulation.firmware import Controller
 
 PAGE = (Path(__file__).parents[2] / "docs/wire-protocol.md").read_text()

@@ -5,8 +5,7 @@ import pytest
 from tests.devices.bench import AWAY, HOME_MM, Bench, shown
 from vbraille.devices.base import Placing
 from vbraille.devices.saying import told
-from vbraille.devices.wire.codec import encode, enframe
-from vbraille.devices.wire.messages import (
+from vbraille.devices.serial.wire import (
     CountSign,
     Encoder,
     Error,
@@ -15,6 +14,8 @@ from vbraille.devices.wire.messages import (
     Rest,
     State,
     Watchdog,
+    encode,
+    enframe,
 )
 from vbraille.simulation.firmware import Controller
 

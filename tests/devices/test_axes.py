@@ -8,8 +8,8 @@ from tests.devices.bench import HALF, HOME_MM, Bench
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Knob
 from vbraille.devices.saying import told
-from vbraille.devices.serial.panel import turned
-from vbraille.devices.wire.messages import CountSign, Encoder, TurnSign, YCountSign
+from vbraille.devices.serial.sensors import turned
+from vbraille.devices.serial.wire import CountSign, Encoder, TurnSign, YCountSign
 from vbraille.errors import DeviceError
 
 PLANE = {"height_mm": 200.0, "turns": True, "contactor_mm": (0.5, 1.4)}

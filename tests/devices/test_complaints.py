@@ -8,8 +8,7 @@ from tests.devices.bench import Bench
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Button, Placed, Silent, Unplugged, WatchdogTripped
 from vbraille.devices.saying import told
-from vbraille.devices.wire.codec import encode
-from vbraille.devices.wire.messages import Encoder, Error
+from vbraille.devices.serial.wire import Encoder, Error, encode
 from vbraille.errors import DeviceError
 
 

@@ -3,8 +3,7 @@
 import numpy as np
 
 from tests.devices.bench import REST, Bench
-from vbraille.devices.wire.codec import Levels
-from vbraille.devices.wire.messages import Frame
+from vbraille.devices.serial.wire import Frame, Levels
 
 
 def test_levels_are_those_of_the_formula(rng):

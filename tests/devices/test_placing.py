@@ -5,7 +5,7 @@ import pytest
 
 from tests.devices.bench import HOME_MM, Bench, shown
 from vbraille.devices.base import Placing
-from vbraille.devices.wire.messages import CountSign, Encoder
+from vbraille.devices.serial.wire import CountSign, Encoder
 from vbraille.simulation.firmware import Controller
 
 

@@ -9,9 +9,19 @@ from tests.devices.bench import DOWN_BYTES, HALF, REST, Bench, shown
 from tests.devices.serial.test_transitions import AFTER_THE_START, ROWS, watched
 from tests.tiers import by_tier
 from vbraille.devices.serial.transitions import Stage
-from vbraille.devices.wire.codec import Levels, encode, enframe
-from vbraille.devices.wire.messages import PLACED, RESTING, Error, Frame, Hello, State, Watchdog
-from vbraille.devices.wire.messages import Rest as RestMessage
+from vbraille.devices.serial.wire import (
+    PLACED,
+    RESTING,
+    Error,
+    Frame,
+    Hello,
+    Levels,
+    State,
+    Watchdog,
+    encode,
+    enframe,
+)
+from vbraille.devices.serial.wire import Rest as RestMessage
 from vbraille.errors import DeviceError
 from vbraille.simulation.firmware import Controller
 

@@ -11,33 +11,18 @@ import numpy as np
 import pytest
 from cobs import cobs
 
-from vbraille.devices.serial.openserial import LOWEST_RATE_HZ
-from vbraille.devices.serial.place import Place
+from vbraille.devices.serial import wire
+from vbraille.devices.serial.device import LOWEST_RATE_HZ
+from vbraille.devices.serial.sensors import CarriagePlace
 from vbraille.devices.serial.transitions import TRANSITIONS, Stage
-from vbraille.devices.wire import messages
-from vbraille.devices.wire.codec import (
+from vbraille.devices.serial.wire import (
     CRC_RESIDUE,
-    MOST_FRAME_BYTES,
-    BodyCodec,
-    Decoder,
-    Levels,
-    encode,
-    line_bytes,
-)
-from vbraille.devices.wire.fields import (
-    Fixed,
-    Number,
-    OneOf,
-    PerActuator,
-    ShortText,
-    fields_of,
-)
-from vbraille.devices.wire.messages import (
     FAULTY,
     FIRST_STEP,
     KNOB_STEP,
     KNOB_TOP,
     MESSAGES,
+    MOST_FRAME_BYTES,
     OUT_OF_REST,
     PACE,
     PLACED,
@@ -45,11 +30,22 @@ from vbraille.devices.wire.messages import (
     RESTING,
     TRIPPED,
     WATCHDOG_MS,
+    BodyCodec,
+    Decoder,
     ErrorCode,
+    Fixed,
     Frame,
     Info,
+    Levels,
+    Number,
+    OneOf,
+    PerActuator,
+    ShortText,
     State,
     Watchdog,
+    encode,
+    fields_of,
+    line_bytes,
 )
 from vbraille.engine.checking import _PLACE_SLACK_MM
 from vbraille.engine.constants import CATCH_UP, GAP_PERIODS
@@ -81,14 +77,14 @@ def built(call):
     def value(node):
         match node:
             case ast.Attribute(ast.Name(enum), name):
-                return getattr(messages, enum)[name]
+                return getattr(wire, enum)[name]
             case ast.Call(ast.Attribute(ast.Name("bytes"), "fromhex"), [ast.Constant(text)]):
                 return bytes.fromhex(text)
         return ast.literal_eval(node)
 
     node = ast.parse(call, mode="eval").body
     assert isinstance(node, ast.Call)
-    return getattr(messages, node.func.id)(**{k.arg: value(k.value) for k in node.keywords})
+    return getattr(wire, node.func.id)(**{k.arg: value(k.value) for k in node.keywords})
 
 
 def example_of(message):
@@ -145,7 +141,7 @@ def test_there_is_a_section_for_each_message_and_no_other():
 def test_error_codes():
     told = [row[0] for row in rows_of("ERROR") if len(row) == 2]
     assert told == [f"{code.value} {code.name.lower()}" for code in ErrorCode]
-    assert messages.NOTICES == 128
+    assert wire.NOTICES == 128
 
 
 def test_flags():
@@ -176,7 +172,7 @@ def test_a_device_of_one_axis():
 def test_the_place_of_the_example():
     """The equations of the page, executed, give what the host has, and what the page says."""
     info, state = example_of(Info)[0], example_of(State)[0]
-    place = Place(info).take(state)
+    place = CarriagePlace(info).take(state)
     names = {name: getattr(info, name) for name, _ in fields_of(Info)}
     names |= {"π": math.pi, "d0": info.far_stop_count, "e0": info.straight_count}
     names |= {"d": state.y_count, "theta_count": state.theta_count}
@@ -211,7 +207,7 @@ def test_places():
     u, v = -right / 2e6, -down / 2e6
     for row in rows:
         counts = dict(zip(("count", "y_count", "theta_count"), map(int, row[:3]), strict=True))
-        place = Place(info).take(replace(state, **counts))
+        place = CarriagePlace(info).take(replace(state, **counts))
         sin, cos = math.sin(place.theta_rad), math.cos(place.theta_rad)
         found = [place.x_mm, place.y_mm, math.degrees(place.theta_rad)]
         found += [place.x_mm + u * cos + v * sin, place.y_mm - u * sin + v * cos]
@@ -315,7 +311,7 @@ def test_rest():
     assert f"**The ramp to rest takes {RAMP_MS} ms:**" in text
     assert f"({FIRST_STEP} · |level − rest| > `top_level`)" in text
     assert f"**{WATCHDOG_MS} ms of the device's own time without a FRAME" in text
-    assert f"sent no FRAME for {messages.STALL_MS} ms" in text
+    assert f"sent no FRAME for {wire.STALL_MS} ms" in text
     firmware = SECTIONS["A minimal firmware"]
     assert f"now - last_frame >= {WATCHDOG_MS * 1000}:" in firmware
     assert f"now - ramp_began >= {RAMP_MS * 1000}:" in firmware
@@ -338,9 +334,7 @@ def test_times():
     told = {
         row[0].strip("`"): int(row[1]) for row in rows_of("Silence, and what the host does")[-7:]
     }
-    assert told == {
-        name: getattr(messages, name) for name in vars(messages) if name.endswith("_MS")
-    }
+    assert told == {name: getattr(wire, name) for name in vars(wire) if name.endswith("_MS")}
 
 
 def test_bandwidth():

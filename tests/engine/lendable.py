@@ -23,12 +23,9 @@ import numpy as np
 
 from tests.engine.test_loop import info, picture
 from vbraille.devices.serial.conversation import Conversation
-from vbraille.devices.serial.openserial import greet
-from vbraille.devices.serial.ports import Address
-from vbraille.devices.serial.serialdevice import SerialDevice
-from vbraille.devices.serial.seriallines import SerialLine
-from vbraille.devices.wire.codec import Decoder, Levels, encode
-from vbraille.devices.wire.messages import Encoder, Frame, State
+from vbraille.devices.serial.device import SerialDevice, greet
+from vbraille.devices.serial.port import Address, SerialLine
+from vbraille.devices.serial.wire import Decoder, Encoder, Frame, Levels, State, encode
 from vbraille.engine.loop import Loop
 from vbraille.engine.ring import Ring
 from vbraille.simulation.described import describe

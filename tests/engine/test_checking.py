@@ -9,7 +9,7 @@ from tests.baddrivers import BAD, Good
 from tests.devices.bench import Bench
 from tests.engine.test_loop import info
 from tests.tiers import heavy
-from vbraille.devices.wire.messages import Encoder
+from vbraille.devices.serial.wire import Encoder
 from vbraille.engine.checking import check
 from vbraille.engine.clock import ManualClock
 

@@ -13,8 +13,7 @@ import pytest
 
 from tests.engine.lendable import PICTURES, levels_of, sockets, terminal
 from vbraille.devices.events import Knob, Notice, Silent, Unplugged
-from vbraille.devices.wire.codec import Decoder, encode
-from vbraille.devices.wire.messages import SILENCE_MS, Error, Frame
+from vbraille.devices.serial.wire import SILENCE_MS, Decoder, Error, Frame, encode
 from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError
 

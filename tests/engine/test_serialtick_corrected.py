@@ -4,7 +4,7 @@ import numpy as np
 
 from tests.engine.lendable import PICTURES, TOP, Twin, assert_same_tick, levels_of
 from vbraille.devices.calibration import Calibration, Tried
-from vbraille.devices.wire.codec import Decoder
+from vbraille.devices.serial.wire import Decoder
 
 ENOUGH, MOST = 120, 4000
 

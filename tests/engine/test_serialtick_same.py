@@ -21,8 +21,15 @@ from tests.engine.lendable import (
 )
 from tests.tiers import by_tier
 from vbraille.devices.serial.conversation import IDLE_MS
-from vbraille.devices.wire.codec import Decoder, encode
-from vbraille.devices.wire.messages import SILENCE_MS, STALL_MS, Error, Frame, Watchdog
+from vbraille.devices.serial.wire import (
+    SILENCE_MS,
+    STALL_MS,
+    Decoder,
+    Error,
+    Frame,
+    Watchdog,
+    encode,
+)
 from vbraille.engine.record import Flag
 from vbraille.sessions.record.replay import Replay
 

@@ -12,7 +12,7 @@ import pytest
 from tests.devices.pagecontroller import Cable, Make, PageController
 from tests.tiers import heavy
 from tests.wired import CATCH_UP, DOT_MM, FADE_S, INFO, TOP, waves
-from vbraille.devices.wire.messages import RAMP_MS
+from vbraille.devices.serial.wire import RAMP_MS
 from vbraille.engine.host import Host
 
 PATIENCE_S = 60.0

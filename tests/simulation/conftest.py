@@ -3,7 +3,7 @@
 import pytest
 
 from tests.simulation.controlled import Bench
-from vbraille.devices.wire.messages import Hello
+from vbraille.devices.serial.wire import Hello
 
 
 @pytest.fixture

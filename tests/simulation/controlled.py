@@ -2,17 +2,19 @@
 
 import numpy as np
 
-from vbraille.devices.wire.codec import Decoder, Levels, encode
-from vbraille.devices.wire.messages import (
+from vbraille.devices.serial.wire import (
     VERSION,
     CountSign,
+    Decoder,
     Encoder,
     Frame,
     Info,
+    Levels,
     RestSide,
     State,
     TurnSign,
     YCountSign,
+    encode,
 )
 from vbraille.simulation.firmware import Controller
 

@@ -7,20 +7,25 @@ import numpy as np
 import pytest
 
 from tests.simulation.controlled import INFO, REST, SWING, TOP, Bench, packed, without_states
-from vbraille.devices.wire.codec import DELIMITER, Decoder, Levels, OtherVersion, encode, enframe
-from vbraille.devices.wire.messages import (
+from vbraille.devices.serial.wire import (
+    DELIMITER,
     FAULTY,
     PLACED,
     RESTING,
     CountSign,
+    Decoder,
     Encoder,
     Error,
     ErrorCode,
     Frame,
     Hello,
+    Levels,
+    OtherVersion,
     RestSide,
     State,
     Watchdog,
+    encode,
+    enframe,
 )
 from vbraille.display import Display
 from vbraille.simulation.described import describe

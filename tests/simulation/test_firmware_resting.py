@@ -15,8 +15,18 @@ from tests.simulation.controlled import (
     packed,
     without_states,
 )
-from vbraille.devices.wire.codec import DELIMITER, Levels, encode
-from vbraille.devices.wire.messages import PLACED, RESTING, TRIPPED, Frame, Hello, Rest, Watchdog
+from vbraille.devices.serial.wire import (
+    DELIMITER,
+    PLACED,
+    RESTING,
+    TRIPPED,
+    Frame,
+    Hello,
+    Levels,
+    Rest,
+    Watchdog,
+    encode,
+)
 
 
 def ramp(begun, milliseconds):

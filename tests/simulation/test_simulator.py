@@ -9,8 +9,17 @@ from pathlib import Path
 import pytest
 
 from tests.simulation.test_firmware import INFO, REST, SWING, packed
-from vbraille.devices.wire.codec import DELIMITER, Decoder, encode
-from vbraille.devices.wire.messages import Encoder, Frame, Hello, Info, State, Watchdog
+from vbraille.devices.serial.wire import (
+    DELIMITER,
+    Decoder,
+    Encoder,
+    Frame,
+    Hello,
+    Info,
+    State,
+    Watchdog,
+    encode,
+)
 from vbraille.errors import InputError
 from vbraille.simulation.hand import Sweep
 from vbraille.simulation.pty import Link, Port

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
     from vbraille.devices.calibration import Calibration, Correction
     from vbraille.devices.events import Event
-    from vbraille.devices.lent import Lent
     from vbraille.display import Display
     from vbraille.pose import Pose
 
@@ -141,28 +140,6 @@ class Device(ABC):
 
     def ask(self) -> None:
         """Ask the device where it is, for the next tick to read; this never waits."""
-
-    def lend(self) -> Lent | None:
-        """What the engine needs to do steady ticks by itself; None if it must call the device.
-
-        Until `take_back` no other method of the device is called.
-        """
-        return None
-
-    def take_back(self, lent: Lent, received: int, unsent: int, torn: bytes) -> None:
-        """Take back what was lent, and go on with it.
-
-        Parameters
-        ----------
-        lent
-            What `lend` gave.
-        received
-            Number of bytes of ``lent.received`` that have come and were not taken.
-        unsent
-            Number of frames that found no room on the line.
-        torn
-            Rest of the last frame, of which a part went out; empty if all of it did.
-        """
 
     def counts(self) -> Mapping[str, int]:
         """Counts of what went wrong, by name: frames not sent, samples missed, corrupt messages."""

@@ -1,6 +1,6 @@
 """What is done to each frame on its way to actuators, compiled.
 
-These functions fill what they are given and allocate nothing. `vbraille.devices.wire.codec.Levels`
+These functions fill what they are given and allocate nothing. `vbraille.devices.serial.wire.Levels`
 packs the same as `fill` in numpy.
 """
 

@@ -6,6 +6,7 @@ from functools import singledispatch
 from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.events import (
+    SERIAL_VERSION,
     Back,
     Button,
     Changed,
@@ -25,7 +26,6 @@ from vbraille.devices.events import (
     Unplugged,
     WatchdogTripped,
 )
-from vbraille.devices.wire.messages import VERSION
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -139,7 +139,8 @@ def _(event: Stranger) -> str:
     if event.version is not None:
         return (
             f"device: a device of version {event.version} of the protocol came back, and this "
-            f"vbraille speaks version {VERSION}; plug in {event.was} again and reading goes on"
+            f"vbraille speaks version {SERIAL_VERSION}; plug in {event.was} again and reading "
+            f"goes on"
         )
     if event.fault:
         return f"device: what came back says in its INFO what cannot be: {event.fault}"

@@ -10,7 +10,7 @@ import numpy as np
 from vbraille.devices.base import Placing
 from vbraille.devices.events import WatchdogTripped
 from vbraille.devices.saying import shown_place, told
-from vbraille.devices.wire.messages import RAMP_MS, WATCHDOG_MS
+from vbraille.devices.serial.wire import RAMP_MS, WATCHDOG_MS
 from vbraille.engine.checkup import (
     NS_PER_S,
     Watch,

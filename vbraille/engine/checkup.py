@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from vbraille.devices.wire.messages import WATCHDOG_MS
+from vbraille.devices.serial.wire import WATCHDOG_MS
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.constants import JUMP_MM_S
 from vbraille.engine.local import LocalEngine

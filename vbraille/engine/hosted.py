@@ -27,8 +27,7 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.devices import opened_device
 from vbraille.devices.calibrations import correct_by_kept
-from vbraille.devices.events import is_known, shortened, to_json
-from vbraille.devices.serial.notices import EVERY_NS, Notices
+from vbraille.devices.events import EVERY_NS, Notices, is_known, shortened, to_json
 from vbraille.display import Display
 from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock, RealClock

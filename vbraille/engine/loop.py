@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
     from vbraille.devices.base import Device
     from vbraille.devices.events import Event
-    from vbraille.devices.lent import Lent
+    from vbraille.devices.serial.device import SerialDevice
+    from vbraille.devices.serial.lending import Lent
     from vbraille.engine.clock import Clock
     from vbraille.engine.mailbox import Mailbox
     from vbraille.render.program import Program
@@ -81,6 +82,8 @@ class Loop:
         ring: Ring | None = None,
     ) -> None:
         self.device = device
+        # It is known by its method: its module loads pyserial, which no other device needs.
+        self._lender = cast("SerialDevice", device) if hasattr(device, "lend") else None
         self.clock = clock
         self.rate_hz = rate_hz
         display = device.display
@@ -158,15 +161,15 @@ class Loop:
     def run(self, mailbox: Mailbox | None = None) -> None:
         """Do some ticks, until the mailbox says something new or it is time to look around.
 
-        Compiled code does them for a device that lends its numbers (`Device.lend`), as long as
-        nothing unusual happens; a tick in which something does is done in Python.
+        Compiled code does them for a device that lends its numbers (`SerialDevice.lend`), as long
+        as nothing unusual happens; a tick in which something does is done in Python.
 
         Raises
         ------
         DeviceError
             If the device is gone, or says that its carriage is where none can be.
         """
-        lent = self.device.lend()
+        lent = None if self._lender is None else self._lender.lend()
         if lent is None:
             self.tick()
         else:
@@ -273,7 +276,8 @@ class Loop:
         woken_ns, lateness_ns = int(told[serialtick.WOKEN]), int(told[serialtick.LATENESS_OF_IT])
         unwritten = slice(told[serialtick.WRITTEN], told[serialtick.SIZE])
         torn = bytes(lent.out[unwritten]) if why == serialtick.TORN else b""
-        self.device.take_back(lent, int(told[serialtick.HELD]), int(told[serialtick.UNSENT]), torn)
+        assert self._lender is not None
+        self._lender.take_back(lent, int(told[serialtick.HELD]), int(told[serialtick.UNSENT]), torn)
         if why == serialtick.NOWHERE:
             raise self._nowhere()
         if why == serialtick.UNMADE:

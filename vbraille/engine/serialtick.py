@@ -2,7 +2,7 @@
 
 It waits for a STATE, with the deadline as the fallback; takes it, advances, makes the FRAME, writes
 it and fills the record, with the same functions that `Loop.tick` and `SerialDevice` come to:
-`vbraille.devices.serial.steady` and `vbraille.engine.ticks`. Anything else ends it: an order
+`vbraille.devices.serial.kernels` and `vbraille.engine.ticks`. Anything else ends it: an order
 in the mailbox, a signal, bytes that are no STATE, a rest, a fault. Python then gets what had been
 received, and does that tick.
 """
@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from vbraille.caching import keep_compiled
-from vbraille.devices.serial import steady
+from vbraille.devices.serial import kernels
 from vbraille.engine import libc
 from vbraille.engine.record import LATE, LATENESS, OVERRUNS, WORK
 from vbraille.engine.ticks import POSE_THETA, POSE_X, POSE_Y, POSED, advance
@@ -64,8 +64,8 @@ def _receive(told, received, now, talk, work):
     if size <= 0:
         return 0, GONE
     told[HELD] += size
-    consumed, states = steady.take(received, told[HELD], now, talk, work)
-    if consumed == steady.SOMETHING_ELSE:
+    consumed, states = kernels.take(received, told[HELD], now, talk, work)
+    if consumed == kernels.SOMETHING_ELSE:
         return 0, UNSTEADY
     told[HELD] -= consumed
     for at in range(told[HELD]):
@@ -153,7 +153,7 @@ def run(
         Room to work in, and for a FRAME as it goes over the line.
     talks, actuators
         The state of the conversation, an array of one record, and how FRAMEs are made; see
-        `vbraille.devices.serial.steady`.
+        `vbraille.devices.serial.kernels`.
     state and on
         See `vbraille.engine.ticks.advance`; the last three belong to a ring, and ``published``
         tells its readers how many records there are.
@@ -187,7 +187,7 @@ def run(
         if why != DONE:
             return why
         # Taking a STATE looks after these two; where nothing came, they are looked after here.
-        if steady.stalled(talk, now) or steady.silent(talk, now):
+        if kernels.stalled(talk, now) or kernels.silent(talk, now):
             return UNSTEADY
         slot = told[APPENDED] % size
         published[0] = told[APPENDED]
@@ -214,14 +214,14 @@ def run(
         )
         if done == 0:
             return NOWHERE
-        ends = steady.make(output, now, talk, actuators, out)
-        if ends == steady.SOMETHING_ELSE:
+        ends = kernels.make(output, now, talk, actuators, out)
+        if ends == kernels.SOMETHING_ELSE:
             return UNMADE
         written = libc.write(told[DESCRIPTOR], out, 0, ends)
         if written > 0:
-            steady.sent(now, talk, actuators)
+            kernels.sent(now, talk, actuators)
         elif written == _EAGAIN:
-            steady.unsent(talk)
+            kernels.unsent(talk)
             told[UNSENT] += 1
         else:
             return UNMADE  # Python writes it, and sees what is wrong with the line

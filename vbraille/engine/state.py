@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.events import Event
-    from vbraille.devices.lent import Lent
+    from vbraille.devices.serial.lending import Lent
     from vbraille.display import Display
     from vbraille.engine.ring import Ring
     from vbraille.render.program import Program

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.wire.messages import (
+from vbraille.devices.serial.wire import (
     MOST_BUTTONS,
     MOST_KNOBS,
     VERSION,

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vbraille.devices.wire.codec import Decoder, Levels, encode
-from vbraille.devices.wire.messages import (
+from vbraille.devices.serial.wire import (
     FAULTY,
     FIRST_STEP,
     KNOB_TOP,
@@ -24,20 +23,23 @@ from vbraille.devices.wire.messages import (
     RESTING,
     TRIPPED,
     WATCHDOG_MS,
+    Decoder,
     Encoder,
     Error,
     Frame,
     Hello,
     Info,
+    Levels,
     Rest,
     State,
     Watchdog,
+    encode,
 )
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.devices.wire.codec import Heard
+    from vbraille.devices.serial.wire import Heard
 
 WATCHDOG_US: Final = WATCHDOG_MS * 1000
 RAMP_US: Final = RAMP_MS * 1000

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.wire.messages import MOST_KNOBS
+from vbraille.devices.serial.wire import MOST_KNOBS
 from vbraille.errors import InputError, check_range
 from vbraille.simulation.pressing import LONGEST_S, MOST_BUTTONS, SHORT_S
 

@@ -14,8 +14,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.wire.codec import DELIMITER, MOST_FRAME_BYTES
-from vbraille.devices.wire.messages import Encoder
+from vbraille.devices.serial.wire import DELIMITER, MOST_FRAME_BYTES, Encoder
 from vbraille.errors import check_range
 from vbraille.simulation.carriage import Carriage
 from vbraille.simulation.firmware import WATCHDOG_US, Controller
@@ -24,7 +23,7 @@ from vbraille.simulation.script import Controls
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from vbraille.devices.wire.messages import Info
+    from vbraille.devices.serial.wire import Info
     from vbraille.simulation.hand import Hand
     from vbraille.simulation.paging import Area
     from vbraille.simulation.pty import Port

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from threading import Event, Thread
 from typing import TYPE_CHECKING
 
-from vbraille.devices.wire.messages import Encoder
+from vbraille.devices.serial.wire import Encoder
 from vbraille.engine.clock import RealClock
 from vbraille.render.braille.models import STRESS2, Model, model_of
 from vbraille.simulation.carriage import area_of

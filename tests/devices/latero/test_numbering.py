@@ -1,12 +1,12 @@
 """What an answer's number says: new, late, doubled, or nobody's."""
 
-from vbraille.devices.latero.conversation import KEPT, LATE_NS, Fate, Numbering
+from vbraille.devices.latero.conversation import KEPT, LATE_NS, Fate, RequestNumbering
 
 MS = 1_000_000
 
 
 def asked(count, first=1):
-    numbering = Numbering(first)
+    numbering = RequestNumbering(first)
     for n in range(count):
         numbering.sent(n * MS)
     return numbering
@@ -60,7 +60,7 @@ def test_an_answer_to_a_request_that_is_kept_no_more_is_late_and_not_lost():
 
 
 def test_what_was_answered_long_ago_was_never_lost():
-    numbering = Numbering()
+    numbering = RequestNumbering()
     for n in range(KEPT + 9):
         numbering.judge(numbering.sent(n * MS), n * MS)
     assert numbering.judge(1, 300 * MS) is Fate.LATE

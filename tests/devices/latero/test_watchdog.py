@@ -36,7 +36,7 @@ class Guarded:
         self.board.levels[:] = levels
         self.latero.levels[:] = np.frombuffer(levels, np.uint8)
         self.sent, self.answers, self.deaf = [], [], deaf
-        self.watchdog = watchdog.Watchdog(self.board, self.send, self.receive)
+        self.watchdog = watchdog.BladeWatchdog(self.board, self.send, self.receive)
 
     def send(self, datagram):
         self.sent.append(parse_request(bytes(datagram)))

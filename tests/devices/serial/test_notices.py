@@ -3,8 +3,16 @@
 import numpy as np
 import pytest
 
-from vbraille.devices.events import Back, Button, Knob, Notice, Silent
-from vbraille.devices.serial.notices import EVERY_NS, PLACE_EVERY_NS, Notices
+from vbraille.devices.events import (
+    EVERY_NS,
+    PLACE_EVERY_NS,
+    Back,
+    Button,
+    Knob,
+    Notice,
+    Notices,
+    Silent,
+)
 
 MS = 1_000_000
 

@@ -7,8 +7,8 @@ import serial
 from serial.tools.list_ports_common import ListPortInfo
 
 from tests.engine.test_loop import info
-from vbraille.devices.serial.openserial import open_serial
-from vbraille.devices.serial.ports import Address, explain, find_again, identify, parse_address
+from vbraille.devices.serial.device import open_serial
+from vbraille.devices.serial.port import Address, explain, find_again, identify, parse_address
 from vbraille.errors import InputError, VbrailleError
 
 

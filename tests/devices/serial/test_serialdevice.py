@@ -14,8 +14,8 @@ import pytest
 from tests.devices.bench import AWAY, HALF, HOME_MM, Bench, shown
 from tests.engine.test_loop import info
 from vbraille.devices.saying import told
-from vbraille.devices.serial.openserial import open_serial
-from vbraille.devices.wire.messages import Frame, Hello, Rest
+from vbraille.devices.serial.device import open_serial
+from vbraille.devices.serial.wire import Frame, Hello, Rest
 from vbraille.errors import DeviceError
 from vbraille.pose import Pose
 from vbraille.simulation.firmware import Controller

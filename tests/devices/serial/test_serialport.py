@@ -12,10 +12,15 @@ import pytest
 import serial
 
 from tests.engine.test_loop import info
-from vbraille.devices.serial.openserial import open_serial
-from vbraille.devices.serial.ports import Address, explain, open_serial_port
-from vbraille.devices.serial.seriallines import SerialLine, open_line
-from vbraille.devices.serial.serialport import SerialPort
+from vbraille.devices.serial.device import open_serial
+from vbraille.devices.serial.port import (
+    Address,
+    SerialLine,
+    SerialPort,
+    explain,
+    open_line,
+    open_serial_port,
+)
 from vbraille.errors import DeviceError
 
 FRAME = b"\x07" + b"frame" * 16 + b"\0"

@@ -17,12 +17,11 @@ from tests.controllers import HastyController
 from tests.tiers import by_tier
 from tests.troubles import Troubles
 from tests.wired import Wired, reading
-from vbraille.devices.lent import Actuators
-from vbraille.devices.serial import steady
+from vbraille.devices.serial import kernels
 from vbraille.devices.serial.conversation import IDLE_MS, Conversation
-from vbraille.devices.serial.lending import Lending
-from vbraille.devices.wire.codec import CRC_BYTES, encode, frame_head
-from vbraille.devices.wire.messages import (
+from vbraille.devices.serial.lending import Actuators, Lending
+from vbraille.devices.serial.wire import (
+    CRC_BYTES,
     FAULTY,
     PLACED,
     RESTING,
@@ -32,6 +31,8 @@ from vbraille.devices.wire.messages import (
     Error,
     State,
     Watchdog,
+    encode,
+    frame_head,
 )
 from vbraille.simulation.firmware import Controller
 
@@ -58,7 +59,7 @@ def lent(conversation):
 
 def numbers_of(lending):
     """All numbers of a conversation but the last place, which is there once a STATE was taken."""
-    return {name: lending.talk[name][0] for name in steady.CONVERSATION.names if name != "x_mm"}
+    return {name: lending.talk[name][0] for name in kernels.CONVERSATION.names if name != "x_mm"}
 
 
 def record_of(lending):
@@ -85,8 +86,8 @@ class Beside(Conversation):
         (lending, part), self._before = self._before, None
         begun, talk = numbers_of(lending), record_of(lending)
         received = np.frombuffer(part + chunk, np.uint8).copy()
-        consumed, states = steady.take(received, received.size, now_ns, talk, lending.work)
-        if consumed == steady.SOMETHING_ELSE:
+        consumed, states = kernels.take(received, received.size, now_ns, talk, lending.work)
+        if consumed == kernels.SOMETHING_ELSE:
             self.other_reads += 1
             assert numbers_of(lending) == begun
             return pose
@@ -103,14 +104,14 @@ class Beside(Conversation):
             return
         lending, _ = before
         begun, talk = numbers_of(lending), record_of(lending)
-        size = steady.make(frame, now_ns, talk, lending.actuators, lending.out)
-        if size == steady.SOMETHING_ELSE:
+        size = kernels.make(frame, now_ns, talk, lending.actuators, lending.out)
+        if size == kernels.SOMETHING_ELSE:
             self.other_frames += 1
             assert numbers_of(lending) == begun
             return
         self.steady_frames += 1
         assert self.due() == lending.out[:size].tobytes()
-        steady.sent(now_ns, talk, lending.actuators)
+        kernels.sent(now_ns, talk, lending.actuators)
         self._made = lending
 
     def sent(self):
@@ -152,9 +153,9 @@ def test_beside_python_over_traffic_with_troubles(seed, kind, controller):
 
 def conversation(**changes):
     """A conversation in which a STATE and a FRAME have come and gone, at 1 s of the host's."""
-    talk = np.zeros(1, steady.CONVERSATION).view(np.recarray)[0]
+    talk = np.zeros(1, kernels.CONVERSATION).view(np.recarray)[0]
     talk.heard_ns = talk.felt_ns = talk.owed_ns = talk.moved_ns = 1_000_000_000
-    talk.sent_ns = talk.acknowledged_ns = steady.NEVER
+    talk.sent_ns = talk.acknowledged_ns = kernels.NEVER
     talk.state_sequence, talk.sequence, talk.device_us = 10, 7, 5_000
     talk.count_bits, talk.mm_per_count = 24, 0.005
     talk.slew_per_ns, talk.period_ns = math.inf, 1e6
@@ -173,8 +174,8 @@ def state(sequence=11, flags=PLACED, **changes):
 
 def taken(received, talk, now_ns=1_001_000_000):
     source = np.frombuffer(received, np.uint8).copy()
-    work = np.zeros(steady.WORK_BYTES, np.uint8)
-    return steady.take(source, source.size, now_ns, talk, work)
+    work = np.zeros(kernels.WORK_BYTES, np.uint8)
+    return kernels.take(source, source.size, now_ns, talk, work)
 
 
 @pytest.mark.parametrize(
@@ -195,7 +196,7 @@ def taken(received, talk, now_ns=1_001_000_000):
 def test_what_is_no_good_state_leaves_all_of_it_to_python(received):
     for stream in (received, state() + received, received + state(), state() * 3 + received):
         talk = conversation()
-        assert taken(stream, talk) == (steady.SOMETHING_ELSE, 0)
+        assert taken(stream, talk) == (kernels.SOMETHING_ELSE, 0)
         assert talk == conversation()
 
 
@@ -226,12 +227,12 @@ def test_knobs_that_jitter_and_one_that_is_not_there_end_nothing(knobs):
 
 def test_an_encoder_that_has_lost_its_mark_is_left_to_python():
     assert taken(state(flags=0), conversation()) == (len(state()), 1)
-    assert taken(state(flags=0), conversation(must_be_placed=1)) == (steady.SOMETHING_ELSE, 0)
+    assert taken(state(flags=0), conversation(must_be_placed=1)) == (kernels.SOMETHING_ELSE, 0)
 
 
 def test_a_button_that_is_held_is_steady_and_one_that_is_let_go_is_not():
     assert taken(state(buttons=4), conversation(buttons=4)) == (len(state()), 1)
-    assert taken(state(buttons=0), conversation(buttons=4)) == (steady.SOMETHING_ELSE, 0)
+    assert taken(state(buttons=0), conversation(buttons=4)) == (kernels.SOMETHING_ELSE, 0)
 
 
 def test_the_newest_of_some_states_is_the_sample():
@@ -239,7 +240,7 @@ def test_the_newest_of_some_states_is_the_sample():
     stream = state(11) + b"\0\0" + state(13, count=400, time_us=8_000) + state(14)[:9]
     assert taken(stream, talk) == (len(stream) - 9, 2)
     assert (talk.x_mm, talk.device_ns, talk.missed) == (2.0, 8_000_000, 1)
-    assert (talk.acknowledged_ns, talk.sent_ns) == (500_000, steady.NEVER)
+    assert (talk.acknowledged_ns, talk.sent_ns) == (500_000, kernels.NEVER)
 
 
 def test_a_clock_is_not_turned_back():
@@ -251,34 +252,34 @@ def test_a_clock_is_not_turned_back():
 @pytest.mark.parametrize("sequence", [10, 9, 10 - 32_768])
 def test_a_state_that_is_old_or_comes_twice_is_left_to_python(sequence):
     talk = conversation()
-    assert taken(state(sequence % 2**16), talk)[0] == steady.SOMETHING_ELSE
+    assert taken(state(sequence % 2**16), talk)[0] == kernels.SOMETHING_ELSE
 
 
 def test_silence_and_a_stall_are_left_to_python():
     late_ns = 1_000_000_000 + SILENCE_MS * NS_PER_MS
     for received in (b"", state()[:5]):
         assert taken(received, conversation(owed_ns=late_ns), late_ns - 1) == (0, 0)
-        assert taken(received, conversation(owed_ns=late_ns), late_ns)[0] == steady.SOMETHING_ELSE
+        assert taken(received, conversation(owed_ns=late_ns), late_ns)[0] == kernels.SOMETHING_ELSE
     stalled_ns = 1_000_000_000 + STALL_MS * NS_PER_MS
     assert taken(state(), conversation(), stalled_ns - 1)[1] == 1
-    assert taken(state(), conversation(), stalled_ns)[0] == steady.SOMETHING_ELSE
+    assert taken(state(), conversation(), stalled_ns)[0] == kernels.SOMETHING_ELSE
 
 
 def test_what_is_begun_and_never_ends_is_left_to_python():
-    assert taken(b"\x01" * steady.WORK_BYTES, conversation()) == (0, 0)
-    more = b"\x01" * (steady.WORK_BYTES + 1)
-    assert taken(more, conversation())[0] == steady.SOMETHING_ELSE
-    assert taken(more + b"\0", conversation())[0] == steady.SOMETHING_ELSE
+    assert taken(b"\x01" * kernels.WORK_BYTES, conversation()) == (0, 0)
+    more = b"\x01" * (kernels.WORK_BYTES + 1)
+    assert taken(more, conversation())[0] == kernels.SOMETHING_ELSE
+    assert taken(more + b"\0", conversation())[0] == kernels.SOMETHING_ELSE
 
 
 @given(st.lists(st.one_of(st.binary(max_size=30), st.just(state()), st.just(b"\0"))).map(b"".join))
 def test_no_bytes_read_or_write_out_of_bounds(received):
     source = np.concatenate([np.frombuffer(received, np.uint8), np.zeros(8, np.uint8)])
-    work = np.full(steady.WORK_BYTES + 8, 0xA5, np.uint8)
-    room = work[: steady.WORK_BYTES]
-    consumed, _ = steady.take(source, len(received), 1_001_000_000, conversation(), room)
+    work = np.full(kernels.WORK_BYTES + 8, 0xA5, np.uint8)
+    room = work[: kernels.WORK_BYTES]
+    consumed, _ = kernels.take(source, len(received), 1_001_000_000, conversation(), room)
     assert consumed <= len(received)
-    assert (work[steady.WORK_BYTES :] == 0xA5).all()
+    assert (work[kernels.WORK_BYTES :] == 0xA5).all()
 
 
 def one_actuator():
@@ -292,7 +293,7 @@ def one_actuator():
 
 def made(frame, talk, now_ns=1_001_000_000, actuators=None):
     out = np.zeros(20, np.uint8)
-    return steady.make(np.array([[frame]]), now_ns, talk, actuators or one_actuator(), out)
+    return kernels.make(np.array([[frame]]), now_ns, talk, actuators or one_actuator(), out)
 
 
 @pytest.mark.parametrize(
@@ -307,7 +308,7 @@ def test_the_slew_limit_goes_by_the_time_passed_but_by_no_more_than_a_period(aft
 @pytest.mark.parametrize("deflection", [math.nan, math.inf, -math.inf, -1e-9, 1.0000001])
 def test_a_deflection_that_is_none_is_not_sent(deflection):
     talk = conversation()
-    assert made(deflection, talk) == steady.SOMETHING_ELSE
+    assert made(deflection, talk) == kernels.SOMETHING_ELSE
     assert talk == conversation()
 
 
@@ -321,4 +322,4 @@ def test_frames_that_nobody_feels_end_after_a_while():
 def test_no_frame_is_made_after_a_stall():
     stalled_ns = 1_000_000_000 + STALL_MS * NS_PER_MS
     assert made(0.5, conversation(), stalled_ns - 1) > 0
-    assert made(0.5, conversation(), stalled_ns) == steady.SOMETHING_ELSE
+    assert made(0.5, conversation(), stalled_ns) == kernels.SOMETHING_ELSE

@@ -5,11 +5,19 @@ import pytest
 
 from tests.devices.bench import DOWN_BYTES, HALF, REST, Bench
 from vbraille.devices.serial.conversation import Conversation
-from vbraille.devices.serial.openserial import greet
-from vbraille.devices.serial.serialdevice import SerialDevice
+from vbraille.devices.serial.device import SerialDevice, greet
 from vbraille.devices.serial.transitions import TALKING, TRANSITIONS, Cause, Stage
-from vbraille.devices.wire.codec import Decoder, encode, enframe
-from vbraille.devices.wire.messages import PLACED, RESTING, Encoder, Error, Frame, State
+from vbraille.devices.serial.wire import (
+    PLACED,
+    RESTING,
+    Decoder,
+    Encoder,
+    Error,
+    Frame,
+    State,
+    encode,
+    enframe,
+)
 from vbraille.errors import DeviceError
 
 ROWS = [(stage, cause) for stage, row in TRANSITIONS.items() for cause in row]

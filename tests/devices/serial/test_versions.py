@@ -5,8 +5,7 @@ import pytest
 from tests.devices.bench import Bench, shown
 from vbraille.devices.saying import told
 from vbraille.devices.serial.transitions import Stage
-from vbraille.devices.wire.codec import Decoder, enframe
-from vbraille.devices.wire.messages import Hello
+from vbraille.devices.serial.wire import Decoder, Hello, enframe
 from vbraille.errors import DeviceError
 from vbraille.simulation.firmware import Controller
 

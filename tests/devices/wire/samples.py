@@ -3,24 +3,29 @@
 import pytest
 from hypothesis import strategies as st
 
-from vbraille.devices.wire.codec import BodyCodec
-from vbraille.devices.wire.fields import Number, OneOf, Packed, PerActuator, ShortText, fields_of
-from vbraille.devices.wire.messages import (
+from vbraille.devices.serial.wire import (
     MESSAGES,
     PLACED,
     VERSION,
+    BodyCodec,
     CountSign,
     Encoder,
     Error,
     Frame,
     Hello,
     Info,
+    Number,
+    OneOf,
+    Packed,
+    PerActuator,
     Rest,
     RestSide,
+    ShortText,
     State,
     TurnSign,
     Watchdog,
     YCountSign,
+    fields_of,
 )
 
 CODES = {message: code for code, message in MESSAGES.items()}

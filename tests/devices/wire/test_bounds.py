@@ -5,8 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tests.devices.wire.samples import INFO, SAMPLES, STATE
-from vbraille.devices.wire.codec import encode
-from vbraille.devices.wire.fields import Fixed, Number, fields_of
+from vbraille.devices.serial.wire import Fixed, Number, encode, fields_of
 
 NUMBERS = [
     pytest.param(message, name, field, id=f"{type(message).__name__}-{name}")

@@ -19,20 +19,29 @@ from tests.devices.wire.samples import (
     messages_of,
 )
 from tests.tiers import examples
-from vbraille.devices.wire.codec import (
+from vbraille.devices.serial.wire import (
     DELIMITER,
+    FAULTY,
     MOST_FRAME_BYTES,
+    RESTING,
+    U16,
     BodyCodec,
     Decoder,
     Drop,
+    Error,
+    Frame,
+    Hello,
     Levels,
+    Message,
+    Number,
     OtherVersion,
+    ShortText,
+    State,
+    WrongLengthError,
     encode,
     enframe,
     line_bytes,
 )
-from vbraille.devices.wire.fields import Number, ShortText, WrongLengthError
-from vbraille.devices.wire.messages import FAULTY, RESTING, U16, Error, Frame, Hello, Message, State
 
 any_message = st.sampled_from(list(CODES)).flatmap(messages_of)
 # Zeros, length bytes and types come often, so that garbage gets as far as it can.

@@ -6,7 +6,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tests.tiers import examples
-from vbraille.devices.wire.codec import Levels, unwrap
+from vbraille.devices.serial.wire import Levels, unwrap
 
 # Levels
 

@@ -9,11 +9,21 @@ from cobs import cobs
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from vbraille.devices.wire import wirekernels
-from vbraille.devices.wire.codec import CRC_BYTES, Decoder, Drop, encode, frame_head, line_bytes
-from vbraille.devices.wire.codec import enframe as enframe_in_python
-from vbraille.devices.wire.fields import fields_of, places_of
-from vbraille.devices.wire.messages import Error, Frame, State
+from vbraille.devices.serial import kernels
+from vbraille.devices.serial.wire import (
+    CRC_BYTES,
+    Decoder,
+    Drop,
+    Error,
+    Frame,
+    State,
+    encode,
+    fields_of,
+    frame_head,
+    line_bytes,
+    places_of,
+)
+from vbraille.devices.serial.wire import enframe as enframe_in_python
 
 GUARD = 16
 LENGTHS = range(601)
@@ -57,14 +67,14 @@ def between(given, fill):
 
 def encoded(given, room=None, fill=0xA5):
     out = Guarded(cobs.max_encoded_length(len(given)) if room is None else room)
-    end = wirekernels.cobs_encode(between(given, fill), 0, len(given), out.array, 0)
+    end = kernels.cobs_encode(between(given, fill), 0, len(given), out.array, 0)
     out.check()
     return end if end < 0 else out.array[:end].tobytes()
 
 
 def decoded(given, room=None, fill=0xA5):
     out = Guarded(len(given) if room is None else room)
-    size = wirekernels.cobs_decode(between(given, fill), 0, len(given), out.array)
+    size = kernels.cobs_decode(between(given, fill), 0, len(given), out.array)
     out.check()
     return size if size < 0 else out.array[:size].tobytes()
 
@@ -73,7 +83,7 @@ def decoded_in_python(given):
     try:
         return cobs.decode(given)
     except cobs.DecodeError:
-        return wirekernels.BAD_COBS
+        return kernels.BAD_COBS
 
 
 @pytest.mark.parametrize("first", range(0, 601, 50))
@@ -83,7 +93,7 @@ def test_each_length_is_encoded_and_decoded_as_in_python(first):
             stuffed = encoded(plain)
             assert stuffed == cobs.encode(plain)
             assert decoded(stuffed) == plain
-            assert wirekernels.crc32(between(plain, 1), 0, len(plain)) == zlib.crc32(plain)
+            assert kernels.crc32(between(plain, 1), 0, len(plain)) == zlib.crc32(plain)
 
 
 @given(bodies)
@@ -100,9 +110,9 @@ def test_garbage_is_refused_where_python_refuses_it(garbage, neighbour):
 @given(st.binary(min_size=1, max_size=300), st.data())
 def test_what_has_no_room_is_not_written_past_it(given, data):
     room = data.draw(st.integers(0, cobs.max_encoded_length(len(given)) - 1))
-    assert encoded(given, room) == wirekernels.TOO_SMALL
+    assert encoded(given, room) == kernels.TOO_SMALL
     stuffed = cobs.encode(given)
-    assert decoded(stuffed, data.draw(st.integers(0, len(stuffed) - 1))) == wirekernels.TOO_SMALL
+    assert decoded(stuffed, data.draw(st.integers(0, len(stuffed) - 1))) == kernels.TOO_SMALL
 
 
 @given(st.binary(max_size=200), st.data())
@@ -110,11 +120,11 @@ def test_a_part_of_an_array_is_all_that_is_looked_at(given, data):
     start = data.draw(st.integers(0, len(given)))
     end = data.draw(st.integers(start, len(given)))
     source = np.frombuffer(given, np.uint8)
-    assert wirekernels.crc32(source, start, end) == zlib.crc32(given[start:end])
+    assert kernels.crc32(source, start, end) == zlib.crc32(given[start:end])
     found = given.find(0, start, end)
-    assert wirekernels.delimiter(source, start, end) == (end if found < 0 else found)
+    assert kernels.delimiter(source, start, end) == (end if found < 0 else found)
     out = Guarded(end - start)
-    size = wirekernels.cobs_decode(source, start, end, out.array)
+    size = kernels.cobs_decode(source, start, end, out.array)
     out.check()
     want = decoded_in_python(given[start:end])
     assert (size if size < 0 else out.array[:size].tobytes()) == want
@@ -124,25 +134,25 @@ def test_a_part_of_an_array_is_all_that_is_looked_at(given, data):
 def test_a_body_is_framed_as_in_python_and_comes_back(given, at):
     body = Guarded(len(given) + CRC_BYTES, given=given)
     out = Guarded(at + line_bytes(len(given)))
-    end = wirekernels.enframe(body.array, len(given), out.array, at)
+    end = kernels.enframe(body.array, len(given), out.array, at)
     body.check()
     out.check()
     line = out.array[at:end].tobytes()
     assert line == enframe_in_python(given)
     back = Guarded(len(line) - 1)
-    size = wirekernels.unframe(out.array, at, end - 1, back.array)
+    size = kernels.unframe(out.array, at, end - 1, back.array)
     back.check()
     if given:
         assert back.array[:size].tobytes() == given
     else:
-        assert size == wirekernels.BAD_CRC  # a frame without even a type
+        assert size == kernels.BAD_CRC  # a frame without even a type
 
 
 @given(st.binary(max_size=60), st.integers(0, 80), st.integers(0, 80))
 def test_a_frame_without_room_is_not_written_past_it(given, body_room, out_room):
     body = Guarded(max(body_room, len(given)), given=given)
     out = Guarded(out_room)
-    end = wirekernels.enframe(body.array, len(given), out.array, 0)
+    end = kernels.enframe(body.array, len(given), out.array, 0)
     body.check()
     out.check()
     has_room = body.array.size >= len(given) + CRC_BYTES and out_room >= line_bytes(len(given))
@@ -153,9 +163,9 @@ def test_a_frame_without_room_is_not_written_past_it(given, body_room, out_room)
 def test_a_frame_of_levels_is_that_of_the_codec(packed, sequence):
     head = frame_head(0)  # its type and the sequence
     body = np.frombuffer(head + packed + bytes(CRC_BYTES), np.uint8).copy()
-    wirekernels.put_number(body, 1, len(head) - 1, sequence)
+    kernels.put_number(body, 1, len(head) - 1, sequence)
     out = np.zeros(line_bytes(body.size - CRC_BYTES), np.uint8)
-    end = wirekernels.enframe(body, body.size - CRC_BYTES, out, 0)
+    end = kernels.enframe(body, body.size - CRC_BYTES, out, 0)
     assert out[:end].tobytes() == encode(Frame(sequence, packed))
 
 
@@ -167,9 +177,9 @@ def test_a_changed_byte_is_dropped_for_the_reason_that_the_decoder_gives(given, 
     decoder = Decoder()
     decoder.feed(bytes(line) + b"\0")
     body = Guarded(len(line))
-    size = wirekernels.unframe(np.frombuffer(bytes(line), np.uint8), 0, len(line), body.array)
+    size = kernels.unframe(np.frombuffer(bytes(line), np.uint8), 0, len(line), body.array)
     body.check()
-    reason = {wirekernels.BAD_COBS: Drop.BAD_COBS, wirekernels.BAD_CRC: Drop.BAD_CRC}[size]
+    reason = {kernels.BAD_COBS: Drop.BAD_COBS, kernels.BAD_CRC: Drop.BAD_CRC}[size]
     assert decoder.dropped[reason] == 1
 
 
@@ -190,14 +200,14 @@ states = st.builds(
 def test_the_numbers_of_a_message_are_read_and_written_where_the_table_says(state):
     body = cobs.decode(encode(state)[:-1])[:-CRC_BYTES]
     source = np.frombuffer(body, np.uint8)
-    numbers = [wirekernels.number(source, *place) for place in places_of(State)]
+    numbers = [kernels.number(source, *place) for place in places_of(State)]
     want = [getattr(state, name) for name, _ in fields_of(State)]
     want = [-0x8000 if value is None else value for value in want]
     assert numbers == want
     written = source.copy()
     written[1:] = 0xA5
     for (at, width, _), value in zip(places_of(State), numbers, strict=True):
-        wirekernels.put_number(written, at, width, value)
+        kernels.put_number(written, at, width, value)
     assert written.tobytes() == body
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from vbraille.cli.controlkeys import ControlKeys
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
-from vbraille.devices.wire.messages import Encoder
+from vbraille.devices.serial.wire import Encoder
 from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
 from vbraille.render.braille.models import MODELS
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Mapping
 
-    from vbraille.devices.wire.messages import Info
+    from vbraille.devices.serial.wire import Info
     from vbraille.display import Display
 
 # Options that only one kind of device has, and what they are when they are not given.

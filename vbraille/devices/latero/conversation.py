@@ -28,6 +28,7 @@ from vbraille.devices.events import (
     Back,
     Button,
     Notice,
+    Notices,
     Placed,
     Placing,
     Silent,
@@ -56,7 +57,6 @@ from vbraille.devices.latero.wire import (
     parse_answer,
     raw_request,
 )
-from vbraille.devices.serial.notices import Notices
 from vbraille.pose import Pose
 
 if TYPE_CHECKING:
@@ -178,7 +178,7 @@ class Fate(Enum):
     UNASKED = "unasked"  # nothing was asked by this number
 
 
-class Numbering:
+class RequestNumbering:
     """Requests that were sent, by their numbers; nobody waits for what is lost.
 
     Parameters
@@ -429,7 +429,7 @@ class LateroConversation:
         Where the talk is.
     blades : Blades
         What is sent to the blades.
-    numbering : Numbering
+    numbering : RequestNumbering
         Requests and the answers to them.
     place : ArmPlace
         What is known of the arms.
@@ -461,7 +461,7 @@ class LateroConversation:
     ) -> None:
         self.stage = LateroStage.ASKING
         self.blades = Blades()
-        self.numbering = Numbering(first)
+        self.numbering = RequestNumbering(first)
         self.place = ArmPlace(offsets)
         self.power = power
         self.answer: Answer | None = None

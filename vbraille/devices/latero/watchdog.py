@@ -70,7 +70,7 @@ def ramped(level, passed_ns):
     return min(REST, level + -(-REST * passed_ns // RAMP_NS))
 
 
-class Watchdog:
+class BladeWatchdog:
     """What the watchdog does, one step after the other; `watch` does nothing else.
 
     Parameters
@@ -182,7 +182,7 @@ def watch(board, lifeline, socket):
         except OSError:
             return b""
 
-    watchdog = Watchdog(board, send, receive)
+    watchdog = BladeWatchdog(board, send, receive)
     words = board.words
     ended, tripped_ns = False, 0  # without any beat there is nothing to bring to rest
     while True:

@@ -14,24 +14,68 @@ messages that are due, one after the other. `transitions` says what leads where.
 
 from __future__ import annotations
 
+import logging
+from dataclasses import dataclass
 from enum import Enum, auto
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.events import Unplugged
-from vbraille.devices.serial.listening import Listening
-from vbraille.devices.serial.transitions import TALKING, UNTOLD, Cause, Stage
-from vbraille.devices.wire.codec import DELIMITER, encode
-from vbraille.devices.wire.messages import HELLO_PERIOD_MS, Hello, Rest
+import numpy as np
+
+from vbraille.devices.events import (
+    Back,
+    Fault,
+    Notice,
+    Notices,
+    Placed,
+    Placing,
+    Silent,
+    Stranger,
+    Unplugged,
+    WatchdogTripped,
+)
+from vbraille.devices.serial.actuators import Delivery, Drive, Trips
+from vbraille.devices.serial.info import changes, differences, info_of, misfit, particulars_of
+from vbraille.devices.serial.sensors import CarriagePlace, DeviceTime, Panel
+from vbraille.devices.serial.transitions import RESTING, TALKING, TRANSITIONS, UNTOLD, Cause, Stage
+from vbraille.devices.serial.wire import (
+    ANSWER_MS,
+    DELIMITER,
+    HELLO_PERIOD_MS,
+    LOST_MS,
+    NOTICES,
+    SILENCE_MS,
+    Decoder,
+    Error,
+    Hello,
+    Info,
+    OtherVersion,
+    Rest,
+    State,
+    Watchdog,
+    encode,
+    unwrap,
+)
+from vbraille.pose import Pose
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
+    from vbraille.devices.base import Particulars
+    from vbraille.devices.calibration import Calibration
     from vbraille.devices.events import Event
+    from vbraille.devices.serial.wire import Heard
+    from vbraille.display import Display
+
+_log = logging.getLogger(__name__)
+_NS_PER_MS: Final = 1_000_000
+_SILENCE_NS: Final = SILENCE_MS * _NS_PER_MS
+_LOST_NS: Final = LOST_MS * _NS_PER_MS
+# Time in which a device whose timer goes makes several STATEs.
+_PAUSE_US: Final = 10_000
+
 
 # If frames have had nothing to feel for so long, nothing is shown: gaps between words are shorter.
 IDLE_MS: Final = 5000
-_NS_PER_MS: Final = 1_000_000
 _HELLO: Final = DELIMITER + encode(Hello())  # the zero ends whatever was on the line before
 _REST: Final = encode(Rest())
 _U16: Final = 0xFFFF
@@ -46,7 +90,51 @@ class _Wish(Enum):
     FRAME = auto()
 
 
-class Conversation(Listening):
+@dataclass(slots=True)
+class States:
+    """Knowledge of the STATEs that came.
+
+    Parameters
+    ----------
+    heard_ns
+        Time at which the last STATE came.
+    sequence
+        Sequence of the last STATE; None before the first of a conversation.
+    missed, old
+        Number of STATEs that never came, and of those that were dropped because they came twice, or
+        after a newer one.
+    """
+
+    heard_ns: int
+    sequence: int | None = None
+    missed: int = 0
+    old: int = 0
+
+
+@dataclass(slots=True)
+class Frames:
+    """Knowledge of the FRAMEs that were sent.
+
+    Parameters
+    ----------
+    felt_ns
+        Time at which a FRAME last had anything to feel.
+    sequence
+        Sequence of the last FRAME.
+    sent_ns
+        Time at which the last FRAME was sent, if it is not acknowledged yet.
+    acknowledged_ns
+        How long after the last FRAME was wanted the device said that it has it; None if it did
+        not.
+    """
+
+    felt_ns: int
+    sequence: int = 0
+    sent_ns: int | None = None
+    acknowledged_ns: int | None = None
+
+
+class Conversation:
     """A conversation with whatever answers, from HELLO until the host takes leave.
 
     Parameters
@@ -56,13 +144,284 @@ class Conversation(Listening):
     rate_hz
         FRAMEs a second that will be wanted; None for as many as the device is made for.
 
-    Its attributes, which may be looked at, are described in `Listening`.
+    Attributes
+    ----------
+    stage : Stage
+        Stage of the conversation.
+    display, info, particulars : Display, Info, Particulars, or None
+        What the device said of itself first, and what it says in this conversation; None before.
+    failure : Fault, Stranger or None
+        Why the device cannot go on, or why none was found at the start.
+    heard, speaks : bool
+        Whether any bytes have come since the start, and any message from a device.
+    drop_unsent : bool
+        Whether bytes that wait to be sent must be dropped now; whoever drops them sets it to False.
+    no_room : bool
+        Whether there was no room for the last FRAME.
+    taking : bool
+        Whether FRAMEs hold the actuators, or would if there were anything to feel. It is True for
+        a device that is away: that the device is silent says enough.
+    rested : int
+        How often the actuators went to rest otherwise than by FRAMEs, so that all must fade in.
+    reconnections : int
+        How often the device was greeted again.
+    decoder, states, frames, trips, panel, delivery, place, time, drive
+        What is known of received bytes, STATEs, FRAMEs, the watchdog, buttons and knobs, rest, the
+        carriage, the device's clock, and the actuators. `drive` is set once `info` is.
     """
 
+    drive: Drive
+    place: CarriagePlace
+    delivery: Delivery
+
     def __init__(self, now_ns: int, rate_hz: float | None = None) -> None:
-        super().__init__(now_ns, rate_hz)
+        self.stage = Stage.GREETING
+        self.display: Display | None = None
+        self.info: Info | None = None
+        self.particulars: Particulars | None = None
+        self.failure: Fault | Stranger | None = None
+        self.heard = self.speaks = False
+        self.drop_unsent = False
+        self.taking = True
+        self.rested = self.reconnections = 0
+        self.decoder = Decoder()
+        self.states = States(now_ns)
+        self.frames = Frames(now_ns)
+        self.trips = Trips()
+        self.panel = Panel()
+        self.time = DeviceTime()
+        self._rate_hz = rate_hz
+        self._calibration: Calibration | None = None
+        self._notices = Notices()
+        self._placing = Placing.DONE
+        self._away = False  # from an event that says so to one that it is back
+        self.no_room = False  # whether the last FRAME found no room on the line
+        self._fell = False  # whether it is to be told that no frame reached it in time
+        self._paused = (now_ns, "line")  # when STATEs came again after a pause, and what was late
+        self._begun_ns = self._now_ns = self._hello_ns = now_ns
         self._leaving = self._frame_due = False
         self._offer: _Wish | None = None  # the message that was given last
+
+    def hear(self, chunk: bytes, now_ns: int) -> Pose | None:
+        """Take the bytes that have come, perhaps none; give the newest place that they tell."""
+        self._now_ns = now_ns
+        pose = None
+        if chunk:
+            self.heard = True
+            for message in self.decoder.feed(chunk):
+                if isinstance(message, State):
+                    self.speaks = True
+                    if self.stage in TALKING:
+                        pose = self._take_state(message, now_ns)
+                else:
+                    self._take(message, now_ns)
+            if self.decoder.bad_info:
+                self._turn_away(Stranger(self._name, fault=self.decoder.bad_info), now_ns)
+                self.decoder.bad_info = ""
+        if self._fell:  # only the STATE that comes with its report tells what was late
+            self._fell = False
+            since_ns, late = self._paused
+            late = late if now_ns - since_ns < _SILENCE_NS else "line"
+            self._tell(WatchdogTripped(self.trips.count, late), now_ns)
+        self._pass(now_ns)
+        return pose
+
+    def correct(self, calibration: Calibration | None) -> None:
+        """Make up for what was found of the actuators, now and whenever the device is back."""
+        self._calibration = calibration
+        self.drive.correct(calibration)
+
+    def _go(self, cause: Cause) -> bool:
+        """Go to the stage that a cause leads to; tell whether it leads to one from here."""
+        stage = TRANSITIONS[self.stage].get(cause)
+        if stage is None:
+            return False
+        if stage is not self.stage:
+            _log.debug("%s to %s: %s", self.stage.name, stage.name, cause.value)
+            self.stage = stage
+            self.taking = stage not in RESTING
+        return True
+
+    @property
+    def _name(self) -> str:
+        """Name of the device that reading began on; empty before."""
+        return self.display.name if self.display is not None else ""
+
+    def _take(self, message: Heard, now_ns: int) -> None:
+        """Take a message other than STATE."""
+        self.speaks = self.speaks or isinstance(message, Watchdog | Error)
+        if isinstance(message, Info):
+            if self.stage is not Stage.ASKED:
+                pass  # it answers a HELLO from before
+            else:
+                self._take_info(message, now_ns)
+        elif isinstance(message, OtherVersion):
+            self._turn_away(Stranger(self._name, version=message.version), now_ns)
+        elif self.stage not in TALKING:
+            pass  # it belongs to an earlier conversation
+        elif isinstance(message, Watchdog):
+            if self.trips.take_report(message, now_ns) and self.stage is Stage.LIVE:
+                self._fall(Cause.FELL, now_ns)
+        elif isinstance(message, Error):
+            if message.code < NOTICES:
+                self._fail(Fault(self._name, message.code, message.text), now_ns)
+            else:
+                self._tell(Notice(message.code, message.text), now_ns)
+
+    def _take_state(self, state: State, now_ns: int) -> Pose | None:
+        states = self.states
+        if states.sequence is not None:
+            step = unwrap(state.sequence, states.sequence, 16) - states.sequence
+            if step <= 0:
+                states.old += 1
+                return None
+            states.missed += step - 1
+            self._mind_pause(state, step, now_ns)
+        states.sequence = state.sequence
+        states.heard_ns = now_ns
+        if self.stage is Stage.SILENT:
+            self._go(Cause.HEARD)
+            self.rested += 1
+        if self._away:
+            self._away = False
+            self._tell(Back(), now_ns)
+        if state.faulty:  # the ERROR that says why was lost
+            self._fail(Fault(self._name), now_ns)
+            return None
+        for event in self.panel.take(state, now_ns):
+            self._tell(event, now_ns)
+        self.trips.take_state(tripped=state.tripped)
+        if self.stage is not Stage.LIVE:
+            cause = self.delivery.judge(state, now_ns)
+            if cause is Cause.FAULT:
+                self._fail(Fault(self._name, stuck=True), now_ns)
+                return None
+            self._go(cause)
+        elif state.resting:
+            self._fall(Cause.FELL, now_ns)
+        frames = self.frames
+        if frames.sent_ns is not None and state.frame_sequence == frames.sequence:
+            frames.acknowledged_ns = now_ns - frames.sent_ns
+            frames.sent_ns = None
+        where = self.place.take(state)
+        if self.place.placing is not self._placing:
+            self._mind_placing(now_ns)
+        time_ns = self.time.ns(state.time_us, now_ns)
+        return None if where is None else Pose(time_ns, *where)
+
+    def _mind_pause(self, state: State, step: int, now_ns: int) -> None:
+        """Note what was late if STATEs come again; a device counts those that it cannot send."""
+        assert self.info is not None
+        if self.time.us is None:
+            return
+        passed_us = unwrap(state.time_us, self.time.us, 32) - self.time.us
+        if passed_us >= _PAUSE_US:
+            made_us = step * 1_000_000 // self.info.rate_hz
+            self._paused = now_ns, "device" if 2 * made_us < passed_us else ""
+        elif now_ns - self.states.heard_ns >= _PAUSE_US * 1000:
+            self._paused = now_ns, "line"
+
+    def _let_go(self, now_ns: int) -> None:
+        """Take the buttons for let go: nobody holds those of a device that is not there."""
+        for event in self.panel.let_go(now_ns):
+            self._tell(event, now_ns)
+
+    def _mind_placing(self, now_ns: int) -> None:
+        if self.place.placing is not self._placing:
+            self._placing = self.place.placing
+            self._tell(Placed(self._placing), now_ns)
+
+    def _take_info(self, info: Info, now_ns: int) -> None:
+        display, fault = info_of(info), misfit(info)
+        others = () if self.display is None else differences(self.display, display)
+        if others:
+            stranger = Stranger(self._name, name=display.name, differences=others)
+            self._turn_away(stranger, now_ns)
+        elif fault:
+            self._turn_away(Stranger(self._name, fault=fault), now_ns)
+        elif self._go(Cause.ANSWERED):
+            self._begin(info, display, now_ns)
+
+    def _begin(self, info: Info, display: Display, now_ns: int) -> None:
+        """Begin to talk with a device, which is at rest."""
+        before, self.info = self.info, info
+        if before is not None:
+            changed = changes(before, info)
+            if changed is not None:
+                self._tell(changed, now_ns)
+            self.reconnections += 1
+            self.rested += 1
+        self.display = self.display or display
+        self.particulars = particulars_of(info)
+        self.states.heard_ns, self.states.sequence = now_ns, None
+        self.frames.felt_ns = now_ns
+        self.trips.restart()
+        self.time.restart()
+        self.delivery = Delivery(info.rate_hz)
+        self.place = CarriagePlace(info)
+        self.panel.fit(info.buttons, info.knobs)
+        if before is None:
+            self._placing = self.place.placing
+        self._mind_placing(now_ns)
+        own_hz = float(self.display.rate_hz)
+        self.drive = Drive(info, now_ns, min(self._rate_hz or own_hz, own_hz))
+        self.drive.correct(self._calibration)
+        self._rest_frame = np.zeros((info.rows, info.columns))
+
+    def _turn_away(self, stranger: Stranger, now_ns: int) -> None:
+        """Say nothing more to a device that is not the one that reading began on."""
+        if not self._go(Cause.TURNED_AWAY):
+            return
+        self._away = True
+        self.failure = stranger
+        if self.display is not None:
+            self._tell(stranger, now_ns)
+
+    def _fail(self, fault: Fault, now_ns: int) -> None:
+        if self._go(Cause.FAULT):
+            self.failure = fault
+            self.delivery.stop(tell=False)
+            self._tell(fault, now_ns)
+
+    def _pass(self, now_ns: int) -> None:
+        """Check how long nothing has come, and do what is due then."""
+        if self.display is None:
+            if now_ns - self._begun_ns >= ANSWER_MS * _NS_PER_MS:
+                self._go(Cause.NO_ANSWER)
+            return
+        silent_ns = now_ns - self.states.heard_ns
+        if silent_ns < _SILENCE_NS:
+            return
+        if self._go(Cause.SILENCE):
+            self._stop(tell=True)
+            self._tell_away(Silent(silent_ns / _NS_PER_MS), now_ns)
+        if silent_ns >= _LOST_NS and self._go(Cause.LOST):
+            self._hello_ns = now_ns
+
+    def _fall(self, cause: Cause, now_ns: int) -> None:
+        """Note that the device went to rest, or may have."""
+        self._go(cause)
+        self._stop(tell=False)
+        self.frames.felt_ns = now_ns
+        self.rested += 1
+        if cause is Cause.STALLED:
+            late = "line" if self.no_room else "host"
+            self._tell(WatchdogTripped(self.trips.count, late), now_ns)
+        else:
+            self._fell = True
+
+    def _stop(self, *, tell: bool) -> None:
+        """Send no FRAME until the device is at rest, and drop what waits to be sent."""
+        self.delivery.stop(tell=tell)
+        self.drop_unsent = True
+
+    def _tell(self, event: Event, now_ns: int) -> None:
+        self._notices.add(event, now_ns)
+
+    def _tell_away(self, event: Event, now_ns: int) -> None:
+        if not self._away:
+            self._tell(event, now_ns)
+        self._away = True
 
     @property
     def steady(self) -> bool:

@@ -1,35 +1,83 @@
 """The numbers of a serial conversation, lent to compiled code for as long as it is steady.
 
-What `vbraille.devices.serial.steady` works on is filled from a `Conversation` and given back
+What `vbraille.devices.serial.kernels` works on is filled from a `Conversation` and given back
 to it, some ticks later, as if the conversation had heard and said all of that itself.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from vbraille.devices.lent import Actuators, Lent
 from vbraille.devices.serial.conversation import IDLE_MS
-from vbraille.devices.serial.steady import (
-    CONVERSATION,
-    NEVER,
-    WORK_BYTES,
-)
-from vbraille.devices.wire.codec import CRC_BYTES, frame_head, line_bytes
+from vbraille.devices.serial.kernels import CONVERSATION, NEVER, WORK_BYTES
+from vbraille.devices.serial.wire import CRC_BYTES, frame_head, line_bytes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from vbraille.devices.serial.actuators import Drive
     from vbraille.devices.serial.conversation import Conversation
-    from vbraille.devices.serial.drive import Drive
-    from vbraille.devices.serial.place import Place
+    from vbraille.devices.serial.sensors import CarriagePlace
     from vbraille.display import Display
+
+
+class Actuators(NamedTuple):
+    """How FRAMEs are made, and the last of them.
+
+    Parameters
+    ----------
+    last, wanted : float64[rows, columns]
+        Deflections of the FRAME that went out last, and of the FRAME that was made last.
+    swing : float64[rows, columns]
+        Number of levels in a full swing, before it is inverted.
+    rest : int64[rows, columns]
+        Level at rest: 0, or the highest.
+    body : uint8[bytes]
+        Type, sequence and levels of a FRAME, and room for its CRC.
+    packed : uint8[bytes]
+        View of the levels in ``body``.
+    """
+
+    last: NDArray[np.float64]
+    wanted: NDArray[np.float64]
+    swing: NDArray[np.float64]
+    rest: NDArray[np.int64]
+    body: NDArray[np.uint8]
+    packed: NDArray[np.uint8]
+
+
+class Lent(NamedTuple):
+    """What a device lends to the engine, which then does its steady ticks in compiled code.
+
+    Parameters
+    ----------
+    descriptor
+        Descriptor of the device's open line, which does not block.
+    begun
+        Number of bytes at the beginning of `received`: a part of a message.
+    received, work, out : uint8[bytes]
+        Bytes that have come, room to work in, and room for a message that goes out.
+    talk, actuators
+        Numbers of the conversation, `vbraille.devices.serial.kernels.CONVERSATION`[1], and how its
+        FRAMEs are made.
+    """
+
+    descriptor: int
+    begun: int
+    received: NDArray[np.uint8]
+    work: NDArray[np.uint8]
+    out: NDArray[np.uint8]
+    talk: NDArray[np.void]
+    actuators: Actuators
+
 
 # Some ticks bring some hundred bytes; this leaves room for a stall.
 RECEIVED_BYTES: Final = 8192
+
+
 _NS_PER_MS: Final = 1_000_000
 
 
@@ -38,7 +86,7 @@ class Lending:
 
     Attributes
     ----------
-    talk : `vbraille.devices.serial.steady.CONVERSATION`[1]
+    talk : `vbraille.devices.serial.kernels.CONVERSATION`[1]
         Numbers of the conversation.
     received : uint8[RECEIVED_BYTES]
         Bytes that were received and not consumed, at the beginning of the array.
@@ -144,7 +192,7 @@ def _lend_panel(talk: np.void, conversation: Conversation) -> None:
     talk["knobs"], talk["knobs_fitted"] = panel.knobs or 0, panel.knobs_fitted
 
 
-def _lend_place(talk: np.void, place: Place) -> None:
+def _lend_place(talk: np.void, place: CarriagePlace) -> None:
     """Fill in the numbers of the carriage, whose place is known."""
     x, y, turn = place.x, place.y, place.turn
     # A place that is known has all of its counts.

@@ -1,16 +1,17 @@
-"""Where a carriage is, from what its device counts."""
+"""STATEs of a device: where its carriage is, its clock, and its buttons and knobs."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
-from vbraille.devices.events import Placing
-from vbraille.devices.wire.codec import unwrap
-from vbraille.devices.wire.messages import Encoder
+from vbraille.devices.events import Button, Knob, Placing
+from vbraille.devices.serial.wire import KNOB_STEP, KNOB_TOP, Encoder, unwrap
 
 if TYPE_CHECKING:
-    from vbraille.devices.wire.messages import Info, State
+    from collections.abc import Iterator
+
+    from vbraille.devices.serial.wire import Info, State
 
 
 class CountedPlace(NamedTuple):
@@ -96,7 +97,7 @@ class CountedTurn:
         return self.rad_per_count * away
 
 
-class Place:
+class CarriagePlace:
     """Place of a carriage in one conversation, by the equations of the protocol's page.
 
     Parameters
@@ -215,3 +216,70 @@ class DeviceTime:
         self.host_ns = now_ns
         self.last_ns = max(self.us * 1000 + self.offset_ns, self.last_ns)
         return self.last_ns
+
+
+_BITS: Final = 8  # of a knob's position
+
+
+class Panel:
+    """Buttons and knobs as they were when they were last told.
+
+    Attributes
+    ----------
+    buttons_fitted, knobs_fitted : int
+        Number of buttons and of knobs that the device says it has; bits and bytes of others are not
+        read.
+    buttons : int or None
+        Bits of the buttons that are pressed; None before the first STATE of all, and of a device
+        that was unplugged.
+    knobs : int or None
+        Positions of the knobs when they were last told, a byte each; None before the first STATE
+        of all.
+    """
+
+    def __init__(self) -> None:
+        self.buttons_fitted = self.knobs_fitted = 0
+        self.buttons: int | None = None
+        self.knobs: int | None = None
+
+    def fit(self, buttons: int, knobs: int) -> None:
+        """Take so many buttons and knobs to be there."""
+        self.buttons_fitted, self.knobs_fitted = buttons, knobs
+
+    def take(self, state: State, now_ns: int) -> Iterator[Button | Knob]:
+        """Tell what has changed by a new STATE; the first of all changes nothing."""
+        yield from self._press(state.buttons, now_ns)
+        yield from self._turn(state.knobs)
+
+    def let_go(self, now_ns: int) -> Iterator[Button]:
+        """Tell the buttons that were pressed: nobody holds those of a device that is not there."""
+        if self.buttons:
+            yield from self._press(0, now_ns)
+        self.buttons = None
+
+    def _press(self, told: int, now_ns: int) -> Iterator[Button]:
+        before, self.buttons = self.buttons, told & ((1 << self.buttons_fitted) - 1)
+        changed = 0 if before is None else before ^ self.buttons
+        for bit in range(self.buttons_fitted if changed else 0):
+            if changed >> bit & 1:
+                yield Button(bit + 1, pressed=bool(self.buttons >> bit & 1), at_ns=now_ns)
+
+    def _turn(self, told: int) -> Iterator[Knob]:
+        if self.knobs is None:
+            self.knobs = told
+        if told == self.knobs:
+            return
+        for knob in range(self.knobs_fitted):
+            shift = knob * _BITS
+            before, now = self.knobs >> shift & KNOB_TOP, told >> shift & KNOB_TOP
+            if turned(before, now):
+                self.knobs += (now - before) << shift
+                yield Knob(knob + 1, now / KNOB_TOP)
+
+
+def turned(before: int, now: int) -> bool:
+    """Whether a knob was turned between two of its positions, and does not just jitter.
+
+    Its ends are told however little is left to them: a knob can be turned as far as it goes.
+    """
+    return abs(now - before) >= KNOB_STEP or (now != before and now in (0, KNOB_TOP))

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vbraille.devices import framekernels
-from vbraille.devices.wire.codec import Levels
+from vbraille.devices.serial.wire import Levels
 
 
 def fill(deflections, top, *, gain=255, inverted=0, last=None, step=math.inf):

@@ -1,17 +1,19 @@
-"""The greeting: HELLO, and what INFO tells of a device for those who read on it."""
+"""INFO of a device: what it tells those who read on it, and what has changed since it was lost."""
 
 from __future__ import annotations
 
+from enum import IntEnum
 from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.base import Particulars
-from vbraille.devices.wire.messages import Encoder
+from vbraille.devices.events import Changed, Difference, Placing
+from vbraille.devices.serial.wire import Encoder
 from vbraille.display import Display
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from vbraille.devices.wire.messages import Info
+    from vbraille.devices.serial.wire import Info
 
 # How far the carriage goes, and how finely that is counted, by the fields of INFO.
 _AXES: Final = (("travel_um", "counts_per_m"), ("height_um", "y_counts_per_m"))
@@ -80,3 +82,77 @@ def particulars_of(info: Info) -> Particulars:
         buttons=info.buttons,
         knobs=info.knobs,
     )
+
+
+_OF_DISPLAY: Final = (
+    "rows",
+    "columns",
+    "column_pitch_mm",
+    "row_pitch_mm",
+    "levels",
+    "rest_side",
+    "travel_mm",
+    "height_mm",
+    "turns",
+    "rate_hz",
+)
+# Fields of INFO that may change, and those of them that are the reader's to show where encoders are
+# incremental.
+_OF_INFO: Final = (
+    "name",
+    "counts_per_m",
+    "count_sign",
+    "encoder",
+    "y_counts_per_m",
+    "y_count_sign",
+    "counts_per_turn",
+    "turn_sign",
+    "left_stop_count",
+    "far_stop_count",
+    "straight_count",
+    "largest_slew_per_s",
+)
+_SHOWN: Final = ("left_stop_count", "far_stop_count", "straight_count")
+PLACING: Final = {
+    Encoder.ABSOLUTE: Placing.DONE,
+    Encoder.INDEX: Placing.MARK,
+    Encoder.INCREMENTAL: Placing.STOP,
+}
+
+
+def differences(was: Display, now: Display) -> tuple[Difference, ...]:
+    """Fields of a device in which it differs from what a page and a loop were made for.
+
+    The name does not count, and neither does the resolution: places are in millimetres.
+    """
+    both = ((name, getattr(was, name), getattr(now, name)) for name in _OF_DISPLAY)
+    return tuple(Difference(name, old, new) for name, old, new in both if old != new)
+
+
+def changes(was: Info, now: Info) -> Changed | None:
+    """What has changed in a device that can be read on, since the conversation before."""
+    shown = _SHOWN if now.encoder is Encoder.INCREMENTAL else ()
+    both = (
+        (name, _said(getattr(was, name)), _said(getattr(now, name)))
+        for name in _OF_INFO
+        if name not in shown
+    )
+    changed = Changed(
+        tuple(Difference(name, old, new) for name, old, new in both if old != new),
+        _others(was.gain, now.gain),
+        _others(was.inverted, now.inverted),
+        _others(was.enabled, now.enabled),
+        PLACING[now.encoder],
+    )
+    none = Changed(placing=changed.placing)
+    return None if changed == none else changed
+
+
+def _said(value: int | str) -> int | str:
+    """Name of a member of an enumeration; any other value as it is."""
+    return value.name.lower() if isinstance(value, IntEnum) else value
+
+
+def _others(was: bytes, now: bytes) -> int:
+    """Number of actuators that have another value."""
+    return sum(old != new for old, new in zip(was, now, strict=True))
