@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 from urllib.parse import unquote
 
 from vbraille.translate.documents.markup import attributes as attribute
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from vbraille.translate.documents.chapters import Passage
 
     Steps = Iterator[None]  # between which passages may be taken
-    Handler = Callable[["MarkupReader", Element, str, Mapping[str, str]], Steps]
+    Handler = Callable[["MarkupReader", "Begun"], Steps]
 
 # Elements within others that are read by their roles; what is deeper only begins and ends blocks.
 _DEEPEST = 120
@@ -94,6 +94,24 @@ _LINEAR = frozenset(
     ("math", "mrow", "mi", "mn", "mo", "mtext", "mspace", "mstyle", "semantics", "none")
 )
 _NOTHING: dict[str, str] = {}
+
+
+class Begun(NamedTuple):
+    """An element that is read.
+
+    Parameters
+    ----------
+    element
+        The element.
+    name
+        Its name, in lower case, without a namespace.
+    found
+        Those of its attributes that are known here.
+    """
+
+    element: Element
+    name: str
+    found: Mapping[str, str]
 
 
 class MarkupReader:
@@ -265,7 +283,7 @@ class MarkupReader:
         handler = self._handlers.get(name)
         kind = _EMPHASES.get(name)
         if handler is not None:
-            yield from handler(self, element, name, found)
+            yield from handler(self, Begun(element, name, found))
         elif kind is not None:
             self.writing.flow.open(kind)
             yield from self.inside(element)
@@ -315,7 +333,8 @@ class MarkupReader:
             if name in self._blocks:
                 self.writing.begin_block()
             if name in _EMPTY and event == "start":
-                yield from self._handlers[name](self, found, name, attribute.known(found.items()))
+                at = Begun(found, name, attribute.known(found.items()))
+                yield from self._handlers[name](self, at)
             text = found.text if event == "start" else found.tail if found is not element else None
             if text:
                 yield from self._text(text)
@@ -420,14 +439,14 @@ def _styled(found: Mapping[str, str]) -> list[MarkKind]:
     return [kind for words, kind in _STYLES.items() if words in style]
 
 
-def _heading(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:
-    reader._begin_heading(whole(found.get("aria-level"), _HEADINGS[name]))
-    yield from reader.inside(element)
+def _heading(reader: MarkupReader, at: Begun) -> Steps:
+    reader._begin_heading(whole(at.found.get("aria-level"), _HEADINGS[at.name]))
+    yield from reader.inside(at.element)
 
 
-def _list(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:
-    _begin_list(reader, numbering_of(name, found))
-    yield from reader.inside(element)
+def _list(reader: MarkupReader, at: Begun) -> Steps:
+    _begin_list(reader, numbering_of(at.name, at.found))
+    yield from reader.inside(at.element)
 
 
 def _begin_list(reader: MarkupReader, numbering: ListNumbers | None) -> None:
@@ -438,198 +457,198 @@ def _begin_list(reader: MarkupReader, numbering: ListNumbers | None) -> None:
         writing.place = replace(place, items=place.items + 1, group=group, numbering=numbering)
 
 
-def _terms(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _terms(reader: MarkupReader, at: Begun) -> Steps:
     _begin_list(reader, None)
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
 
 
-def _item(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _item(reader: MarkupReader, at: Begun) -> Steps:
     writing, place = reader.writing, reader.writing.place
-    writing.begin_item(BULLET if place.numbering is None else place.numbering.marker(found))
+    writing.begin_item(BULLET if place.numbering is None else place.numbering.marker(at.found))
     if place.is_note or (place.in_notes and place.items == 1):
         reader._begin_note()
     else:
         writing.place = replace(place, kind=BlockKind.ITEM, level=max(place.items, 1))
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
     writing.begin_block()
     writing.end_item()
 
 
-def _term(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _term(reader: MarkupReader, at: Begun) -> Steps:
     writing, place = reader.writing, reader.writing.place
     if place.is_note or place.in_notes:
         reader._begin_note()
-        yield from reader.inside(element)
+        yield from reader.inside(at.element)
         return
     writing.begin_item("")
-    level = max(place.items, 1) + (name == "dd")
+    level = max(place.items, 1) + (at.name == "dd")
     writing.place = replace(place, kind=BlockKind.ITEM, level=level)
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
     writing.begin_block()
     writing.end_item()
 
 
-def _quote(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _quote(reader: MarkupReader, at: Begun) -> Steps:
     writing = reader.writing
     writing.lay_out_table()
     place = writing.place
     if not place.is_note:
         quotes = min(place.quotes + 1, _DEEPEST_LISTS)
         writing.place = replace(place, kind=BlockKind.QUOTE, level=quotes, quotes=quotes)
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
 
 
-def _lines(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _lines(reader: MarkupReader, at: Begun) -> Steps:
     writing = reader.writing
     writing.lay_out_table()
     writing.place = replace(writing.place, kind=BlockKind.LINE, level=0, keeps_lines=True)
     writing.starts_lines = True
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
     writing.starts_lines = False
 
 
-def _line(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _line(reader: MarkupReader, at: Begun) -> Steps:
     reader.writing.place = replace(reader.writing.place, kind=BlockKind.LINE, level=0)
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
 
 
-def _table(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _table(reader: MarkupReader, at: Begun) -> Steps:
     writing = reader.writing
     table = writing.begin_table()
-    table.lays_out = found.get("role") in {"presentation", "none"}
+    table.lays_out = at.found.get("role") in {"presentation", "none"}
     writing.place = replace(writing.place, table=table)
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
     writing.begin_block()
     writing.end_row()
 
 
-def _row(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _row(reader: MarkupReader, at: Begun) -> Steps:
     reader.writing.begin_row()
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
     reader.writing.begin_block()
     reader.writing.end_row()
 
 
-def _cell(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:
+def _cell(reader: MarkupReader, at: Begun) -> Steps:
     reader.writing.begin_cell(
-        columns=whole(found.get("colspan"), 1),
-        rows=whole(found.get("rowspan"), 1),
-        is_header=name == "th",
+        columns=whole(at.found.get("colspan"), 1),
+        rows=whole(at.found.get("rowspan"), 1),
+        is_header=at.name == "th",
     )
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
     reader.writing.end_cell()
 
 
-def _head(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _head(reader: MarkupReader, at: Begun) -> Steps:
     writing, table = reader.writing, reader.writing.place.table
     writing.end_row()
     if table is not None:
-        table.in_head = name == "thead"
-    yield from reader.inside(element)
+        table.in_head = at.name == "thead"
+    yield from reader.inside(at.element)
     if table is not None:
         writing.begin_block()
         table.in_head = False
         writing.end_row()
 
 
-def _caption(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _caption(reader: MarkupReader, at: Begun) -> Steps:
     writing, table = reader.writing, reader.writing.place.table
-    if name == "caption" and table is not None:
+    if at.name == "caption" and table is not None:
         writing.place = replace(writing.place, group=table.group)
     else:
         writing.place = replace(writing.place, in_caption=True)
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
 
 
-def _figure(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _figure(reader: MarkupReader, at: Begun) -> Steps:
     before = reader.writing.swap_pictures()
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
     reader.writing.begin_block()
     reader.writing.swap_pictures(before)
 
 
-def _rule(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _rule(reader: MarkupReader, at: Begun) -> Steps:
     reader.writing.lay_out_table()
     reader.writing.divide()
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
 
 
-def _break(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _break(reader: MarkupReader, at: Begun) -> Steps:
     reader.writing.line_break()
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
 
 
 def _around(before: str, after: str) -> Handler:
     """Text before and after an element."""
 
-    def read(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+    def read(reader: MarkupReader, at: Begun) -> Steps:
         reader.writing.write(reader.writing.spell(before))
-        yield from reader.inside(element)
+        yield from reader.inside(at.element)
         reader.writing.write(reader.writing.spell(after))
 
     return read
 
 
-def _image(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _image(reader: MarkupReader, at: Begun) -> Steps:
     writing = reader.writing
-    if address := attribute.figure_address(found):
-        told = found.get("title") or found.get("aria-label") or found.get("alt")
+    if address := attribute.figure_address(at.found):
+        told = at.found.get("title") or at.found.get("aria-label") or at.found.get("alt")
         words = " ".join((told or "").split()) or PurePosixPath(unquote(address)).stem
         writing.figure(words, address)
     else:
-        said = found.get("aria-label") or found.get("alt")
+        said = at.found.get("aria-label") or at.found.get("alt")
         if said is None:
-            said = found.get("title")
+            said = at.found.get("title")
         if said is None:
             writing.unshown("picture", "picture")
         elif said := " ".join(said.split()):
             writing.picture(said)
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
 
 
-def _unshown(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:
-    words, what = _UNSHOWN[name]
-    label = " ".join((found.get("aria-label") or found.get("title") or "").split())
+def _unshown(reader: MarkupReader, at: Begun) -> Steps:
+    words, what = _UNSHOWN[at.name]
+    label = " ".join((at.found.get("aria-label") or at.found.get("title") or "").split())
     reader.writing.unshown(f"{words}: {label}" if label else words, what)
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
 
 
-def _input(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:
-    kind = found.get("type", "").lower()
-    if name == "input" and kind == "image":
-        yield from _image(reader, element, name, found)
+def _input(reader: MarkupReader, at: Begun) -> Steps:
+    kind = at.found.get("type", "").lower()
+    if at.name == "input" and kind == "image":
+        yield from _image(reader, at)
         return
-    if name != "input" or kind != "hidden":
-        label = " ".join((found.get("aria-label") or "").split())
-        if kind in _BUTTONS and name == "input":
-            label = label or " ".join(found.get("value", "").split())
+    if at.name != "input" or kind != "hidden":
+        label = " ".join((at.found.get("aria-label") or "").split())
+        if kind in _BUTTONS and at.name == "input":
+            label = label or " ".join(at.found.get("value", "").split())
         reader.writing.unshown(f"form field: {label}" if label else "form field", "form")
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
 
 
-def _apart(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _apart(reader: MarkupReader, at: Begun) -> Steps:
     reader.writing.flow.blank()
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
     reader.writing.flow.blank()
 
 
-def _title(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _title(reader: MarkupReader, at: Begun) -> Steps:  # noqa: ARG001
     """Pass over a title, which is said beside the text."""
     yield
 
 
-def _formula(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _formula(reader: MarkupReader, at: Begun) -> Steps:
     """Read a formula by its TeX, or by its text if that is one row of signs."""
     from lxml import etree
 
     writing = reader.writing
-    told = found.get("alttext") or found.get("data-latex") or found.get("aria-label") or ""
+    told = at.found.get("alttext") or at.found.get("data-latex") or at.found.get("aria-label") or ""
     tex, row, is_linear = [], [], True
-    walk = etree.iterwalk(element, events=("start", "end"))
+    walk = etree.iterwalk(at.element, events=("start", "end"))
     for event, inner in walk:
         inner_name = attribute.named(inner.tag)
         if event == "end":
-            row.append(inner.tail or "" if inner is not element else "")
+            row.append(inner.tail or "" if inner is not at.element else "")
         elif inner_name.startswith("annotation"):
             # One in XML is the same formula once more, by its meaning.
             tex += [all_text(inner)] if inner_name == "annotation" else []
@@ -646,53 +665,47 @@ def _formula(reader: MarkupReader, element: Element, name: str, found: Mapping[s
     yield
 
 
-def _drawing(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _drawing(reader: MarkupReader, at: Begun) -> Steps:
     """Read a drawing in SVG by its title; HTML in it is read as text."""
     title = ""
-    pending = list(element)[::-1]
+    pending = list(at.element)[::-1]
     while pending:
         inner = pending.pop()
         if attribute.named(inner.tag) in _HTML:
             yield from reader._element(inner)
         else:
             pending += list(inner)[::-1]
-        if attribute.named(inner.tag) == "title" and inner.getparent() is element:
+        if attribute.named(inner.tag) == "title" and inner.getparent() is at.element:
             title = title or all_text(inner)
-    text = " ".join((found.get("aria-label") or "").split()) or title
+    text = " ".join((at.found.get("aria-label") or "").split()) or title
     if text:
         reader.writing.picture(text)
     else:
         reader.writing.unshown("drawing", "drawing")
 
 
-def _page_number(
-    reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]  # noqa: ARG001
-) -> Steps:  # fmt: skip
-    reader._page(element, found)
+def _page_number(reader: MarkupReader, at: Begun) -> Steps:
+    reader._page(at.element, at.found)
     yield
 
 
-def _section_heading(
-    reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]  # noqa: ARG001
-) -> Steps:  # fmt: skip
+def _section_heading(reader: MarkupReader, at: Begun) -> Steps:
     sections = max(reader.writing.place.sections, 1)
-    reader._begin_heading(1 if name == "doctitle" else sections)
-    yield from reader.inside(element)
+    reader._begin_heading(1 if at.name == "doctitle" else sections)
+    yield from reader.inside(at.element)
 
 
-def _note(reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]) -> Steps:  # noqa: ARG001
+def _note(reader: MarkupReader, at: Begun) -> Steps:
     reader._begin_note()
-    yield from reader.inside(element)
+    yield from reader.inside(at.element)
 
 
-def _dtbook_list(
-    reader: MarkupReader, element: Element, name: str, found: Mapping[str, str]  # noqa: ARG001
-) -> Steps:  # fmt: skip
-    kind = found.get("type", "pl")
-    told = {**found, "type": found.get("enum", "1")}
+def _dtbook_list(reader: MarkupReader, at: Begun) -> Steps:
+    kind = at.found.get("type", "pl")
+    told = {**at.found, "type": at.found.get("enum", "1")}
     if kind == "pl":  # its items have their numbers in their text, if any
         told["style"] = "list-style: none"
-    yield from _list(reader, element, "ol" if kind == "ol" else "ul", told)
+    yield from _list(reader, at._replace(name="ol" if kind == "ol" else "ul", found=told))
 
 
 _HANDLERS: dict[str, Handler] = {
