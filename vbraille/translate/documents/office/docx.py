@@ -21,6 +21,7 @@ from vbraille.translate.documents.office.htmltree import (
     Pictures,
     chain,
     field_target,
+    last_of,
     most_frequent,
     primary,
     put,
@@ -287,7 +288,7 @@ class _Reader:
             self._lists = []
             inner = into
             if is_quote:
-                last = into[-1] if len(into) else None
+                last = last_of(into)
                 is_same = last is not None and last.tag == "blockquote"
                 inner = last if last is not None and is_same else put(into, "blockquote")
             block = put(inner, "p" if CODES.isdisjoint(kinds) else "pre")

@@ -26,6 +26,7 @@ _SYMBOL |= {0xC7: "∩", 0xC8: "∪", 0xCC: "⊂", 0xCE: "∈", 0xD6: "√", 0xE
 _WINGDINGS = {0x6F: "☐", 0x71: "☐", 0xA8: "☐", 0xFE: "☑", 0xFD: "☒", 0xFC: "✓", 0xFB: "✗"}
 _WINGDINGS |= {0x4A: "☺", 0x4C: "☹", 0x9F: "•", 0xA7: "▪", 0xDF: "←", 0xE0: "→", 0xE8: "→"}
 _FONTS = {"symbol": _SYMBOL, "wingdings": _WINGDINGS}
+_LONGEST_TEXT = 4_096  # characters
 DEEPEST = 60  # lists, quotations and tables in each other
 
 
@@ -37,12 +38,21 @@ def put(parent: Element, name: str, text: str = "", **attributes: str) -> Elemen
     return element
 
 
+def last_of(parent: Element) -> Element | None:
+    """Last element in another, however many there are."""
+    return next(parent.iterchildren(reversed=True), None)
+
+
 def put_text(parent: Element, text: str) -> None:
     """Put text at the end of an element."""
-    if len(parent):
-        parent[-1].tail = (parent[-1].tail or "") + text
+    last = last_of(parent)
+    before = (parent.text if last is None else last.tail) or ""
+    if len(before) > _LONGEST_TEXT:  # which would be copied for each piece
+        put(parent, "span", text)
+    elif last is None:
+        parent.text = before + text
     else:
-        parent.text = (parent.text or "") + text
+        last.tail = before + text
 
 
 def put_page(parent: Element, number: str = "") -> None:
@@ -77,8 +87,13 @@ def put_inner(
     names = [style for style in styles if style not in left_out]
     for name in ["span"] * bool(language) + names:
         attributes = {"lang": language} if name == "span" else {}
-        last = parent[-1] if len(parent) and not parent[-1].tail else None
-        is_same = last is not None and last.tag == name and dict(last.attrib) == attributes
+        last = last_of(parent)
+        is_same = (
+            last is not None
+            and last.tag == name
+            and not last.tail
+            and dict(last.attrib) == attributes
+        )
         parent = last if last is not None and is_same else put(parent, name, **attributes)
     return parent
 

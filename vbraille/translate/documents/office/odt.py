@@ -17,6 +17,7 @@ from vbraille.translate.documents.office.htmltree import (
     Notes,
     Pictures,
     chain,
+    last_of,
     most_frequent,
     primary,
     put,
@@ -190,7 +191,7 @@ class _Reader:
         is_code = any(name.startswith("preformatted") for name in names)
         parent = into
         if is_quote and not level:
-            last = into[-1] if len(into) else None
+            last = last_of(into)
             is_same = last is not None and last.tag == "blockquote"
             parent = last if last is not None and is_same else put(into, "blockquote")
         tag = f"h{min(max(level, 1), 6)}" if level else "pre" if is_code else "p"

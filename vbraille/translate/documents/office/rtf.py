@@ -19,6 +19,7 @@ from vbraille.translate.documents.office.htmltree import (
     Notes,
     Pictures,
     field_target,
+    last_of,
     most_frequent,
     primary,
     put,
@@ -306,7 +307,7 @@ class _Reader:
         without = {"u"} if group.link else ()
         self._counted[group.language] += len(text)
         last = self._spans[-1] if self._spans else None
-        if last is not None and last[1] == group.language and len(at) and at[-1] is last[0]:
+        if last is not None and last[1] == group.language and last_of(at) is last[0]:
             span = None if last[0].tail else last[0]
         else:
             span = None
@@ -522,7 +523,7 @@ class _Reader:
             flow.label, flow.is_told = "", False
             return
         elif not QUOTES.isdisjoint(name):
-            last = into[-1] if len(into) else None
+            last = last_of(into)
             is_same = last is not None and last.tag == "blockquote"
             into = last if last is not None and is_same else put(into, "blockquote")
             _plain_style(paragraph)
