@@ -5,7 +5,14 @@ import shlex
 
 import pytest
 
-from vbraille.cli.parser import COMMANDS, DEVICE_ACTIONS, SCENE_ACTIONS, SESSION_ACTIONS, parse
+from vbraille.cli.parser import (
+    COMMANDS,
+    DEVICE_ACTIONS,
+    SCENE_ACTIONS,
+    SESSION_ACTIONS,
+    CommandParser,
+    parse,
+)
 
 ALL = {
     **COMMANDS,
@@ -16,7 +23,7 @@ ALL = {
 
 
 def options_of(command):
-    parser = argparse.ArgumentParser(add_help=False)
+    parser = CommandParser(add_help=False)
     _, add_options, _ = ALL[command]
     add_options(parser)
     return parser._actions

@@ -1,6 +1,5 @@
 """``vbraille simulate latero``, a real process at a real port, and what is read on it."""
 
-import argparse
 import re
 import signal
 import subprocess
@@ -11,6 +10,7 @@ from tests.cli import program
 from tests.tiers import heavy
 from vbraille.cli.commands.simulate import LATERO_ONLY, SERIAL_ONLY
 from vbraille.cli.options.reading import simulate
+from vbraille.cli.parser import CommandParser
 
 
 class Simulated:
@@ -87,7 +87,7 @@ def test_what_it_cannot_be_is_said_in_a_sentence(call, options, why):
 
 
 def test_each_option_is_of_one_kind_of_device_or_of_both():
-    parser = argparse.ArgumentParser()
+    parser = CommandParser()
     simulate(parser)
     options = vars(parser.parse_args([]))
     of_both = {"what", "hand", "seed", "script", "press", "drop"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.geometry import PRESETS
 from vbraille.cli.terminal import say_line
@@ -131,18 +131,17 @@ def build_lengths(
         If a length is out of range.
     """
     geometry = PRESETS[arguments.geometry] if arguments.geometry else model.style.geometry
-    given = {
-        f"{name}_mm": getattr(arguments, name)
-        for name in ("dot_width", "dot_spacing", "cell_gap", "line_pitch", "travel")
-        if getattr(arguments, name) is not None
-    }
+    names = ("dot_width", "dot_spacing", "cell_gap", "line_pitch", "travel")
+    given = _given(arguments, **{f"{name}_mm": name for name in names})
     if travel_mm is not None:
         given.setdefault("travel_mm", travel_mm)
-    try:
-        geometry = replace(geometry, **given)
-    except ValueError as error:
-        raise InputError(str(error)) from None
-    return replace(model, style=replace(model.style, geometry=geometry))
+    return replace(model, style=model.style.replace(geometry=geometry, **given))
+
+
+def _given(arguments: argparse.Namespace, **fields: str) -> dict[str, Any]:
+    """Values of the options that are given, by the fields that they are for."""
+    values = {field: getattr(arguments, option) for field, option in fields.items()}
+    return {field: value for field, value in values.items() if value is not None}
 
 
 def build_page(arguments: argparse.Namespace, model: Model) -> Model:
@@ -156,15 +155,11 @@ def build_page(arguments: argparse.Namespace, model: Model) -> Model:
     display, style = model.display, model.style
     if arguments.height is not None:
         display = replace(display, height_mm=check_height(arguments.height))
-    given = {
-        name: value
-        for name, value in (("manner", arguments.straying), ("band", arguments.band))
-        if value is not None
-    }
     try:
-        style = replace(style, straying=replace(style.straying, **given))
+        straying = replace(style.straying, **_given(arguments, manner="straying", band="band"))
     except ValueError as error:
         raise InputError(str(error)) from None
+    style = replace(style, straying=straying)
     return replace(model, display=display, style=style)
 
 
@@ -334,22 +329,13 @@ def build_show(arguments: argparse.Namespace, model: Model) -> Model:
         raise InputError(f"the {model.title} shows all dot rows; --mapping chooses how")
     if style.profile is Profile.HALF_SINE and arguments.texture_cycles is not None:
         raise InputError(f"the texture of the {model.title} has a fixed wavelength")
-    given = {
-        name: value
-        for name, value in (
-            ("texture", arguments.texture),
-            ("contrast", arguments.contrast),
-            ("cycles", arguments.texture_cycles),
-        )
-        if value is not None
-    }
+    given = _given(arguments, texture="texture", contrast="contrast", cycles="texture_cycles")
     try:
-        mapping = style.mapping
         if arguments.dot_row is not None:
-            mapping = single_row(arguments.dot_row)
+            given["mapping"] = single_row(arguments.dot_row)
         elif arguments.mapping is not None:
-            mapping = MAPPINGS[arguments.mapping]
-        style = replace(style, mapping=mapping, tuning=replace(style.tuning, **given))
+            given["mapping"] = MAPPINGS[arguments.mapping]
+        style = style.replace(**given)
         style.rows_on(model.display)
     except ValueError as error:
         raise InputError(str(error)) from None

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import NoReturn
 
-    Options = Callable[[argparse.ArgumentParser], None]
+    Options = Callable[["CommandParser"], None]
 
 # For each command: what it does, how its options are made, and an example.
 COMMANDS: dict[str, tuple[str, Options, str]] = {
@@ -222,6 +222,14 @@ class _Help(argparse.HelpFormatter):
         return text if text.startswith("example:") else super()._fill_text(text, width, indent)
 
 
+def _with_default(text: str, default: object) -> str:
+    """Sentence of help with the default, unless there is none or the sentence has words for it."""
+    if default is None or "(default: " in text:
+        return text
+    said = f"{default:g}" if isinstance(default, float) else default
+    return f"{text.removesuffix('.')} (default: {said})."
+
+
 # Options that there were, and what does the same.
 _GONE = {
     "--abstract": "--outline draws what is felt",
@@ -238,17 +246,61 @@ _GONE = {
 }
 
 
-class _Parser(argparse.ArgumentParser):
-    """A parser whose errors are one sentence."""
+class CommandParser(argparse.ArgumentParser):
+    """A parser of kinds of options, whose errors are one sentence."""
 
     def __init__(self, **settings) -> None:
         super().__init__(**settings, formatter_class=_Help, allow_abbrev=False)
+
+    def flag(self, name: str, text: str) -> None:
+        """Add an option that is given or not, and the sentence that help has of it."""
+        self.add_argument(name, action="store_true", help=text)
+
+    def option(
+        self,
+        name: str,
+        metavar: str,
+        text: str,
+        kind: Callable[[str], object] = str,
+        *,
+        default: object = None,
+        required: bool = False,
+    ) -> None:
+        """Add an option with a value; help says its default where the sentence does not."""
+        self.add_argument(
+            name,
+            metavar=metavar,
+            help=_with_default(text, default),
+            type=kind,
+            default=default,
+            required=required,
+        )
+
+    def choice(
+        self,
+        name: str,
+        choices: Sequence[object],
+        text: str,
+        *,
+        default: object = None,
+        kind: Callable[[str], object] = str,
+    ) -> None:
+        """Add an option with one of some values; help says its default as for `option`."""
+        text = _with_default(text, default)
+        self.add_argument(name, choices=choices, help=text, type=kind, default=default)
 
     def format_help(self) -> str:
         """Help as argparse has it, followed for reading by help on the keys."""
         return super().format_help() + _keys(self.prog)
 
     def error(self, message: str) -> NoReturn:
+        """Refuse the command line in a sentence; of an option that is gone it says what there is.
+
+        Raises
+        ------
+        InputError
+            In any case.
+        """
         what, _, arguments = message.partition(": ")
         for option in arguments.split() if what == "unrecognized arguments" else ():
             if instead := _GONE.get(option.partition("=")[0]):
@@ -264,7 +316,7 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     InputError
         If it cannot be understood.
     """
-    parser = _Parser(
+    parser = CommandParser(
         prog="vbraille",
         description="Read braille under one fingertip, on a page as large as you like.",
         epilog="example:\n  vbraille read book.txt\n\nvbraille COMMAND --help says more of each.",
@@ -297,13 +349,15 @@ def read_instead(arguments: argparse.Namespace) -> argparse.Namespace:
 
 
 def _add(
-    parser: argparse.ArgumentParser,
+    parser: CommandParser,
     dest: str,
     metavar: str,
     commands: dict[str, tuple[str, Options, str]],
 ) -> None:
     """Add commands to a parser, or the actions of a command."""
-    added = parser.add_subparsers(dest=dest, required=True, metavar=metavar, parser_class=_Parser)
+    added = parser.add_subparsers(
+        dest=dest, required=True, metavar=metavar, parser_class=CommandParser
+    )
     for name, (text, add_options, example) in commands.items():
         command = added.add_parser(
             name,
@@ -318,17 +372,16 @@ def _add(
             _add_common(command)
 
 
-def _add_common(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
+def _add_common(command: CommandParser) -> None:
+    command.flag(
         "--verbose",
-        action="store_true",
-        help="Say more, such as how far a search has come, and print the traceback of a fault.",
+        "Say more, such as how far a search has come, and print the traceback of a fault.",
     )
-    command.add_argument(
+    command.option(
         "--log",
-        metavar="FILE",
-        help="Keep a log for developers in a file, which is appended to, or on standard error "
-        "with - (default: no log).",
+        "FILE",
+        "Keep a log for developers in a file, which is appended to, or on standard error with - "
+        "(default: no log).",
     )
 
 

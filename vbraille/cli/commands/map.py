@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import numpy as np
+    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from vbraille.feeling.loading import LoadedScene
     from vbraille.pictures.drawings import ArrayOnMap
-    from vbraille.render.scene.assets import Assets
-    from vbraille.scene.scene import Scene
 
 _KINDS = ("png", "svg", "csv", "pdf", "gif")
 _FRAMES, _MOST_FRAMES = 8, 500
@@ -46,24 +46,19 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.outline:  # dots of braille without a texture, which is too fine for paper
         style = style.replace(texture=0.0)
     loaded = load_scene(arguments.file, style)
-    scene, assets, title = loaded.scene, loaded.assets, loaded.title
     for note in loaded.notes:
         say_line(spelled(note), aside=True)
-    draw = _map
-    if arguments.vibration == "sequence":
-        draw = _animation
-    elif arguments.outline:
-        draw = _outline
+    drawing = _Drawing(arguments, kind, loaded)
     try:
         if numbered:
-            said = _numbered(scene, assets, arguments, kind, title)
+            said = drawing.write_numbered(out)
         else:
-            content, said = draw(scene, assets, arguments, kind, title)
+            content, said = drawing.draw()
             write_file(out, content, replace=arguments.force)
             said = [f"drawn: {out}", *said]
     except ValueError as error:  # patterns stand too deep in each other
         raise InputError(f"{arguments.file}: {error}") from None
-    for line in (*said, *scene_lines(scene)):
+    for line in (*said, *scene_lines(loaded.scene)):
         say_line(line)
     return 0
 
@@ -127,185 +122,194 @@ def _check(arguments: argparse.Namespace, kind: str) -> None:
         raise InputError(f"--frames is {arguments.frames}; it must be 2 to {_MOST_FRAMES}")
 
 
-def _map(
-    scene: Scene, assets: Assets, arguments: argparse.Namespace, kind: str, title: str
-) -> tuple[bytes, list[str]]:
-    _check_room(scene, arguments, kind)
-    over, array_said = _array(scene, assets, arguments, _ARRAY_TIME_S)
-    per_mm = _per_mm(arguments)
-    deflections = scenes.map_deflections(scene, assets, per_mm, noise_seed=arguments.seed)
-    said = [
-        _SHOWN if kind != "csv" else _SHOWN_CSV,
-        _pixels_said(scene, per_mm),
-        f"vibration: as noise, seed {arguments.seed}",
-        *array_said,
-    ]
-    return _content(scene, arguments, kind, title, deflections, over, said), said
+class _Drawing:
+    """A scene as the options have it drawn.
 
+    Parameters
+    ----------
+    arguments
+        Parsed options of the command.
+    kind
+        Kind of file, such as "png".
+    loaded
+        The scene, with what it is made of.
+    """
 
-def _check_room(scene: Scene, arguments: argparse.Namespace, kind: str, maps: int = 1) -> None:
-    """Refuse maps of too many pixels before the first is made."""
-    most = scenes.MOST_CSV_ROWS if kind == "csv" else scenes.MOST_PIXELS
-    scenes.check_pixels(scene.canvas, _per_mm(arguments), maps, most)
+    def __init__(self, arguments: argparse.Namespace, kind: str, loaded: LoadedScene) -> None:
+        self._arguments, self._kind = arguments, kind
+        self._scene, self._assets, self._title = loaded.scene, loaded.assets, loaded.title
+        self._frames, self._parity = arguments.frames or _FRAMES, arguments.parity or 0
+        self._per_mm = arguments.resolution
+        if arguments.outline:
+            self._per_mm = arguments.resolution or _FINE_PIXELS_PER_MM
+        elif self._per_mm is None:
+            self._per_mm = scenes.PIXELS_PER_MM
 
-
-def _pixels_said(scene: Scene, per_mm: float) -> str:
-    columns, rows = scenes.check_pixels(scene.canvas, per_mm)
-    return f"pixels: {columns} × {rows}, {per_mm:g} a mm"
-
-
-def _array(
-    scene: Scene, assets: Assets, arguments: argparse.Namespace, time_s: float
-) -> tuple[ArrayOnMap | None, list[str]]:
-    """Put the array on the scene as it is at a time, if it is wanted, and say what is shown."""
-    if arguments.array is None:
-        return None, []
-    from vbraille.pictures import drawings  # loads matplotlib
-
-    display = MODELS[arguments.model].display
-    place = drawings.ArrayPlace(*arguments.array)
-    drawings.check_on_canvas(scene.canvas, display, place)
-    return drawings.show_array(scene, assets, display, place, time_s), [
-        f"array: {MODELS[arguments.model].title}, centre at ({place.x_mm:g}, {place.y_mm:g}) "
-        f"mm, turned by {place.angle_deg:g}°",
-        f"bars: shifted to the {display.rest_side} at rest and away from it at full swing, "
-        "farther than in truth",
-        f"bars that vibrate: as they are {1000 * time_s:.4g} ms after the beginning",
-    ]
-
-
-def _content(
-    scene: Scene,
-    arguments: argparse.Namespace,
-    kind: str,
-    title: str,
-    deflections: NDArray[np.float32],
-    over: ArrayOnMap | None,
-    said: list[str],
-) -> bytes:
-    """Make the file of one map, with what is over it and around it."""
-    per_mm = _per_mm(arguments)
-    if kind == "csv":
-        return scenes.map_csv(deflections, per_mm)
-    if kind == "png" and over is None and not arguments.axes:
-        told = {"Title": title, "Description": _told(scene, said)}
-        return scenes.png(scenes.grays(deflections), per_mm, told)
-    from vbraille.pictures.drawings import drawing_bytes, map_figure
-
-    figure = map_figure(scene.canvas, deflections, over, axes=arguments.axes)
-    return drawing_bytes(figure, kind, per_mm, title, _told(scene, said))
-
-
-def _period_s(scene: Scene, arguments: argparse.Namespace) -> float:
-    """Period that a sequence shows: that of the slowest swing or movement."""
-    period_s = scenes.slowest_s(scene)
-    if period_s is None:
-        raise InputError(
-            f"nothing in {arguments.file} vibrates or moves, so that all maps would be the same; "
-            "leave out --vibration sequence"
+    def draw(self) -> tuple[bytes, list[str]]:
+        """Make one file, and sentences on what it shows."""
+        if self._arguments.outline:
+            return self._outline()
+        if self._arguments.vibration == "sequence":
+            return self._animation()
+        self._check_room()
+        over, array_said = self._array(_ARRAY_TIME_S)
+        deflections = scenes.map_deflections(
+            self._scene, self._assets, self._per_mm, noise_seed=self._arguments.seed
         )
-    return period_s
+        said = [
+            self._shown,
+            self._pixels,
+            f"vibration: as noise, seed {self._arguments.seed}",
+            *array_said,
+        ]
+        return self._content(deflections, over, said), said
 
+    def write_numbered(self, out: Path) -> list[str]:
+        """Write the maps of one period, a file each, and tell what there is to say."""
+        frames = self._frames
+        period_s = self._period_s()
+        before = set(_in_set(out))
+        array_said: list[str] = []
 
-def _numbered(
-    scene: Scene, assets: Assets, arguments: argparse.Namespace, kind: str, title: str
-) -> list[str]:
-    """Write the maps of one period, a file each, and tell what there is to say."""
-    out, frames = Path(arguments.out), arguments.frames or _FRAMES
-    period_s, parity = _period_s(scene, arguments), arguments.parity or 0
-    _check_room(scene, arguments, kind, frames)
-    per_mm = _per_mm(arguments)
-    before = set(_in_set(out))
-    array_said: list[str] = []
+        def drawn() -> Iterator[tuple[Path, bytes]]:
+            for number, (time_s, deflections) in enumerate(self._maps(period_s), 1):
+                over, array_said[:] = self._array(time_s)
+                said = [
+                    f"{_SHOWN}, number {number} of {frames}",
+                    f"time: {1000 * time_s:.4g} ms after the beginning",
+                    f"actuators: those of parity {self._parity}",
+                    *array_said,
+                ]
+                yield _file(out, number), self._content(deflections, over, said)
 
-    def drawn() -> Iterator[tuple[Path, bytes]]:
-        for number in range(frames):
-            time_s = period_s * number / frames
-            over, array_said[:] = _array(scene, assets, arguments, time_s)
-            deflections = scenes.map_deflections(
-                scene, assets, per_mm, noise_seed=None, time_s=time_s, parity=parity
+        write_files(drawn(), replace=self._arguments.force)
+        others = sorted(before - {_file(out, number + 1) for number in range(frames)})
+        return [
+            f"drawn: {frames} files, {_file(out, 1)} to {_file(out, frames)}",
+            self._shown,
+            *self._sequence_said(period_s),
+            *array_said[:2],
+            *(f"left as it was: {path}, which is not of this sequence" for path in others),
+        ]
+
+    def _animation(self) -> tuple[bytes, list[str]]:
+        period_s = self._period_s()
+        maps = [scenes.grays(deflections) for _, deflections in self._maps(period_s)]
+        said = [
+            f"shown: {count(self._frames, 'deflection map')}, rest white and full swing black",
+            *self._sequence_said(period_s, "; each is shown for 100 ms"),
+        ]
+        return scenes.gif(maps, f"{self._title}. {self._told(said)}"), said
+
+    def _outline(self) -> tuple[bytes, list[str]]:
+        from vbraille.pictures.drawings import outline_figure
+
+        canvas = self._scene.canvas
+        if self._kind == "png":
+            scenes.check_pixels(canvas, self._per_mm)
+        said = [
+            "shown: an outline drawing, black where more than half of the strongest deflection is "
+            "felt",
+            f"paper: {canvas.width_mm:g} × {canvas.height_mm:g} mm, true to scale; print without "
+            "scaling",
+        ]
+        return self._file_of(outline_figure(self._scene, self._assets), said), said
+
+    def _maps(self, period_s: float) -> Iterator[tuple[float, NDArray[np.float32]]]:
+        """Times of a sequence, evenly over its period, with the map at each."""
+        for number in range(self._frames):
+            time_s = period_s * number / self._frames
+            yield (
+                time_s,
+                scenes.map_deflections(
+                    self._scene,
+                    self._assets,
+                    self._per_mm,
+                    noise_seed=None,
+                    time_s=time_s,
+                    parity=self._parity,
+                ),
             )
-            said = [
-                f"{_SHOWN}, number {number + 1} of {frames}",
-                f"time: {1000 * time_s:.4g} ms after the beginning",
-                f"actuators: those of parity {parity}",
-                *array_said,
-            ]
-            content = _content(scene, arguments, kind, title, deflections, over, said)
-            yield _file(out, number + 1), content
 
-    write_files(drawn(), replace=arguments.force)
-    others = sorted(before - {_file(out, number + 1) for number in range(frames)})
-    left = [f"left as it was: {path}, which is not of this sequence" for path in others]
-    return [
-        f"drawn: {frames} files, {_file(out, 1)} to {_file(out, frames)}",
-        _SHOWN_CSV if kind == "csv" else _SHOWN,
-        _pixels_said(scene, per_mm),
-        _between_said(period_s, frames),
-        f"actuators: those of parity {parity}",
-        *array_said[:2],
-        *left,
-    ]
+    def _period_s(self) -> float:
+        """Period that a sequence shows: that of the slowest swing or movement.
 
-
-def _between_said(period_s: float, frames: int) -> str:
-    return (
-        f"time between maps: {1000 * period_s / frames:.4g} ms, of one slowest swing of "
-        f"{1000 * period_s:.4g} ms"
-    )
-
-
-def _animation(
-    scene: Scene, assets: Assets, arguments: argparse.Namespace, kind: str, title: str
-) -> tuple[bytes, list[str]]:
-    frames, parity = arguments.frames or _FRAMES, arguments.parity or 0
-    period_s = _period_s(scene, arguments)
-    _check_room(scene, arguments, kind, frames)
-    per_mm = _per_mm(arguments)
-    maps = [
-        scenes.grays(
-            scenes.map_deflections(
-                scene,
-                assets,
-                per_mm,
-                noise_seed=None,
-                time_s=period_s * number / frames,
-                parity=parity,
+        Raises
+        ------
+        InputError
+            If nothing swings or moves, or the maps would have too many pixels.
+        """
+        period_s = scenes.slowest_s(self._scene)
+        if period_s is None:
+            raise InputError(
+                f"nothing in {self._arguments.file} vibrates or moves, so that all maps would be "
+                "the same; leave out --vibration sequence"
             )
-        )
-        for number in range(frames)
-    ]
-    said = [
-        f"shown: {count(frames, 'deflection map')}, rest white and full swing black",
-        _pixels_said(scene, per_mm),
-        f"{_between_said(period_s, frames)}; each is shown for 100 ms",
-        f"actuators: those of parity {parity}",
-    ]
-    return scenes.gif(maps, f"{title}. {_told(scene, said)}"), said
+        self._check_room(self._frames)
+        return period_s
 
+    def _check_room(self, maps: int = 1) -> None:
+        """Refuse maps of too many pixels before the first is made."""
+        most = scenes.MOST_CSV_ROWS if self._kind == "csv" else scenes.MOST_PIXELS
+        scenes.check_pixels(self._scene.canvas, self._per_mm, maps, most)
 
-def _outline(
-    scene: Scene, assets: Assets, arguments: argparse.Namespace, kind: str, title: str
-) -> tuple[bytes, list[str]]:
-    from vbraille.pictures.drawings import drawing_bytes, outline_figure
+    @property
+    def _shown(self) -> str:
+        return _SHOWN_CSV if self._kind == "csv" else _SHOWN
 
-    per_mm = arguments.resolution or _FINE_PIXELS_PER_MM
-    if kind == "png":
-        scenes.check_pixels(scene.canvas, per_mm)
-    canvas = scene.canvas
-    said = [
-        "shown: an outline drawing, black where more than half of the strongest deflection is felt",
-        f"paper: {canvas.width_mm:g} × {canvas.height_mm:g} mm, true to scale; print without "
-        "scaling",
-    ]
-    figure = outline_figure(scene, assets)
-    return drawing_bytes(figure, kind, per_mm, title, _told(scene, said)), said
+    @property
+    def _pixels(self) -> str:
+        columns, rows = scenes.check_pixels(self._scene.canvas, self._per_mm)
+        return f"pixels: {columns} × {rows}, {self._per_mm:g} a mm"
 
+    def _sequence_said(self, period_s: float, each: str = "") -> list[str]:
+        """Sentences on the maps of a sequence and the times between them."""
+        between_ms, period_ms = 1000 * period_s / self._frames, 1000 * period_s
+        return [
+            self._pixels,
+            f"time between maps: {between_ms:.4g} ms, of one slowest swing of {period_ms:.4g} ms"
+            f"{each}",
+            f"actuators: those of parity {self._parity}",
+        ]
 
-def _per_mm(arguments: argparse.Namespace) -> float:
-    return scenes.PIXELS_PER_MM if arguments.resolution is None else arguments.resolution
+    def _array(self, time_s: float) -> tuple[ArrayOnMap | None, list[str]]:
+        """Put the array on the scene as it is at a time, if it is wanted, and say what is shown."""
+        if self._arguments.array is None:
+            return None, []
+        from vbraille.pictures import drawings  # loads matplotlib
 
+        model = MODELS[self._arguments.model]
+        display = model.display
+        place = drawings.ArrayPlace(*self._arguments.array)
+        drawings.check_on_canvas(self._scene.canvas, display, place)
+        return drawings.show_array(self._scene, self._assets, display, place, time_s), [
+            f"array: {model.title}, centre at ({place.x_mm:g}, {place.y_mm:g}) mm, turned by "
+            f"{place.angle_deg:g}°",
+            f"bars: shifted to the {display.rest_side} at rest and away from it at full swing, "
+            "farther than in truth",
+            f"bars that vibrate: as they are {1000 * time_s:.4g} ms after the beginning",
+        ]
 
-def _told(scene: Scene, said: list[str]) -> str:
-    """Text of a picture's file: how it is drawn, and what it holds."""
-    return f"{'; '.join(said)}; {scene_text(scene)}"
+    def _content(
+        self, deflections: NDArray[np.float32], over: ArrayOnMap | None, said: list[str]
+    ) -> bytes:
+        """Make the file of one map, with what is over it and around it."""
+        axes = self._arguments.axes
+        if self._kind == "csv":
+            return scenes.map_csv(deflections, self._per_mm)
+        if self._kind == "png" and over is None and not axes:
+            told = {"Title": self._title, "Description": self._told(said)}
+            return scenes.png(scenes.grays(deflections), self._per_mm, told)
+        from vbraille.pictures.drawings import map_figure
+
+        return self._file_of(map_figure(self._scene.canvas, deflections, over, axes=axes), said)
+
+    def _file_of(self, figure: Figure, said: list[str]) -> bytes:
+        """Make the file of a figure of matplotlib."""
+        from vbraille.pictures.drawings import drawing_bytes
+
+        return drawing_bytes(figure, self._kind, self._per_mm, self._title, self._told(said))
+
+    def _told(self, said: list[str]) -> str:
+        """Text of a picture's file: how it is drawn, and what it holds."""
+        return f"{'; '.join(said)}; {scene_text(self._scene)}"

@@ -7,8 +7,9 @@ import re
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
-    from argparse import ArgumentParser
     from collections.abc import Sequence
+
+    from vbraille.cli.parser import CommandParser
 
 
 class Pairs(argparse.Action):
@@ -16,7 +17,7 @@ class Pairs(argparse.Action):
 
     def __call__(
         self,
-        _parser: argparse.ArgumentParser,
+        _parser: CommandParser,
         namespace: argparse.Namespace,
         values: str | Sequence[object] | None,
         _option: str | None = None,
@@ -136,42 +137,37 @@ HANDS = (
 SPEC = "Name the device, such as serial:/dev/ttyACM0, latero:HOST, or sim for a simulated one"
 
 
-def text(parser: ArgumentParser, *, optional: bool = False, file: bool = True) -> None:
+def text(parser: CommandParser, *, optional: bool = False, file: bool = True) -> None:
     """Add the options that say what text is read, and in which braille."""
     if file:
         source(parser, optional=optional)
     translation(parser)
-    parser.add_argument(
+    parser.choice(
         "--foreign",
-        choices=("switch", "own"),
+        ("switch", "own"),
+        "Choose how passages in another language are written: switch to that language's table, "
+        "with marks where it begins and ends, or stay with the book's own.",
         default="switch",
-        help="Choose how passages in another language are written: switch to that language's "
-        "table, with marks where it begins and ends, or stay with the book's own (default: "
-        "switch).",
     )
-    parser.add_argument(
+    parser.choice(
         "--undefined",
-        choices=("mark", "name", "code", "drop"),
+        ("mark", "name", "code", "drop"),
+        "Choose what is written for a character that the table does not know: a marker such as "
+        "[?], but an emoji's name; any character's name in Unicode, its number, or nothing; they "
+        "are counted at the end.",
         default="mark",
-        help="Choose what is written for a character that the table does not know: a marker such "
-        "as [?], but an emoji's name; any character's name in Unicode, its number, or nothing; "
-        "they are counted at the end (default: mark).",
     )
-    parser.add_argument(
-        "--keep-lines",
-        action="store_true",
-        help="Keep the text's own line breaks, as for verse or a program.",
-    )
-    parser.add_argument(
+    parser.flag("--keep-lines", "Keep the text's own line breaks, as for verse or a program.")
+    parser.option(
         "--lines",
-        type=lines,
+        "3-10",
+        "Take these lines of the page only, counted from 1 (default: all).",
+        lines,
         default=(1, None),
-        metavar="3-10",
-        help="Take these lines of the page only, counted from 1 (default: all).",
     )
 
 
-def source(parser: ArgumentParser, *, optional: bool = False) -> None:
+def source(parser: CommandParser, *, optional: bool = False) -> None:
     """Add the options that say which file is read, and how."""
     parser.add_argument(
         "file",
@@ -179,124 +175,125 @@ def source(parser: ArgumentParser, *, optional: bool = False) -> None:
         nargs="?" if optional else None,
         help="Take this text file, or standard input for -.",
     )
-    parser.add_argument(
-        "--encoding",
-        metavar="NAME",
-        help="Read the file in this text encoding (default: what its bytes say).",
+    parser.option(
+        "--encoding", "NAME", "Read the file in this text encoding (default: what its bytes say)."
     )
-    parser.add_argument(
+    parser.option(
         "--form",
-        metavar="NAME",
-        help="Read the file as text, markdown, html, epub, dtbook, docx, odt, rtf, brf, "
+        "NAME",
+        "Read the file as text, markdown, html, epub, dtbook, docx, odt, rtf, brf, "
         "unicode-braille or pef (default: what its content and then its name say).",
     )
-    parser.add_argument(
+    parser.option(
         "--brf-table",
-        metavar="NAME",
-        help="Read a BRF file in the dialect of this display table of liblouis, such as "
+        "NAME",
+        "Read a BRF file in the dialect of this display table of liblouis, such as "
         "de-eurobrl6.dis (default: North American ASCII braille).",
     )
 
 
-def translation(parser: ArgumentParser) -> None:
+def translation(parser: CommandParser) -> None:
     """Add the options that choose a braille table."""
-    parser.add_argument(
-        "--table", metavar="NAME", help="Translate with this liblouis table (default: by language)."
-    )
-    parser.add_argument(
+    parser.option("--table", "NAME", "Translate with this liblouis table (default: by language).")
+    parser.option(
         "--language",
-        metavar="TAG",
-        help="Translate with the usual table of this language, such as fr or pt-BR (default: en).",
+        "TAG",
+        "Translate with the usual table of this language, such as fr or pt-BR (default: en).",
     )
-    parser.add_argument(
+    parser.option(
         "--grade",
-        type=whole,
-        metavar="N",
-        help="Take uncontracted braille, 0 or 1, or contracted, 2 and up (default: what is usual "
-        "in the language).",
+        "N",
+        "Take uncontracted braille, 0 or 1, or contracted, 2 and up (default: what is usual in "
+        "the language).",
+        whole,
     )
     settings_file(parser)
 
 
-def device(parser: ArgumentParser) -> None:
+def protocol(parser: CommandParser) -> None:
+    """Add the protocol that a command is about."""
+    parser.add_argument(
+        "protocol",
+        metavar="PROTOCOL",
+        help="Take this protocol: a name, or a file such as mine.toml.",
+    )
+
+
+def device(parser: CommandParser) -> None:
     """Add the option that names the device, or a simulated one."""
-    parser.add_argument("--device", default="sim", metavar="SPEC", help=f"{SPEC} (default: sim).")
+    parser.option("--device", "SPEC", f"{SPEC} (default: sim).", default="sim")
 
 
-def heard(parser: ArgumentParser) -> None:
+def heard(parser: CommandParser) -> None:
     """Add the options of what is heard beside what is felt."""
-    parser.add_argument(
-        "--speech",
-        action="store_true",
-        help="Speak all that is said, such as lines and settings, through Speech Dispatcher.",
+    parser.flag(
+        "--speech", "Speak all that is said, such as lines and settings, through Speech Dispatcher."
     )
-    parser.add_argument(
+    parser.choice(
         "--cues",
-        choices=("sound", "bell", "none"),
-        help="Signal a limit, what is not found, and in a text the end of a line or page: by "
-        "tones, by the terminal's bell, or not (default: tones at a terminal, the bell through "
-        "SSH, otherwise none).",
+        ("sound", "bell", "none"),
+        "Signal a limit, what is not found, and in a text the end of a line or page: by tones, "
+        "by the terminal's bell, or not (default: tones at a terminal, the bell through SSH, "
+        "otherwise none).",
     )
 
 
-def force(parser: ArgumentParser) -> None:
+def force(parser: CommandParser) -> None:
     """Add the option that has files replaced."""
-    parser.add_argument(
-        "--force", action="store_true", help="Replace files that are there already."
-    )
+    parser.flag("--force", "Replace files that are there already.")
 
 
-def settings_file(parser: ArgumentParser) -> None:
+def settings_file(parser: CommandParser) -> None:
     """Add the option that names another settings file."""
-    parser.add_argument(
+    parser.option(
         "--settings",
-        metavar="FILE.toml",
-        help="Take what options do not say from this settings file (default: the one that "
-        "vbraille settings --path names).",
+        "FILE.toml",
+        "Take what options do not say from this settings file (default: the one that vbraille "
+        "settings --path names).",
     )
 
 
-def keys(parser: ArgumentParser) -> None:
+def keys(parser: CommandParser) -> None:
     """Add the option that chooses a ready set of keys."""
-    parser.add_argument(
+    parser.choice(
         "--keys",
-        choices=KEY_SETS,
+        KEY_SETS,
+        "Choose a set of keys: the program's own, or the letters of NVDA's browse mode; keys of "
+        "the settings file come before both.",
         default="usual",
-        help="Choose a set of keys: the program's own, or the letters of NVDA's browse mode; keys "
-        "of the settings file come before both (default: usual).",
     )
 
 
-def profile(parser: ArgumentParser) -> None:
+def profile(parser: CommandParser) -> None:
     """Add the option that chooses a profile of the settings file."""
-    parser.add_argument(
+    parser.option(
         "--profile",
-        metavar="NAME",
-        help="Show braille as this profile of the settings file has it; one that is not there is "
-        "made when it is saved (default: the file's, or the one called default).",
+        "NAME",
+        "Show braille as this profile of the settings file has it; one that is not there is made "
+        "when it is saved (default: the file's, or the one called default).",
     )
 
 
-def leave_to_settings(parser: ArgumentParser) -> None:
+def leave_to_settings(parser: CommandParser) -> None:
     """Leave options that a settings file may say without a value; `usual` has the usual ones."""
     usual = {name: parser.get_default(name) for name in SETTLED}
     parser.set_defaults(usual={**usual, "verbose": False})  # which every command gets later
     parser.set_defaults(**dict.fromkeys(SETTLED))
 
 
-def layout(parser: ArgumentParser) -> None:
+def layout(parser: CommandParser) -> None:
     """Add the options that say for which display, and how large, braille is."""
-    parser.add_argument(
+    parser.choice(
         "--model",
-        choices=MODELS,
-        default="stress2",
-        help="Lay out for this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, that on the "
+        MODELS,
+        "Lay out for this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, that on the "
         "Pantograph, the Latero, or the VBD (default: the device's own, or stress2).",
+        default="stress2",
     )
-    parser.add_argument(
+    parser.choice(
         "--geometry",
-        choices=(*MODELS, "standard"),
-        help="Start from the distances of this display, or of embossed braille (default: the "
+        (*MODELS, "standard"),
+        "Start from the distances of this display, or of embossed braille (default: the "
         "display's own).",
     )
     for name, text in (
@@ -305,97 +302,81 @@ def layout(parser: ArgumentParser) -> None:
         ("cell-gap", "Leave so much from a cell's right dot column to the next cell's left one"),
         ("line-pitch", "Set lines so far apart"),
     ):
-        parser.add_argument(
-            f"--{name}", type=number, metavar="MM", help=f"{text}, in mm (default: the geometry's)."
-        )
-    parser.add_argument(
+        parser.option(f"--{name}", "MM", f"{text}, in mm (default: the geometry's).", number)
+    parser.option(
         "--travel",
-        type=number,
-        metavar="MM",
-        help="Let the carriage go so far, in mm, which says how long a line is (default: what the "
+        "MM",
+        "Let the carriage go so far, in mm, which says how long a line is (default: what the "
         "device has, or 300).",
+        number,
     )
 
 
-def show(parser: ArgumentParser) -> None:
+def show(parser: CommandParser) -> None:
     """Add the options of how braille is shown on the actuators, and those of `layout`."""
     layout(parser)
-    parser.add_argument(
+    parser.option(
         "--texture",
-        type=number,
-        metavar="0…1",
-        help="Set the level of texture between the dots (default: the model's, 1 for the STReSS², "
-        "0 for the VBD).",
+        "0…1",
+        "Set the level of texture between the dots (default: the model's, 1 for the STReSS², 0 "
+        "for the VBD).",
+        number,
     )
-    parser.add_argument(
+    parser.option(
         "--texture-cycles",
-        type=whole,
-        metavar="K",
-        help="On the STReSS²: have so many half-cycles of texture in a dot's radius, an odd number "
+        "K",
+        "On the STReSS²: have so many half-cycles of texture in a dot's radius, an odd number "
         "(default: 7).",
+        whole,
     )
-    parser.add_argument(
-        "--contrast",
-        type=number,
-        metavar="0…1",
-        help="Use this share of the actuators' full swing (default: 1).",
+    parser.option(
+        "--contrast", "0…1", "Use this share of the actuators' full swing (default: 1).", number
     )
-    parser.add_argument(
+    parser.choice(
         "--mapping",
-        choices=MAPPINGS,
-        help="On a display of several rows: choose which rows of actuators show which dots "
-        "(default: alternate, or eight-dots where there are eight rows).",
+        MAPPINGS,
+        "On a display of several rows: choose which rows of actuators show which dots (default: "
+        "alternate, or eight-dots where there are eight rows).",
     )
-    parser.add_argument(
-        "--dot-row",
-        type=whole,
-        metavar="1|2|3",
-        help="On the VBD: show this row of dots (default: 1).",
-    )
+    parser.option("--dot-row", "1|2|3", "On the VBD: show this row of dots (default: 1).", whole)
 
 
-def page(parser: ArgumentParser) -> None:
+def page(parser: CommandParser) -> None:
     """Add the options of a page on a surface of two axes."""
-    parser.add_argument(
+    parser.option(
         "--height",
-        type=number,
-        metavar="MM",
-        help="Let the carriage go so far down the page, too: the hand reads pages of lines, or one "
+        "MM",
+        "Let the carriage go so far down the page, too: the hand reads pages of lines, or one "
         "line for 0 (default: what the device has).",
+        number,
     )
-    parser.add_argument(
+    parser.choice(
         "--straying",
-        choices=("line", "free"),
-        help="Show a finger that strays from the middle of a line of a page that line, or what "
-        "lies under each actuator (default: line).",
+        ("line", "free"),
+        "Show a finger that strays from the middle of a line of a page that line, or what lies "
+        "under each actuator (default: line).",
     )
-    parser.add_argument(
+    parser.option(
         "--band",
-        type=number,
-        metavar="0…0.9",
-        help="Leave a line of a page half so far beyond its edge, in line pitches (default: 0.25).",
+        "0…0.9",
+        "Leave a line of a page half so far beyond its edge, in line pitches (default: 0.25).",
+        number,
     )
 
 
-def hand(parser: ArgumentParser, usual_rate: str = "1000") -> None:
+def hand(parser: CommandParser, usual_rate: str = "1000") -> None:
     """Add the options of the hand that moves a simulated device."""
-    parser.add_argument(
+    parser.option(
         "--hand",
+        "HAND",
+        f"Move the simulated device by this hand: {HANDS} (default: sweep:60).",
         default="sweep:60",
-        metavar="HAND",
-        help=f"Move the simulated device by this hand: {HANDS} (default: sweep:60).",
     )
-    parser.add_argument(
-        "--seed",
-        type=seed,
-        default=1,
-        metavar="N",
-        help="Draw the hand's chances from this (default: 1).",
-    )
-    parser.add_argument(
+    parser.option("--seed", "N", "Draw the hand's chances from this.", seed, default=1)
+    parser.option(
         "--rate",
-        type=number,
+        "HZ",
+        f"Have so many frames a second (default: {usual_rate}).",
+        number,
         default=1000.0,
-        metavar="HZ",
-        help=f"Have so many frames a second (default: {usual_rate}).",
     )

@@ -10,6 +10,7 @@ from vbraille.cli.options.groups import (
     marks,
     names,
     number,
+    protocol,
     seed,
     whole,
 )
@@ -17,42 +18,37 @@ from vbraille.cli.options.live import add_live_options
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
-    from argparse import ArgumentParser
+    from vbraille.cli.parser import CommandParser
 
 
-def session_protocols(parser: ArgumentParser) -> None:
+def session_protocols(parser: CommandParser) -> None:
     """Add the options of ``vbraille session protocols``."""
     parser.add_argument(
         "name", nargs="?", metavar="NAME", help="Print the TOML file of this protocol."
     )
 
 
-def session_plan(parser: ArgumentParser) -> None:
+def session_plan(parser: CommandParser) -> None:
     """Add the options of ``vbraille session plan``."""
     _plan(parser)
-    parser.add_argument(
-        "--brf", action="store_true", help="Print the strings as ASCII braille, to be embossed."
-    )
+    parser.flag("--brf", "Print the strings as ASCII braille, to be embossed.")
 
 
-def session_run(parser: ArgumentParser) -> None:
+def session_run(parser: CommandParser) -> None:
     """Add the options of ``vbraille session run``."""
     _plan(parser)
-    parser.add_argument(
+    parser.option(
         "--out",
-        metavar="DIR",
-        help="Keep the session in this new directory (default: PARTICIPANT-PROTOCOL-TIME here).",
+        "DIR",
+        "Keep the session in this new directory (default: PARTICIPANT-PROTOCOL-TIME here).",
     )
     _conduct(parser)
-    parser.set_defaults(device="sim", answers="typed", rate=1000.0)
-    parser.add_argument(
-        "--rate", type=number, metavar="HZ", help="Send so many frames a second (default: 1000)."
-    )
-    parser.add_argument(
+    parser.set_defaults(device="sim", answers="typed")
+    parser.option("--rate", "HZ", "Send so many frames a second.", number, default=1000.0)
+    parser.flag(
         "--another",
-        action="store_true",
-        help="Say that the participant is somebody else than the one of another session here "
-        "whose pseudonym is nearly the same.",
+        "Say that the participant is somebody else than the one of another session here whose "
+        "pseudonym is nearly the same.",
     )
     parser.add_argument(
         "--field",
@@ -63,49 +59,40 @@ def session_run(parser: ArgumentParser) -> None:
     )
 
 
-def session_resume(parser: ArgumentParser) -> None:
+def session_resume(parser: CommandParser) -> None:
     """Add the options of ``vbraille session resume``."""
     _folder(parser)
     _conduct(parser)
 
 
-def session_export(parser: ArgumentParser) -> None:
+def session_export(parser: CommandParser) -> None:
     """Add the options of ``vbraille session export``."""
     parser.add_argument(
         "paths", nargs="+", metavar="DIR", help="Take the sessions in these directories."
     )
-    parser.add_argument(
+    parser.option(
         "--out",
-        metavar="FILE|DIR",
-        help="Write the trials as CSV to this new file (default: print them); with --bids, the "
+        "FILE|DIR",
+        "Write the trials as CSV to this new file (default: print them); with --bids, the "
         "directory of the dataset.",
     )
-    parser.add_argument("--bids", action="store_true", help="Add the sessions to a BIDS dataset.")
-    parser.add_argument(
+    parser.flag("--bids", "Add the sessions to a BIDS dataset.")
+    parser.option(
         "--session-by",
-        metavar="FIELD",
-        help="With --bids, name a participant's sessions by what the protocol asked as this field "
+        "FIELD",
+        "With --bids, name a participant's sessions by what the protocol asked as this field "
         "(default: by number, in the order of time).",
     )
-    parser.add_argument(
-        "--anonymous",
-        action="store_true",
-        help="Leave out times of day, paths and notes; elapsed times stay.",
-    )
-    parser.add_argument(
+    parser.flag("--anonymous", "Leave out times of day, paths and notes; elapsed times stay.")
+    parser.option(
         "--codebook",
-        metavar="FILE.csv",
-        help="Write what each column holds, its unit and its values to this new file (default: "
-        "none).",
+        "FILE.csv",
+        "Write what each column holds, its unit and its values to this new file (default: none).",
     )
-    parser.add_argument(
-        "--salvage",
-        action="store_true",
-        help="Of a damaged session, export also what is whole after the damage.",
-    )
+    parser.flag("--salvage", "Of a damaged session, export also what is whole after the damage.")
 
 
-def session_methods(parser: ArgumentParser) -> None:
+def session_methods(parser: CommandParser) -> None:
     """Add the options of ``vbraille session methods``."""
     parser.add_argument(
         "paths", nargs="+", metavar="DIR", help="Take the sessions in these directories."
@@ -119,18 +106,18 @@ def session_methods(parser: ArgumentParser) -> None:
     )
 
 
-def session_check(parser: ArgumentParser) -> None:
+def session_check(parser: CommandParser) -> None:
     """Add the options of ``vbraille session check``."""
     _folder(parser)
-    parser.add_argument(
+    parser.option(
         "--expect",
-        type=checksum,
-        metavar="SUM",
-        help="See that nothing was changed since a stop, the end or an export said this SHA-256.",
+        "SUM",
+        "See that nothing was changed since a stop, the end or an export said this SHA-256.",
+        checksum,
     )
 
 
-def analyse(parser: ArgumentParser) -> None:
+def analyse(parser: CommandParser) -> None:
     """Add the options of ``vbraille analyse``."""
     parser.add_argument(
         "paths",
@@ -139,19 +126,19 @@ def analyse(parser: ArgumentParser) -> None:
         help="Take the sessions in these directories, or tables with the columns participant, "
         "condition, presented and answered.",
     )
-    parser.add_argument(
+    parser.option(
         "--scores",
-        metavar="FILE.csv",
-        help="Instead of trials, take a table of scores: participant, what was varied, score.",
+        "FILE.csv",
+        "Instead of trials, take a table of scores: participant, what was varied, score.",
     )
-    parser.add_argument(
+    parser.option(
         "--out",
-        metavar="DIR",
-        help="Write a report to this new directory: report.html and .md, every table as CSV, and "
-        "the figures (default: print the tables, a row a line).",
+        "DIR",
+        "Write a report to this new directory: report.html and .md, every table as CSV, and the "
+        "figures (default: print the tables, a row a line).",
     )
-    parser.add_argument("--json", action="store_true", help="Print the results as JSON.")
-    parser.add_argument("--protocol", metavar="NAME", help="Take only trials of this protocol.")
+    parser.flag("--json", "Print the results as JSON.")
+    parser.option("--protocol", "NAME", "Take only trials of this protocol.")
     parser.add_argument(
         "--exclude",
         action=Pairs,
@@ -159,113 +146,94 @@ def analyse(parser: ArgumentParser) -> None:
         metavar="P07=REASON",
         help="Leave a participant out, and say why in the report; this may be given again.",
     )
-    parser.add_argument(
+    parser.option(
         "--factors",
-        type=names,
-        metavar="NAME,NAME",
-        help="Compare trials by these columns, such as texture,contrast (default: condition).",
+        "NAME,NAME",
+        "Compare trials by these columns, such as texture,contrast (default: condition).",
+        names,
     )
-    parser.add_argument(
+    parser.choice(
         "--correction",
-        choices=("none", "bonferroni", "holm", "fdr"),
+        ("none", "bonferroni", "holm", "fdr"),
+        "Correct the p-values of t-tests for their number in this way.",
         default="holm",
-        help="Correct the p-values of t-tests for their number in this way (default: holm).",
     )
-    parser.add_argument(
+    parser.option(
         "--marks",
-        type=marks,
-        metavar="N,N",
-        help="Mark errors above these counts in confusion matrices (default: 4,9).",
+        "N,N",
+        "Mark errors above these counts in confusion matrices (default: 4,9).",
+        marks,
     )
-    parser.add_argument(
-        "--seed", type=seed, metavar="N", help="Begin random draws with this (default: 20090618)."
-    )
+    parser.option("--seed", "N", "Begin random draws with this (default: 20090618).", seed)
 
 
-def _folder(parser: ArgumentParser) -> None:
+def _folder(parser: CommandParser) -> None:
     parser.add_argument("folder", metavar="DIR", help="Take the session in this directory.")
 
 
-def _plan(parser: ArgumentParser) -> None:
-    parser.add_argument(
-        "protocol",
-        metavar="PROTOCOL",
-        help="Take this protocol: a name, or a file such as mine.toml.",
-    )
-    parser.add_argument(
-        "--participant",
-        required=True,
-        metavar="P07",
-        help="Call the participant by this pseudonym.",
-    )
-    parser.add_argument(
+def _plan(parser: CommandParser) -> None:
+    protocol(parser)
+    parser.option("--participant", "P07", "Call the participant by this pseudonym.", required=True)
+    parser.option(
         "--seed",
-        type=seed,
-        metavar="N",
-        help="Draw the order from this number (default: one that is drawn, and said).",
+        "N",
+        "Draw the order from this number (default: one that is drawn, and said).",
+        seed,
     )
-    parser.add_argument(
+    parser.option(
         "--order",
-        type=whole,
-        metavar="N",
-        help="Take this one of the balanced orders (default: by the number in the pseudonym).",
+        "N",
+        "Take this one of the balanced orders (default: by the number in the pseudonym).",
+        whole,
     )
-    parser.add_argument(
+    parser.option(
         "--group",
-        metavar="NAME",
-        help="Put the participant into this group (default: by the number in the pseudonym).",
+        "NAME",
+        "Put the participant into this group (default: by the number in the pseudonym).",
     )
-    parser.add_argument(
+    parser.option(
         "--texture",
-        type=number,
-        metavar="0…1",
-        help="Set the level of texture where no condition does (default: the protocol's).",
+        "0…1",
+        "Set the level of texture where no condition does (default: the protocol's).",
+        number,
     )
-    parser.add_argument(
+    parser.option(
         "--contrast",
-        type=number,
-        metavar="0…1",
-        help="Set the share of the full swing where no condition does (default: the protocol's).",
+        "0…1",
+        "Set the share of the full swing where no condition does (default: the protocol's).",
+        number,
     )
 
 
-def _conduct(parser: ArgumentParser) -> None:
-    parser.add_argument(
-        "--device", metavar="SPEC", help=f"{SPEC} (default: sim, or as the session began)."
-    )
-    parser.add_argument(
+def _conduct(parser: CommandParser) -> None:
+    parser.option("--device", "SPEC", f"{SPEC} (default: sim, or as the session began).")
+    parser.option(
         "--answers",
-        metavar="SOURCE",
-        help="Take answers that are typed, from a file with a line for each trial, or from a "
+        "SOURCE",
+        "Take answers that are typed, from a file with a line for each trial, or from a "
         "simulated reader, simulated[:NOISE] (default: typed, or as the session began).",
     )
-    parser.add_argument(
-        "--hand",
-        metavar="HAND",
-        help=f"Move the simulated device by this hand: {HANDS} (default: slow).",
+    parser.option(
+        "--hand", "HAND", f"Move the simulated device by this hand: {HANDS} (default: slow)."
     )
-    parser.add_argument(
-        "--fast",
-        action="store_true",
-        help="Run a simulated session as fast as the machine can.",
-    )
-    parser.add_argument(
+    parser.flag("--fast", "Run a simulated session as fast as the machine can.")
+    parser.choice(
         "--sound",
-        choices=("auto", "tones", "bell", "none"),
+        ("auto", "tones", "bell", "none"),
+        "Choose how the participant hears signals; auto is tones if there is an audio output, "
+        "otherwise the terminal's bell.",
         default="auto",
-        help="Choose how the participant hears signals; auto is tones if there is an audio "
-        "output, otherwise the terminal's bell (default: auto).",
     )
-    parser.add_argument(
+    parser.option(
         "--also",
-        metavar="DISPLAY",
-        help="For a protocol that shows something on a conventional display: take this one, as "
+        "DISPLAY",
+        "For a protocol that shows something on a conventional display: take this one, as "
         "brlapi:HOST:N for BRLTTY at another address (default: BRLTTY's on this machine).",
     )
-    parser.add_argument(
+    parser.option(
         "--markers",
-        metavar="lsl[:NAME]|serial:PORT[:BAUD]",
-        help="Send a marker of each event to another recorder: to a stream of the Lab Streaming "
-        "Layer (pip install pylsl), or a byte to a serial port (default: none).",
+        "lsl[:NAME]|serial:PORT[:BAUD]",
+        "Send a marker of each event to another recorder: to a stream of the Lab Streaming Layer "
+        "(pip install pylsl), or a byte to a serial port (default: none).",
     )
     add_live_options(parser)

@@ -10,42 +10,42 @@ TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     import argparse
 
+    from vbraille.cli.parser import CommandParser
+
 MOST_PORT = 65_535
 
 
-def add_live_options(parser: argparse.ArgumentParser) -> None:
+def add_live_options(parser: CommandParser) -> None:
     """Add ``--monitor`` and where its page is, for a command that may have a live view."""
-    parser.add_argument(
-        "--monitor",
-        action="store_true",
-        help="Show a live view in a browser, at an address of this machine that is printed.",
+    parser.flag(
+        "--monitor", "Show a live view in a browser, at an address of this machine that is printed."
     )
     add_address_options(parser)
 
 
-def add_address_options(parser: argparse.ArgumentParser) -> None:
+def add_address_options(parser: CommandParser) -> None:
     """Add ``--host`` and ``--port``, for a command that always has a page."""
-    parser.add_argument(
+    parser.option(
         "--host",
-        metavar="ADDRESS",
-        help="Offer the page of the live view at this address, so that others can see it who are "
-        "told its token (default: to this machine only).",
+        "ADDRESS",
+        "Offer the page of the live view at this address, so that others can see it who are told "
+        "its token (default: to this machine only).",
     )
-    parser.add_argument(
+    parser.option(
         "--port",
-        type=whole,
-        metavar="N",
-        help="Offer the page of the live view at this port (default: one that is free).",
+        "N",
+        "Offer the page of the live view at this port (default: one that is free).",
+        whole,
     )
 
 
-def monitor(parser: argparse.ArgumentParser) -> None:
+def monitor(parser: CommandParser) -> None:
     """Add the options of ``vbraille monitor``."""
-    parser.add_argument(
+    parser.option(
         "--play",
-        metavar="FILE",
-        help="Play back what vbraille render wrote, the directory of a session, or one of its "
-        "traces (default: nothing is played).",
+        "FILE",
+        "Play back what vbraille render wrote, the directory of a session, or one of its traces "
+        "(default: nothing is played).",
     )
     add_address_options(parser)
 

@@ -8,94 +8,89 @@ from vbraille.cli.options.live import add_live_options
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
-    from argparse import ArgumentParser
+    from vbraille.cli.parser import CommandParser
 
 PLOTS = ("profile", "mapping", "wave", "strain", "page", "resolution")
+
 
 _OWN_RATE = "1000, or what the device takes if that is less"
 
 
-def nothing(_parser: ArgumentParser) -> None:
+def nothing(_parser: CommandParser) -> None:
     """Add no option."""
 
 
-def read(parser: ArgumentParser) -> None:
+def read(parser: CommandParser) -> None:
     """Add the options of ``vbraille read``."""
     groups.text(parser, optional=True)
-    parser.add_argument(
+    parser.option(
         "--book",
-        type=whole,
-        metavar="N",
-        help="Read on in the book with this number in the list of vbraille books (default: FILE, "
-        "or the book that was read last).",
+        "N",
+        "Read on in the book with this number in the list of vbraille books (default: FILE, or "
+        "the book that was read last).",
+        whole,
     )
     _reading(parser)
-    parser.add_argument(
+    parser.flag(
         "--no-places",
-        action="store_true",
-        help="Begin at the beginning, and keep neither the place nor anything else of the book.",
+        "Begin at the beginning, and keep neither the place nor anything else of the book.",
     )
     add_live_options(parser)
 
 
-def settings(parser: ArgumentParser) -> None:
+def settings(parser: CommandParser) -> None:
     """Add the options of ``vbraille settings``, which are those of reading."""
     groups.text(parser, file=False)
     _reading(parser)
-    parser.add_argument(
-        "--path", action="store_true", help="Print where the settings file is, and nothing else."
-    )
+    parser.flag("--path", "Print where the settings file is, and nothing else.")
 
 
-def tune(parser: ArgumentParser) -> None:
+def tune(parser: CommandParser) -> None:
     """Add the options of ``vbraille tune``."""
     parser.add_argument(
         "file", nargs="?", metavar="TEXT", help="Practise on this text (default: a short one)."
     )
     groups.profile(parser)
     groups.device(parser)
-    parser.add_argument("--model", choices=MODELS, help="Refuse a device that is not this display.")
+    parser.choice("--model", MODELS, "Refuse a device that is not this display.")
     groups.translation(parser)
     groups.hand(parser, _OWN_RATE)
-    parser.add_argument(
-        "--again", action="store_true", help="Begin anew, and forget the choices made so far."
-    )
+    parser.flag("--again", "Begin anew, and forget the choices made so far.")
     parser.set_defaults(hand=None, seed=None, rate=None)
     groups.leave_to_settings(parser)
 
 
-def _reading(parser: ArgumentParser) -> None:
+def _reading(parser: CommandParser) -> None:
     """Add the options of reading that are not the text's."""
     groups.show(parser)
     groups.profile(parser)
     groups.device(parser)
-    parser.add_argument(
+    parser.choice(
         "--advance",
-        choices=("return", "key"),
+        ("return", "key"),
+        "Say when the next line comes: when the hand returns to the left, or only by a key.",
         default="return",
-        help="Say when the next line comes: when the hand returns to the left, or only by a key "
-        "(default: return).",
     )
-    parser.add_argument(
+    parser.choice(
         "--echo",
-        choices=("none", "text", "cells", "both"),
-        help="Say what is printed of each line: nothing, its text, its cells in Unicode braille, "
-        "or both (default: none at a terminal, otherwise both).",
+        ("none", "text", "cells", "both"),
+        "Say what is printed of each line: nothing, its text, its cells in Unicode braille, or "
+        "both (default: none at a terminal, otherwise both).",
     )
     groups.heard(parser)
-    parser.add_argument(
+    parser.option(
         "--also",
-        metavar="DISPLAY",
-        help="Show each line on a conventional display beside, and obey its keys: brlapi for the "
-        "one that BRLTTY drives, brlapi:HOST:N for BRLTTY at another address (default: none).",
+        "DISPLAY",
+        "Show each line on a conventional display beside, and obey its keys: brlapi for the one "
+        "that BRLTTY drives, brlapi:HOST:N for BRLTTY at another address (default: none).",
     )
     groups.keys(parser)
-    parser.add_argument(
+    parser.option(
         "--cells",
-        type=whole,
-        metavar="N",
-        help="Lay out lines of so many cells; the hand goes along a longer one part by part "
-        "(default: as many as the hand can cross).",
+        "N",
+        "Lay out lines of so many cells; the hand goes along a longer one part by part (default: "
+        "as many as the hand can cross).",
+        whole,
     )
     groups.page(parser)
     groups.hand(parser, _OWN_RATE)
@@ -104,7 +99,7 @@ def _reading(parser: ArgumentParser) -> None:
     groups.leave_to_settings(parser)
 
 
-def books(parser: ArgumentParser) -> None:
+def books(parser: CommandParser) -> None:
     """Add the options of ``vbraille books``."""
     parser.add_argument(
         "number",
@@ -114,78 +109,69 @@ def books(parser: ArgumentParser) -> None:
         help="Read on in the book with this number in the list, as vbraille read --book N does "
         "(default: list the books).",
     )
-    parser.add_argument(
+    parser.option(
         "--forget",
-        type=whole,
-        metavar="N",
-        help="Delete all that is kept of the book with this number in the list; the book's file "
-        "stays (default: nothing is deleted).",
+        "N",
+        "Delete all that is kept of the book with this number in the list; the book's file stays "
+        "(default: nothing is deleted).",
+        whole,
     )
-    parser.add_argument(
-        "--json", action="store_true", help="Print the list as JSON, for another program."
-    )
+    parser.flag("--json", "Print the list as JSON, for another program.")
 
 
-def keys(parser: ArgumentParser) -> None:
+def keys(parser: CommandParser) -> None:
     """Add the options of ``vbraille keys``."""
-    parser.add_argument(
-        "--json", action="store_true", help="Print the commands as JSON, for other programs."
-    )
+    parser.flag("--json", "Print the commands as JSON, for other programs.")
     groups.keys(parser)
     parser.set_defaults(keys=None)
     groups.settings_file(parser)
 
 
-def page(parser: ArgumentParser) -> None:
+def page(parser: CommandParser) -> None:
     """Add the options of ``vbraille page``."""
     groups.text(parser)
     groups.layout(parser)
-    parser.add_argument(
+    parser.choice(
         "--format",
-        choices=("unicode", "brf", "dots", "text", "pef"),
+        ("unicode", "brf", "dots", "text", "pef"),
+        "Write Unicode braille, ASCII braille (BRF), dot numbers, the text of each line, or PEF.",
         default="unicode",
-        help="Write Unicode braille, ASCII braille (BRF), dot numbers, the text of each line, or "
-        "PEF (default: unicode).",
     )
-    parser.add_argument(
-        "--out", metavar="FILE", help="Write to this file, whole or not at all (default: print)."
-    )
+    parser.option("--out", "FILE", "Write to this file, whole or not at all (default: print).")
     groups.force(parser)
-    parser.add_argument(
+    parser.option(
         "--cells",
-        type=whole,
-        metavar="N",
-        help="Lay out for lines of so many cells, whatever the display (default: the display's, "
-        "or 40 in PEF).",
+        "N",
+        "Lay out for lines of so many cells, whatever the display (default: the display's, or 40 "
+        "in PEF).",
+        whole,
     )
     parser.set_defaults(model=None)  # so that it is known whether a display was asked for
 
 
-def structure(parser: ArgumentParser) -> None:
+def structure(parser: CommandParser) -> None:
     """Add the options of ``vbraille structure``."""
     groups.source(parser)
-    parser.add_argument("--json", action="store_true", help="Print the same as JSON.")
+    parser.flag("--json", "Print the same as JSON.")
     parser.set_defaults(table=None, language=None, grade=None, undefined="mark", keep_lines=False)
     parser.set_defaults(foreign="switch")
     parser.set_defaults(settled=frozenset())
 
 
-def render(parser: ArgumentParser) -> None:
+def render(parser: CommandParser) -> None:
     """Add the options of ``vbraille render``."""
     groups.text(parser)
     groups.show(parser)
     groups.hand(parser)
-    parser.add_argument("--out", required=True, metavar="FILE.h5", help="Write to this file.")
+    parser.option("--out", "FILE.h5", "Write to this file.", required=True)
     groups.page(parser)
     groups.force(parser)
     pictures.path(parser)
     parser.set_defaults(model=None)  # which is another one for lines than for pictures
-    parser.add_argument(
-        "--plain", action="store_true", help="Print progress as lines, without a bar."
-    )
+    parser.flag("--plain", "Print progress as lines, without a bar.")
 
 
-def plot(parser: ArgumentParser) -> None:
+def plot(parser: CommandParser) -> None:
     """Add the options of ``vbraille plot``."""
     parser.add_argument(
         "kind",
@@ -198,26 +184,22 @@ def plot(parser: ArgumentParser) -> None:
     )
     groups.text(parser, optional=True)
     groups.show(parser)
-    parser.add_argument(
-        "--out",
-        metavar="F.png|F.svg",
-        help="Write the picture to this file (default: a new vbraille-KIND.png).",
+    parser.option(
+        "--out", "F.png|F.svg", "Write the picture to this file (default: a new vbraille-KIND.png)."
     )
-    parser.add_argument(
-        "--csv", action="store_true", help="Print the picture's numbers as CSV, and draw nothing."
-    )
-    parser.add_argument(
+    parser.flag("--csv", "Print the picture's numbers as CSV, and draw nothing.")
+    parser.option(
         "--at",
-        type=number,
+        "MM",
+        "Of a page: put the array's left column at this place, in mm.",
+        number,
         default=20.0,
-        metavar="MM",
-        help="Of a page: put the array's left column at this place, in mm (default: 20).",
     )
     parser.add_argument("--letter", help="Of a mapping: show this letter (default: z).")
     parser.set_defaults(model=None)  # the one that the source drew the figure for
 
 
-def simulate(parser: ArgumentParser) -> None:
+def simulate(parser: CommandParser) -> None:
     """Add the options of ``vbraille simulate``."""
     parser.add_argument(
         "what",
@@ -226,83 +208,76 @@ def simulate(parser: ArgumentParser) -> None:
         default="serial",
         help="Be a device at a serial port, or a Latero on the network (default: serial).",
     )
-    parser.add_argument(
+    parser.choice(
         "--model",
-        choices=MODELS,
+        MODELS,
+        "Be this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, that on the Pantograph, "
+        "the Latero, or the VBD.",
         default="stress2",
-        help="Be this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, that on the "
-        "Pantograph, the Latero, or the VBD (default: stress2).",
     )
     groups.hand(parser)
     parser.set_defaults(rate=1000)
-    parser.add_argument(
-        "--link",
-        metavar="PATH",
-        help="Make a link to the port at this path, and remove it at the end.",
+    parser.option(
+        "--link", "PATH", "Make a link to the port at this path, and remove it at the end."
     )
-    parser.add_argument(
+    parser.choice(
         "--encoder",
-        choices=("absolute", "index", "incremental"),
-        default="absolute",
-        help="Choose what the encoder knows of the carriage's place when it starts: the place, "
+        ("absolute", "index", "incremental"),
+        "Choose what the encoder knows of the carriage's place when it starts: the place, "
         "nothing before it has passed its mark, or nothing before somebody says where the left "
-        "stop is (default: absolute).",
+        "stop is.",
+        default="absolute",
     )
-    parser.add_argument(
-        "--travel", type=number, metavar="MM", help="Let the carriage go so far (default: 300 mm)."
-    )
-    parser.add_argument(
+    parser.option("--travel", "MM", "Let the carriage go so far (default: 300 mm).", number)
+    parser.choice(
         "--axes",
-        choices=("x", "xy", "xyθ"),
+        ("x", "xy", "xyθ"),
+        "Measure the carriage along the line only, or across the lines as well, or the angle of "
+        "the array as well; the hand then reads a page.",
         default="x",
-        help="Measure the carriage along the line only, or across the lines as well, or the angle "
-        "of the array as well; the hand then reads a page (default: x).",
     )
-    parser.add_argument(
+    parser.option(
         "--height",
-        type=number,
-        metavar="MM",
-        help="Let a carriage of two axes go so far across the lines (default: as the "
-        "display's own does, or 200 mm).",
+        "MM",
+        "Let a carriage of two axes go so far across the lines (default: as the display's own "
+        "does, or 200 mm).",
+        number,
     )
-    parser.add_argument(
+    parser.option(
         "--script",
-        metavar="FILE",
-        help="Move buttons and knobs as this file says, with a time after the first greeting and "
-        "an event in each line: 2.5s press 1, 3s release 1, 4s knob 1 0.8 (default: nothing).",
+        "FILE",
+        "Move buttons and knobs as this file says, with a time after the first greeting and an "
+        "event in each line: 2.5s press 1, 3s release 1, 4s knob 1 0.8 (default: nothing).",
     )
-    parser.add_argument(
+    parser.option(
         "--press",
+        "N@TIME,…",
+        "Press button N, 1 to 8, so long after the first greeting, as in 1@2.5s,2@4s, or hold it "
+        "for a while, as in 1@2.5s-4s (default: no button).",
         default="",
-        metavar="N@TIME,…",
-        help="Press button N, 1 to 8, so long after the first greeting, as in 1@2.5s,2@4s, or hold "
-        "it for a while, as in 1@2.5s-4s (default: no button).",
     )
     for name, text in (
         ("drop", "Lose this share of the messages, both ways"),
         ("corrupt", "Damage this share of the messages, both ways"),
     ):
-        parser.add_argument(
-            f"--{name}", type=number, default=0.0, metavar="0…1", help=f"{text} (default: 0)."
-        )
-    parser.add_argument(
+        parser.option(f"--{name}", "0…1", f"{text} (default: 0).", number, default=0.0)
+    parser.option(
         "--stall",
-        type=duration,
+        "DURATION",
+        "Do nothing for so long every second, such as 200ms (default: never).",
+        duration,
         default=0.0,
-        metavar="DURATION",
-        help="Do nothing for so long every second, such as 200ms (default: never).",
     )
-    parser.add_argument(
+    parser.option(
         "--unplug-every",
-        type=duration,
+        "DURATION",
+        "Be unplugged so long after each greeting, such as 5s; this needs --link (default: never).",
+        duration,
         default=0.0,
-        metavar="DURATION",
-        help="Be unplugged so long after each greeting, such as 5s; this needs --link "
-        "(default: never).",
     )
-    parser.add_argument(
+    parser.choice(
         "--defect",
-        choices=(
+        (
             "no-acknowledgement",
             "no-actuators",
             "off-place",
@@ -310,13 +285,13 @@ def simulate(parser: ArgumentParser) -> None:
             "no-watchdog",
             "late-watchdog",
         ),
-        help="Be built wrong in this way, which vbraille device check finds (default: none).",
+        "Be built wrong in this way, which vbraille device check finds (default: none).",
     )
 
     simulate_latero(parser)
 
 
-def simulate_latero(parser: ArgumentParser) -> None:
+def simulate_latero(parser: CommandParser) -> None:
     """Add the options that only a simulated Latero has."""
     latero = parser.add_argument_group("a Latero's own options")
     latero.add_argument(
@@ -346,13 +321,13 @@ def simulate_latero(parser: ArgumentParser) -> None:
         latero.add_argument(f"--{name}", type=number, metavar="0…1", help=f"{text} (default: 0).")
 
 
-def device_info(parser: ArgumentParser) -> None:
+def device_info(parser: CommandParser) -> None:
     """Add the options of ``vbraille device info`` and ``check``."""
     parser.add_argument("spec", metavar="SPEC", help=f"{SPEC}.")
-    parser.add_argument("--model", choices=MODELS, help="Refuse a device that is not this display.")
+    parser.choice("--model", MODELS, "Refuse a device that is not this display.")
 
 
-def device_calibrate(parser: ArgumentParser) -> None:
+def device_calibrate(parser: CommandParser) -> None:
     """Add the options of ``vbraille device calibrate``."""
     device_info(parser)
     chosen = parser.add_mutually_exclusive_group()
@@ -364,8 +339,6 @@ def device_calibrate(parser: ArgumentParser) -> None:
     )
 
 
-def tables(parser: ArgumentParser) -> None:
+def tables(parser: CommandParser) -> None:
     """Add the options of ``vbraille tables``."""
-    parser.add_argument(
-        "--language", metavar="TAG", help="List only tables of this language, such as fr or fr-CA."
-    )
+    parser.option("--language", "TAG", "List only tables of this language, such as fr or fr-CA.")
