@@ -18,8 +18,7 @@ from tests.sessions.sittings import Session
 from vbraille.engine.record import Flag
 from vbraille.sessions.planning.protocolfiles import builtin_text
 from vbraille.sessions.record import events
-from vbraille.sessions.record.check import check_folder
-from vbraille.sessions.record.folder import versions
+from vbraille.sessions.record.folder import check_folder, versions
 from vbraille.sessions.record.journal import Journal
 from vbraille.sessions.record.traces import TRACE, TraceWriter
 from vbraille.simulation.hand import DEVICE, HumanHand

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.sessions.record import journal
-from vbraille.sessions.record.check import check
 from vbraille.sessions.record.events import to_json
-from vbraille.sessions.record.folder import PLAN, load
+from vbraille.sessions.record.folder import PLAN, check, load
 from vbraille.sessions.record.traces import read_last_tie
 
 if TYPE_CHECKING:

@@ -16,8 +16,7 @@ from tests.cli.test_read_serial import simulated
 from tests.sessions.sittings import MINI
 from tests.tiers import TIER, Tier, by_tier, heavy
 from vbraille.sessions.record import export
-from vbraille.sessions.record.check import check
-from vbraille.sessions.record.folder import load
+from vbraille.sessions.record.folder import check, load
 from vbraille.sessions.record.replay import frames
 
 STRINGS = """

@@ -27,9 +27,8 @@ from vbraille.live.messages import (
     ViewState,
     Welcome,
 )
-from vbraille.sessions.record.check import check
 from vbraille.sessions.record.export import rows
-from vbraille.sessions.record.folder import load
+from vbraille.sessions.record.folder import check, load
 
 SEEING = MINI + "[session]\nblind = false\n"
 HOW = ("--participant", "P07", "--seed", "1", "--hand", "sweep:150", "--sound", "none")

@@ -14,7 +14,7 @@ from tests.cli.test_session import words
 from tests.cli.test_session_bad_input import contents
 from tests.sessions.sittings import MINI
 from vbraille.sessions.record import events
-from vbraille.sessions.record.check import check_folder
+from vbraille.sessions.record.folder import check_folder
 from vbraille.sessions.record.journal import decode, first_lines, salvage
 from vbraille.wording import spelled
 

@@ -10,9 +10,8 @@ from tests.cli import program
 from tests.cli.test_session import words
 from tests.cli.test_session_bad_input import contents
 from tests.sessions.sittings import MINI, Session
-from vbraille.sessions.record.check import check_folder
 from vbraille.sessions.record.events import Cue, Note
-from vbraille.sessions.record.folder import load
+from vbraille.sessions.record.folder import check_folder, load
 from vbraille.sessions.record.journal import Journal, Tie, encode
 from vbraille.sessions.record.traces import TraceWriter, read_last_tie, read_trace
 

@@ -15,7 +15,7 @@ from vbraille.files import check_free
 from vbraille.sessions.beginning import head_of, plan_session, told_fields
 from vbraille.sessions.conditions import USUAL, Conditions
 from vbraille.sessions.planning.appearance import CONVENTIONAL
-from vbraille.sessions.planning.choosing import procedure_of
+from vbraille.sessions.planning.procedures import procedure_of
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.folder import Record, create, load
 from vbraille.sessions.record.progress import Progress

@@ -10,9 +10,8 @@ from tests.sessions.sittings import MINI, Session, crash
 from tests.tiers import by_tier
 from vbraille.errors import VbrailleError
 from vbraille.sessions.record import journal
-from vbraille.sessions.record.check import check, check_folder
 from vbraille.sessions.record.export import Traces, rows
-from vbraille.sessions.record.folder import load, read_journal
+from vbraille.sessions.record.folder import check, check_folder, load, read_journal
 from vbraille.sessions.record.journal import Journal, decode
 from vbraille.sessions.record.progress import Progress
 

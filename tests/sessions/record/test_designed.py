@@ -8,7 +8,7 @@ import pytest
 from vbraille.analysis.input.study import load_study
 from vbraille.errors import VbrailleError
 from vbraille.sessions.conditions import Conditions
-from vbraille.sessions.record.check import check_folder
+from vbraille.sessions.record.folder import check_folder
 from vbraille.sessions.session import Session
 
 PROTOCOL = """

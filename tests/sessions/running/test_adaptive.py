@@ -12,9 +12,8 @@ from tests.tiers import by_tier
 from vbraille.errors import VbrailleError
 from vbraille.sessions.planning.plan import stimulus_to_json
 from vbraille.sessions.planning.protocolfiles import load_protocol
-from vbraille.sessions.record.check import check
 from vbraille.sessions.record.export import rows
-from vbraille.sessions.record.folder import load
+from vbraille.sessions.record.folder import check, load
 from vbraille.sessions.record.progress import Progress
 
 WIDTHS = COMPARED.replace("[1.0, 2.0]", "[1.0, 3.0]") + (

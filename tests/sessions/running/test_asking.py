@@ -12,8 +12,8 @@ from vbraille.errors import InputError
 from vbraille.sessions import session as door
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.protocolfiles import parse_protocol
-from vbraille.sessions.record.check import check
 from vbraille.sessions.record.export import rows
+from vbraille.sessions.record.folder import check
 from vbraille.sessions.record.progress import Progress
 
 SURE = "confidence = { least = 1, most = 4 }\n"

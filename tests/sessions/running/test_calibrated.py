@@ -3,7 +3,7 @@
 from tests.sessions.sittings import Session, of
 from vbraille.devices.calibration import Calibration, Tried
 from vbraille.engine.batch import BatchEngine
-from vbraille.sessions.record.check import check
+from vbraille.sessions.record.folder import check
 
 FOUND = Calibration("bench", 6, 10, (Tried(0, 1, "dead"),)).to_json()
 

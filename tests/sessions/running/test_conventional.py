@@ -17,8 +17,8 @@ from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record import events
-from vbraille.sessions.record.check import check
 from vbraille.sessions.record.export import rows
+from vbraille.sessions.record.folder import check
 from vbraille.sessions.session import Session
 from vbraille.wording import spelled
 

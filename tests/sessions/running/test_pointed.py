@@ -10,8 +10,8 @@ from vbraille.devices.events import HandHeld
 from vbraille.engine.batch import BatchEngine
 from vbraille.sessions.record import events
 from vbraille.sessions.record.bids import files
-from vbraille.sessions.record.check import check
 from vbraille.sessions.record.export import rows
+from vbraille.sessions.record.folder import check
 from vbraille.sessions.record.progress import Progress
 
 

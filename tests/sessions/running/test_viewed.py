@@ -13,7 +13,7 @@ from vbraille.engine.batch import BatchEngine
 from vbraille.live.messages import PagePress, Turn
 from vbraille.render.braille.knobs import say_mapping
 from vbraille.render.braille.mappings import MAPPINGS
-from vbraille.sessions.record.check import check
+from vbraille.sessions.record.folder import check
 from vbraille.sessions.running.onlookers import ENDED, Heard, Onlookers
 
 SEEING = "[session]\nblind = false\n"

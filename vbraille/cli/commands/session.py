@@ -64,7 +64,7 @@ def _plan(arguments: argparse.Namespace) -> int:
     if plan.group:
         _say(f"group: {plan.group}")
     if protocol.adaptive:
-        from vbraille.sessions.planning.choosing import describe
+        from vbraille.sessions.planning.procedures import describe
 
         _say(f"procedure: {describe(protocol)}")
     block = None
@@ -148,7 +148,7 @@ def _methods(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    from vbraille.sessions.record.check import check_folder
+    from vbraille.sessions.record.folder import check_folder
 
     good = True
     for finding in check_folder(Path(arguments.folder), arguments.expect):

@@ -158,7 +158,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
     Raises
     ------
     ValueError
-        If values are out of range. `vbraille.sessions.planning.agreement` checks whether the
+        If values are out of range. `vbraille.sessions.planning.protocolfiles` checks whether the
         tables agree.
     """
 

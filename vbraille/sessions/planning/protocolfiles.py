@@ -3,24 +3,37 @@
 from __future__ import annotations
 
 from importlib import resources
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 from msgspec import field
 
+from vbraille.braille.spelling import name_dots, to_braille
 from vbraille.errors import InputError
-from vbraille.sessions.planning.agreement import check_agreement
-from vbraille.sessions.planning.design import ItemList
+from vbraille.render import Profile
+from vbraille.sessions.planning.appearance import CONVENTIONAL, LENGTHS, Condition
+from vbraille.sessions.planning.design import MOST_TRIALS, UNFELT, Choice, ItemList, StringList
 from vbraille.sessions.planning.factors import problem
 from vbraille.sessions.planning.items import read_items, read_orders, read_words
+from vbraille.sessions.planning.procedures import StaircaseProcedure
 from vbraille.sessions.planning.protocol import FORMAT, Protocol, ProtocolFile
-from vbraille.sessions.planning.spellings import SpellingKeys, read_keys, spelled
+from vbraille.sessions.planning.sequencing import CONDITION, impossible, limited
+from vbraille.sessions.planning.spellings import (
+    SpellingKeys,
+    cells_of,
+    problem_of,
+    read_keys,
+    spelled,
+)
+from vbraille.sessions.planning.stimuli import GAP, KNOBS, with_value
 from vbraille.toml.textfile import read_text
 from vbraille.toml.tomlfile import TomlFile, which
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
 
 _FOLDER = resources.files("vbraille.sessions.planning").joinpath("protocols")
 
@@ -240,3 +253,434 @@ class _Keyed(msgspec.Struct):
     """The table ``[keys]``, which is read first because strings are spelled with it."""
 
     keys: SpellingKeys = field(default_factory=SpellingKeys)
+
+
+def check_agreement(protocol: Protocol, *, planned: bool = False) -> None:
+    """Check that the tables of a protocol agree with each other, for each group.
+
+    Parameters
+    ----------
+    protocol
+        The protocol.
+    planned
+        Whether it belongs to a session, whose plan has been made. The plan then has the cells of
+        all texts, and no braille table is asked for them again.
+
+    Raises
+    ------
+    ValueError
+        If values contradict each other.
+    """
+    said = problem(protocol.factors, protocol.cross, listed=bool(protocol.listed))
+    if said:
+        raise ValueError(said)
+    for table, named in (("conditions", protocol.conditions), ("fields", protocol.fields)):
+        names = [value.name for value in named]
+        for number, name in enumerate(names, 1):
+            if name in names[: number - 1]:
+                raise ValueError(
+                    f"[[{table}]] number {number} name is {name!r} again; give each its own"
+                )
+    _check_names(protocol)
+    _check_styles(protocol)
+    _check_procedure(protocol)
+    _check_conventional(protocol)
+    _check_question(protocol)
+    said = protocol.practice.problem(protocol.design)
+    if said:
+        raise ValueError(f"[practice] {said}")
+    _check_trials(protocol)
+    _check_order(protocol)
+    _check_tables(protocol, planned=planned)
+    _check_varies(protocol)
+    if not protocol.written or not (planned or _ungrouped(protocol)):
+        check_cells(protocol)
+        check_lines(protocol)
+    _check_letters(protocol)
+    _check_rules(protocol)
+    if not protocol.group:
+        _check_groups(protocol, planned=planned)
+
+
+def _check_names(protocol: Protocol) -> None:
+    """Check that factors and columns of items can be told apart."""
+    taken = {CONDITION, *protocol.item_columns}
+    for number, factor in enumerate(protocol.factors, 1):
+        if factor.name in taken:
+            raise ValueError(
+                f"[[factors]] number {number} name is {factor.name!r}, which already stands for "
+                f"the conditions or for a column of the items; give another"
+            )
+
+
+def _ungrouped(protocol: Protocol) -> bool:
+    """Whether the groups of a protocol have tables of their own, and none is chosen."""
+    own = any(f.between and f.levels[0].table is not None for f in protocol.factors)
+    return own and not protocol.group
+
+
+def _check_tables(protocol: Protocol, *, planned: bool) -> None:
+    """Check that each condition has a braille table or none has, and that there are texts."""
+    if not protocol.written:
+        return
+    design = protocol.design
+    if not isinstance(design, StringList):
+        kind = "choice" if isinstance(design, Choice) else "combinations"
+        raise ValueError(
+            f"[design] kind is {kind!r}, which shows cells, and table makes cells of texts; give "
+            f"'list' or 'items', or leave table out"
+        )
+    for wrong, words in (
+        (design.reorder, "[design] reorder is of cells"),
+        (protocol.keys, "[keys] spell cells"),
+        (
+            (protocol.rules.each_letter, protocol.rules.each_letter_at_least) != (None, None),
+            "[rules] each_letter counts cells",
+        ),
+    ):
+        if wrong:
+            raise ValueError(f"{words}, and where table is given strings are texts; leave it out")
+    for condition in () if _ungrouped(protocol) else protocol.conditions:
+        table, place = protocol.table_of(condition), _place(protocol, condition)
+        if table is None:
+            raise ValueError(f"{place} has no table, and others have; give it one, or [display]")
+        if problem := "" if planned else problem_of(table):
+            raise ValueError(f"{place} table: {problem}")
+
+
+def _check_groups(protocol: Protocol, *, planned: bool) -> None:
+    """Check the protocol as each group has it."""
+    for group in protocol.groups:
+        number = 1 + next(n for n, factor in enumerate(protocol.factors) if factor.between)
+        try:
+            check_agreement(protocol.assigned(group), planned=planned)
+        except ValueError as error:
+            raise ValueError(f"[[factors]] number {number} group {group}: {error}") from None
+
+
+def _place(protocol: Protocol, condition: Condition) -> str:
+    """Table that a message about a condition begins with."""
+    if condition in protocol.listed:
+        return f"[[conditions]] number {protocol.listed.index(condition) + 1}"
+    if condition.changes:
+        own = next(n for n, factor in enumerate(protocol.factors, 1) if not factor.between)
+        return f"[[factors]] number {own} condition {condition.name}:"
+    return "[display]"
+
+
+def _check_styles(protocol: Protocol) -> None:
+    table = "[display]"
+    try:
+        protocol.style  # noqa: B018
+        for condition in protocol.conditions:
+            table = _place(protocol, condition)
+            protocol.style_of(condition)
+    except ValueError as error:
+        raise ValueError(f"{table} {error}") from None
+    compared = protocol.parameter
+    for condition in protocol.conditions if compared else ():
+        if _sets(condition, compared):
+            raise ValueError(
+                f"[design] parameter is {compared!r}, which the condition {condition.name} sets "
+                f"itself; leave it out there"
+            )
+
+
+def _check_varies(protocol: Protocol) -> None:
+    """Check that what is compared or chosen can be felt, and that there is something to order."""
+    chosen = getattr(protocol.procedure, "parameter", None)
+    for table, name in (("design", protocol.parameter), ("procedure", chosen)):
+        if name == "texture_cycles" and protocol.model.style.profile is Profile.HALF_SINE:
+            raise ValueError(
+                f"[{table}] parameter is {name!r}, and the texture of the {protocol.model.title} "
+                f"has a fixed wavelength, so that nothing would vary; choose another"
+            )
+        if name in UNFELT:
+            raise ValueError(
+                f"[{table}] parameter is {name!r}, which no actuator shows in a line of its own; "
+                f"give another"
+            )
+    stairs = protocol.procedure
+    if isinstance(stairs, StaircaseProcedure):
+        trials = min(stairs.trials or MOST_TRIALS, protocol.design.trials)
+        if trials < min(stairs.right, stairs.wrong) * len(stairs.start):
+            raise ValueError(
+                f"[procedure] start is of {len(stairs.start)} staircases, and a condition has "
+                f"{trials} trials: one of them cannot move; give it more trials"
+            )
+    order = protocol.order
+    if order is not None and order.kind != "listed" and len(protocol.conditions) < 2:
+        raise ValueError(
+            f"[order] kind is {order.kind!r}, and there is one condition, so that nothing can be "
+            f"ordered; leave it out, or give more conditions"
+        )
+
+
+def _sets(condition: Condition, knob: str | None) -> bool:
+    """Whether a condition sets what is compared or varied."""
+    same = {GAP: "dot_spacing_mm", "texture_cycles": "cycles"}
+    return knob is not None and same.get(knob, knob) in condition.changes
+
+
+def _check_question(protocol: Protocol) -> None:
+    stimuli = 2 if protocol.task == "choice" else 1
+    problem = protocol.asks.problem(stimuli, adaptive=protocol.adaptive)
+    if problem:
+        raise ValueError(f"[question] {problem}")
+    same = isinstance(protocol.design, Choice) and protocol.design.same
+    if same and (protocol.asks.name != "same-different" or protocol.adaptive):
+        raise ValueError(
+            "[design] same is of [question] kind = 'same-different' in a fixed order; leave it out"
+        )
+    if protocol.trial.end is not None and protocol.medium == "paper":
+        raise ValueError("[trial] end is of a device; on paper Enter ends reading, leave it out")
+
+
+def _check_procedure(protocol: Protocol) -> None:
+    said = protocol.procedure.problem(protocol.design)
+    if said:
+        raise ValueError(f"[procedure] {said}")
+    if not protocol.adaptive:
+        return
+    if protocol.asks.name == "detect" and getattr(protocol.procedure, "guess", None) == (0.0,):
+        # With a fifth of false alarms the threshold would be told far too low.
+        raise ValueError(
+            "[procedure] guess is 0, and people say yes at nothing too; give the shares that may "
+            "be, such as guess = [0.01, 0.05, 0.1, 0.2, 0.3, 0.4]"
+        )
+    if protocol.medium == "paper":
+        raise ValueError(
+            "[procedure] varies what a device shows; with medium = 'paper' leave it out"
+        )
+    if protocol.task == "choice" and protocol.rules.never_twice_running:
+        raise ValueError(
+            "[rules] never_twice_running is of a fixed order of values; leave it out, since "
+            "[procedure] chooses them"
+        )
+    own = getattr(protocol.procedure, "parameter", None)
+    for condition in protocol.conditions if own else ():
+        if _sets(condition, own):
+            raise ValueError(
+                f"[procedure] parameter is {own!r}, which the condition {condition.name} sets "
+                f"itself; leave it out there"
+            )
+
+
+def _check_conventional(protocol: Protocol) -> None:
+    """Check that a conventional display can show what stands on it."""
+    table = protocol.conventional
+    there = [c for c in protocol.conditions if protocol.place_of(c) == CONVENTIONAL]
+    if table.reference and not any(table.reference):
+        raise ValueError("[conventional] reference has no dots; give it some, or leave it out")
+    if table.reference and protocol.medium == "paper":
+        raise ValueError(
+            "[conventional] reference stands beside a device; leave it out with medium = 'paper'"
+        )
+    if table.reference and there:
+        raise ValueError(
+            f"[conventional] reference needs the display on which {there[0].name} shows its "
+            f"strings; leave one of the two out"
+        )
+    for condition in there:
+        if own := sorted(condition.changes.keys() - {"on", "table"}):
+            raise ValueError(
+                f"the condition {condition.name} stands on a conventional display, which has no "
+                f"{own[0]}; leave it out there"
+            )
+    if there and (protocol.task == "choice" or protocol.adaptive):
+        what = "[design] compares" if protocol.task == "choice" else "[procedure] varies"
+        raise ValueError(
+            f"{what} what a conventional display cannot change; leave on = 'brlapi' out"
+        )
+
+
+def _check_trials(protocol: Protocol) -> None:
+    design = protocol.design
+    if design.catch is not None and (protocol.adaptive or protocol.task == "choice"):
+        what = "[procedure] chooses what is asked" if protocol.adaptive else "two are compared"
+        raise ValueError(
+            f"[design] catch is for strings in a fixed order, and {what}; leave it out"
+        )
+    trials, blocks = design.trials * len(protocol.conditions), design.blocks
+    catch = 0 if design.catch is None else design.catch.number(trials)
+    if trials + catch + protocol.practice.trials > MOST_TRIALS:
+        raise ValueError(
+            f"[design] makes a session of more than {MOST_TRIALS} trials; make it smaller"
+        )
+    if design.catch is not None and not 1 <= catch <= trials:
+        raise ValueError(
+            f"[design] catch would be {catch} of {trials + catch} trials; make every smaller, or "
+            f"the design larger"
+        )
+    if blocks != "conditions" and not 1 <= blocks <= trials:
+        raise ValueError(
+            f"[design] blocks is {blocks}; it must be 1 to {trials}, "
+            f"since there are {trials} trials"
+        )
+
+
+def _check_order(protocol: Protocol) -> None:
+    order, design = protocol.order, protocol.design
+    if order is None:
+        return
+    if design.order is not None:
+        raise ValueError("[order] kind stands beside order of [design]; leave one of the two out")
+    if design.blocks != "conditions" and order.kind != "random":
+        raise ValueError(
+            f"[order] kind is {order.kind!r}, which orders blocks of a condition each; give "
+            f"'random', or [design] blocks = 'conditions'"
+        )
+
+
+def _check_letters(protocol: Protocol) -> None:
+    rules = protocol.rules
+    if isinstance(protocol.design, StringList):
+        said = rules.problem(protocol.design.items())
+        if said:
+            raise ValueError(f"[rules] {said}; change the strings or the rule")
+    elif (rules.each_letter, rules.each_letter_at_least) != (None, None):
+        raise ValueError("[rules] count the letters of kind = 'list'; leave them out")
+
+
+def _check_rules(protocol: Protocol) -> None:
+    """Check that rules on the order of trials name what there is, and can be kept."""
+    rules, design = protocol.rules, protocol.design
+    if not rules.searched:
+        return
+    if protocol.adaptive:
+        raise ValueError(
+            "[rules] at_most_running and balanced_quarters are of a fixed order; leave them out, "
+            "since [procedure] chooses the trials"
+        )
+    known = limited(protocol)
+    for name in rules.at_most_running:
+        if name not in known:
+            raise ValueError(f"[rules] at_most_running has {name!r}{which(name, known)}")
+    if rules.balanced_quarters and design.blocks == "conditions" and len(protocol.conditions) > 1:
+        raise ValueError(
+            "[rules] balanced_quarters cannot be kept: each condition has a block of its own; "
+            "give [design] blocks = 1, or leave the rule out"
+        )
+    said = impossible(protocol)
+    if said:
+        raise ValueError(f"[rules] {said}")
+
+
+def check_cells(protocol: Protocol) -> None:
+    """Check that the display can show every dot of every cell used, in every condition.
+
+    Raises
+    ------
+    ValueError
+        If it cannot show a dot, or a braille table cannot make cells of a text.
+    """
+    model = protocol.model
+    for condition in _on_device(protocol):
+        mapping = protocol.style_of(condition).mapping
+        shown = mapping.shown_dots()
+        how = (
+            f"'s row {mapping.left[0] + 1}"
+            if mapping.rows == 1
+            else f" with the mapping {mapping.name}"
+        )
+        only = f"the {model.title}{how} shows {name_dots(shown)} only"
+        for table, (masks, _) in _cells(protocol, condition).items():
+            for mask in sorted(masks):
+                if mask & ~shown:
+                    cell = f"{to_braille((mask,))} ({name_dots(mask)})"
+                    raise ValueError(f"{table} has the cell {cell}, and {only}; leave the cell out")
+        # Keys may spell what one condition shows and another does not.
+        for key, mask in protocol.keys.items() if len(protocol.conditions) == 1 else ():
+            if mask & ~shown:
+                raise ValueError(
+                    f"[keys] {key} is {name_dots(mask)}, and {only}; leave the key out"
+                )
+
+
+def check_lines(protocol: Protocol) -> None:
+    """Check that the display has room for the longest line, at each value that is compared.
+
+    Raises
+    ------
+    ValueError
+        If a line is too long, or a value cannot be shown.
+    """
+    model, design, practice = protocol.model, protocol.design, protocol.practice
+    values: tuple[float | None, ...] = (None,)
+    unit = ""
+    if isinstance(design, Choice):
+        values = tuple(dict.fromkeys((*design.values, *protocol.procedure.values(design))))
+        values += () if design.reference is None else (design.reference,)
+        unit = KNOBS[design.parameter].unit
+    compared = (*values, *sorted(set(practice.values)))
+    longest = 0
+    for condition, value in product(_on_device(protocol), compared):
+        lengths = {table: length for table, (_, length) in _cells(protocol, condition).items()}
+        whose = max(lengths, key=lambda table: lengths[table])
+        longest = max(longest, lengths[whose])
+        at = "" if value is None else f" at a value of {value:g}{unit}"
+        if condition.changes.keys() & set(LENGTHS):
+            at += f" in the condition {condition.name}"
+        try:
+            shown = protocol.shown(condition, (0,), value)
+            room = shown.geometry.cells_per_line(model.display.span_mm)
+        except ValueError as error:
+            raise ValueError(f"[design]{at}: {error}") from None
+        cells = protocol.lead_cells + lengths[whose]
+        if cells > room:
+            raise ValueError(
+                f"{whose} has a line of {cells} cells{at}, lead_cells among them, and the "
+                f"{model.title} has room for {room}; make it shorter, or travel_mm longer"
+            )
+    _check_varied(protocol, longest)
+
+
+def _on_device(protocol: Protocol) -> list[Condition]:
+    """Conditions whose strings are put under the hand on the device."""
+    return [c for c in protocol.conditions if protocol.place_of(c) != CONVENTIONAL]
+
+
+def _cells(protocol: Protocol, condition: Condition) -> dict[str, tuple[frozenset[int], int]]:
+    """Cells that a condition shows, and length of its longest line, by the tables of the file.
+
+    Raises
+    ------
+    ValueError
+        If a braille table cannot make cells of a text.
+    """
+    design, practice = protocol.design, protocol.practice
+    table = protocol.table_of(condition)
+    if table is None or not isinstance(design, StringList):
+        practised = practice.lines(design)
+        masks = frozenset(mask for line in practised for mask in line)
+        length = max(map(len, practised), default=0)
+        return {"[design]": (design.masks, design.cells), "[practice]": (masks, length)}
+    found = {}
+    for name, strings in (("[design]", design.strings), ("[practice]", practice.strings)):
+        try:
+            lines = [cells_of(str(text), table) for text in strings]
+        except ValueError as error:
+            raise ValueError(f"{name} in the condition {condition.name}: {error}") from None
+        masks = frozenset(mask for line in lines for mask in line)
+        found[name] = (masks, max(map(len, lines), default=0))
+    return found
+
+
+def _check_varied(protocol: Protocol, longest: int) -> None:
+    """Check that strings can be shown at both ends of what a procedure varies."""
+    knob = getattr(protocol.procedure, "parameter", None)
+    if knob is None or protocol.task == "choice":
+        return
+    for condition, value in product(
+        protocol.conditions, protocol.procedure.values(protocol.design)
+    ):
+        try:
+            shown = with_value(protocol.shown(condition, (0,)), knob, value)
+        except ValueError as error:
+            raise ValueError(f"[procedure] parameter at {value:g}: {error}") from None
+        room = shown.geometry.cells_per_line(protocol.model.display.span_mm)
+        if protocol.lead_cells + longest > room:
+            raise ValueError(
+                f"[procedure] parameter at {value:g} leaves room for {room} cells, and there are "
+                f"{protocol.lead_cells + longest}; make it less, or travel_mm longer"
+            )

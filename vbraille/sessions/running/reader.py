@@ -1,4 +1,14 @@
-"""The simulated reader as a source of answers: to each kind of question but words."""
+"""The simulated reader as a source of answers: to each kind of question but words.
+
+Questions other than which cells these are it answers by one number of a stimulus: a length in mm,
+or how strong its strongest dot is felt, in units of E₀ (`vbraille.sessions.simulated.observer`).
+Where it is asked which of two it likes, it takes the one nearer to the length that it was told, or
+the stronger one. Noise is normal. It says yes, or different, beyond one standard deviation of its
+noise, so that it gives a false alarm in 16 % of trials with nothing. On a scale it puts strengths
+of 0 to 1 evenly from end to end, and as a magnitude it gives the strength times the modulus. How
+sure it is it cannot tell: its confidence is the middle of the scale. All this is for trying out
+protocols, and claims nothing about people.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +38,7 @@ from vbraille.sessions.planning.questions import (
 )
 from vbraille.sessions.record.trajectory import columns_of, edges_mm
 from vbraille.sessions.running.answers import AnswersAtTrials
-from vbraille.sessions.simulated import judging
-from vbraille.sessions.simulated.observer import Observer
+from vbraille.sessions.simulated.observer import LEAST_FELT, TIE, Observer
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,6 +50,71 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.simulated.skin import Exploration
+
+LEAST_MAGNITUDE = 1e-3  # smallest magnitude given, as a share of the modulus: none may be 0
+
+
+def detects(felt: float, noise: float, random: np.random.Generator) -> bool:
+    """Whether the reader says that there was something, of this strength."""
+    return felt + noise * float(random.standard_normal()) > max(noise, LEAST_FELT)
+
+
+def differ(
+    first: float, second: float, unit: float, noise: float, random: np.random.Generator
+) -> bool:
+    """Whether the reader takes two values for different.
+
+    Parameters
+    ----------
+    first, second
+        What was felt; NaN for what was not.
+    unit
+        Unit that noise is given in: the nominal length in mm, or 1 for strengths.
+    noise
+        Standard deviation of the noise of each.
+    random
+        Generator that draws the noise.
+    """
+    if math.isnan(first) or math.isnan(second):
+        return math.isnan(first) != math.isnan(second)
+    off = (first - second) / unit + noise * math.sqrt(2) * float(random.standard_normal())
+    return abs(off) > max(noise * math.sqrt(2), TIE)
+
+
+def larger(
+    first: float, second: float, unit: float, noise: float, random: np.random.Generator
+) -> int:
+    """Which of two values the reader takes for the larger: 1 or 2; see `differ`."""
+    drawn = noise * unit * random.standard_normal(2)
+    one, two = (-math.inf if math.isnan(felt) else felt for felt in (first, second))
+    return 2 if two + drawn[1] > one + drawn[0] else 1
+
+
+def nearer(
+    first: float, second: float, nominal: float, noise: float, random: np.random.Generator
+) -> int:
+    """Which of two lengths the reader takes for the one nearer to a length: 1 or 2; 1 if equal.
+
+    Noise is in units of that length, and so is what counts as equal without noise.
+    """
+    drawn = noise * nominal * random.standard_normal(2)
+    off = [
+        math.inf if math.isnan(felt) else abs(felt + more - nominal)
+        for felt, more in zip((first, second), drawn, strict=True)
+    ]
+    return 2 if off[1] < off[0] - (0.0 if noise else TIE * nominal) else 1
+
+
+def rate(felt: float, least: int, most: int, noise: float, random: np.random.Generator) -> int:
+    """Step of a scale that the reader gives a strength."""
+    share = min(max(felt + noise * float(random.standard_normal()), 0.0), 1.0)
+    return least + round(share * (most - least))
+
+
+def magnitude(felt: float, modulus: float, noise: float, random: np.random.Generator) -> float:
+    """Magnitude that the reader gives a strength, with noise on its logarithm; above 0."""
+    share = max(felt, LEAST_MAGNITUDE) * math.exp(noise * float(random.standard_normal()))
+    return modulus * max(share, LEAST_MAGNITUDE)
 
 
 WIDTH, GAP, SPACING, CELL_GAP = "dot_width_mm", "dot_gap_mm", "dot_spacing_mm", "cell_gap_mm"
@@ -213,23 +287,23 @@ class Simulated(AnswersAtTrials):
         if self._compares:
             one, two, unit = self._felt_of_two(trial, felt)
             if likes and self._parameter in LENGTHS:
-                return str(judging.nearer(one, two, unit, noise, random))
+                return str(nearer(one, two, unit, noise, random))
             if likes:
-                return str(judging.larger(one, two, unit, noise, random))
+                return str(larger(one, two, unit, noise, random))
             if isinstance(question, SameQuestion):
-                return DIFFERENT if judging.differ(one, two, unit, noise, random) else SAME
+                return DIFFERENT if differ(one, two, unit, noise, random) else SAME
             assert isinstance(question, WhichQuestion), "these are the two that compare"
             one, two = question.worth(one), question.worth(two)
-            return str(judging.larger(one, two, unit, noise, random))
+            return str(larger(one, two, unit, noise, random))
         if not isinstance(question, IdentifyQuestion):
             strength = self._strength(trial, 0, felt[0])
             match question:
                 case RatingQuestion():
-                    return str(judging.rate(strength, question.least, question.most, noise, random))
+                    return str(rate(strength, question.least, question.most, noise, random))
                 case MagnitudeQuestion():
-                    given = judging.magnitude(strength, question.modulus or 1.0, noise, random)
+                    given = magnitude(strength, question.modulus or 1.0, noise, random)
                     return f"{given:.3g}"
-            return YES if judging.detects(strength, noise, random) else NO
+            return YES if detects(strength, noise, random) else NO
         places = self._lead_cells + len(trial.stimuli[0].masks)
         masks = observer.read(felt[0], places, random)
         asked = slice(*(self._lead_cells + place for place in trial.asked))
@@ -245,9 +319,11 @@ class Simulated(AnswersAtTrials):
         return one, two, nominal_mm(self._parameter, observer.geometry)
 
     def _strength(self, trial: Trial, place: int, felt: Exploration) -> float:
+        """Strength of the strongest dot asked for, in units of E₀; 0 if the hand was on none."""
         places = self._lead_cells + len(trial.stimuli[place].masks)
         first, stop = (self._lead_cells + cell for cell in trial.asked)
-        return judging.strength(self._observers[trial.condition].felt(felt, places), first, stop)
+        evidence = self._observers[trial.condition].felt(felt, places).evidence[first:stop]
+        return 0.0 if np.isnan(evidence).all() else float(np.nanmax(evidence))
 
 
 def _dot_pair(protocol: Protocol, condition: Condition) -> DotPair | None:
