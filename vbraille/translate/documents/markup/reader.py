@@ -104,9 +104,9 @@ class Begun(NamedTuple):
     element
         The element.
     name
-        Its name, in lower case, without a namespace.
+        Name of the element, in lower case, without a namespace.
     found
-        Those of its attributes that are known here.
+        Attributes that are known here.
     """
 
     element: Element
