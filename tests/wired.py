@@ -45,8 +45,7 @@ from vbraille.engine.loop import Loop
 from vbraille.engine.record import X
 from vbraille.engine.ring import Ring
 from vbraille.render import BrailleStyle, Mapping, Profile, Tuning
-from vbraille.simulation.described import describe
-from vbraille.simulation.firmware import Controller
+from vbraille.simulation.firmware import Controller, describe
 from vbraille.simulation.simulator import split
 
 if TYPE_CHECKING:

@@ -41,7 +41,7 @@ from tests.benchmarks.bench_faults import DISPLAYS
 from vbraille.cli.commands.simulate import PRIORITY
 from vbraille.engine.realtime import come_first
 from vbraille.simulation.carriage import area_of
-from vbraille.simulation.described import describe
+from vbraille.simulation.firmware import describe
 from vbraille.simulation.hand import Sweep
 from vbraille.devices.serial.wire import Encoder
 from vbraille.simulation.pty import Link, Port

@@ -20,7 +20,7 @@ from tests.live.canned import canned_state
 from tests.live.pages import page as client
 from vbraille.engine.host import Host
 from vbraille.live.monitor import Monitor
-from vbraille.simulation.pointing import Pointer
+from vbraille.simulation.steering import Pointer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

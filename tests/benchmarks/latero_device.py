@@ -21,7 +21,7 @@ from vbraille.carriers import latero
 from vbraille.devices.latero.device import DISPLAY
 from vbraille.devices.latero.wire import FULL
 from vbraille.simulation.lateroboard import LateroBoard
-from vbraille.simulation.tray import OFFSETS
+from vbraille.simulation.laterosim import OFFSETS
 
 LOW_MM, HIGH_MM, STEP_MM = 2.0, 8.0, 0.4
 _PRIORITY = 41  # the host has 40; a real Latero has a processor of its own

@@ -9,7 +9,7 @@ import numpy as np
 
 from vbraille.devices.latero.device import DISPLAY
 from vbraille.render import STRESS2, Tuning
-from vbraille.simulation.tray import OFFSETS
+from vbraille.simulation.laterosim import OFFSETS
 
 if TYPE_CHECKING:
     from vbraille.render.program import Program

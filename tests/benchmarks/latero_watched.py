@@ -11,9 +11,8 @@ import time
 from collections import Counter
 
 from vbraille.engine.realtime import come_first
-from vbraille.simulation.laterosim import LateroSimulator
+from vbraille.simulation.laterosim import LateroSimulator, Tray
 from vbraille.simulation.specs import parse_hand
-from vbraille.simulation.tray import Tray
 
 _PRIORITY = 41
 

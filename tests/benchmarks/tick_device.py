@@ -11,8 +11,7 @@ import sys
 from tests.benchmarks.tick_page import DISPLAY, page
 from tests.benchmarks.tick_serving import places_mm, serve
 from vbraille.devices.serial.wire import Encoder
-from vbraille.simulation.described import describe
-from vbraille.simulation.firmware import Controller
+from vbraille.simulation.firmware import Controller, describe
 from vbraille.simulation.pty import Link, Port
 
 

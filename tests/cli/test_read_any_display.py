@@ -14,8 +14,7 @@ from tests.shown import LATERO, array_of
 from tests.tiers import heavy
 from vbraille.devices.serial.wire import Encoder
 from vbraille.render.braille.models import model_of
-from vbraille.simulation.described import describe
-from vbraille.simulation.firmware import Controller
+from vbraille.simulation.firmware import Controller, describe
 from vbraille.simulation.hand import Sweep
 from vbraille.simulation.pty import Port
 from vbraille.simulation.simulator import Simulator

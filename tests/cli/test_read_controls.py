@@ -11,10 +11,10 @@ import numpy as np
 from tests.cli import program
 from vbraille.devices.serial.wire import Encoder
 from vbraille.render import STRESS2
-from vbraille.simulation.described import describe
+from vbraille.simulation.controls import Controls, parse_script
+from vbraille.simulation.firmware import describe
 from vbraille.simulation.pty import Port
 from vbraille.simulation.recorded import Recorded
-from vbraille.simulation.script import Controls, parse_script
 from vbraille.simulation.simulator import Simulator
 
 FADE_S = 0.1

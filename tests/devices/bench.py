@@ -12,8 +12,7 @@ from vbraille.devices.saying import told
 from vbraille.devices.serial.device import begin
 from vbraille.devices.serial.port import parse_address
 from vbraille.devices.serial.wire import Decoder, Encoder
-from vbraille.simulation.described import describe
-from vbraille.simulation.firmware import Controller
+from vbraille.simulation.firmware import Controller, describe
 
 if TYPE_CHECKING:
     from collections.abc import Callable

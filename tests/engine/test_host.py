@@ -20,8 +20,7 @@ from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError, InputError
 from vbraille.render import STRESS2, VBD
-from vbraille.simulation.pointing import Pointer
-from vbraille.simulation.steering import BeAt, ReadLine, Steering
+from vbraille.simulation.steering import BeAt, Pointer, ReadLine, Steering
 
 PATIENCE_S = 60.0
 ROOM = STRESS2.style.room(STRESS2.display, 26)  # lines of so many cells

@@ -22,8 +22,7 @@ from vbraille.engine.shared import Extent
 from vbraille.live.channel import MOST_MESSAGE_BYTES, Shares, Tells, encode, open_line, to_server
 from vbraille.live.messages import PagePress, Turn
 from vbraille.live.monitor import Monitor, has_desktop
-from vbraille.simulation.pointing import Pointer
-from vbraille.simulation.steering import BeAt
+from vbraille.simulation.steering import BeAt, Pointer
 
 _MOST_S = 30.0
 

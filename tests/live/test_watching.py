@@ -22,8 +22,7 @@ from vbraille.live.ticks import _NUMBERS, TickViews
 from vbraille.live.watching import Watching
 from vbraille.render import STRESS2
 from vbraille.render.program import vibration
-from vbraille.simulation.pointing import Pointer
-from vbraille.simulation.steering import BeAt
+from vbraille.simulation.steering import BeAt, Pointer
 
 
 @pytest.fixture

@@ -13,8 +13,7 @@ from vbraille.layout.pages import Layout
 from vbraille.reading.device import OpenDevice
 from vbraille.reading.viewed import MOST_SAID, ReadView, Said
 from vbraille.render import STRESS2, VBD
-from vbraille.simulation.pointing import Pointer
-from vbraille.simulation.steering import BeAt
+from vbraille.simulation.steering import BeAt, Pointer
 from vbraille.testing import simulated_device
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.braillefiles.lines import open_brf

@@ -28,8 +28,7 @@ from vbraille.devices.serial.wire import (
     enframe,
 )
 from vbraille.display import Display
-from vbraille.simulation.described import describe
-from vbraille.simulation.firmware import MARK_MM, Controller
+from vbraille.simulation.firmware import MARK_MM, Controller, describe
 
 
 def test_before_hello_it_is_silent_and_at_rest(bench):

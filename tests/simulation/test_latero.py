@@ -12,12 +12,10 @@ from tests.tiers import by_tier
 from vbraille.carriers import latero as arms
 from vbraille.devices.latero.wire import parse_answer
 from vbraille.errors import InputError
+from vbraille.simulation.controls import Press, parse_script
 from vbraille.simulation.lateroboard import LateroBoard
-from vbraille.simulation.laterosim import LateroFaults, LateroSimulator, Network
-from vbraille.simulation.pressing import Press
-from vbraille.simulation.script import parse_script
+from vbraille.simulation.laterosim import OFFSETS, LateroFaults, LateroSimulator, Network, Tray
 from vbraille.simulation.specs import parse_hand
-from vbraille.simulation.tray import OFFSETS, Tray
 
 PATIENCE_S = 20.0
 

@@ -17,10 +17,9 @@ from vbraille.engine.clock import ManualClock
 from vbraille.errors import InputError
 from vbraille.render import STRESS2
 from vbraille.simulation.motion import Motion
-from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulated import HELD_MM_S, SimulatedDevice
-from vbraille.simulation.steering import BeAt, ReadLine, Steering
+from vbraille.simulation.steering import BeAt, Pointer, ReadLine, Steering
 from vbraille.testing import simulated_device
 
 SPAN_MM = STRESS2.display.span_mm
@@ -98,7 +97,7 @@ def test_what_is_being_written_is_taken_when_it_is_whole(ends):
 def test_a_hold_ends_with_the_process_that_holds(ends, reaped):
     ours, theirs = ends
     program = (
-        "import sys; from vbraille.simulation.pointing import Pointer;"
+        "import sys; from vbraille.simulation.steering import Pointer;"
         "from vbraille.simulation.steering import BeAt;"
         "Pointer(int(sys.argv[1])).hold(BeAt(7.0)); print('held', flush=True); sys.stdin.read()"
     )

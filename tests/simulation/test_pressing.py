@@ -6,7 +6,7 @@ from tests.engine.test_loop import info
 from vbraille.devices.events import Button, Knob
 from vbraille.engine.clock import ManualClock
 from vbraille.errors import InputError
-from vbraille.simulation.pressing import Press, held, parse_press
+from vbraille.simulation.controls import Press, held, parse_press
 from vbraille.simulation.simulated import SimulatedDevice, open_simulated
 
 

@@ -3,8 +3,14 @@
 import pytest
 
 from vbraille.errors import InputError
-from vbraille.simulation.pressing import SHORT_S, Press
-from vbraille.simulation.script import ControlEvent, Controls, load_script, parse_script
+from vbraille.simulation.controls import (
+    SHORT_S,
+    ControlEvent,
+    Controls,
+    Press,
+    load_script,
+    parse_script,
+)
 
 SCRIPT = """# what a finger does
 2.5s press 1

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vbraille.engine.spawning import Spawned
-    from vbraille.simulation.pointing import Pointer
-    from vbraille.simulation.steering import Steering
+    from vbraille.simulation.steering import Pointer, Steering
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -160,7 +159,7 @@ def _call(argv: Sequence[str] | None) -> int:
 
 def _pointer() -> Pointer:
     """Make what a page of the live view may hold a simulated hand by."""
-    from vbraille.simulation.pointing import Pointer
+    from vbraille.simulation.steering import Pointer
 
     return Pointer()
 

@@ -13,9 +13,8 @@ import numpy as np
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.constants import NS_PER_S
 from vbraille.engine.engine import place_of
-from vbraille.engine.record import columns_of, tick_dtype
+from vbraille.engine.record import Tally, columns_of, tick_dtype
 from vbraille.engine.state import LoopState
-from vbraille.engine.tally import Tally
 from vbraille.engine.ticks import POSE_THETA, POSE_X, POSED
 from vbraille.errors import InputError
 from vbraille.simulation.recorded import Recorded

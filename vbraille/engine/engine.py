@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from vbraille.devices.events import Event
     from vbraille.display import Display
-    from vbraille.engine.tally import Tally
+    from vbraille.engine.record import Tally
     from vbraille.render.program import Program
 
 

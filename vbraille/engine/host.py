@@ -17,9 +17,9 @@ from vbraille.devices.events import Back, Stalled, from_json
 from vbraille.display import Display
 from vbraille.engine import shared
 from vbraille.engine.engine import place_of
+from vbraille.engine.record import Tally
 from vbraille.engine.ring import RingReader
 from vbraille.engine.spawning import spawn
-from vbraille.engine.tally import Tally
 from vbraille.errors import DeviceError, InputError, VbrailleError
 from vbraille.files import settings_path
 from vbraille.logs import kept, tracebacks_wanted

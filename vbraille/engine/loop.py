@@ -9,10 +9,9 @@ import numpy as np
 from vbraille.devices.serial.lending import example
 from vbraille.engine import serialtick
 from vbraille.engine.constants import FADE_S, IDLE_S, NS_PER_S
-from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK, Flag
+from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK, Flag, Tally
 from vbraille.engine.ring import Ring
 from vbraille.engine.state import LoopState
-from vbraille.engine.tally import Tally
 from vbraille.engine.ticks import POSE_THETA, POSE_X, POSE_Y, POSED
 from vbraille.errors import DeviceError
 from vbraille.pose import Pose

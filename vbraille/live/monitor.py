@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from vbraille.engine.shared import Extent
     from vbraille.live.messages import PagePress, Turn
-    from vbraille.simulation.pointing import Pointer
+    from vbraille.simulation.steering import Pointer
 
 
 def has_desktop() -> bool:

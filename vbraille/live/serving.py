@@ -35,7 +35,7 @@ from vbraille.live.server import LiveServer
 from vbraille.live.ticks import TickViews
 from vbraille.live.watching import Watching
 from vbraille.logs import keep
-from vbraille.simulation.pointing import Pointer
+from vbraille.simulation.steering import Pointer
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:

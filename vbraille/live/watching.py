@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from vbraille.live.messages import Map, Next, PlayedEvent
     from vbraille.live.sources import Steering
     from vbraille.live.ticks import TickViews
-    from vbraille.simulation.pointing import Pointer
+    from vbraille.simulation.steering import Pointer
 
 # A picture that is just being posted is looked at again; in between the poster needs some µs.
 _TAKES: Final = 20

@@ -45,13 +45,12 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
+    from vbraille.engine.record import Tally
     from vbraille.engine.shared import Extent
     from vbraille.engine.spawning import Spawned
-    from vbraille.engine.tally import Tally
     from vbraille.layout.pages import Layout, Line
     from vbraille.render.braille.style import BrailleStyle, StyleChanges
-    from vbraille.simulation.pointing import Pointer
-    from vbraille.simulation.steering import Steering
+    from vbraille.simulation.steering import Pointer, Steering
 
 HAND = "sweep:60"
 _POLL_S = 0.02

@@ -22,8 +22,8 @@ from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.given import answers_from
 from vbraille.sessions.running.markers import Markers, parse_markers
 from vbraille.sessions.running.reader import seed_of
-from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.specs import device_spec, has_hand, refuse_hand, steering_of
+from vbraille.simulation.steering import Pointer
 from vbraille.wording import setting
 
 if TYPE_CHECKING:

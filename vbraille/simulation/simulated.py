@@ -13,14 +13,13 @@ from vbraille.devices.base import Device
 from vbraille.devices.events import Button, HandHeld, Knob
 from vbraille.errors import InputError, check_range
 from vbraille.pose import Pose
+from vbraille.simulation.controls import MOST_BUTTONS, held, parse_presses
 from vbraille.simulation.hand import STILL_S, Still
 from vbraille.simulation.motion import Motion
 from vbraille.simulation.paging import Area
-from vbraille.simulation.pointing import Pointer
-from vbraille.simulation.pressing import MOST_BUTTONS, held, parse_presses
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
-from vbraille.simulation.steering import BeAt, GlideTo, ReadLine, ReadPage, Steering
+from vbraille.simulation.steering import BeAt, GlideTo, Pointer, ReadLine, ReadPage, Steering
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -30,8 +29,8 @@ if TYPE_CHECKING:
 
     from vbraille.devices.events import Event
     from vbraille.display import Display
+    from vbraille.simulation.controls import Press
     from vbraille.simulation.hand import Hand
-    from vbraille.simulation.pressing import Press
     from vbraille.simulation.steering import HandOrder
 
 _Channel = TypeVar("_Channel", Steering, Pointer)

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Final
 from vbraille.devices.serial.wire import DELIMITER, MOST_FRAME_BYTES, Encoder
 from vbraille.errors import check_range
 from vbraille.simulation.carriage import Carriage
+from vbraille.simulation.controls import Controls
 from vbraille.simulation.firmware import WATCHDOG_US, Controller
-from vbraille.simulation.script import Controls
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -16,8 +16,8 @@ from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.simulation.hand import Hand
-    from vbraille.simulation.pointing import Pointer
     from vbraille.simulation.recorded import Recorded
+    from vbraille.simulation.steering import Pointer
 
 SLOW = ("slow", "device")  # names of the hand that reads slowly; the second is its older name
 STILL = "still"  # name of the hand that only moves in the live view

@@ -1,18 +1,97 @@
-"""Orders to a simulated hand, in memory that the process of its device shares.
+"""Channels of shared memory that move a simulated hand past the engine: orders, and a pose.
 
-Whoever runs a simulated device tells its hand from outside what to do next, and sees when that is
-done; the engine between the two knows nothing of it. One side gives orders and the other takes
-them; neither waits for the other. A descriptor of the memory goes into the spec of the device
-(``sim:?hand=HAND&steering=DESCRIPTOR``), and is inherited where the device is in another process.
+What is told goes into two slots in turn, each with its number and a checksum, and then the number
+of the last one is published. Neither side waits for the other: a slot that is in the writing, or
+seen in the wrong order, is taken later. `Steering` has orders, one after the other, and `Pointer` a
+pose at which a hand is held, ahead of them.
 """
 
 from __future__ import annotations
 
 import math
+import mmap
+import os
+import select
+import struct
+import weakref
 from dataclasses import astuple, dataclass
-from typing import Final
+from typing import Any, Final
+from zlib import crc32
 
-from vbraille.simulation.twoslots import TwoSlots
+_HEADER_BYTES: Final = 64
+_NUMBERS: Final = struct.Struct("<2q")  # checksum, and the number of what is told
+
+
+class TwoSlots:
+    """Both ends of the memory.
+
+    Parameters
+    ----------
+    purpose
+        What the memory does, such as "steers a hand".
+    form
+        Form of what is told, as `struct.Struct` takes it, without the order of its bytes.
+    spare_bytes
+        Bytes that nobody uses, by which the memory differs in size from that of another purpose.
+    descriptor
+        Descriptor of memory that another `TwoSlots` has made; None makes new memory.
+
+    Attributes
+    ----------
+    descriptor : int
+        Descriptor of the memory; the `TwoSlots` that made it closes it.
+    memory : memoryview
+        The memory.
+    words : memoryview of int64[8]
+        Words at its start: the first is the number of what was told last, 0 before anything was,
+        and the others are free.
+
+    Raises
+    ------
+    ValueError
+        If the descriptor is that of something else.
+    """
+
+    def __init__(
+        self, purpose: str, form: str, descriptor: int | None, *, spare_bytes: int = 0
+    ) -> None:
+        self._slot = struct.Struct(f"{_NUMBERS.format}{form}")
+        size = _HEADER_BYTES + 2 * self._slot.size + spare_bytes
+        if descriptor is None:
+            descriptor = os.memfd_create(f"vbraille {purpose}")
+            weakref.finalize(self, os.close, descriptor)
+            os.ftruncate(descriptor, size)
+        self.descriptor = descriptor
+        try:
+            if os.fstat(descriptor).st_size != size:
+                raise ValueError(f"descriptor {descriptor} is not of memory that {purpose}")
+            self.memory = memoryview(mmap.mmap(descriptor, size))
+        except OSError as error:
+            raise ValueError(
+                f"descriptor {descriptor} is not of memory that {purpose}: {error.strerror}"
+            ) from None
+        self.words = self.memory[:_HEADER_BYTES].cast("q")
+
+    def tell(self, *values: float) -> None:
+        """Tell the other end something new."""
+        number = self.words[0] + 1
+        slot = self._slot.pack(0, number, *values)
+        at = self._place(number)
+        self.memory[at : at + self._slot.size] = crc32(slot).to_bytes(8, "little") + slot[8:]
+        self.words[0] = number
+
+    def take(self, number: int) -> tuple[Any, ...] | None:
+        """Take what was told under a number; None if that is being written."""
+        at = self._place(number)
+        slot = bytes(self.memory[at : at + self._slot.size])
+        checksum, there, *values = self._slot.unpack(slot)
+        if there != number or checksum != crc32(bytes(8) + slot[8:]):
+            return None
+        return tuple(values)
+
+    def _place(self, number: int) -> int:
+        return _HEADER_BYTES + number % 2 * self._slot.size
+
 
 # Words of the memory: number of the last order given, number of the last one done, and when it was.
 _GIVEN, _DONE, _DONE_NS = range(3)
@@ -181,3 +260,92 @@ class Steering:
         """Tell, for the device, when the order taken last was done, by its clock."""
         self._words[_DONE_NS] = time_ns
         self._words[_DONE] = self._taken
+
+
+_COUNT: Final = 0  # word of the memory: how often the hand was moved or let go
+# Not as large as the memory of a `Steering`, for which it cannot be taken by mistake.
+_SPARE_BYTES: Final = 8
+# So many times the holder is taken to be alive before it is looked at again: a look takes longer.
+_LOOKS: Final = 64
+
+
+class Pointer:
+    """Both ends of the channel by which somebody holds a simulated hand.
+
+    Parameters
+    ----------
+    descriptor
+        Descriptor of memory that another `Pointer` has made; None makes new memory.
+
+    Attributes
+    ----------
+    descriptor : int
+        Descriptor of the memory; the `Pointer` that made it closes it.
+
+    Raises
+    ------
+    ValueError
+        If the descriptor is that of something else.
+    """
+
+    def __init__(self, descriptor: int | None = None) -> None:
+        # What is told is whether the hand is held, by which process, and where: x, y and θ.
+        self._slots = TwoSlots("holds a hand", "2q3d", descriptor, spare_bytes=_SPARE_BYTES)
+        self.descriptor = self._slots.descriptor
+        self._words = self._slots.words
+        self._seen = 0
+        self._at: BeAt | None = None
+        self._holder = 0
+        self._looks = 0
+
+    def hold(self, at: BeAt) -> None:
+        """Hold the hand at a pose from now on; the hand goes there as fast as a hand is led."""
+        self._write(at)
+
+    def let_go(self) -> None:
+        """Let the hand go, so that it does what it was told to."""
+        self._write(None)
+
+    def at(self) -> BeAt | None:
+        """Pose at which the hand is held, the same object until it changes; None if it is not."""
+        number = self._words[_COUNT]
+        if number != self._seen:
+            self._read(number)
+        elif self._at is not None:
+            self._looks += 1
+            if self._looks >= _LOOKS:
+                self._looks = 0
+                self._at = self._at if _lives(self._holder) else None
+        return self._at
+
+    @property
+    def held(self) -> bool:
+        """Whether somebody holds the hand."""
+        return self.at() is not None
+
+    def _write(self, at: BeAt | None) -> None:
+        place = (0.0, 0.0, 0.0) if at is None else (at.x_mm, at.y_mm, at.theta_rad)
+        self._slots.tell(at is not None, os.getpid(), *place)
+
+    def _read(self, number: int) -> None:
+        """Take what was written last; nothing, if that is being written."""
+        told = self._slots.take(number)
+        if told is None:
+            return
+        held, holder, *place = told
+        self._seen, self._holder, self._looks = number, holder, 0
+        self._at = BeAt(*place) if held else None
+
+
+def _lives(process: int) -> bool:
+    """Whether a process has not ended; one that nobody has waited for yet has."""
+    try:
+        descriptor = os.pidfd_open(process)
+    except OSError:
+        return False
+    try:
+        ending = select.poll()
+        ending.register(descriptor, select.POLLIN)
+        return not ending.poll(0)
+    finally:
+        os.close(descriptor)

@@ -21,9 +21,9 @@ import numpy as np
 from vbraille.devices.base import Device, Particulars
 from vbraille.devices.events import Placing, is_known
 from vbraille.display import Display
-from vbraille.engine.advance import HOME_MM
 from vbraille.engine.checkup import NS_PER_S, Watch
 from vbraille.engine.clock import RealClock
+from vbraille.engine.watchers import HOME_MM
 from vbraille.errors import DeviceError, InputError
 
 if TYPE_CHECKING:

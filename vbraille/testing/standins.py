@@ -10,10 +10,9 @@ from vbraille.devices.serial.wire import Encoder
 from vbraille.engine.clock import RealClock
 from vbraille.render.braille.models import STRESS2, Model, model_of
 from vbraille.simulation.carriage import area_of
-from vbraille.simulation.described import describe
-from vbraille.simulation.pressing import parse_press
+from vbraille.simulation.controls import Controls, parse_press, parse_script
+from vbraille.simulation.firmware import describe
 from vbraille.simulation.pty import Port
-from vbraille.simulation.script import Controls, parse_script
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.simulator import Simulator
 from vbraille.simulation.specs import parse_hand
@@ -24,8 +23,8 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
-    from vbraille.simulation.pointing import Pointer
     from vbraille.simulation.simulator import Faults
+    from vbraille.simulation.steering import Pointer
 
 
 def simulated_device(

@@ -6,9 +6,8 @@ import threading
 import time
 from contextlib import contextmanager
 
-from vbraille.simulation.laterosim import LateroSimulator
+from vbraille.simulation.laterosim import LateroSimulator, Tray
 from vbraille.simulation.specs import parse_hand
-from vbraille.simulation.tray import Tray
 
 PATIENCE_S = 20.0
 

@@ -16,8 +16,8 @@ from vbraille.devices.latero.device import DISPLAY, open_latero
 from vbraille.devices.latero.wire import REST, full_request
 from vbraille.devices.registry import open_device
 from vbraille.errors import DeviceError, InputError
+from vbraille.simulation.controls import Press
 from vbraille.simulation.lateroboard import LateroBoard
-from vbraille.simulation.pressing import Press
 from vbraille.testing.conformance import CHECKS
 
 FELT = np.full((8, 8), 0.5)

@@ -25,7 +25,7 @@ from vbraille.cli.settled import TRANSLATION, settle
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import WorkProgress
 from vbraille.display import check_rate
-from vbraille.engine.advance import EndOfLine
+from vbraille.engine.watchers import EndOfLine
 from vbraille.errors import InputError
 from vbraille.newfile import new_file
 from vbraille.reading.handwatch import too_fast_note

@@ -13,10 +13,9 @@ from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
 from vbraille.render.braille.models import MODELS
 from vbraille.simulation.carriage import area_of
-from vbraille.simulation.described import describe
-from vbraille.simulation.pressing import parse_presses
+from vbraille.simulation.controls import Controls, load_script, parse_presses
+from vbraille.simulation.firmware import describe
 from vbraille.simulation.pty import Link, Port
-from vbraille.simulation.script import Controls, load_script
 from vbraille.simulation.simulator import Defect, Faults, Simulator
 from vbraille.simulation.specs import parse_hand
 

@@ -12,11 +12,9 @@ from vbraille.devices.latero.wire import BUTTONS, PORT
 from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
 from vbraille.render.braille.models import LATERO
-from vbraille.simulation.laterosim import WAIT_S, LateroFaults, LateroSimulator
-from vbraille.simulation.pressing import parse_presses
-from vbraille.simulation.script import load_script
+from vbraille.simulation.controls import load_script, parse_presses
+from vbraille.simulation.laterosim import WAIT_S, LateroFaults, LateroSimulator, Tray
 from vbraille.simulation.specs import parse_hand
-from vbraille.simulation.tray import Tray
 
 if TYPE_CHECKING:
     import argparse

@@ -9,10 +9,9 @@ import numpy as np
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Button
 from vbraille.devices.saying import placing_sentence
-from vbraille.engine.advance import HOME_MM, EndOfLine
 from vbraille.engine.engine import Engine, placing_of
 from vbraille.engine.record import Flag
-from vbraille.engine.upright import Upright
+from vbraille.engine.watchers import HOME_MM, EndOfLine, Upright
 from vbraille.sessions.record import events
 from vbraille.sessions.record.traces import TraceWriter
 from vbraille.sessions.record.trajectory import first_edge_mm
