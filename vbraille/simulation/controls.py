@@ -1,4 +1,4 @@
-"""Buttons and knobs of a simulated device: by presses, by a script of times and events, and by keys.
+"""Buttons and knobs of a simulated device: presses, scripts of times and events, and keys.
 
 A script is a text with an event in each line, as in ``2.5s press 1``, ``3s release 1`` and
 ``4s knob 1 0.8``. Times are from the beginning, which is the first greeting where there is one.
