@@ -12,10 +12,10 @@ import pytest
 from websockets.sync.client import connect
 
 from tests.cli import program
+from tests.live.headers import FRAME
 from tests.playback.written import recorded
 from tests.sessions.written import written
 from tests.tiers import heavy
-from vbraille.live.messages import FRAME
 
 RECORDING = recorded()
 SESSION = written("stopped")

@@ -70,7 +70,7 @@ def test_a_recording_of_a_picture_is_played_with_the_picture(call, scene, tmp_pa
     out = tmp_path / "house.h5"
     assert call("render", scene, "--path", "spot", "--seconds", "1", "--out", out).code == 0
     played = Rendered(out)
-    state = played.state(1)
+    state = played.describe(1)
     assert state.title == "A house"
     assert (state.scene.width_mm, state.scene.height_mm) == (120, 90)
     assert state.scene.image.startswith("data:image/png;base64,")
@@ -78,7 +78,6 @@ def test_a_recording_of_a_picture_is_played_with_the_picture(call, scene, tmp_pa
     assert (state.array.travel_mm, state.array.height_mm) == (120, 90)
     assert played.piece(0).ticks["y_mm"][0] == 45
     assert played.program(1) is None
-    played.close()
 
 
 def test_what_frames_cost_is_said_and_written(call, scene, tmp_path):

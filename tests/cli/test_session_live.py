@@ -13,10 +13,10 @@ import pytest
 from websockets.sync.client import connect
 
 from tests.cli import program
+from tests.live.headers import FRAME
 from tests.sessions.sittings import MINI, of
 from tests.tiers import heavy
 from vbraille.live.messages import (
-    FRAME,
     LetGo,
     Next,
     PageHello,

@@ -8,7 +8,7 @@ import numpy as np
 from websockets.sync.client import connect
 
 from tests.cli import program
-from vbraille.live.messages import FRAME
+from tests.live.headers import FRAME
 
 ADDRESS = r"live view: (http://[0-9.:]+/)#(\S+)"
 

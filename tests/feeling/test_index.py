@@ -1,17 +1,28 @@
 """What of a scene is at a place, against asking every element."""
 
+import math
+import time
+
 import numpy as np
 import pytest
 
 from tests.render.scene.twin import opacity
 from vbraille.feeling.index import SceneIndex
 from vbraille.render.scene.assets import Assets
-from vbraille.scene.patterns import Circle, Fill, Group, Polygon, StraightLine
+from vbraille.scene.patterns import Circle, Dots, Fill, Group, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Stroke
+from vbraille.scene.strokes import Along, DotStyle, Stroke
 from vbraille.scene.textures import LinearGrating, Uniform
 
 GRATING = LinearGrating(ridge_mm=2, gap_mm=2)
+AROUND = tuple(
+    (90 + 60 * math.cos(math.tau * n / 5000), 70 + 60 * math.sin(math.tau * n / 5000))
+    for n in range(5000)
+)
+MANY = {
+    "dots": Dots(centers_mm=AROUND, dot=DotStyle(radius_mm=0.5), title="many"),
+    "polygon": Polygon(vertices_mm=AROUND, stroke=Stroke(along=Along()), title="many"),
+}
 
 
 def disc(x_mm, y_mm, radius_mm, **named):
@@ -24,15 +35,19 @@ def disc(x_mm, y_mm, radius_mm, **named):
     )
 
 
-def index_of(*elements, width_mm=100.0, height_mm=80.0, asked=None):
-    scene = Scene(canvas=Canvas(width_mm=width_mm, height_mm=height_mm), elements=elements)
+class Counted(SceneIndex):
+    """An index that counts the parts which it asks."""
 
-    def at(pattern, x_mm, y_mm):
-        if asked is not None:
-            asked.append(pattern)
-        return float(opacity(pattern, Assets(), x_mm, y_mm)[0])
+    asked = 0
 
-    return SceneIndex(scene, at)
+    def opacity(self, number, x_mm, y_mm):
+        self.asked += 1
+        return super().opacity(number, x_mm, y_mm)
+
+
+def index_of(*elements, width_mm=100.0, height_mm=80.0):
+    canvas = Canvas(width_mm=width_mm, height_mm=height_mm)
+    return Counted(Scene(canvas=canvas, elements=elements), Assets())
 
 
 def name_at(index, x_mm, y_mm):
@@ -106,21 +121,54 @@ def test_it_finds_what_asking_every_element_finds(rng):
 
 def test_asking_does_not_grow_with_the_scene():
     """Of ten thousand elements, those are asked that have their boxes at the place."""
-    asked = []
     x, y = np.meshgrid(np.arange(100) * 3.0, np.arange(100) * 3.0)
     dots = [disc(*at, 1.0, title="x") for at in zip(x.ravel(), y.ravel(), strict=True)]
-    index = index_of(*dots, width_mm=300, height_mm=300, asked=asked)
+    index = index_of(*dots, width_mm=300, height_mm=300)
     assert name_at(index, 150, 150) == "x"
-    assert len(asked) <= 4
+    assert index.asked <= 4
 
 
 def test_very_many_that_cover_everything_take_little_and_only_the_upper_ones_are_asked():
-    asked = []
     layers = [Uniform(level=0.0, title=str(n), inverted=False) for n in range(3000)]
     squares = [
         Polygon(vertices_mm=((0, 0), (290, 0), (290, 290)), stroke=Stroke(width_mm=1), title=str(n))
         for n in range(500)
     ]
-    index = index_of(*layers, *squares, width_mm=300, height_mm=300, asked=asked)
+    index = index_of(*layers, *squares, width_mm=300, height_mm=300)
     index.here(100, 250)
-    assert len(asked) <= 64
+    assert index.asked <= 64
+
+
+def test_parts_hide_what_the_twin_says_also_those_that_were_asked_for_long_ago():
+    circles = [
+        Circle(
+            center_mm=(20 + n, 40),
+            radius_mm=9,
+            stroke=Stroke(width_mm=3),
+            fill=Fill(texture=Uniform()),
+            title=f"{n}",
+        )
+        for n in range(120)
+    ]
+    index = index_of(*circles, width_mm=200, height_mm=150)
+    for x_mm in (24.0, 35.2, 140.4):
+        said = [index.opacity(number, x_mm, 41.0) for number in range(120)]
+        true = [float(opacity(circle, Assets(), x_mm, 41.0)[0]) for circle in circles]
+        assert said == pytest.approx(true, abs=1e-6)
+        assert 0 < sum(said) < len(said)
+
+
+@pytest.mark.parametrize("name", MANY)
+def test_it_takes_no_longer_where_a_pattern_has_thousands_of_parts(name):
+    few = Circle(center_mm=(90, 70), radius_mm=60, stroke=Stroke(), title="few")
+    index = index_of(few, MANY[name], width_mm=200, height_mm=150)
+
+    def least_s(number):
+        took_s = []
+        for _ in range(9):
+            began = time.thread_time()
+            index.opacity(number, 149.9, 70.0)
+            took_s.append(time.thread_time() - began)
+        return min(took_s)
+
+    assert least_s(1) < 10 * least_s(0)

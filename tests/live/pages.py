@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from websockets.sync.client import connect
 
-from vbraille.live.messages import FRAME, MAP
+from tests.live.headers import FRAME, MAP
 from vbraille.live.server import LiveServer
 
 if TYPE_CHECKING:

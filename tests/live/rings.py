@@ -8,7 +8,7 @@ import weakref
 import numpy as np
 
 from vbraille.engine import shared
-from vbraille.live.ticks import TickViews
+from vbraille.live.watching import TickViews
 
 EXTENT = shared.Extent(2, 3, 200_000, 500)
 PERIOD_NS = 1_000_000

@@ -6,10 +6,11 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.live.headers import FRAME, MAP
 from tests.live.pages import read_frame
 from tests.tiers import examples
 from vbraille.live.framing import NO_DEFLECTIONS, FrameHeader, frame_bytes, map_bytes, thinned
-from vbraille.live.messages import FRAME, FRAME_KIND, MAP, MAP_KIND, MOST_SAMPLES, VERSION
+from vbraille.live.messages import FRAME_KIND, MAP_KIND, MOST_SAMPLES, VERSION
 
 
 def test_each_number_stands_where_the_header_has_it(rng):

@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 import pytest
 
+from tests.live import headers
 from tests.live.canned import canned_frame
 from tests.live.pages import read_frame
 from vbraille.engine.record import Flag
@@ -103,9 +104,9 @@ def table_of(section, dtype):
 
 
 def test_headers():
-    table_of("Frames", messages.FRAME)
-    table_of("Maps", messages.MAP)
-    assert np.dtype(messages.FRAME).isalignedstruct is False
+    table_of("Frames", headers.FRAME)
+    table_of("Maps", headers.MAP)
+    assert np.dtype(headers.FRAME).isalignedstruct is False
 
 
 def test_flags():

@@ -13,7 +13,7 @@ from PIL import Image
 from tests.shown import LATERO
 from tests.tiers import examples
 from vbraille.live import maps
-from vbraille.render import STRESS2, VBD
+from vbraille.render import STRESS2, VBD, work
 from vbraille.render.program import vibration
 
 MASKS = [np.array(cells, np.uint8) for cells in ([0x3F, 0x01, 0, 0x1A], [0x07], [0, 0x38])]
@@ -36,15 +36,8 @@ def places_of(display, x_mm, theta_rad=0.0):
 
 def at_places(program, places_mm, line=0):
     """What a map says at places of actuators."""
-    rows = program.shape[0]
     return np.array(
-        [
-            [
-                maps.line_map(program, start_mm=place, end_mm=place)[line * rows + row, 0]
-                for place in places
-            ]
-            for row, places in enumerate(places_mm)
-        ]
+        [maps.deflections_at(program, at)[line, row] for row, at in enumerate(places_mm)]
     )
 
 
@@ -70,16 +63,16 @@ def test_a_page_has_the_rows_of_each_line(line):
         np.testing.assert_allclose(said, frame, atol=1 / 255 / 100)
 
 
-def test_each_column_is_for_its_place():
-    found = maps.line_map(LINES["stress2"], start_mm=-3.0, end_mm=9.0, step_mm=0.25)
-    assert found.shape == (6, 49)
+def test_each_place_is_for_itself():
+    places = np.linspace(-3.0, 9.0, 49)
+    found = maps.deflections_at(LINES["stress2"], places)
+    assert found.shape == (1, 6, 49)
     assert found.dtype == np.float32
     for column in (0, 13, 48):
-        place = -3.0 + 0.25 * column
-        alone = maps.line_map(LINES["stress2"], start_mm=place, end_mm=place)
-        assert (found[:, column] == alone[:, 0]).all()
+        alone = maps.deflections_at(LINES["stress2"], places[column : column + 1])
+        assert (found[:, :, column] == alone[:, :, 0]).all()
     assert found.max() > 0.9
-    assert (found[:, 0] == 0).all()
+    assert (found[:, :, 0] == 0).all()
 
 
 @pytest.mark.parametrize(
@@ -101,20 +94,21 @@ def test_a_png_is_to_scale_and_rest_is_white(program, lines):
 
 
 def test_a_pixel_is_the_deflection_of_its_row_and_place():
-    program = LINES["stress2"]
-    found = maps.line_map(program, start_mm=0, end_mm=20)
-    shape = maps.shape_of(program, 0.0)
-    for bits, top in ((8, 255), (16, 65535)):
-        pixels = np.asarray(Image.open(io.BytesIO(maps.to_png(found, shape, title="t", bits=bits))))
-        middle = shape.line_mm / 2 + (np.arange(6) - 2.5) * shape.row_mm
-        drawn = 1 - pixels[(middle / shape.step_mm).astype(int)] / top
-        np.testing.assert_allclose(drawn, found, atol=0.51 / top)
+    program, geometry = LINES["stress2"], STRESS2.style.geometry
+    pixels = np.asarray(Image.open(io.BytesIO(maps.picture(program, "png", "t"))))
+    places = maps.STEP_MM * np.arange(pixels.shape[1]) - geometry.cell_pitch_mm
+    (found,) = maps.deflections_at(program, places)
+    middle = geometry.line_pitch_mm / 2 + (np.arange(6) - 2.5) * STRESS2.display.row_pitch_mm
+    drawn = 1 - pixels[(middle / maps.STEP_MM).astype(int)] / 255
+    np.testing.assert_allclose(drawn, found, atol=0.51 / 255)
 
 
 def test_what_is_not_known_is_white():
-    found = np.full((1, 30), np.nan, np.float32)
-    image = Image.open(io.BytesIO(maps.to_png(found, maps.MapShape(1), title="t")))
-    assert (np.asarray(image) == 255).all()
+    program = LINES["vbd"].with_anchor(0.0)
+    program.numbers[work.IDLE : work.IDLE + 1] = np.nan
+    image = Image.open(io.BytesIO(maps.picture(program, "png", "t")))
+    assert not np.isfinite(maps.deflections_at(program, np.arange(-5.0, 0.0))).all()
+    assert (np.asarray(image)[:, 0] == 255).all()
 
 
 @pytest.mark.parametrize("title", ["plain", "a <b> & 'c'", "bell \x07 and \ud800", ""])
@@ -142,17 +136,7 @@ def test_an_svg_is_well_formed_and_in_millimetres(title):
 def test_what_has_no_map_is_refused():
     with pytest.raises(ValueError, match="vibration has no map"):
         maps.picture(vibration(STRESS2.display), "png", "t")
-    with pytest.raises(ValueError, match="vibration has no map"):
-        maps.line_map(vibration(STRESS2.display), start_mm=0, end_mm=1)
     with pytest.raises(ValueError, match="a png or an svg"):
         maps.picture(PAGE, "gif", "t")
-    with pytest.raises(ValueError, match="not possible"):
-        maps.line_map(PAGE, start_mm=1, end_mm=0)
-    with pytest.raises(ValueError, match="longer step"):
-        maps.line_map(PAGE, start_mm=0, end_mm=1e9)
-    with pytest.raises(ValueError, match="a map of 7 rows"):
-        maps.to_png(np.zeros((7, 2)), maps.MapShape(6), title="t")
-    with pytest.raises(ValueError, match="8 or 16"):
-        maps.to_png(np.zeros((6, 2)), maps.MapShape(6), title="t", bits=4)
-    with pytest.raises(ValueError, match="step_mm is 0"):
-        maps.MapShape(6, step_mm=0)
+    with pytest.raises(ValueError, match="too large"):
+        maps.deflections_at(PAGE, np.zeros(maps.MOST_PIXELS // 18 + 1))

@@ -18,8 +18,7 @@ from vbraille.engine.record import FLOATS, INTS, tick_dtype
 from vbraille.engine.shared import Extent
 from vbraille.errors import InputError
 from vbraille.live.messages import MOST_SAMPLES, LetGo, Map, Next, PagePress, Point, Turn
-from vbraille.live.ticks import _NUMBERS, TickViews
-from vbraille.live.watching import Watching
+from vbraille.live.watching import _NUMBERS, TickViews, Watching
 from vbraille.render import STRESS2
 from vbraille.render.program import vibration
 from vbraille.simulation.steering import BeAt, Pointer

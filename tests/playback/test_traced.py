@@ -11,7 +11,6 @@ from tests.sessions.written import ON_DEVICE, written
 from vbraille.errors import InputError, VbrailleError
 from vbraille.live.messages import Map, Next
 from vbraille.playback import open_recording
-from vbraille.playback.playback import Playback
 from vbraille.playback.traced import Traced
 from vbraille.sessions.record import replay
 from vbraille.sessions.record.folder import load
@@ -34,11 +33,11 @@ def sent(folder):
 def test_each_frame_is_what_the_actuators_had_forwards_and_backwards(name):
     path = written(name)
     ticks, frames = sent(path)
-    reel = Traced(path)
-    pieces = [reel.piece(number).ticks for number in range(reel.find(1e9) + 1)]
+    source = Traced(path)
+    pieces = [source.piece(number).ticks for number in range(source.pieces)]
     times_s = np.concatenate([piece["time_s"] for piece in pieces]).tolist()
     assert len(times_s) == len(ticks)
-    viewer = Playback(reel).viewer()
+    viewer = source.viewer()
     chosen = [*range(0, len(ticks), 7), *range(len(ticks) - 1, -1, -11)]
     for n in chosen:
         if times_s[n] in times_s[n + 1 : n + 2]:

@@ -7,7 +7,8 @@ from tempfile import mkdtemp
 
 import numpy as np
 
-from vbraille.live.messages import FRAME, Next
+from tests.live.headers import FRAME
+from vbraille.live.messages import Next
 from vbraille.newfile import new_file
 from vbraille.recording import Recorder
 from vbraille.render import MAPPINGS, STRESS2, VBD, single_row

@@ -10,7 +10,8 @@ error (``-errno.EAGAIN``), as calls of the system do. An interrupted call is not
 import errno
 
 import numpy as np
-from numba import carray, njit, types
+from numba import njit, types
+from numba.np.numpy_support import carray
 
 from vbraille.caching import keep_compiled
 

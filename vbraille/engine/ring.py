@@ -46,7 +46,7 @@ class Ring:
         self.size = size
         self.published = np.frombuffer(buffer, np.int64, 1)
         self.columns = columns_of(np.frombuffer(buffer, tick_dtype(shape), size, _HEADER_BYTES))
-        self.integers = memoryview(self.columns[0])  # set one by one in half of numpy's time
+        self.integers = self.columns[0].data  # set one by one in half of numpy's time
         self._buffer = buffer
         self._shape = shape
         self.appended = 0

@@ -136,7 +136,7 @@ class LoopState:
         self._target = np.zeros(display.shape)
         self._at = np.zeros(6)
         self._scratch = scratch_for(display.shape)
-        self.done_ns = self._numbers.view(np.int64)[_STATE.names.index("done_ns") :]
+        self.done_ns = self._numbers.view(np.int64)[list(_STATE.fields or ()).index("done_ns") :]
         self._program = nothing(display)
         self._arrays = self._gathered()
         self._serials = 0

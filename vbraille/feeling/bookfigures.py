@@ -14,7 +14,6 @@ import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.feeling.commands import BOUND_FROM_TEXT
-from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import LoadedScene, check_fits, load_scene
 from vbraille.render.scene.figures import FigureAt, page_with_figures
 from vbraille.translate.documents.epub import EpubBook
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.feeling.feeler import Feeler
+    from vbraille.feeling.index import SceneIndex
     from vbraille.reading.cues import Cue
     from vbraille.reading.device import OpenDevice
     from vbraille.render.braille.style import BrailleStyle
@@ -45,37 +45,31 @@ class BookFigure:
         The picture.
     style
         How the braille of its labels is shown.
+
+    Attributes
+    ----------
+    title : str
+        Title of the picture, or the name of its file.
+    width_mm, height_mm : float
+        Size of its canvas.
     """
 
     def __init__(self, loaded: LoadedScene, style: BrailleStyle) -> None:
         self.loaded = loaded
         self.style = style
+        self.title = loaded.title
+        canvas = loaded.scene.canvas
+        self.width_mm, self.height_mm = canvas.width_mm, canvas.height_mm
         self._index: SceneIndex | None = None
-
-    @property
-    def title(self) -> str:
-        """Title of the picture, or the name of its file."""
-        return self.loaded.title
-
-    @property
-    def width_mm(self) -> float:
-        """Width of its canvas, in mm."""
-        return self.loaded.scene.canvas.width_mm
-
-    @property
-    def height_mm(self) -> float:
-        """Height of its canvas, in mm."""
-        return self.loaded.scene.canvas.height_mm
 
     def name_at(self, x_mm: float, y_mm: float) -> str:
         """Name of the element at a place of its canvas, in mm; empty if none has one there."""
         if self._index is None:
             # It loads numba, which nobody needs who comes to no figure.
-            from vbraille.feeling.opacities import Opacities
+            from vbraille.feeling.index import SceneIndex
 
-            scene = self.loaded.scene
-            opacities = Opacities(scene, self.loaded.assets)
-            self._index = SceneIndex(scene, opacities.at, self.loaded.boxes())
+            loaded = self.loaded
+            self._index = SceneIndex(loaded.scene, loaded.assets, loaded.boxes())
         found = self._index.here(x_mm, y_mm)
         return "" if found is None else found.name
 

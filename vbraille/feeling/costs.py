@@ -6,7 +6,6 @@ Lévesque 2009, 8.5.2: the time of a whole frame as a function of where the disp
 
 from __future__ import annotations
 
-import csv
 import io
 import time
 from dataclasses import dataclass
@@ -38,6 +37,7 @@ ACTUATOR_BUDGET_US: Final = FRAME_BUDGET_US / 64
 # A batch is long against the clock's resolution, and short on the way: 1 mm at 60 mm/s.
 BATCH_FRAMES: Final = 16
 REPEATS: Final = 7
+_CLOCK_LOOKS: Final = 200
 _MAP_MM: Final = 2.0
 _MOST_TILES: Final = 500
 _MOST_ELEMENTS: Final = 200
@@ -130,12 +130,14 @@ def measure(program: Program, path: PosedPath, repeats: int = REPEATS) -> Costs:
         If the path has less than one batch of frames.
     """
     at = _batches_of(path)
-    taken_us = _time_frames(program, at, repeats)
+    # A call that makes no frame takes time, too, which is no part of what frames cost.
+    empty_ns = np.median(_time_ns(program, at[:1, :0], _CLOCK_LOOKS))
+    taken_ns = np.median(_time_ns(program, at, repeats), axis=0)
     middle = at.mean(axis=1)
     return Costs(
         middle[:, work.X],
         middle[:, work.Y],
-        np.maximum(np.median(taken_us, axis=0), 0),
+        np.maximum(taken_ns - empty_ns, 0) / BATCH_FRAMES / 1000,
         program.shape[0] * program.shape[1],
         _resolution_ns() / BATCH_FRAMES / 1000,
     )
@@ -159,7 +161,7 @@ def _batches_of(path: PosedPath) -> NDArray[np.float64]:
     return at.reshape(batches, BATCH_FRAMES, 6)
 
 
-def _time_frames(program: Program, at: NDArray[np.float64], repeats: int) -> NDArray[np.float64]:
+def _time_ns(program: Program, at: NDArray[np.float64], repeats: int) -> NDArray[np.int64]:
     """Time the frames of a program, batch by batch.
 
     Parameters
@@ -173,8 +175,8 @@ def _time_frames(program: Program, at: NDArray[np.float64], repeats: int) -> NDA
 
     Returns
     -------
-    float64[repeats, batches]
-        Time of a frame in µs, without that of the call.
+    int64[repeats, batches]
+        Time of each batch in ns.
     """
     batches, frames, _ = at.shape
     parts = np.zeros(frames, np.int64)
@@ -183,33 +185,19 @@ def _time_frames(program: Program, at: NDArray[np.float64], repeats: int) -> NDA
     taken_ns = np.empty((repeats, batches), np.int64)
     numbers, table = program.numbers, program.table
     kernels.poses(numbers, table, scratch, at[0], parts, out)  # compiled, or loaded
-    empty_ns = _call_ns(program)
     now_ns = time.perf_counter_ns
     for repeat in range(repeats):
         for batch in range(batches):
             begun_ns = now_ns()
             kernels.poses(numbers, table, scratch, at[batch], parts, out)
             taken_ns[repeat, batch] = now_ns() - begun_ns
-    return (taken_ns - empty_ns) / frames / 1000
-
-
-def _call_ns(program: Program) -> float:
-    """Time of a call that makes no frame, which is no part of what frames cost."""
-    at, parts = np.zeros((0, 6)), np.zeros(0, np.int64)
-    out = np.empty((0, *program.shape), np.float32)
-    scratch = scratch_for(program.shape, program.kind)
-    taken = []
-    for _ in range(200):
-        begun_ns = time.perf_counter_ns()
-        kernels.poses(program.numbers, program.table, scratch, at, parts, out)
-        taken.append(time.perf_counter_ns() - begun_ns)
-    return float(np.median(taken))
+    return taken_ns
 
 
 def _resolution_ns() -> int:
     """Smallest step of the clock that is seen."""
     steps = []
-    for _ in range(200):
+    for _ in range(_CLOCK_LOOKS):
         first = now = time.perf_counter_ns()
         while now == first:
             now = time.perf_counter_ns()
@@ -232,15 +220,12 @@ def cost_map(costs: Costs, canvas: Canvas, step_mm: float = _MAP_MM) -> CostMap:
     step_mm = max(step_mm, canvas.width_mm / _MOST_TILES, canvas.height_mm / _MOST_TILES)
     columns = int(np.ceil(canvas.width_mm / step_mm))
     rows = int(np.ceil(canvas.height_mm / step_mm))
-    column = np.clip((costs.x_mm / step_mm).astype(int), 0, columns - 1)
-    row = np.clip((costs.y_mm / step_mm).astype(int), 0, rows - 1)
-    inside = (costs.x_mm >= 0) & (costs.x_mm <= canvas.width_mm)
-    inside &= (costs.y_mm >= 0) & (costs.y_mm <= canvas.height_mm)
-    tile = (row * columns + column)[inside]
-    sums = np.bincount(tile, costs.frame_us[inside], rows * columns)
-    counts = np.bincount(tile, minlength=rows * columns)
+    found = costs.y_mm, costs.x_mm
+    edges = np.arange(rows + 1) * step_mm, np.arange(columns + 1) * step_mm
+    sums, *_ = np.histogram2d(*found, edges, weights=costs.frame_us)
+    counts, *_ = np.histogram2d(*found, edges)
     with np.errstate(invalid="ignore"):
-        return CostMap((sums / counts).reshape(rows, columns), step_mm)
+        return CostMap(sums / counts, step_mm)
 
 
 def histogram(costs: Costs) -> list[tuple[float, float, float]]:
@@ -255,11 +240,9 @@ def histogram(costs: Costs) -> list[tuple[float, float, float]]:
 
 def to_csv(costs: Costs) -> str:
     """Write places and costs as CSV: x_mm, y_mm and frame_us."""
-    written = io.StringIO(newline="")
-    writer = csv.writer(written, lineterminator="\n")
-    writer.writerow(("x_mm", "y_mm", "frame_us"))
-    for row in np.stack((costs.x_mm, costs.y_mm, costs.frame_us), axis=-1).tolist():
-        writer.writerow(f"{value:.4f}" for value in row)
+    written = io.StringIO()
+    rows = np.stack((costs.x_mm, costs.y_mm, costs.frame_us), axis=-1)
+    np.savetxt(written, rows, "%.4f", ",", header="x_mm,y_mm,frame_us", comments="")
     return written.getvalue()
 
 

@@ -9,7 +9,6 @@ from vbraille.errors import InputError
 from vbraille.feeling.composing import at_height, compose
 from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import check_fits, load_scene
-from vbraille.feeling.opacities import Opacities
 from vbraille.reading.activity import Activity, Prompt
 from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
@@ -246,11 +245,10 @@ class Feeler(Activity):
         if found is None:
             self.cue(Cue.NOT_FOUND)
             self.say(f"element: none is called {name}; {self.key('ELEMENTS', 'e')} says them all")
-        elif self._steering is not None:
-            self.say(f"going to: {found.name}")
-            self._glide(found.center_mm, LED_MM_S)
         else:
-            self._guide = Guide(found.name, found.center_mm, down=self.display.height_mm > 0)
+            if self._steering is not None:
+                self.say(f"going to: {found.name}")
+            self._lead(found.name, found.center_mm)
 
     def cancel(self) -> None:
         """Say the way no more."""
@@ -280,11 +278,7 @@ class Feeler(Activity):
     def go_to_middle(self) -> None:
         """Go to the middle of the canvas."""
         canvas = self.loaded.scene.canvas
-        if self._steering is None:
-            middle = canvas.width_mm / 2, canvas.height_mm / 2
-            self._guide = Guide("middle", middle, down=self.display.height_mm > 0)
-        else:
-            self._glide((canvas.width_mm / 2, canvas.height_mm / 2), LED_MM_S)
+        self._lead("middle", (canvas.width_mm / 2, canvas.height_mm / 2))
 
     def forget_aim(self) -> None:
         """Have keys move the hand from where it is: somebody else has moved it."""
@@ -327,6 +321,13 @@ class Feeler(Activity):
         self._show(at_height(self._program, self._at_mm))
         self.say(f"height: {self._at_mm:.0f} mm from the top")
 
+    def _lead(self, name: str, to: tuple[float, float]) -> None:
+        """Have a simulated hand go to a place, or say the way there."""
+        if self._steering is not None:
+            self._glide(to, LED_MM_S)
+        else:
+            self._guide = Guide(name, to, down=self.display.height_mm > 0)
+
     def _glide(self, to: tuple[float, float], speed_mm_s: float) -> None:
         display = self.display
         x_mm = min(max(to[0], -display.span_mm / 2), display.travel_mm - display.span_mm / 2)
@@ -350,5 +351,4 @@ class Feeler(Activity):
         self.engine.show(program, 1)
 
     def _index_of(self, loaded: LoadedScene) -> SceneIndex:
-        scene = loaded.scene
-        return SceneIndex(scene, Opacities(scene, loaded.assets).at, loaded.boxes())
+        return SceneIndex(loaded.scene, loaded.assets, loaded.boxes())

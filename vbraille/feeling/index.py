@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from vbraille.render.scene.canvas import SceneMap
 from vbraille.scene.bounds import bounds
 from vbraille.scene.patterns import Group
+from vbraille.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
     from numpy.typing import NDArray
 
+    from vbraille.render.scene.assets import Assets
     from vbraille.scene.bounds import Box
     from vbraille.scene.patterns import AnyPattern, Image, Label
-    from vbraille.scene.scene import Scene
 
 # Ours: an element is felt where it hides half of what it stands on, or does anything if it is the
 # only one there.
@@ -27,6 +30,7 @@ _TRACE: Final = 0.02
 _TILE_MM: Final = 4.0
 _MOST_ENTRIES: Final = 2_000_000
 _MOST_LOOKED_AT: Final = 64  # of those that lie over each other, from the top
+_MOST_COMPILED: Final = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +77,8 @@ class SceneIndex:
     ----------
     scene
         A resolved scene.
-    opacity
-        Function that tells how much of what lies below it a pattern hides at a place in mm: 0 … 1.
+    assets
+        Bitmaps of its images and cells of its labels.
     known
         Boxes of images and labels.
     """
@@ -82,10 +86,12 @@ class SceneIndex:
     def __init__(
         self,
         scene: Scene,
-        opacity: Callable[[AnyPattern, float, float], float],
+        assets: Assets,
         known: Mapping[Image | Label, Box] | None = None,
     ) -> None:
-        self._opacity = opacity
+        self._scene, self._assets = scene, assets
+        # In compiled code, which thousands of dots do not hold up.
+        self._map_of = lru_cache(_MOST_COMPILED)(self._compile)
         self._known = {} if known is None else known
         width_mm, height_mm = scene.canvas.width_mm, scene.canvas.height_mm
         self._middle = width_mm / 2, height_mm / 2
@@ -113,7 +119,7 @@ class SceneIndex:
             leaf = self._leaves[at]
             if leaf.box is not None and not leaf.box.holds(x_mm, y_mm):
                 continue
-            share = self._opacity(leaf.pattern, x_mm, y_mm)
+            share = self.opacity(at, x_mm, y_mm)
             if share >= _FELT:
                 return leaf.element
             if share > most:
@@ -122,6 +128,11 @@ class SceneIndex:
             if looked_at == _MOST_LOOKED_AT:
                 break
         return found
+
+    def opacity(self, number: int, x_mm: float, y_mm: float) -> float:
+        """Tell how much of what lies below a part, by its number, it hides at a place: 0 … 1."""
+        shown = self._map_of(number)
+        return float(shown.opacity(np.array([x_mm]), np.array([y_mm]))[0, 0])
 
     def find(self, text: str) -> NamedElement | None:
         """Find an element by its id or title, or by what one of these begins with or has in it."""
@@ -138,6 +149,10 @@ class SceneIndex:
                 if fits(id_) or fits(title):
                     return element
         return None
+
+    def _compile(self, number: int) -> SceneMap:
+        alone = Scene(canvas=self._scene.canvas, elements=(self._leaves[number].pattern,))
+        return SceneMap(alone, self._assets)
 
     def _leaves_of(self, pattern: AnyPattern, above: NamedElement | None) -> Iterator[_Leaf]:
         """Patterns within one that are no groups, with the elements by whose names they go."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from vbraille.simulation.recorded import load_recorded
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from vbraille.scene.scene import Canvas
@@ -71,8 +73,11 @@ class PosedPath:
         return PosedPath(*(array[chosen] for array in arrays))
 
 
-_SPOT = ("at", "radius", "seconds")
-_WIDE = ("spacing", "sway", "unsteady", "back")
+# Options of each path, by the names that `vbraille.simulation.exploring` has for them.
+_SPOT: Final = {"radius": "radius_mm", "seconds": "duration_s", "speed": "speed_mm_s"}
+_WIDE: Final = {"spacing": "spacing_mm", "speed": "speed_mm_s"}
+_DISTURBED: Final = {"sway": "sway_mm", "unsteady": "speed_change", "back": "back_mm"}
+_OPTIONS: Final = {"spot": {"at", *_SPOT}, "wide": _WIDE | _DISTURBED, "recorded": ()}
 
 
 def path_of(options: PathOptions, canvas: Canvas, span_mm: float, rate_hz: float) -> PosedPath:
@@ -96,7 +101,7 @@ def path_of(options: PathOptions, canvas: Canvas, span_mm: float, rate_hz: float
     """
     kind, _, rest = options.name.partition(":")
     if kind == "recorded" and rest:
-        _refuse(options, "recorded", (*_SPOT, *_WIDE, "speed"))
+        _refuse(options, kind)
         motion = load_recorded(rest).motion()
         t_s = _times(motion.duration_s, rate_hz)
         places = (motion.x_mm, motion.y_mm, motion.theta_rad)
@@ -119,40 +124,31 @@ def _times(duration_s: float, rate_hz: float) -> NDArray[np.float64]:
 
 
 def _course(options: PathOptions, canvas: Canvas) -> ExploringPath:
-    speed_mm_s = 60.0 if options.speed is None else options.speed
     try:
         if options.name == "spot":
-            _refuse(options, "spot", _WIDE)
-            middle = canvas.width_mm / 2, canvas.height_mm / 2
-            return spot(
-                *(middle if options.at is None else parse_place(options.at)),
-                radius_mm=5.0 if options.radius is None else options.radius,
-                speed_mm_s=speed_mm_s,
-                duration_s=10.0 if options.seconds is None else options.seconds,
-            )
+            _refuse(options, "spot")
+            at = canvas.width_mm / 2, canvas.height_mm / 2
+            at = at if options.at is None else parse_place(options.at)
+            return spot(*at, **_given(options, _SPOT))
         if options.name == "wide":
-            _refuse(options, "wide", _SPOT)
-            disturbance = Disturbance(
-                sway_mm=options.sway or 0.0,
-                speed_change=options.unsteady or 0.0,
-                back_mm=options.back or 0.0,
-            )
-            return wide(
-                canvas.width_mm,
-                canvas.height_mm,
-                spacing_mm=10.0 if options.spacing is None else options.spacing,
-                speed_mm_s=speed_mm_s,
-                disturbance=disturbance,
-            )
+            _refuse(options, "wide")
+            disturbance = Disturbance(**_given(options, _DISTURBED))
+            size = canvas.width_mm, canvas.height_mm
+            return wide(*size, disturbance=disturbance, **_given(options, _WIDE))
     except ValueError as error:
         raise InputError(str(error)) from None
     raise InputError(f"there is no path {options.name!r}; give wide, spot or recorded:FILE.csv")
 
 
-def _refuse(options: PathOptions, name: str, others: tuple[str, ...]) -> None:
+def _given(options: PathOptions, names: Mapping[str, str]) -> dict[str, float]:
+    """Options that were given, by other names."""
+    values = {theirs: getattr(options, ours) for ours, theirs in names.items()}
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def _refuse(options: PathOptions, name: str) -> None:
     """Refuse options that a path does not have."""
-    for other in others:
-        if getattr(options, other) is not None:
-            raise InputError(
-                f"{setting(other)} is not for the path {name}; leave {setting(other)} out"
-            )
+    for field in fields(options)[1:]:
+        if field.name not in _OPTIONS[name] and getattr(options, field.name) is not None:
+            other = setting(field.name)
+            raise InputError(f"{other} is not for the path {name}; leave {other} out")

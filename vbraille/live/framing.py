@@ -1,4 +1,7 @@
-"""Frames and maps as bytes, as `vbraille.live.messages` describes them."""
+"""Frames and maps as bytes; `docs/live-view.md` has their headers as tables.
+
+A frame is its header, the deflections, and samples of the ticks since the frame before.
+"""
 
 from __future__ import annotations
 
@@ -18,22 +21,38 @@ from vbraille.live.messages import (
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-# `messages.FRAME` and `messages.MAP` again: packing so takes a tenth of the time that numpy needs.
+# Kind, version, number of samples, `FrameHeader`, rows, columns; and kind, form, size of the file.
+# Packing so takes a tenth of the time that numpy needs.
 _FRAME: Final = struct.Struct("<BBHIIIIIdd8fHHI")
 _MAP: Final = struct.Struct("<BBHI")
 _U32: Final = 0xFFFFFFFF
-SAMPLE_BYTES: Final = 12
+_SAMPLE_BYTES: Final = 12
 
 
 class FrameHeader(NamedTuple):
-    """What `vbraille.live.messages.FRAME` says beside the sizes of what follows.
+    """What the header of a frame says beside the sizes of what follows.
 
     Parameters
     ----------
-    flags, state, line, part, late, tick, time_s, x_mm, y_mm, theta_rad, vx_mm_s, lateness_us
-        As in `vbraille.live.messages.FRAME`.
-    work_us, share, age_ms
-        As in `vbraille.live.messages.FRAME`.
+    flags
+        Bits of `vbraille.engine.record.Flag`.
+    state
+        Number of the state that the frame belongs to.
+    line, part
+        Number of what is under the hand, 0 before the first, and which part of it is shown.
+    late
+        Deadlines missed so far.
+    tick, time_s
+        Number of the tick, from 0, and when it woke; in a recording, seconds from its start.
+    x_mm, y_mm, theta_rad, vx_mm_s
+        Place of the array's centre on the canvas, NaN where it is not known, how far it is turned,
+        and the hand's velocity along x.
+    lateness_us, work_us
+        From the deadline to the waking, and from then until the frame was written.
+    share
+        How much of a change has faded in: 1 is all.
+    age_ms
+        From the tick until the frame was sent; 0 in a recording.
     """
 
     flags: int = 0
@@ -54,13 +73,12 @@ class FrameHeader(NamedTuple):
 
 
 NO_DEFLECTIONS: Final = np.zeros((0, 0), np.float32)
-NO_SAMPLES: Final = np.zeros((0, 3), np.float32)
 
 
 def frame_bytes(
     header: FrameHeader,
     deflections: NDArray[np.float32] = NO_DEFLECTIONS,
-    samples: NDArray[np.float32] = NO_SAMPLES,
+    samples: NDArray[np.float32] = NO_DEFLECTIONS,
 ) -> bytes:
     """Bytes of a frame.
 
@@ -82,7 +100,7 @@ def joined(
 ) -> bytes:
     """Bytes of a frame of which all but the header is bytes already, as `frame_bytes` takes it."""
     flags, state, line, part, late, *numbers = header
-    count = len(samples) // SAMPLE_BYTES
+    count = len(samples) // _SAMPLE_BYTES
     sizes = FRAME_KIND, VERSION, count, flags, state & _U32, line & _U32, part & _U32, late & _U32
     return b"".join((_FRAME.pack(*sizes, *numbers, *shape, 0), deflections, samples))
 

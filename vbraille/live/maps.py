@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import base64
 import io
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -22,109 +21,57 @@ if TYPE_CHECKING:
 
     from vbraille.render.program import Program
 
-STEP_MM = 0.1
-# A map is no larger, whatever is asked for.
-MOST_PIXELS = 50_000_000
-_BLACK = {8: 255, 16: 65_535}
+STEP_MM: Final = 0.1  # side of a pixel
+# A map is no larger.
+MOST_PIXELS: Final = 50_000_000
 # A single row of actuators is drawn so high, as a share of the distance between lines.
-_SINGLE_ROW = 0.4
-_BAR_MM = 10.0
-_MAPLESS = "a {} has no map of lines; vbraille map draws tactile pictures"
-_NOTE = "White is rest, black is full deflection."
+_SINGLE_ROW: Final = 0.4
+_BAR_MM: Final = 10.0
 
 
-@dataclass(frozen=True, slots=True)
-class MapShape:
-    """How a deflection map lies on the canvas.
-
-    Parameters
-    ----------
-    rows
-        Number of actuator rows of each line.
-    start_mm
-        Place of the first column of pixels.
-    step_mm
-        Distance between columns of pixels.
-    row_mm
-        Height that an actuator row is drawn with.
-    line_mm
-        Distance between lines.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range.
-    """
-
-    rows: int
-    start_mm: float = 0.0
-    step_mm: float = STEP_MM
-    row_mm: float = 1.0
-    line_mm: float = 10.0
-
-    def __post_init__(self) -> None:
-        if self.rows < 1:
-            raise ValueError(f"a map of {self.rows} rows is not possible; it has at least 1")
-        for name in ("step_mm", "row_mm", "line_mm"):
-            if not 0 < getattr(self, name) < 1000:
-                raise ValueError(f"{name} is {getattr(self, name):g}; it must be above 0 to 1000")
-
-
-def line_map(
-    program: Program, *, start_mm: float, end_mm: float, step_mm: float = STEP_MM
-) -> NDArray[np.float32]:
-    """Make the map of a line or a page of braille, from its program alone.
+def deflections_at(program: Program, x_mm: NDArray[np.float64]) -> NDArray[np.float32]:
+    """Tell what actuators do at places of a line or a page of braille, from its program alone.
 
     Parameters
     ----------
     program
         The line or page, compiled.
-    start_mm, end_mm, step_mm
-        Places on the canvas: column i of the map is for ``start_mm + i · step_mm``.
+    x_mm : float64[places]
+        Places on the canvas.
 
     Returns
     -------
-    float32[rows, places] or float32[lines · rows, places]
+    float32[lines, rows, places]
         Deflection, 0 … 1, of an actuator of each row that stands at each place itself, whichever
-        column it is in. Those of a page are line after line.
+        column it is in.
 
     Raises
     ------
     ValueError
-        If the places are no stretch of the canvas, are too many, or the picture is no braille.
+        If these are too many places.
     """
-    if program.kind not in (ProgramKind.LINE, ProgramKind.PAGE):
-        raise ValueError(_MAPLESS.format(program.kind.name.lower()))
-    if not (step_mm > 0 and end_mm >= start_mm and np.isfinite([start_mm, end_mm]).all()):
-        raise ValueError(
-            f"a map from {start_mm:g} to {end_mm:g} mm in steps of {step_mm:g} mm is not possible"
-        )
-    places = int((end_mm - start_mm) / step_mm + 1e-9) + 1
-    lines = lines_of(program)
-    if places * lines * program.shape[0] > MOST_PIXELS:
-        raise ValueError(f"the map would have {places} columns; choose a longer step")
-    x_mm = start_mm + step_mm * np.arange(places, dtype=np.float64)
+    paged = program.kind is ProgramKind.PAGE
+    lines = int(program.numbers[work.LINES]) if paged else 1
+    rows = program.shape[0]
+    if x_mm.size * lines * rows > MOST_PIXELS:
+        raise ValueError(f"the map would have {x_mm.size} columns, which is too large")
     # The left column tells its own place then. What it does, all columns do at that place.
     left = program.with_anchor(0.0)
-    if program.kind is ProgramKind.LINE:
-        return np.ascontiguousarray(left.path(x_mm)[:, :, 0].T)
-    made = np.empty((lines, program.shape[0], places), np.float32)
+    if not paged:
+        return left.path(x_mm)[:, :, 0].T[None]
+    made = np.empty((lines, rows, x_mm.size), np.float32)
     for line in range(lines):
         y_mm = (line + 0.5) * float(program.numbers[work.LINE_PITCH])
-        _, frames = left.poses(x_mm, np.full(places, y_mm))
+        _, frames = left.poses(x_mm, np.full(x_mm.size, y_mm))
         made[line] = frames[:, :, 0].T
-    return made.reshape(-1, places)
-
-
-def lines_of(program: Program) -> int:
-    """Count the lines of a program of braille."""
-    return int(program.numbers[work.LINES]) if program.kind is ProgramKind.PAGE else 1
+    return made
 
 
 def picture(program: Program, form: str, title: str, note: str = "") -> bytes:
-    """Make the map of the whole line or page of a program, as a file.
+    """Make the map of the whole line or page of a program, as a file to scale.
 
-    It begins and ends a cell beside the braille.
+    It begins and ends a cell beside the braille. Each line has its actuator rows as bands around
+    its middle. A PNG has shades of grey, and an SVG has such a PNG with a scale bar of 10 mm below.
 
     Parameters
     ----------
@@ -135,106 +82,79 @@ def picture(program: Program, form: str, title: str, note: str = "") -> bytes:
     title
         Title of the picture.
     note
-        Sentence that goes to its description.
+        Sentence for those who do not see the picture. The size and what the shades mean are added.
 
     Raises
     ------
     ValueError
-        If the form is another one, or the picture is no braille.
+        If the form is another one, the picture is no braille, or it is too long.
     """
     if form not in ("png", "svg"):
         raise ValueError(f"a map is a png or an svg, not {form!r}")
     if program.kind not in (ProgramKind.LINE, ProgramKind.PAGE):
-        raise ValueError(_MAPLESS.format(program.kind.name.lower()))
+        kind = program.kind.name.lower()
+        raise ValueError(f"a {kind} has no map of lines; vbraille map draws tactile pictures")
     cell_mm = float(program.numbers[work.CELL_PITCH]) or _BAR_MM  # no braille, no cells
     cells = max(int(program.numbers[work.SLOTS]) // 2 - 2, 0)
-    shape = shape_of(program, -cell_mm)
-    deflections = line_map(program, start_mm=-cell_mm, end_mm=(cells + 1) * cell_mm)
-    if form == "png":
-        return to_png(deflections, shape, title=title, desc=note)
-    return to_svg(deflections, shape, title=title, desc=note)
+    x_mm = STEP_MM * np.arange(int((cells + 2) * cell_mm / STEP_MM + 1e-9) + 1) - cell_mm
+    grey = _grey(program, deflections_at(program, x_mm))
+    width_mm, height_mm = grey.shape[1] * STEP_MM, grey.shape[0] * STEP_MM
+    title = _clean(title)
+    shown = (
+        f"Deflection of the actuators from {x_mm[0]:g} to {x_mm[-1]:g} mm; the picture is "
+        f"{width_mm:g} mm × {height_mm:g} mm, {STEP_MM:g} mm a pixel. "
+        f"White is rest, black is full deflection."
+    )
+    shown = _clean(f"{note} {shown}" if note else shown)
+    png = _png(grey, title, shown)
+    return png if form == "png" else _svg(png, x_mm[0], width_mm, height_mm, title, shown)
 
 
-def shape_of(program: Program, start_mm: float, step_mm: float = STEP_MM) -> MapShape:
-    """Tell how the map of a program that begins at a place lies on the canvas."""
-    rows = program.shape[0]
+def _grey(program: Program, deflections: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Draw rows as bands, each line's in the middle of its line; what is not known is white."""
+    lines, rows, places = deflections.shape
     line_mm = float(program.numbers[work.LINE_PITCH]) or _BAR_MM
     row_mm = float(program.numbers[work.ROW_PITCH])
     if rows == 1 or not row_mm > 0:  # then the distance of rows has no meaning
         row_mm = _SINGLE_ROW * line_mm
     # An array that is higher than a line is drawn within its line: the whole array shows that one.
-    return MapShape(rows, start_mm, step_mm, min(row_mm, line_mm / rows), line_mm)
+    row_mm = min(row_mm, line_mm / rows)
+    high = max(round(line_mm / STEP_MM), 1)
+    edges_mm = line_mm / 2 + row_mm * (np.arange(rows + 1) - rows / 2)
+    edges = np.clip(np.rint(edges_mm / STEP_MM).astype(int), 0, high)
+    inked = np.clip(np.nan_to_num(deflections.astype(np.float64)), 0, 1)
+    grey = (255 - np.rint(255 * inked)).astype(np.uint8)
+    canvas = np.full((lines, high, places), 255, np.uint8)
+    for row in range(rows):
+        canvas[:, edges[row] : edges[row + 1]] = grey[:, row, None]
+    return canvas.reshape(lines * high, places)
 
 
-def to_png(
-    deflections: NDArray[np.floating],
-    shape: MapShape,
-    *,
-    title: str,
-    desc: str = "",
-    bits: int = 8,
-) -> bytes:
-    """Write a map as a PNG in shades of grey, to scale.
-
-    Parameters
-    ----------
-    deflections : float[lines · rows, places]
-        A map as `line_map` makes it; NaN, which is not known, is white.
-    shape
-        How it lies on the canvas; pixels are square.
-    title, desc
-        Words that the file carries. The size and what the shades mean are added.
-    bits
-        Bits of a pixel, 8 or 16.
-
-    Raises
-    ------
-    ValueError
-        If the map does not have whole lines, or there are no such PNGs.
-    """
+def _png(grey: NDArray[np.uint8], title: str, desc: str) -> bytes:
     from PIL import Image
     from PIL.PngImagePlugin import PngInfo
 
-    if bits not in _BLACK:
-        raise ValueError(f"a map has 8 or 16 bits a pixel, not {bits}")
-    grey = _on_canvas(deflections, shape, _BLACK[bits])
     words = PngInfo()
-    words.add_itxt("Title", _clean(title))
-    words.add_itxt("Description", _clean(_description(deflections, shape, desc)))
+    words.add_itxt("Title", title)
+    words.add_itxt("Description", desc)
     made = io.BytesIO()
-    per_inch = 25.4 / shape.step_mm
-    image = Image.fromarray(grey)
-    image.save(made, "PNG", pnginfo=words, dpi=(per_inch, per_inch))
+    per_inch = 25.4 / STEP_MM
+    Image.fromarray(grey).save(made, "PNG", pnginfo=words, dpi=(per_inch, per_inch))
     return made.getvalue()
 
 
-def to_svg(
-    deflections: NDArray[np.floating], shape: MapShape, *, title: str, desc: str = ""
+def _svg(
+    png: bytes, start_mm: float, width_mm: float, height_mm: float, title: str, desc: str
 ) -> bytes:
-    """Write a map as an SVG in millimetres, with a scale bar of 10 mm below it.
-
-    Parameters
-    ----------
-    deflections, shape
-        As `to_png` takes them.
-    title, desc
-        Words for those who do not see the picture. The size and what the shades mean are added.
-
-    Raises
-    ------
-    ValueError
-        If the map does not have whole lines.
-    """
-    width_mm, height_mm = _size_mm(deflections, shape)
-    drawn = base64.b64encode(to_png(deflections, shape, title=title, desc=desc)).decode()
+    """Put a PNG whose first pixels are at a place into an SVG in millimetres."""
+    drawn = base64.b64encode(png).decode()
     wide_mm, high_mm = max(width_mm, 2 * _BAR_MM), height_mm + 8.0
-    bar_mm = height_mm + 3.0
-    left_mm, name = shape.start_mm - shape.step_mm / 2, _xml(title)
+    left_mm, bar_mm = start_mm - STEP_MM / 2, height_mm + 3.0
     svg = f"""<?xml version="1.0" encoding="UTF-8"?>
 <svg xmlns="http://www.w3.org/2000/svg" width="{wide_mm:g}mm" height="{high_mm:g}mm" \
 viewBox="{left_mm:g} 0 {wide_mm:g} {high_mm:g}" role="img" aria-labelledby="title desc">
-<title id="title">{name}</title>
-<desc id="desc">{_xml(_description(deflections, shape, desc))}</desc>
+<title id="title">{escape(title)}</title>
+<desc id="desc">{escape(desc)}</desc>
 <rect x="{left_mm:g}" width="{wide_mm:g}" height="{high_mm:g}" fill="white"/>
 <image x="{left_mm:g}" y="0" width="{width_mm:g}" height="{height_mm:g}" \
 preserveAspectRatio="none" image-rendering="pixelated" href="data:image/png;base64,{drawn}"/>
@@ -245,58 +165,6 @@ font-size="3">{_BAR_MM:g} mm</text>
 </svg>
 """
     return svg.encode()
-
-
-def _on_canvas(
-    deflections: NDArray[np.floating], shape: MapShape, black: int
-) -> NDArray[np.unsignedinteger]:
-    """Draw rows as bands, each line's in the middle of its line; what is not known is white."""
-    lines = _lines(deflections, shape)
-    kind = np.uint8 if black == 255 else np.uint16
-    inked = np.clip(np.nan_to_num(deflections.astype(np.float64)), 0, 1) * black
-    grey = (black - np.rint(inked)).astype(kind)
-    high = _pixels(shape.line_mm, shape)
-    edges_mm = shape.line_mm / 2 + shape.row_mm * (np.arange(shape.rows + 1) - shape.rows / 2)
-    edges = np.clip(np.rint(edges_mm / shape.step_mm).astype(int), 0, high)
-    canvas = np.full((lines, high, deflections.shape[1]), black, kind)
-    for row in range(shape.rows):
-        band = slice(edges[row], edges[row + 1])
-        canvas[:, band] = grey[row :: shape.rows, None, :]
-    return canvas.reshape(lines * high, -1)
-
-
-def _pixels(length_mm: float, shape: MapShape) -> int:
-    return max(round(length_mm / shape.step_mm), 1)
-
-
-def _lines(deflections: NDArray[np.floating], shape: MapShape) -> int:
-    lines, rest = divmod(deflections.shape[0], shape.rows)
-    if rest or not deflections.size:
-        raise ValueError(
-            f"a map of {deflections.shape[0]} rows is not possible for lines of {shape.rows}"
-        )
-    return lines
-
-
-def _size_mm(deflections: NDArray[np.floating], shape: MapShape) -> tuple[float, float]:
-    """Tell the width and the height of a map as it is drawn, in whole pixels."""
-    high = _lines(deflections, shape) * _pixels(shape.line_mm, shape)
-    return deflections.shape[1] * shape.step_mm, high * shape.step_mm
-
-
-def _description(deflections: NDArray[np.floating], shape: MapShape, desc: str) -> str:
-    """Words on what a map shows and how large it is."""
-    width_mm, height_mm = _size_mm(deflections, shape)
-    end_mm = shape.start_mm + (deflections.shape[1] - 1) * shape.step_mm
-    size = (
-        f"Deflection of the actuators from {shape.start_mm:g} to {end_mm:g} mm; the picture is "
-        f"{width_mm:g} mm × {height_mm:g} mm, {shape.step_mm:g} mm a pixel."
-    )
-    return " ".join(part for part in (desc, size, _NOTE) if part)
-
-
-def _xml(text: str) -> str:
-    return escape(_clean(text))
 
 
 def _clean(text: str) -> str:

@@ -2,8 +2,8 @@
 
 The page pulls: it asks for a frame when it has drawn the one before, so that nothing can pile up
 on the way. It asks in JSON. The server answers each `Next` with the `ViewState`, if that has
-changed since this page was told it, and then with one frame: a `FRAME` header, the deflections,
-and the ticks since the frame before. `docs/live-view.md` has both as tables.
+changed since this page was told it, and then with one frame, which `vbraille.live.framing` makes.
+`docs/live-view.md` has both as tables.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from __future__ import annotations
 from typing import Final
 
 import msgspec
-import numpy as np
 
 VERSION: Final = 1
 # Longest request of a page, in bytes.
@@ -20,37 +19,6 @@ MOST_BYTES: Final = 4096
 MOST_SAMPLES: Final = 64
 FRAME_KIND: Final = 1
 MAP_KIND: Final = 2
-
-# The header of a frame, in the order of an Intel processor. After it come the deflections,
-# float32[rows, columns], and the samples, float32[samples, 3]: seconds before this tick, place of
-# the array's centre in mm, and deflection of the actuator that the page follows.
-FRAME: Final = np.dtype(
-    [
-        ("kind", "u1"),  # FRAME_KIND
-        ("version", "u1"),  # VERSION
-        ("samples", "<u2"),  # number of samples
-        ("flags", "<u4"),  # bits of `vbraille.engine.record.Flag`
-        ("state", "<u4"),  # number of the state that the frame belongs to
-        ("line", "<u4"),  # number of what is under the hand; 0 before the first
-        ("part", "<u4"),  # which part of the picture is shown
-        ("late", "<u4"),  # deadlines missed so far
-        ("tick", "<f8"),  # number of the tick, from 0
-        ("time_s", "<f8"),  # when the tick woke; in a recording, seconds from its start
-        ("x_mm", "<f4"),  # the array's centre on the canvas; NaN where it is not known
-        ("y_mm", "<f4"),
-        ("theta_rad", "<f4"),
-        ("vx_mm_s", "<f4"),  # the hand's velocity along x
-        ("lateness_us", "<f4"),  # from the deadline to the waking
-        ("work_us", "<f4"),  # from waking until the frame was written
-        ("share", "<f4"),  # how much of a change has faded in: 1 is all
-        ("age_ms", "<f4"),  # from the tick until the frame was sent; 0 in a recording
-        ("rows", "<u2"),  # shape of the deflections; 0 × 0 where they are not shown
-        ("columns", "<u2"),
-        ("reserved", "<u4"),
-    ]
-)
-# The header of a map; after it come the bytes of a file.
-MAP: Final = np.dtype([("kind", "u1"), ("svg", "u1"), ("reserved", "<u2"), ("bytes", "<u4")])
 
 
 class Request(msgspec.Struct, frozen=True, tag_field="ask", forbid_unknown_fields=True):

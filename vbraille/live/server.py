@@ -9,7 +9,7 @@ import logging
 import socket
 from concurrent.futures import ThreadPoolExecutor
 from http import HTTPStatus
-from importlib.resources import files
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from websockets.asyncio.server import Server as Serving
@@ -25,8 +25,6 @@ from vbraille.live.talking import MOST_QUEUED, Held, Talk
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from importlib.resources.abc import Traversable
     from types import TracebackType
     from typing import Self
 
@@ -62,19 +60,13 @@ def page_files() -> dict[str, tuple[str, bytes]]:
     dict[str, tuple[str, bytes]]
         Content type and bytes of each, by its path; ``/`` is the page itself.
     """
-    folder = files("vbraille.live") / "page"
-    found = dict(_walk(folder, "/")) if folder.is_dir() else {}
-    if "/index.html" in found:
-        found["/"] = found["/index.html"]
-    return found
-
-
-def _walk(folder: Traversable, path: str) -> Iterator[tuple[str, tuple[str, bytes]]]:
-    for entry in folder.iterdir():
-        if entry.is_dir():
-            yield from _walk(entry, f"{path}{entry.name}/")
-        elif kind := _TYPES.get(entry.name[entry.name.rfind(".") :]):
-            yield path + entry.name, (kind, entry.read_bytes())
+    folder = Path(__file__).parent / "page"
+    found = {
+        f"/{path.relative_to(folder)}": (kind, path.read_bytes())
+        for path in folder.rglob("*")
+        if (kind := _TYPES.get(path.suffix))
+    }
+    return found | {"/": found["/index.html"]}
 
 
 SOCKET_PATH: Final = "/live"
@@ -245,10 +237,6 @@ def _response(status: HTTPStatus, body: str | bytes, kind: str = _TEXT) -> Respo
     return Response(status.value, status.phrase, headers, content)
 
 
-class _Dropped(asyncio.Protocol):
-    """What becomes of a connection that is one too many."""
-
-
 def _counted() -> type[ServerConnection]:
     """Make the class of a server's connections, which has only so many at a time."""
     there: set[ServerConnection] = set()
@@ -262,7 +250,7 @@ def _counted() -> type[ServerConnection]:
                 super().connection_made(transport)
                 return
             assert isinstance(transport, asyncio.Transport)
-            transport.set_protocol(_Dropped())
+            transport.set_protocol(asyncio.Protocol())  # which hears nothing
             transport.write(_TOO_MANY)
             transport.close()
 

@@ -32,8 +32,7 @@ from vbraille.live.channel import (
     to_server,
 )
 from vbraille.live.server import LiveServer
-from vbraille.live.ticks import TickViews
-from vbraille.live.watching import Watching
+from vbraille.live.watching import TickViews, Watching
 from vbraille.logs import keep
 from vbraille.simulation.steering import Pointer
 from vbraille.wording import spelled

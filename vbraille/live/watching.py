@@ -7,27 +7,147 @@ that happens here can reach the loop.
 
 from __future__ import annotations
 
+import math
+import mmap
+import os
+import struct
 import time
 from typing import TYPE_CHECKING, Final
 
 import msgspec
+import numpy as np
 
+from vbraille.engine.record import FLOATS, INTS, tick_dtype
+from vbraille.engine.ring import Ring
+from vbraille.engine.shared import Extent, watch
 from vbraille.errors import InputError
-from vbraille.live.framing import FrameHeader, frame_bytes, joined
-from vbraille.live.messages import LetGo, PagePress, Point, Turn, ViewState
+from vbraille.live.framing import FrameHeader, frame_bytes, joined, thinned
+from vbraille.live.messages import MOST_SAMPLES, LetGo, PagePress, Point, Turn, ViewState
 from vbraille.simulation.steering import BeAt
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from numpy.typing import NDArray
+
+    from vbraille.engine.mailbox import Mailbox
     from vbraille.live.messages import Map, Next, PlayedEvent
     from vbraille.live.sources import Steering
-    from vbraille.live.ticks import TickViews
     from vbraille.simulation.steering import Pointer
 
 # A picture that is just being posted is looked at again; in between the poster needs some µs.
 _TAKES: Final = 20
 _TAKE_S: Final = 0.005
+# The numbers that a record begins with, taken at once: field by field takes twenty times as long.
+_NUMBERS: Final = struct.Struct(f"<{len(INTS)}q{len(FLOATS)}d")
+_COUNT_BYTES: Final = 8
+
+
+class TickViews:
+    """The memory of one start of the host, mapped for reading only, as many pages look at it.
+
+    `vbraille.engine.ring.RingReader` copies every record whole. A page needs the newest one whole,
+    and three numbers of those before it; so each page has a number for its cursor, and all have
+    these views.
+
+    Parameters
+    ----------
+    descriptor
+        Descriptor of the memory, which may be closed then.
+    extent
+        What decides the size of the memory.
+
+    Attributes
+    ----------
+    shape : tuple[int, int]
+        Rows and columns of a frame.
+    mailbox : Mailbox
+        Pictures that were posted to the host.
+
+    Raises
+    ------
+    ValueError
+        If there is less memory than the extent says.
+    """
+
+    def __init__(self, descriptor: int, extent: Extent) -> None:
+        there = os.fstat(descriptor).st_size
+        if there < extent.total_bytes:
+            raise ValueError(f"the memory has {there} of {extent.total_bytes} bytes")
+        memory = memoryview(mmap.mmap(descriptor, extent.total_bytes, prot=mmap.PROT_READ))
+        self.mailbox: Mailbox = watch(memory, extent)[0]
+        ring = memory[extent.mailbox_bytes :]
+        begin = Ring.bytes_needed(extent.shape, 0)
+        dtype = tick_dtype(extent.shape)
+        records = np.frombuffer(ring, dtype, extent.ticks, begin)
+        self.shape = extent.shape
+        self._size = extent.ticks
+        self._bytes = dtype.itemsize
+        self._memory = ring[begin:]
+        self._published = ring[:_COUNT_BYTES].cast("q")
+        self._times_ns, self._x_mm = records["time_ns"], records["x_mm"]
+        self._frames = records["frame"]
+        self._frame_end = _NUMBERS.size + 4 * extent.rows * extent.columns
+        self._samples = np.empty((MOST_SAMPLES, 3), np.float32)
+        self._ago_s, self._places, self._follows = self._samples.T
+
+    @property
+    def published(self) -> int:
+        """How many records there have been, up to now."""
+        return self._published[0]
+
+    def newest(self, end: int) -> tuple[tuple[float, ...], bytes]:
+        """Copy the last of the first ``end`` records, which must be above 0.
+
+        Returns
+        -------
+        tuple[float, ...]
+            Numbers of the tick, in the order of `vbraille.engine.record.INTS` and `FLOATS`.
+        bytes
+            Frame of the tick, float32[rows, columns].
+        """
+        begin = (end - 1) % self._size * self._bytes
+        record = bytes(self._memory[begin : begin + self._bytes])
+        return _NUMBERS.unpack_from(record), record[_NUMBERS.size : self._frame_end]
+
+    def samples(self, first: int, end: int, row: int, column: int) -> bytes:
+        """Make the samples of records.
+
+        Parameters
+        ----------
+        first, end
+            The records: from this number, from 0, to the one before that.
+        row, column
+            The actuator whose deflection is told; NaN if there is no such actuator.
+
+        Returns
+        -------
+        bytes
+            float32[n, 3] as `vbraille.live.framing.frame_bytes` describes it, of at most
+            `MOST_SAMPLES`. Records that may have been overwritten meanwhile are left out.
+        """
+        first = max(first, end - self._size)
+        count = end - first
+        at = first % self._size
+        slots: slice | NDArray[np.intp] = slice(at, at + count)
+        if count > MOST_SAMPLES or at + count > self._size:
+            slots = (first + thinned(count)) % self._size
+            count = slots.size
+        if not count:
+            return b""
+        times_ns = self._times_ns[slots]
+        rows, columns = self.shape
+        is_there = 0 <= row < rows and 0 <= column < columns
+        # Filled column by column, in memory of its own, since that is made for each frame.
+        self._ago_s[:count] = (times_ns[-1] - times_ns) * 1e-9
+        self._places[:count] = self._x_mm[slots]
+        self._follows[:count] = self._frames[slots, row, column] if is_there else math.nan
+        # The slot after the last published one may just be written.
+        overwritten = self.published + 1 - self._size - first
+        if overwritten > 0:
+            numbers = thinned(end - first)
+            return self._samples[:count][numbers >= overwritten].tobytes()
+        return self._samples[:count].tobytes()
 
 
 class Watching:
@@ -161,17 +281,15 @@ class WatchingViewer:
 
     def frame(self, request: Next, *, again: bool = False) -> bytes | None:
         """Give the newest tick, with those since the last call as samples."""
-        watched = self._source.watched
-        if watched is None:
-            return frame_bytes(FrameHeader(state=self._source.told[0])) if again else None
-        end = watched.published
+        watched, state = self._source.watched, self._source.told[0]
+        end = 0 if watched is None else watched.published
         if watched is not self._watched:
             self._watched = watched
             self._cursor = max(end - 1, 0)
-        if not end:
-            return frame_bytes(FrameHeader(state=self._source.told[0])) if again else None
         if end == self._cursor and not again:
             return None
+        if watched is None or not end:
+            return frame_bytes(FrameHeader(state=state))
         numbers, deflections = watched.newest(end)
         row = -1 if self._source.blind else request.row
         samples = watched.samples(self._cursor, end, row, request.column)
@@ -179,7 +297,7 @@ class WatchingViewer:
         shape = watched.shape
         if self._source.blind:
             shape, deflections = (0, 0), b""
-        return joined(_header(numbers, self._source.told[0]), shape, deflections, samples)
+        return joined(_header(numbers, state), shape, deflections, samples)
 
 
 def _header(numbers: Sequence[float], state: int) -> FrameHeader:

@@ -1,10 +1,9 @@
-"""What `vbraille render` wrote, as a reel: `docs/recording.md` describes the file."""
+"""What `vbraille render` wrote, played back: `docs/recording.md` describes the file."""
 
 from __future__ import annotations
 
 import base64
 import json
-from bisect import bisect_right
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -16,7 +15,7 @@ from vbraille.display import Display
 from vbraille.errors import InputError
 from vbraille.live.messages import PlayedEvent, SceneShown, ViewState
 from vbraille.live.states import array_shown, geometry_shown, rows_shown
-from vbraille.playback.reels import PLAYED, Piece, line_shown
+from vbraille.playback.recorded import PLAYED, Piece, Recording, line_shown
 from vbraille.recording import check_format, scene_of
 from vbraille.render import MAPPINGS, MODELS, STRESS2, Tuning, single_row
 
@@ -44,7 +43,7 @@ _UNLIKE: Final = (
 )  # fmt: skip
 
 
-class Rendered:
+class Rendered(Recording):
     """Frames of a file that `vbraille render` wrote.
 
     Parameters
@@ -59,8 +58,8 @@ class Rendered:
     """
 
     def __init__(self, path: Path) -> None:
+        super().__init__()
         self._path = path
-        self.notes: list[str] = []
         try:
             self._file = h5py.File(path, "r")
         except _UNLIKE as error:
@@ -74,15 +73,11 @@ class Rendered:
             self._file.close()
             raise InputError(_not_one(path, "it is HDF5 of something else")) from error
 
-    def close(self) -> None:
-        """Close the file."""
-        self._file.close()
+    def first_s(self, number: int) -> float:
+        """Time of the first frame of a piece; about, where the file is damaged."""
+        return self._time_s(number * _PIECE_FRAMES)
 
-    def find(self, at_s: float) -> int:
-        """Number of the piece that has the frame of a time."""
-        return max(bisect_right(range(self._pieces), at_s, key=self._first_s) - 1, 0)
-
-    def piece(self, number: int) -> Piece:
+    def read(self, number: int) -> Piece:
         """Read a piece; it is empty where the file is damaged."""
         span = slice(number * _PIECE_FRAMES, (number + 1) * _PIECE_FRAMES)
         try:
@@ -105,7 +100,7 @@ class Rendered:
         ticks["share"] = 1.0
         return Piece(ticks, frames)
 
-    def state(self, scene: int) -> ViewState:
+    def describe(self, scene: int) -> ViewState:
         """Make what a page shows of a line of the recording; scene 0 is no line."""
         style = self._style
         return ViewState(
@@ -148,7 +143,7 @@ class Rendered:
         offsets_mm = [np.asarray(file.attrs[f"{n}_offset_mm"], float) for n in ("column", "row")]
         if [offsets.shape for offsets in offsets_mm] != [(columns,), (rows,)]:
             raise ValueError
-        self._count, self._pieces = count, -(-count // _PIECE_FRAMES)
+        self._count, self.pieces = count, -(-count // _PIECE_FRAMES)
         self._rate_hz = float(self._told("rate_hz", "nan"))
         self._style, self._display = self._describe(*offsets_mm)
         self._picture = self._find_picture()
@@ -162,7 +157,6 @@ class Rendered:
             ("recorded by", f"vbraille {self._told('vbraille_version', 'not known')}"),
             ("frames", f"{count}, {self._rate_hz:g} a second"),
         ]
-        self._firsts_s: dict[int, float] = {}
         self.length_s = float(self._time_s(count - 1))
         starts, lines = _changes(found["line"])
         part_starts, parts = _changes(found["part"])
@@ -219,12 +213,6 @@ class Rendered:
             return float(np.nan_to_num(self._numbers["t_s"][frame], posinf=0.0))
         except OSError:
             return frame / self._rate_hz
-
-    def _first_s(self, number: int) -> float:
-        """Time of the first frame of a piece."""
-        if number not in self._firsts_s:
-            self._firsts_s[number] = self._time_s(number * _PIECE_FRAMES)
-        return self._firsts_s[number]
 
     def _find_pages(
         self,

@@ -1,4 +1,4 @@
-"""A session as a reel: its frames made again from the traces, and its journal beside them."""
+"""A session played back: its frames made again from the traces, and its journal beside them."""
 
 from __future__ import annotations
 
@@ -16,24 +16,26 @@ from vbraille.braille.spelling import to_braille
 from vbraille.errors import InputError, VbrailleError
 from vbraille.live.messages import PlayedEvent, ViewState
 from vbraille.live.states import array_shown, geometry_shown, rows_shown
-from vbraille.playback.happened import moments_of
-from vbraille.playback.reels import PLAYED, Piece, line_shown
+from vbraille.playback.recorded import PLAYED, Piece, Recording, line_shown
 from vbraille.render import work
 from vbraille.render.program import Program, nothing
-from vbraille.sessions.record import journal
+from vbraille.sessions.record import events, journal
 from vbraille.sessions.record.bids import runs_of
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.replay import Replay, StimulusPrograms
 from vbraille.sessions.record.traces import ChunkedTrace
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from numpy.typing import NDArray
 
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.bids import BidsRun
+    from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.record.progress import Progress
 
 # A fade is over long before so many chunks; a trace that says otherwise is not believed.
 _MOST_BEFORE: Final = 8
@@ -70,7 +72,7 @@ class _PlayedRun:
         return self.begun_s + (time_ns - self.first_ns) / 1e9
 
 
-class Traced:
+class Traced(Recording):
     """Frames of a session, or of one of its traces.
 
     Parameters
@@ -89,15 +91,14 @@ class Traced:
     """
 
     def __init__(self, folder: Path, trace: str = "") -> None:
+        super().__init__()
         record = load(folder, salvaged=True)
         _refuse_running(folder)
         self._record = record
         self._progress = record.progress()
         self._display = record.protocol.model.display
         self._pictures = StimulusPrograms(record, self._progress)
-        self._firsts_ns: dict[int, int | None] = {}
         self._picture = lru_cache(64)(self._make_picture)
-        self.notes: list[str] = []
         self.moments: list[PlayedEvent] = []
         if record.told.damage is not None:
             self.notes.append(
@@ -118,19 +119,20 @@ class Traced:
             self._add(run, alone=bool(trace))
         if not self._runs:
             raise InputError(_no_frames(folder, record))
+        self.pieces = self._runs[-1].stop
         self.moments.sort(key=lambda moment: moment.at_s)
         self.length_s = max([self._end_s, *(moment.at_s for moment in self.moments)])
 
-    def close(self) -> None:
-        """Close the traces."""
-        for run in self._runs:
-            run.trace.close()
+    def first_s(self, number: int) -> float:
+        """Time of the first tick of a piece, or of the last whole one before a damaged one."""
+        run = self._run(number)
+        for chunk in range(number - run.first, -1, -1):
+            ticks = run.trace.ticks(chunk)
+            if ticks.size:
+                return float(run.seconds(ticks["time_ns"][:1])[0])
+        return run.begun_s
 
-    def find(self, at_s: float) -> int:
-        """Number of the piece that has the frame of a time."""
-        return max(bisect_right(range(self._runs[-1].stop), at_s, key=self._first_s) - 1, 0)
-
-    def piece(self, number: int) -> Piece:
+    def read(self, number: int) -> Piece:
         """Make the frames of a chunk again; it is empty where the trace is damaged."""
         run = self._run(number)
         chunk = number - run.first
@@ -144,7 +146,7 @@ class Traced:
         frames = replay.frames(ticks).astype(np.float32)
         return Piece(self._played(run, ticks), frames)
 
-    def state(self, scene: int) -> ViewState:
+    def describe(self, scene: int) -> ViewState:
         """Make what a page shows of a showing of a stimulus; scene 0 is none."""
         protocol, head = self._record.protocol, self._record.head
         participant = str(head.get("participant", ""))
@@ -213,7 +215,7 @@ class Traced:
         self._runs.append(played)
         for chunk in trace.damage:
             text = f"{name} is damaged here: a part of it is missing"
-            self.moments.append(PlayedEvent(self._first_s(first + chunk), "fault", text))
+            self.moments.append(PlayedEvent(self.first_s(first + chunk), "fault", text))
         if trace.damage:
             self.notes.append(f"{name} is damaged; what is whole is played")
         last = next(ticks for n in range(len(trace), 0, -1) if (ticks := trace.ticks(n - 1)).size)
@@ -225,22 +227,6 @@ class Traced:
     def _run(self, number: int) -> _PlayedRun:
         """Run that a piece belongs to."""
         return self._runs[bisect_right(self._runs, number, key=lambda run: run.first) - 1]
-
-    def _first_s(self, number: int) -> float:
-        """Time of the first tick of a piece, or of the last one before a damaged one."""
-        run = self._run(number)
-        for chunk in range(number - run.first, -1, -1):
-            ns = self._first_ticks_ns(run, chunk)
-            if ns is not None:
-                return float(run.seconds(np.array([ns]))[0])
-        return run.begun_s
-
-    def _first_ticks_ns(self, run: _PlayedRun, chunk: int) -> int | None:
-        key = run.first + chunk
-        if key not in self._firsts_ns:
-            ticks = run.trace.ticks(chunk)
-            self._firsts_ns[key] = int(ticks["time_ns"][0]) if ticks.size else None
-        return self._firsts_ns[key]
 
     def _before(self, trace: ChunkedTrace, chunk: int, ticks: NDArray[np.void]) -> NDArray[np.void]:
         """Ticks before a chunk that its first frames are made from: those of an unended fade."""
@@ -319,3 +305,97 @@ def _no_frames(folder: Path, record: Record) -> str:
 
 def _name(trial: Trial) -> str:
     return f"{'practice trial' if trial.practice else 'trial'} {trial.number}"
+
+
+def moments_of(
+    told: Iterable[JournalEvent], progress: Progress, begun_s: float = 0.0
+) -> list[PlayedEvent]:
+    """Make the moments of events, by time.
+
+    Parameters
+    ----------
+    told
+        Events of the journal.
+    progress
+        State of the session after all of them.
+    begun_s
+        Time of the session at which the recording begins, in seconds that the session had run for.
+    """
+    made = []
+    for event in told:
+        found = _say(event, progress)
+        if found is not None:
+            kind, text = found
+            made.append(PlayedEvent(max(event.t_s - begun_s, 0.0), kind, _in_trial(event) + text))
+    # The journal may have an event a little later than one that happened after it.
+    return sorted(made, key=lambda moment: moment.at_s)
+
+
+def _in_trial(event: JournalEvent) -> str:
+    if not isinstance(event, events.AnyTime) or not event.trial:
+        return ""
+    return f"{'practice trial' if event.practice else 'trial'} {event.trial}: "
+
+
+def _say(event: JournalEvent, progress: Progress) -> tuple[str, str] | None:
+    """Kind of the moment of an event, and what happened; None for what nobody looks for."""
+    match event:
+        case events.Presented():
+            return _say_presented(event, progress)
+        case events.Cue():
+            return "cue", "the start signal sounded"
+        case events.Warning():
+            return "cue", "the warning sounded"
+        case events.Contact():
+            return "line", "the array came to the first dot"
+        case events.Read():
+            return "line", "it was read to the end and back"
+        case events.Answer(answer=answer, corrects=corrects):
+            return "answer", f"the answer was {'corrected to ' if corrects else ''}{answer}"
+        case events.Undo():
+            return "answer", "the answer was taken back"
+        case events.Repeat():
+            return "trial", "the trial is shown again"
+        case events.Fault(what=what):
+            return "fault", what
+        case events.Well():
+            return "fault", "the stimulus can be felt again"
+        case events.Lost(n=n):
+            return "fault", f"event {n} of the journal is damaged"
+        case events.Tuning(tuning=tuning):
+            return "tuning", ", ".join(f"{name} {value:g}" for name, value in tuning.items())
+        case events.Pause():
+            return "pause", "paused"
+        case events.Go():
+            return "pause", "goes on"
+        case events.Break():
+            return "pause", "a break began"
+    return _say_beside(event)
+
+
+def _say_beside(event: JournalEvent) -> tuple[str, str] | None:
+    """Say what happened to the session itself."""
+    match event:
+        case events.Note(text=text):
+            return "note", f"note: {text}"
+        case events.Device(what=what):
+            return "note", what
+        case events.Run(why=why):
+            said = {"start": "the session began", "resume": "the session was resumed"}
+            return "note", said.get(why, "the engine was started again")
+        case events.Begin():
+            return "note", "practice was ended"
+        case events.Stop():
+            return "note", "the session was stopped"
+        case events.End(why=why):
+            return "note", f"the session was ended: {why}"
+    return None
+
+
+def _say_presented(event: events.Presented, progress: Progress) -> tuple[str, str]:
+    if event.stimulus:
+        return "line", "the second stimulus is under the hand"
+    again = f", attempt {event.attempt}" if event.attempt > 1 else ""
+    told = (progress.practice if event.practice else progress.trials).get(event.trial)
+    condition = told.trial.condition if told else ""
+    return "trial", (f"condition {condition}" if condition else "begins") + again

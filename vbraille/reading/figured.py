@@ -26,22 +26,19 @@ _ROUNDING = 1e-9  # of a line pitch
 
 
 class Figure(Protocol):
-    """A tactile picture that stands in a text."""
+    """A tactile picture that stands in a text.
 
-    @property
-    def title(self) -> str:
-        """Title of the picture."""
-        ...
+    Attributes
+    ----------
+    title : str
+        Title of the picture.
+    width_mm, height_mm : float
+        Size of its canvas.
+    """
 
-    @property
-    def width_mm(self) -> float:
-        """Width of its canvas, in mm."""
-        ...
-
-    @property
-    def height_mm(self) -> float:
-        """Height of its canvas, in mm."""
-        ...
+    title: str
+    width_mm: float
+    height_mm: float
 
     def name_at(self, x_mm: float, y_mm: float) -> str:
         """Name of the element at a place of its canvas, in mm; empty if none has one there."""
