@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.cli.terminal import say_line
-from vbraille.errors import InputError
-from vbraille.files import write_file
+from vbraille.files import check_unused, write_file
 from vbraille.scene.converting import convert_scene
 
 if TYPE_CHECKING:
@@ -23,8 +22,7 @@ def convert(arguments: argparse.Namespace) -> int:
         If the file cannot be converted, or the new one cannot be written.
     """
     out = Path(arguments.out)
-    if out.exists() and not arguments.force:
-        raise InputError(f"{out} is there already; choose another name, or replace it by --force")
+    check_unused(out, replace=arguments.force)
     path = Path(arguments.file)
     made = convert_scene(path, out.parent, as_shown=arguments.as_shown)
     write_file(out, made.text.encode(), replace=arguments.force)
