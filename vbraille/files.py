@@ -60,7 +60,6 @@ def write_file(
     *,
     replace: bool = False,
     durable: bool = False,
-    private: bool = False,
 ) -> None:
     """Write a file: whole, or not at all.
 
@@ -72,8 +71,6 @@ def write_file(
         Whether an existing file may be replaced.
     durable
         Whether it must be on the disk when this returns, and not in the system's memory alone.
-    private
-        Whether other users of the machine may not read it, whatever the umask says.
 
     Raises
     ------
@@ -87,7 +84,7 @@ def write_file(
     try:
         with whole_file(path, replace=replace) as partial:
             try:
-                file = _begin(partial, private=private)
+                file = partial.open("wb")
             except OSError as error:
                 raise InputError(f"{path} cannot be written: {error.strerror}") from None
             with file:
@@ -233,6 +230,20 @@ def write_folder(
             kind = VbrailleError if partial in made else InputError
             raise kind(f"{folder} cannot be written: {fault.strerror}") from None
         raise
+
+
+def check_unused(path: Path, *, replace: bool) -> None:
+    """Check that a file can have this name, before what takes time is done for it.
+
+    Raises
+    ------
+    InputError
+        If something exists at the path that may not be replaced.
+    """
+    if not replace and os.path.lexists(path):
+        raise InputError(
+            f"{path} is there already; choose another name, or replace it by {setting('force')}"
+        )
 
 
 def check_free(folder: Path, name: str = "out") -> None:

@@ -7,7 +7,6 @@ our own, which keeps the failure until somebody asks.
 from __future__ import annotations
 
 import io
-import os
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,8 +14,7 @@ from typing import TYPE_CHECKING
 import h5py
 
 from vbraille.errors import InputError, VbrailleError
-from vbraille.files import whole_file
-from vbraille.wording import setting
+from vbraille.files import check_unused, whole_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -50,8 +48,7 @@ def new_file(path: Path | str, *, replace: bool = False) -> Iterator[NewFile]:
         try:
             if path.is_dir():
                 raise InputError(f"{path} is a directory; give the name of a file in it")
-            if not replace:
-                _refuse_existing(path)
+            check_unused(path, replace=replace)
             target = _Target(partial)
         except OSError as error:
             raise InputError(f"{path} cannot be written: {error.strerror}") from None
@@ -61,15 +58,7 @@ def new_file(path: Path | str, *, replace: bool = False) -> Iterator[NewFile]:
             target.check()
         except _DiskError as error:
             raise VbrailleError(f"{path} could not be written: {error}") from None
-        if not replace:  # somebody may have made one meanwhile
-            _refuse_existing(path)
-
-
-def _refuse_existing(path: Path) -> None:
-    if os.path.lexists(path):
-        raise InputError(
-            f"{path} is there already; choose another name, or replace it by {setting('force')}"
-        )
+        check_unused(path, replace=replace)  # somebody may have made one meanwhile
 
 
 class NewFile(h5py.File):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import h5py
 import numpy as np
@@ -94,14 +94,7 @@ class Recorder:
         file.attrs["format"] = FORMAT
 
     def describe(
-        self,
-        *,
-        model: Model,
-        rate_hz: float,
-        first_line: int,
-        source: str,
-        sha256: str,
-        calibration: dict[str, Any] | None = None,
+        self, *, model: Model, rate_hz: float, first_line: int, source: str, sha256: str
     ) -> None:
         """Write what was rendered, and how, as attributes."""
         self._file.attrs.update(
@@ -113,7 +106,7 @@ class Recorder:
             first_line=first_line,
             source=source,
             source_sha256=sha256,
-            calibration=json.dumps(calibration),
+            calibration=json.dumps(None),
         )
 
     def describe_scene(
@@ -151,17 +144,8 @@ class Recorder:
             height_mm=scene.height_mm,
             path=path,
         )
-        self._file.attrs.update(
-            model=model.name,
-            mapping="",  # which belongs to lines
-            geometry=json.dumps(asdict(model.style.geometry)),
-            tuning=json.dumps(asdict(model.style.tuning)),
-            rate_hz=rate_hz,
-            first_line=1,
-            source=source,
-            source_sha256=sha256,
-            calibration=json.dumps(None),
-        )
+        self.describe(model=model, rate_hz=rate_hz, first_line=1, source=source, sha256=sha256)
+        self._file.attrs["mapping"] = ""  # which belongs to lines
 
     @property
     def stored_bytes(self) -> int:

@@ -11,12 +11,11 @@ from tests.sessions.bidsvalid import complaints
 from tests.sessions.sittings import MINI
 from vbraille.devices import open_device
 from vbraille.engine.batch import BatchEngine
-from vbraille.sessions.beginning import head_of
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record.folder import create
-from vbraille.sessions.session import Session
+from vbraille.sessions.session import Session, head_of
 
 ASKS = MINI + '[[fields]]\nname = "day"\nask = "Which day"\n'
 NAMES = ("a/s1", "a/s2", "b/s3", "b/s4")

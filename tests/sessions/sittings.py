@@ -8,13 +8,13 @@ from pathlib import Path
 from vbraille.devices import open_device
 from vbraille.engine.batch import BatchEngine
 from vbraille.sessions import session as door
-from vbraille.sessions.beginning import head_of
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record.events import to_json
 from vbraille.sessions.record.folder import create
 from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.session import head_of
 
 MINI = """
 format = 1

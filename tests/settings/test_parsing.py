@@ -59,11 +59,10 @@ def test_what_a_file_says_and_where():
 
 def test_each_setting_is_one_line_with_where_it_comes_from():
     settings = parse_settings(TEXT, FILE)
-    style = STRESS2.style.replace(texture=0.8, dot_width_mm=2.2, contrast=0.5, cell_gap_mm=7.0)
-    book = {"contrast": 0.5, "cell_gap_mm": 8.0}
-    assert list(say_tuning(settings, "evening", STRESS2, style, (), book)) == [
+    style = STRESS2.style.replace(texture=0.8, dot_width_mm=2.2, cell_gap_mm=7.0)
+    assert list(say_tuning(settings, "evening", STRESS2, style)) == [
         "texture: 0.8 (profile evening, settings.toml line 14)",
-        "contrast: 0.5 (book)",
+        "contrast: 1 (default)",
         "texture cycles: 7 (default)",
         "dot width: 2.2 mm (option)",
         "dot spacing: 3.7 mm (default)",

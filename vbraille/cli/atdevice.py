@@ -141,7 +141,7 @@ def surrounded(
             attended=keyboard.attached,
             begun=arguments.begun,
             pointer=arguments.pointer if has_hand(arguments.device) else None,
-            on_share=None if live is None else live.share,
+            on_share=None if live is None else live.monitor.share,
         )
         try:
             yield Surroundings(device, outputs, live, keyboard, closing)
@@ -256,7 +256,7 @@ class AtDevice(ABC):
         """Do what pages of the live view have asked for."""
         if self._live is None:
             return
-        for asked in self._live.take():
+        for asked in self._live.monitor.take():
             self._set_context()
             self._live.obey(asked)
 
@@ -320,7 +320,7 @@ class AtDevice(ABC):
         while not self._who.done:
             keys = [spoken(key) for key in self._pressed()]
             if self._live is not None:
-                self._live.take()  # which nobody can do now
+                self._live.monitor.take()  # which nobody can do now
             self._tell()
             if stop in keys:
                 self._who.quit()

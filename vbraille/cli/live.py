@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from vbraille.devices.events import Event
-    from vbraille.engine.shared import Extent
     from vbraille.live.messages import PagePress, Turn
     from vbraille.reading.viewed import View
 
@@ -29,13 +28,15 @@ class LiveView:
 
     Attributes
     ----------
+    monitor : Monitor
+        Process that serves the pages, and takes what they ask for.
     pointer : Pointer or None
         Where pages may hold the hand of the device; None if a person moves that.
     """
 
     def __init__(self, arguments: argparse.Namespace) -> None:
         self.pointer = arguments.pointer if has_hand(arguments.device) else None
-        self._monitor = Monitor(host=arguments.host, port=arguments.port, pointer=self.pointer)
+        self.monitor = Monitor(host=arguments.host, port=arguments.port, pointer=self.pointer)
         self._said = Said()
         self._view: View | None = None
 
@@ -43,10 +44,6 @@ class LiveView:
         """Print a sentence, and show it on the pages."""
         say_line(sentence)
         self._said.add(sentence)
-
-    def share(self, descriptor: int, extent: Extent) -> None:
-        """Give the pages what the engine records; the descriptor may be closed then."""
-        self._monitor.share(descriptor, extent)
 
     def show(self, view: Callable[[Said, list[tuple[str, str]]], View], hand: str) -> None:
         """Show something from now on.
@@ -71,7 +68,7 @@ class LiveView:
         standing
             Sentence on why nothing is read; empty if it is again, None if that is as it was.
         """
-        for note in self._monitor.notes():
+        for note in self.monitor.notes():
             say_line(note)
         view = self._view
         if view is None:
@@ -81,11 +78,7 @@ class LiveView:
         view.see(events)
         state = view.changed()
         if state is not None:
-            self._monitor.tell(state)
-
-    def take(self) -> list[PagePress | Turn]:
-        """Take what pages have asked for since the last call."""
-        return self._monitor.take()
+            self.monitor.tell(state)
 
     def obey(self, asked: PagePress | Turn) -> None:
         """Do what a page has asked for."""
@@ -93,8 +86,8 @@ class LiveView:
             self._view.obey(asked)
 
     def __enter__(self) -> Self:
-        self._monitor.launch()
+        self.monitor.launch()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._monitor.close()
+        self.monitor.close()

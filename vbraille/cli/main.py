@@ -145,7 +145,7 @@ def _call(argv: Sequence[str] | None) -> int:
         if arguments.verbose:
             want_tracebacks()
     with ExitStack() as begun:
-        if arguments.command in ("read", "feel"):
+        if arguments.command in ("read", "feel", "tune"):
             # A hand on a picture may stand still, and waits for somebody.
             pointed = arguments.monitor or arguments.command == "feel"
             arguments.pointer = _pointer() if pointed else None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from typing import TYPE_CHECKING, Self
 
@@ -22,6 +23,11 @@ def say_line(sentence: str, *, aside: bool = False) -> None:
         Whether it goes to standard error, so that it is not taken for what the command prints.
     """
     print(printable(sentence), file=sys.stderr if aside else sys.stdout, flush=True)
+
+
+def print_json(value: object, indent: int = 2) -> None:
+    """Print a value as JSON, for another program."""
+    print(json.dumps(value, ensure_ascii=False, indent=indent))
 
 
 class WorkProgress:

@@ -22,6 +22,7 @@ from vbraille.render.program import Program, nothing
 from vbraille.sessions.record import events, journal
 from vbraille.sessions.record.bids import runs_of
 from vbraille.sessions.record.folder import load
+from vbraille.sessions.record.progress import stimulus_of
 from vbraille.sessions.record.replay import Replay, StimulusPrograms
 from vbraille.sessions.record.traces import ChunkedTrace
 
@@ -163,7 +164,7 @@ class Traced(Recording):
             return plain
         trial, showing = self._pictures.shown[scene]
         told = self._progress.told(trial)
-        stimulus = showing.stimulus_of(trial)
+        stimulus = stimulus_of(showing)
         mapping = protocol.mapping_of(stimulus)
         style = replace(protocol.model.style, mapping=mapping, geometry=stimulus.geometry)
         facts = [

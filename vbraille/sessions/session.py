@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import secrets
+from dataclasses import asdict, replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -12,12 +13,15 @@ from vbraille.devices.registry import find_driver
 from vbraille.engine.host import Host
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import check_free
-from vbraille.sessions.beginning import head_of, plan_session, told_fields
 from vbraille.sessions.conditions import USUAL, Conditions
 from vbraille.sessions.planning.appearance import CONVENTIONAL
+from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.procedures import procedure_of
+from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.planning.protocolfiles import load_protocol
+from vbraille.sessions.planning.spellings import made_by
 from vbraille.sessions.record import journal
-from vbraille.sessions.record.folder import Record, create, load
+from vbraille.sessions.record.folder import FORMAT, Record, create, load, versions
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.given import answers_from
 from vbraille.sessions.running.markers import Markers, parse_markers
@@ -31,7 +35,6 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.sessions.planning.plan import Plan
-    from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.running.answers import Answers
     from vbraille.sessions.running.conventional import OnConventional
     from vbraille.sessions.running.given import Source
@@ -44,6 +47,100 @@ if TYPE_CHECKING:
     # Makes the engine that drives a device, from the device's spec and the display that the
     # protocol is written for.
     MakeEngine = Callable[[str, Display], RunEngine]
+
+_MOST_DRAWN = 1_000_000  # so that a seed that is drawn is short enough to be written down by hand
+
+
+def plan_session(
+    protocol: str | Path | Protocol,
+    participant: str,
+    seed: int | None = None,
+    order: int | None = None,
+    texture: float | None = None,
+    contrast: float | None = None,
+    group: str | None = None,
+) -> tuple[Protocol, Plan]:
+    """Make the protocol and the plan of a session; a seed is drawn if none is given.
+
+    `Session.create` describes the arguments.
+    """
+    if not isinstance(protocol, Protocol):
+        protocol = load_protocol(str(protocol))
+    if seed is None:
+        seed = secrets.randbelow(_MOST_DRAWN)
+    plan = make_plan(
+        protocol, participant, seed, order, group=group, texture=texture, contrast=contrast
+    )
+    return protocol.assigned(plan.group), plan
+
+
+def told_fields(protocol: Protocol, given: Mapping[str, str]) -> dict[str, str]:
+    """Answers to all of the protocol's questions about the participant; empty where none is given.
+
+    Raises
+    ------
+    InputError
+        If the protocol has no such question, or the answer is none of the question's choices.
+    """
+    names = [field.name for field in protocol.fields]
+    for name in given:
+        if name not in names:
+            raise InputError(
+                f"{protocol.name} does not ask for {name!r}; "
+                f"it asks for {', '.join(names) or 'nothing'}"
+            )
+    for field in protocol.fields:
+        value = given.get(field.name)
+        if value is None:
+            continue
+        if field.choices and value not in field.choices:
+            raise InputError(f"{field.name} is {value!r}; it must be {' or '.join(field.choices)}")
+        if not value.isprintable():
+            raise InputError(f"{field.name} is {value!r}; it must be one line of text")
+    return {name: given.get(name, "") for name in names}
+
+
+def head_of(
+    protocol: Protocol,
+    plan: Plan,
+    fields: Mapping[str, str],
+    conditions: Conditions,
+) -> dict[str, Any]:
+    """Content of session.json: who takes part, what is shown, and with which equipment.
+
+    Parameters
+    ----------
+    protocol, plan, conditions
+        What the session shows, in which order, and with which equipment.
+    fields
+        Answers to the protocol's questions about the participant.
+    """
+    display = protocol.model.display
+    group = {"group": plan.group} if plan.group else {}
+    also = {} if conditions.also is None else {"also": conditions.also}
+    return {
+        "format": FORMAT,
+        "protocol": protocol.name,
+        "participant": plan.participant,
+        "seed": plan.seed,
+        "order": plan.order,
+        **group,
+        "model": protocol.model.name,
+        "array": {
+            name: getattr(display, name)
+            for name in ("rows", "columns", "column_pitch_mm", "row_pitch_mm")
+        },
+        "mapping": protocol.mapping.name,
+        "geometry": asdict(protocol.geometry),
+        "fields": dict(fields),
+        "device": conditions.device,
+        "hand": conditions.hand,
+        "answers": conditions.answers,
+        "fast": conditions.fast,
+        "rate_hz": conditions.rate_hz,
+        **also,
+        "versions": versions() | (made_by() if protocol.written else {}),
+    }
 
 
 def _nobody(_sentence: str) -> None:
@@ -324,7 +421,8 @@ class Session:
             onlookers.begin(self._engine)
         markers = beside = None
         try:
-            markers = usual_markers(self.conditions)
+            if self.conditions.markers is not None:
+                markers = Markers(parse_markers(self.conditions.markers))
             beside = usual_beside(self.protocol, self.plan, self.conditions, felt=given.felt)
             if isinstance(self._engine, Host):
                 self._engine.launch()
@@ -403,21 +501,6 @@ def usual_engine(
     most = max(len(protocol.line(stimulus.masks)) for stimulus in plan.stimuli())
     inherited = [channel.descriptor for channel in channels]
     return Host(spec, wanted, protocol.model.style.room(wanted, most), pass_fds=inherited)
-
-
-def usual_markers(conditions: Conditions) -> Markers | None:
-    """Open the other recorder that is wanted; None if none is.
-
-    Raises
-    ------
-    InputError
-        If it cannot be opened.
-    """
-    if conditions.markers is None:
-        return None
-    from vbraille.sessions.running.markers import Markers
-
-    return Markers(parse_markers(conditions.markers))
 
 
 def usual_onlookers(

@@ -1,4 +1,4 @@
-"""Where each setting comes from: an option, the book, a profile, the settings file, or nobody."""
+"""Where each setting comes from: an option, a profile, the settings file, or nobody."""
 
 from __future__ import annotations
 
@@ -58,7 +58,6 @@ def say_tuning(
     model: Model,
     style: BrailleStyle,
     given: Collection[str] = (),
-    book: Mapping[str, float | int | str] | None = None,
 ) -> Iterator[str]:
     """Lines on what can be turned for a display, one for each, with where it comes from.
 
@@ -74,21 +73,17 @@ def say_tuning(
         Style that comes out of it all; what differs from the rest was said by an option.
     given
         Names of the values that options give.
-    book
-        Values that are kept for the book, by the names of `knobs.kept_values`.
 
     Raises
     ------
     InputError
         If the profile cannot be used on the display.
     """
-    chosen = kept_values(with_profile(settings, profile, model).style) | dict(book or {})
+    chosen = kept_values(with_profile(settings, profile, model).style)
     saved = settings.tuning(profile, model)
     for name, value in kept_values(style).items():
         if name in given or value != chosen[name]:
             origin = "option"
-        elif book is not None and name in book:
-            origin = "book"
         elif name in saved:
             line = settings.where("profile", profile, display_name(model), name)
             origin = f"profile {profile}, {line}"

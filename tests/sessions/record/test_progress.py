@@ -62,7 +62,8 @@ def test_an_attempt_that_was_not_answered_is_the_next_trial_again():
     trial = progress.trials[1]
     assert progress.next_trial is PLAN.trials[0]
     assert (trial.attempts, len(trial.showings)) == (2, 2)
-    assert [(s.line, s.trace) for s in trial.last_attempt] == [(2, "trace-002.gz")]
+    assert [s.line for s in trial.last_attempt] == [2]
+    assert trial.trace == "trace-002.gz"
     assert trial.t_s == {"presented": 5.0, "cue": 6.0}  # the warning was of the first
 
 

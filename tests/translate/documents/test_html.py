@@ -139,7 +139,7 @@ HOSTILE = {  # what makes each, and how many characters of text it has; 0 if it 
     "nested and hidden": (lambda: b"end" + b"<p hidden><b>" * (N // 2), 0),
     "misnested": (lambda: b"<b><p>" * (N // 50) + b"end", 3),
     "misnested, quadratic": (lambda: b"<b>" * 3_000 + b"<i>" * 3_000 + b"x</b>" * 3_000, 0),
-    "attributes": (lambda: b"<p " + b" ".join(b"a%d=1" % n for n in range(N * 3 // 10)) + b">x", 1),
+    "attributes": (lambda: b"<p " + b" ".join(b"a%d=1" % n for n in range(N * 3 // 10)) + b">x", 0),
     "names": (lambda: b"<a id=x>" * (N // 3) + b"end", 0),
     "cells": (lambda: b"<table><tr>" + b"<td>x" * (N // 10) + b"</table>end", 0),
     "a paragraph": (lambda: b"<p>" + b"words and " * (N * 5) + b"end", N * 50 + 3),

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING
 
 from vbraille.cli.settled import bind_settings
+from vbraille.cli.terminal import print_json
 from vbraille.reading.bindings import spoken
 from vbraille.settings.loading import load_settings
 
@@ -19,7 +19,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Print a line for each command: its name, its keys, and what it does."""
     bound = bind_settings(load_settings(arguments.settings), arguments.keys)
     if arguments.json:
-        print(json.dumps(_rows(bound), ensure_ascii=False, indent=2))
+        print_json(_rows(bound))
         return 0
     for command in bound.commands:
         print(f"{command.name}: {command.spoken_keys}: {command.help}")

@@ -19,11 +19,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import numpy as np
-    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from vbraille.feeling.loading import LoadedScene
-    from vbraille.pictures.drawings import ArrayOnMap
+    from vbraille.pictures.drawings import ArrayOnMap, Figure
 
 _KINDS = ("png", "svg", "csv", "pdf", "gif")
 _FRAMES, _MOST_FRAMES = 8, 500

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import sys
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import build_book, build_lengths, lay_out
 from vbraille.cli.settled import TRANSLATION, settle
 from vbraille.cli.terminal import say_line
-from vbraille.errors import InputError, VbrailleError
-from vbraille.files import whole_file
+from vbraille.errors import InputError
+from vbraille.files import check_unused, write_file
 from vbraille.layout.braillepages import (
     FORM_FEED,
     Imprint,
@@ -27,7 +26,7 @@ from vbraille.wording import count, printable, spelled
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterable, Iterator
 
     from vbraille.cli.build import Page
     from vbraille.layout.pages import Line
@@ -63,8 +62,9 @@ def _check(arguments: argparse.Namespace) -> None:
     if arguments.model is not None and (cells is not None or arguments.format == "pef"):
         raise InputError("a page has as many cells as --cells says; leave out --model")
     if out is not None:
-        if Path(out).exists() and not arguments.force:
-            raise InputError(_taken(out))
+        check_unused(Path(out), replace=arguments.force)
+        if Path(out).is_dir():
+            raise InputError(f"{out} is a directory; give the name of a file in it")
         if not Path(out).parent.is_dir():
             raise InputError(f"there is no directory {Path(out).parent}; make it, or use another")
 
@@ -81,9 +81,7 @@ def _write_laid(arguments: argparse.Namespace, book: Book) -> None:
     width = arguments.cells or (_CELLS if arguments.format == "pef" else None)
     model = build_lengths(arguments, MODELS[arguments.model or "stress2"])
     page = lay_out(arguments, book, model, width)
-    with _output(arguments) as write:
-        for content in _checked(_laid(page, arguments.format)):
-            write(content)
+    _write(arguments, _laid(page, arguments.format))
     page.say_note()
     page.say_unknown()
 
@@ -112,9 +110,7 @@ def _write_kept(arguments: argparse.Namespace, book: Book) -> None:
         content = brf_pages(pages)
     else:
         content = (FORM_FEED * (made > 0) + brf_lines(rows) for made, rows in enumerate(pages))
-    with _output(arguments) as write:
-        for part in _checked(content):
-            write(part)
+    _write(arguments, content)
     for note in filter(None, (*book.notes(), said)):
         say_line(spelled(note), aside=True)
 
@@ -133,40 +129,22 @@ def _checked(contents: Iterable[bytes]) -> Iterator[bytes]:
         raise InputError(f"{error}; give --format unicode, which writes all eight") from None
 
 
-@contextmanager
-def _output(arguments: argparse.Namespace) -> Iterator[Callable[[bytes], object]]:
-    """Give a function that writes to the file of --out, whole or not at all, or prints.
+def _write(arguments: argparse.Namespace, contents: Iterable[bytes]) -> None:
+    """Write a page to the file of --out, whole or not at all, or print it part by part.
 
     Raises
     ------
     InputError
-        If the file cannot be made, or is there already and may not be replaced.
+        If the page cannot be written in this form, or the file cannot be made.
     VbrailleError
         If the disk cannot take it.
     """
-    name = arguments.out
-    if name is None:
-        yield lambda content: sys.stdout.write(content.decode("utf-8", "surrogatepass"))
+    parts = _checked(contents)
+    if arguments.out is not None:
+        write_file(Path(arguments.out), b"".join(parts), replace=arguments.force)
         return
-    path = Path(name)
-    if not path.name or path.is_dir():
-        raise InputError(f"{name} is a directory; give the name of a file in it")
-    try:
-        with whole_file(path, replace=arguments.force) as partial:
-            try:
-                file = partial.open("wb")
-            except OSError as error:
-                raise InputError(f"{name} cannot be written: {error.strerror}") from None
-            with file:
-                yield file.write
-    except FileExistsError:
-        raise InputError(_taken(name)) from None
-    except OSError as error:
-        raise VbrailleError(f"{name} could not be written: {error.strerror}") from None
-
-
-def _taken(name: str) -> str:
-    return f"{name} is there already; choose another name, or replace it by --force"
+    for part in parts:
+        sys.stdout.write(part.decode("utf-8", "surrogatepass"))
 
 
 def _imprint_of(book: Book, cells: int, lines: int) -> Imprint:

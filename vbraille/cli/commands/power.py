@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import csv
-import json
 import sys
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli.terminal import WorkProgress, say_line
+from vbraille.cli.terminal import WorkProgress, print_json, say_line
 from vbraille.forecast.power import ENOUGH, SEED, PowerQuestion, PowerRow, power
 from vbraille.forecast.workers import Workers
 from vbraille.sessions.planning.protocolfiles import load_protocol
@@ -40,8 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     with WorkProgress() as progress:
         table = power(question, workers, keep=keep, told=progress.of)
     if arguments.json:
-        json.dump(table.to_json(), sys.stdout, ensure_ascii=False, indent=1)
-        print()
+        print_json(table.to_json(), indent=1)
     elif arguments.csv:
         rows = csv.DictWriter(sys.stdout, [field.name for field in fields(PowerRow)])
         rows.writeheader()

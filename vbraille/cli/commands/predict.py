@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli.terminal import WorkProgress, say_line
+from vbraille.cli.terminal import WorkProgress, print_json, say_line
 from vbraille.files import check_free, write_folder
 from vbraille.forecast.grids import predict, to_json
 from vbraille.forecast.workers import Workers
@@ -32,8 +31,7 @@ def run(arguments: argparse.Namespace) -> int:
     if out is not None:
         write_folder(out, {"predictions.csv": _csv(found).encode()})
     if arguments.json:
-        json.dump(to_json(grid, found), sys.stdout, ensure_ascii=False, indent=1)
-        print()
+        print_json(to_json(grid, found), indent=1)
     elif arguments.csv:
         sys.stdout.write(_csv(found))
     else:

@@ -23,7 +23,7 @@ from vbraille.feeling.costs import (
 )
 from vbraille.feeling.loading import load_scene
 from vbraille.feeling.paths import path_of
-from vbraille.files import write_file
+from vbraille.files import check_unused, write_file
 from vbraille.render import MODELS
 from vbraille.wording import setting
 
@@ -82,10 +82,7 @@ def _check(path: str | None, name: str, suffixes: tuple[str, ...], *, force: boo
         return
     if Path(path).suffix.lower() not in suffixes:
         raise InputError(f"{path} does not end in {' or '.join(suffixes)}; name {setting(name)} so")
-    if Path(path).exists() and not force:
-        raise InputError(
-            f"{path} is there already; choose another name, or replace it by {setting('force')}"
-        )
+    check_unused(Path(path), replace=force)
 
 
 def _say(costs: Costs) -> None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli.terminal import say_line
+from vbraille.cli.terminal import print_json, say_line
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
@@ -25,10 +25,25 @@ def run(arguments: argparse.Namespace) -> int:
         sys.stdout.write(schema_text())
         return 0
     if arguments.action == "convert":
-        from vbraille.cli.commands.scene_convert import convert
-
-        return convert(arguments)
+        return _convert(arguments)
     return _check(arguments)
+
+
+def _convert(arguments: argparse.Namespace) -> int:
+    """Write a scene file made of a file of another program, and say what differs."""
+    from vbraille.files import check_unused, write_file
+    from vbraille.scene.converting import convert_scene
+
+    path, out = Path(arguments.file), Path(arguments.out)
+    check_unused(out, replace=arguments.force)
+    made = convert_scene(path, out.parent, as_shown=arguments.as_shown)
+    write_file(out, made.text.encode(), replace=arguments.force)
+    for difference in made.differences:
+        say_line(f"differs: {path} {difference}")
+    say_line(f"elements: {made.elements}")
+    say_line(f"differences: {len(made.differences)}")
+    say_line(f"written: {out}")
+    return 0
 
 
 def _check(arguments: argparse.Namespace) -> int:
@@ -39,7 +54,7 @@ def _check(arguments: argparse.Namespace) -> int:
     loaded = load_scene(arguments.file, MODELS["stress2"].style)
     report = check_scene(loaded.opened, loaded.boxes())
     if arguments.json:
-        print(json.dumps(_as_json(loaded, report), ensure_ascii=False, indent=2))
+        print_json(_as_json(loaded, report))
     else:
         _say(loaded, report)
     return 0

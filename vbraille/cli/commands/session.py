@@ -46,7 +46,7 @@ def _protocols(arguments: argparse.Namespace) -> int:
 
 
 def _plan(arguments: argparse.Namespace) -> int:
-    from vbraille.sessions.beginning import plan_session
+    from vbraille.sessions.session import plan_session
 
     protocol, plan = plan_session(arguments.protocol, arguments.participant, **_chances(arguments))
     if arguments.brf and protocol.task == "choice":

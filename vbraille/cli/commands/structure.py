@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import build_book
-from vbraille.cli.terminal import say_line
+from vbraille.cli.terminal import print_json, say_line
 from vbraille.translate.outline import outline
 
 if TYPE_CHECKING:
@@ -21,7 +20,7 @@ def run(arguments: argparse.Namespace) -> int:
     source = build_book(arguments).source
     found = outline(source)
     if arguments.json:
-        print(json.dumps(asdict(found), ensure_ascii=False, indent=2))
+        print_json(asdict(found))
         return 0
     for what, value in (("title", found.title), ("language", found.language)):
         if value:

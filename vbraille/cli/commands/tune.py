@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
+from vbraille.cli.atdevice import AtDevice, surrounded
 from vbraille.cli.settled import chosen_profile, settle
-from vbraille.cli.stoppable import POLL_S, STOPPED, StoppableKeyboard
-from vbraille.cli.stopping import EAR
-from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import check_actuators
-from vbraille.devices.saying import placing_sentence
 from vbraille.display import USUAL_RATE_HZ, check_rate
 from vbraille.errors import InputError
 from vbraille.files import write_file
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line, choose_table
+from vbraille.reading.activity import Activity
 from vbraille.reading.bindings import spoken
-from vbraille.reading.device import HAND, OpenDevice
+from vbraille.reading.device import HAND
 from vbraille.reading.keyboard import Keyboard
+from vbraille.reading.outputs import language_of
 from vbraille.reading.tuning_course import TuningCourse, from_json, practice_text, to_json
 from vbraille.render import MODELS, model_of
 from vbraille.settings.saving import save_profile
@@ -31,10 +29,13 @@ from vbraille.translate import Book, Document
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Iterable
     from pathlib import Path
 
+    from vbraille.cli.atdevice import Surroundings
+    from vbraille.cli.stoppable import StoppableKeyboard
+    from vbraille.devices.events import Event
     from vbraille.render import Model
-    from vbraille.settings.values import Settings
 
 _KEYS = {
     "space": "feel the other one",
@@ -54,40 +55,57 @@ def run(arguments: argparse.Namespace) -> int:
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
     asked = MODELS[arguments.model or "stress2"]
     wanted = asked.on(asked.style.geometry, rate_hz)
-    with ExitStack() as listening, Keyboard() as keyboard:
+    with Keyboard() as keyboard:
         if not keyboard.attached:
             raise InputError("vbraille tune is led by keys; start it at a terminal")
         book = _book(arguments)
-        device = OpenDevice(
-            arguments.device,
-            wanted,
-            often=arguments.rate is not None,
-            hand=arguments.hand or HAND,
-            seed=1 if arguments.seed is None else arguments.seed,
-            say=say_line,
-            attended=True,
-        )
-        try:
+        hand, language = arguments.hand or HAND, language_of(book, arguments.language)
+        often = arguments.rate is not None
+        with surrounded(arguments, keyboard, wanted, hand, language, often=often) as around:
+            device = around.device
             display = device.find()
             if arguments.model is not None or is_simulated(arguments.device):
                 check_actuators(display, wanted)
             usual = model_of(display)
-            geometry = replace(usual.style.geometry, travel_mm=display.travel_mm)
             model = with_profile(
-                settings, profile, replace(usual, style=replace(usual.style, geometry=geometry))
+                settings,
+                profile,
+                replace(usual, style=usual.style.replace(travel_mm=display.travel_mm)),
             )
-            course = _Guided(arguments, settings, profile, model)
+            path = settings.path.with_name(
+                f"{settings.path.stem}-tune-{profile}-{display_name(model)}.json"
+            )
+            course = TuningCourse(model) if arguments.again else _taken_up(path, model)
             text = Layout(book, cells_per_line(model.style.geometry, model.display))
             if text.line(1) is None:
                 raise InputError(f"{arguments.file} has no text in it; give a text file")
-            device.start(replace(model, style=course.course.shown(1)))
-            keys = listening.enter_context(StoppableKeyboard(keyboard))
+            device.start(replace(model, style=course.shown(1)))
+            keys = around.keys()
             device.show(text)
-            course.run(device, keys)
-        finally:
-            EAR.close()  # so that the array goes to rest
-            device.close()
+            guided = _Guided(around, keys, course, path, profile)
+            guided.run()
+            if guided.course.done:
+                style = guided.course.style
+                saved = replace(model, style=style)
+                around.outputs.say(save_profile(settings.path, profile, saved))
+                path.unlink(missing_ok=True)
     return 0
+
+
+def _taken_up(path: Path, model: Model) -> TuningCourse:
+    """Course whose choices a file keeps; a new one if there is no such file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be gone on with.
+    """
+    if not path.exists():
+        return TuningCourse(model)
+    try:
+        return from_json(read_text(path, "file of choices"), model)
+    except InputError as error:
+        raise InputError(f"{path}: {error}; begin anew with --again") from None
 
 
 def _book(arguments: argparse.Namespace) -> Book:
@@ -104,117 +122,99 @@ def _book(arguments: argparse.Namespace) -> Book:
     return Book(Document.open(arguments.file), table)
 
 
-class _Guided:
+class _Tuning(Activity):
+    """What a reader does who chooses this or that."""
+
+    does, doing = "tune", "reading"
+
+
+class _Guided(AtDevice):
     """A course on its way at a terminal, whose choices are kept in a file until it is done."""
 
     def __init__(
-        self, arguments: argparse.Namespace, settings: Settings, profile: str, model: Model
+        self,
+        around: Surroundings,
+        keys: StoppableKeyboard,
+        course: TuningCourse,
+        path: Path,
+        profile: str,
     ) -> None:
-        self._settings, self._profile, self._model = settings, profile, model
-        self._display = display_name(model)
+        outputs = around.outputs
+        who = _Tuning(around.device.engine, outputs.say, None, outputs.cue)
+        super().__init__(around, who, keys)
+        self.course = course
+        self._path, self._profile = path, profile
         self._which: Literal[1, 2] = 1
-        self._left = False
-        self.course = TuningCourse(model)
-        if not arguments.again and self._path.exists():
-            try:
-                self.course = from_json(read_text(self._path, "file of choices"), model)
-            except InputError as error:
-                raise InputError(f"{self._path}: {error}; begin anew with --again") from None
 
-    @property
-    def _path(self) -> Path:
-        """File that keeps the choices until the course is done."""
-        path = self._settings.path
-        return path.with_name(f"{path.stem}-tune-{self._profile}-{self._display}.json")
-
-    def run(self, device: OpenDevice, keys: StoppableKeyboard) -> None:
-        """Lead through the choices that are left, then save."""
-        say_line(f"display: {self._model.title}")
-        say_line(f"profile: {self._profile}")
-        say_line("h says the keys")
+    def run(self) -> None:
+        """Lead through the choices that are left; see `AtDevice.run`."""
+        self._who.say(f"display: {self.course.start.title}")
+        self._who.say(f"profile: {self._profile}")
         if self.course.choices:
-            say_line(f"going on: choices made {len(self.course.choices)}")
-        self._ask(device)
-        placing = Placing.DONE
-        while not (self._left or self.course.done):
-            if keys.asked:
-                _suspend(device, keys)
-            for key in keys.pressed(POLL_S):
-                if device.placing is Placing.STOP:
-                    device.set_zero()
-                elif not (self._left or self.course.done):
-                    self._press(device, key)
-            device.poll(0.0)
-            if device.placing is not placing:
-                placing = device.placing
-                say_line(placing_sentence(placing, device.display))
-        if self.course.done:
-            self._save()
+            self._who.say(f"going on: choices made {len(self.course.choices)}")
+        self._ask()
+        super().run()
 
-    def _press(self, device: OpenDevice, key: str) -> None:
+    def _see(self, events: Iterable[Event]) -> None:
+        """Let the reader read; the device obeys its own events."""
+
+    def _press(self, key: str) -> None:
+        device, say = self._device, self._who.say
+        if self._who.done:
+            return
+        if device.placing is Placing.STOP:
+            device.set_zero()
+            return
         match key:
             case " ":
                 self._which = 2 if self._which == 1 else 1
-                self._show(device)
+                self._feel()
             case "1" | "2":
-                say_line(f"chosen: {key}")
-                self._choose(device, self.course.choose(1 if key == "1" else 2))
+                say(f"chosen: {key}")
+                self._choose(self.course.choose(1 if key == "1" else 2))
             case "u" if self.course.choices:
-                self._choose(device, self.course.undo())
+                self._choose(self.course.undo())
             case "u":
-                say_line("undo: nothing was chosen")
+                say("undo: nothing was chosen")
             case "n" | "down" | "p" | "up":
                 step = 1 if key in ("n", "down") else -1
                 if not device.reader.go(device.reader.line_number + step):
-                    say_line("last line" if step > 0 else "first line")
+                    say("last line" if step > 0 else "first line")
             case "q":
-                self._left = True
-                say_line(f"left: {len(self.course.choices)} of {self.course.total} choices made")
+                self._who.quit()
+                say(f"left: {len(self.course.choices)} of {self.course.total} choices made")
             case "h" | "?":
                 for name, does in _KEYS.items():
-                    say_line(f"{name}: {does}")
+                    say(f"{name}: {does}")
             case _:
-                say_line(f"no command: {spoken(key)}; h says the keys")
+                say(f"no command: {spoken(key)}; h says the keys")
 
-    def _choose(self, device: OpenDevice, course: TuningCourse) -> None:
+    def _choose(self, course: TuningCourse) -> None:
         """Take a choice, or take one back, and ask the next."""
         settled = len(self.course.found)
         self.course = course
-        self._keep()
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        kept = to_json(course, self._profile, display_name(course.start))
+        write_file(self._path, kept.encode(), replace=True, durable=True)
         for found in course.found[settled:]:
-            say_line(found.knob.said(found.value))
-            say_line(f"95 % interval: {found.low:g} to {found.high:g} {found.knob.unit}".rstrip())
-        if not course.done:
-            self._which = 1
-            self._ask(device)
+            self._who.say(found.knob.said(found.value))
+            interval = f"{found.low:g} to {found.high:g} {found.knob.unit}".rstrip()
+            self._who.say(f"95 % interval: {interval}")
+        if course.done:
+            self._who.quit()
+            return
+        self._which = 1
+        self._ask()
 
-    def _ask(self, device: OpenDevice) -> None:
+    def _ask(self) -> None:
         knob = self.course.knob
         if knob is not None:
-            say_line(f"choice {len(self.course.choices) + 1} of {self.course.total}: {knob.label}")
-            self._show(device)
+            made = len(self.course.choices)
+            self._who.say(f"choice {made + 1} of {self.course.total}: {knob.label}")
+            self._feel()
 
-    def _show(self, device: OpenDevice) -> None:
+    def _feel(self) -> None:
+        """Show the one or the other."""
         style = self.course.shown(self._which)
-        device.tune(geometry=style.geometry, tuning=style.tuning)
-        say_line(f"now: {self._which}")
-
-    def _keep(self) -> None:
-        """Keep the choices, whole or not at all."""
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        text = to_json(self.course, self._profile, self._display)
-        write_file(self._path, text.encode(), replace=True, durable=True)
-
-    def _save(self) -> None:
-        model = replace(self._model, style=self.course.style)
-        say_line(save_profile(self._settings.path, self._profile, model))
-        self._path.unlink(missing_ok=True)
-
-
-def _suspend(device: OpenDevice, keys: StoppableKeyboard) -> None:
-    """Stop, with the array at rest, until the shell says to go on."""
-    device.paused = True
-    say_line(STOPPED)
-    keys.stop()
-    device.paused = False
-    say_line("reading")
+        self._device.tune(geometry=style.geometry, tuning=style.tuning)
+        self._who.say(f"now: {self._which}")

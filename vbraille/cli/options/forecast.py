@@ -9,7 +9,7 @@ from vbraille.cli.options.groups import number, protocol, seed, whole
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
-    from vbraille.cli.parser import CommandParser
+    from vbraille.cli.options.commandparser import CommandParser
 
 _MOST_SIZES = 1000
 

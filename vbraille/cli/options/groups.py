@@ -9,7 +9,7 @@ TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vbraille.cli.parser import CommandParser
+    from vbraille.cli.options.commandparser import CommandParser
 
 
 class Pairs(argparse.Action):
@@ -17,7 +17,7 @@ class Pairs(argparse.Action):
 
     def __call__(
         self,
-        _parser: CommandParser,
+        _parser: argparse.ArgumentParser,
         namespace: argparse.Namespace,
         values: str | Sequence[object] | None,
         _option: str | None = None,

@@ -18,7 +18,7 @@ from vbraille.cli.options.live import add_live_options
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
-    from vbraille.cli.parser import CommandParser
+    from vbraille.cli.options.commandparser import CommandParser
 
 
 def session_protocols(parser: CommandParser) -> None:

@@ -10,7 +10,7 @@ TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     import argparse
 
-    from vbraille.cli.parser import CommandParser
+    from vbraille.cli.options.commandparser import CommandParser
 
 MOST_PORT = 65_535
 

@@ -10,7 +10,7 @@ from vbraille.cli.options.live import add_live_options
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
-    from vbraille.cli.parser import CommandParser
+    from vbraille.cli.options.commandparser import CommandParser
 
 # Options of a path over a picture, beside its name.
 PATH_OPTIONS = ("at", "radius", "seconds", "spacing", "speed", "sway", "unsteady", "back")

@@ -8,7 +8,7 @@ from vbraille.cli.options.live import add_live_options
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
-    from vbraille.cli.parser import CommandParser
+    from vbraille.cli.options.commandparser import CommandParser
 
 PLOTS = ("profile", "mapping", "wave", "strain", "page", "resolution")
 
@@ -56,7 +56,7 @@ def tune(parser: CommandParser) -> None:
     groups.translation(parser)
     groups.hand(parser, _OWN_RATE)
     parser.flag("--again", "Begin anew, and forget the choices made so far.")
-    parser.set_defaults(hand=None, seed=None, rate=None)
+    parser.set_defaults(hand=None, seed=None, rate=None, monitor=False)
     groups.leave_to_settings(parser)
 
 

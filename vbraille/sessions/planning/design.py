@@ -6,6 +6,8 @@ from collections import Counter
 from itertools import permutations, product
 from typing import TYPE_CHECKING, Literal
 
+from msgspec import structs
+
 from vbraille.braille.spelling import LETTERS, name_dots, to_braille
 from vbraille.errors import check_range
 from vbraille.sessions.planning.conduct import check_file_name
@@ -322,11 +324,6 @@ class Choice(_Design, frozen=True, tag="choice"):
             raise ValueError("string has no cell with a gap; give one with a left and a right dot")
         if self.parameter == "cell_gap_mm" and sum(map(bool, self.string)) < 2:
             raise ValueError("string has no gap between cells; give two cells with dots or more")
-        if self.parameter in UNFELT:
-            raise ValueError(
-                f"parameter is {self.parameter!r}, which no actuator shows in a line of its own; "
-                f"give another"
-            )
 
     @property
     def trials(self) -> int:
@@ -369,14 +366,7 @@ class ItemList(_Design, frozen=True, tag="items"):
 
     def strings_of(self, strings: tuple[Masks, ...]) -> StringList:
         """Design that shows some strings as this one shows its items."""
-        return StringList(
-            repeats=self.repeats,
-            blocks=self.blocks,
-            order=self.order,
-            catch=self.catch,
-            strings=strings,
-            reorder=self.reorder,
-        )
+        return StringList(strings=strings, **structs.asdict(self))
 
 
 Design = Combinations | StringList | Choice

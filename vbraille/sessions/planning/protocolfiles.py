@@ -377,13 +377,6 @@ def _check_styles(protocol: Protocol) -> None:
             protocol.style_of(condition)
     except ValueError as error:
         raise ValueError(f"{table} {error}") from None
-    compared = protocol.parameter
-    for condition in protocol.conditions if compared else ():
-        if _sets(condition, compared):
-            raise ValueError(
-                f"[design] parameter is {compared!r}, which the condition {condition.name} sets "
-                f"itself; leave it out there"
-            )
 
 
 def _check_varies(protocol: Protocol) -> None:
@@ -400,6 +393,13 @@ def _check_varies(protocol: Protocol) -> None:
                 f"[{table}] parameter is {name!r}, which no actuator shows in a line of its own; "
                 f"give another"
             )
+        same = {GAP: "dot_spacing_mm", "texture_cycles": "cycles"}
+        for condition in protocol.conditions:
+            if same.get(name or "", name) in condition.changes:
+                raise ValueError(
+                    f"[{table}] parameter is {name!r}, which the condition {condition.name} sets "
+                    f"itself; leave it out there"
+                )
     stairs = protocol.procedure
     if isinstance(stairs, StaircaseProcedure):
         trials = min(stairs.trials or MOST_TRIALS, protocol.design.trials)
@@ -414,12 +414,6 @@ def _check_varies(protocol: Protocol) -> None:
             f"[order] kind is {order.kind!r}, and there is one condition, so that nothing can be "
             f"ordered; leave it out, or give more conditions"
         )
-
-
-def _sets(condition: Condition, knob: str | None) -> bool:
-    """Whether a condition sets what is compared or varied."""
-    same = {GAP: "dot_spacing_mm", "texture_cycles": "cycles"}
-    return knob is not None and same.get(knob, knob) in condition.changes
 
 
 def _check_question(protocol: Protocol) -> None:
@@ -457,13 +451,6 @@ def _check_procedure(protocol: Protocol) -> None:
             "[rules] never_twice_running is of a fixed order of values; leave it out, since "
             "[procedure] chooses them"
         )
-    own = getattr(protocol.procedure, "parameter", None)
-    for condition in protocol.conditions if own else ():
-        if _sets(condition, own):
-            raise ValueError(
-                f"[procedure] parameter is {own!r}, which the condition {condition.name} sets "
-                f"itself; leave it out there"
-            )
 
 
 def _check_conventional(protocol: Protocol) -> None:

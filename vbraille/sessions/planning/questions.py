@@ -103,7 +103,6 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
         If the words are too long.
     """
 
-    name: ClassVar[str]  # name of the kind in tables
     stimuli: ClassVar[tuple[int, ...]] = (1, 2)  # how many stimuli a trial may have
     positive_known: ClassVar[bool] = False  # whether a procedure can go by the answers
 
@@ -113,6 +112,11 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
     def __post_init__(self) -> None:
         if self.ask:
             check_line("ask", self.ask)
+
+    @property
+    def name(self) -> str:
+        """Name of the kind in tables."""
+        return str(self.__struct_config__.tag)
 
     @property
     def typed(self) -> str:
@@ -172,6 +176,10 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
         """Words for an answer."""
         return answer
 
+    def cell(self, _trial: Trial, answer: str, /) -> str:
+        """Text for an answer in tables."""
+        return answer
+
 
 def check_scale(least: int, most: int) -> None:
     """Check the ends of a scale.
@@ -224,7 +232,6 @@ SAME, DIFFERENT = "same", "different"
 class IdentifyQuestion(QuestionTable, frozen=True, kw_only=True, tag="identify"):
     """The question which cells were shown."""
 
-    name: ClassVar[str] = "identify"
     positive_known: ClassVar[bool] = True
     stimuli: ClassVar[tuple[int, ...]] = (1,)
 
@@ -269,7 +276,6 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
         If a reference is missing, or is given and not used.
     """
 
-    name: ClassVar[str] = "which"
     positive_known: ClassVar[bool] = True
     stimuli: ClassVar[tuple[int, ...]] = (2,)
 
@@ -323,6 +329,10 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
         """Words for the one that was chosen."""
         return "first" if answer == "1" else "second"
 
+    def cell(self, trial: Trial, answer: str, /) -> str:
+        """Value that was chosen."""
+        return f"{trial.stimuli[int(answer) - 1].value:g}"
+
 
 class _OneOfTwo(QuestionTable, frozen=True, kw_only=True):
     """A question that is answered by one of two words, of which the first is what is looked for."""
@@ -358,7 +368,6 @@ class _OneOfTwo(QuestionTable, frozen=True, kw_only=True):
 class SameQuestion(_OneOfTwo, frozen=True, kw_only=True, tag="same-different"):
     """The question whether two stimuli were different or the same."""
 
-    name: ClassVar[str] = "same-different"
     stimuli: ClassVar[tuple[int, ...]] = (2,)
     words: ClassVar[tuple[str, str]] = (DIFFERENT, SAME)
 
@@ -374,7 +383,6 @@ class SameQuestion(_OneOfTwo, frozen=True, kw_only=True, tag="same-different"):
 class DetectQuestion(_OneOfTwo, frozen=True, kw_only=True, tag="detect"):
     """The question whether there was anything: a cell with dots, and some contrast to feel it."""
 
-    name: ClassVar[str] = "detect"
     positive_known: ClassVar[bool] = True
     stimuli: ClassVar[tuple[int, ...]] = (1,)
     words: ClassVar[tuple[str, str]] = (YES, NO)
@@ -411,8 +419,6 @@ class RatingQuestion(QuestionTable, frozen=True, kw_only=True, tag="rating"):
     ValueError
         If the scale is read backwards or is too long, or the labels are not one for each.
     """
-
-    name: ClassVar[str] = "rating"
 
     scale: str
     least: int
@@ -482,8 +488,6 @@ class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude
         If the modulus is not a positive number.
     """
 
-    name: ClassVar[str] = "magnitude"
-
     modulus: float | None = None
 
     def __post_init__(self) -> None:
@@ -510,8 +514,6 @@ class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude
 
 class FreeQuestion(QuestionTable, frozen=True, kw_only=True, tag="free"):
     """A question that is answered in words, which nobody scores."""
-
-    name: ClassVar[str] = "free"
 
     @property
     def typed(self) -> str:

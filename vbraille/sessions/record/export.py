@@ -250,7 +250,7 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
         "faults": "; ".join(told.faults),
         "cue_time": told.wall.get("cue", ""),
         "answer_time": told.wall.get("answer", ""),
-        "trace": told.showings[-1].trace or "" if told.showings else "",
+        "trace": told.trace or "",
     }
     if "cue" in t_s and "contact" in t_s and t_s["contact"] >= t_s["cue"]:
         row["contact_s"] = round(t_s["contact"] - t_s["cue"], 6)
@@ -276,12 +276,8 @@ def _asked(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     else:
         row["presented"] = trial.presented
         row["string_set"] = _string_set(record, trial)
-    if question.name == "which":
-        row["answered"] = _chosen(values, told.answer)
-        row["first_answer"] = _chosen(values, told.first_answer)
-    else:
-        row["answered"] = told.answer or ""
-        row["first_answer"] = told.first_answer or ""
+    for column, answer in (("answered", told.answer), ("first_answer", told.first_answer)):
+        row[column] = "" if answer is None else question.cell(trial, answer)
     if shown_on(record.protocol, trial) != "device" and "read" in t_s and "cue" in t_s:
         row["duration_s"] = round(t_s["read"] - t_s["cue"] - told.unread_s, 6)
     return row
@@ -336,10 +332,6 @@ def spans(numbers: Sequence[int]) -> str:
     return ", ".join(f"{p[0]}-{p[-1]}" if len(p) > 1 else f"{p[0]}" for p in parts)
 
 
-def _chosen(values: list[str], answer: str | None) -> str:
-    return "" if answer is None else values[int(answer) - 1]
-
-
 def _trajectory(
     record: Record, trial: Trial, told: TrialRecord, traces: Traces
 ) -> Trajectory | str:
@@ -347,8 +339,7 @@ def _trajectory(
     protocol, stimulus = record.protocol, trial.stimuli[0]
     line = protocol.line(stimulus.masks)
     edges = edges_mm(line, protocol.mapping_of(stimulus), stimulus.geometry)
-    trace = told.showings[-1].trace if told.showings else None
-    if not trace:
+    if (trace := told.trace) is None:
         return "it has no trace"
     ticks = traces.of(trace, [showing.line for showing in told.last_attempt])
     if ticks is None:

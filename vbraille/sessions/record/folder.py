@@ -27,7 +27,7 @@ from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Closed, Lost, Run, Session
 from vbraille.sessions.record.journal import JournalContents, Tie, salvage
-from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.record.progress import Progress, stimulus_of
 from vbraille.sessions.record.traces import TRACE, Trace, read_last_tie, read_trace
 from vbraille.version import __version__
 from vbraille.wording import setting
@@ -422,7 +422,7 @@ def _check_choices(record: Record, progress: Progress) -> Iterator[Finding]:
     asked = 0
     for told in progress.trials.values():
         for showing in told.showings:
-            if showing.stimulus_of(told.trial) != told.trial.stimuli[showing.stimulus]:
+            if stimulus_of(showing) != told.trial.stimuli[showing.stimulus]:
                 what = "was shown with other values than the answers before it ask for"
                 yield Finding(f"procedure: trial {told.trial.number} {what}", good=False)
                 break
@@ -572,9 +572,8 @@ def _answered_lines(progress: Progress) -> dict[str, set[int]]:
     for told in progress.trials.values():
         if told.answer is None and told.first_answer is None:
             continue
-        for showing in told.last_attempt:
-            if showing.trace is not None:
-                lines.setdefault(showing.trace, set()).add(showing.line)
+        if told.trace is not None:
+            lines.setdefault(told.trace, set()).update(each.line for each in told.last_attempt)
     return lines
 
 

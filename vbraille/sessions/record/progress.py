@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from msgspec import structs
 
@@ -17,50 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from vbraille.sessions.record.events import JournalEvent
-
-
-@dataclass(slots=True)
-class Showing:
-    """One time that a stimulus was put under the hand.
-
-    Parameters
-    ----------
-    attempt
-        Number of the attempt at the trial, from 1.
-    stimulus
-        Index of the stimulus in the trial: 0, or 1 for the second of two to compare.
-    line
-        Number of the showing in the trace.
-    trace
-        Name of the trace file; None on paper and on a conventional display.
-    tuning
-        Contrast or texture that the experimenter had set instead of the stimulus's own.
-    shown
-        The stimulus as the journal describes it.
-    """
-
-    attempt: int
-    stimulus: int
-    line: int
-    trace: str | None
-    tuning: dict[str, float]
-    shown: dict[str, Any]
-
-    def stimulus_of(self, trial: Trial) -> Stimulus:
-        """Stimulus that was shown in a trial.
-
-        Raises
-        ------
-        VbrailleError
-            If the journal's description is not that of a stimulus.
-        """
-        try:
-            return stimulus_from_json(self.shown)
-        except ValueError as error:
-            raise VbrailleError(
-                f"the journal is damaged: it says of trial {trial.number} that it has shown what "
-                f"cannot be: {error}"
-            ) from None
 
 
 @dataclass(slots=True)
@@ -79,7 +35,9 @@ class TrialRecord:
     first_answer
         First answer, if it was taken back; else None.
     showings
-        All showings of the trial's stimuli, in order.
+        Events of all showings of the trial's stimuli, in order.
+    trace
+        Name of the trace of the last attempt; None on paper and on a conventional display.
     faults
         What went wrong with the device during the trial, a sentence for each fault.
     t_s
@@ -112,7 +70,8 @@ class TrialRecord:
     attempts: int = 0
     answer: str | None = None
     first_answer: str | None = None
-    showings: list[Showing] = field(default_factory=list)
+    showings: list[events.Presented] = field(default_factory=list)
+    trace: str | None = None
     faults: list[str] = field(default_factory=list)
     t_s: dict[str, float] = field(default_factory=dict)
     wall: dict[str, str] = field(default_factory=dict)
@@ -138,7 +97,7 @@ class TrialRecord:
         return self.t_s[end] - self.t_s["cue"] - self.paused_s
 
     @property
-    def last_attempt(self) -> list[Showing]:
+    def last_attempt(self) -> list[events.Presented]:
         """Showings of the last attempt."""
         return [showing for showing in self.showings if showing.attempt == self.attempts]
 
@@ -152,7 +111,7 @@ class TrialRecord:
         """The trial as it was shown in its last attempt, with what the experimenter had set."""
         stimuli = list(self.trial.stimuli)
         for showing in self.last_attempt:
-            shown = showing.stimulus_of(self.trial)
+            shown = stimulus_of(showing)
             tuning = replace(shown.tuning, **showing.tuning)
             stimuli[showing.stimulus] = replace(shown, tuning=tuning)
         return structs.replace(self.trial, stimuli=Stimuli(stimuli))
@@ -371,7 +330,8 @@ class Progress:
                 self.line = max(self.line, event.line)
                 if record and record.showings and event.line:
                     last = record.showings[-1]
-                    record.showings.append(replace(last, line=event.line, tuning=event.tuning))
+                    again = structs.replace(last, line=event.line, tuning=event.tuning)
+                    record.showings.append(again)
             case events.HandTaken():
                 self.pointed = True
                 if record:
@@ -401,13 +361,11 @@ class Progress:
             record.wall.clear()
             record.paused_s = record.unread_s = 0.0
         # What stands on a conventional display is in no trace.
-        trace = self.runs[-1].trace or None if self.runs and event.line else None
+        record.trace = self.runs[-1].trace or None if self.runs and event.line else None
         if record.moved_by != POINTED:
             moved_by = self._moved_by if event.line else ""  # no carriage is moved elsewhere
             record.moved_by = POINTED if self.pointed and moved_by else moved_by
-        record.showings.append(
-            Showing(event.attempt, event.stimulus, event.line, trace, event.tuning, event.shown)
-        )
+        record.showings.append(event)
         self.line = max(self.line, event.line)
         self.begun |= not event.practice
 
@@ -435,6 +393,23 @@ class Progress:
         if self._paused_s is not None and record and "ended" not in record.t_s:
             record.paused_s += event.t_s - self._paused_s
         self._paused_s = None
+
+
+def stimulus_of(showing: events.Presented) -> Stimulus:
+    """Stimulus that was shown.
+
+    Raises
+    ------
+    VbrailleError
+        If the journal's description is not that of a stimulus.
+    """
+    try:
+        return stimulus_from_json(showing.shown)
+    except ValueError as error:
+        raise VbrailleError(
+            f"the journal is damaged: it says of trial {showing.trial} that it has shown what "
+            f"cannot be: {error}"
+        ) from None
 
 
 def _mover_of(run: events.Run) -> str:

@@ -15,6 +15,7 @@ import numpy as np
 from vbraille.engine.record import FLAGS, FLOATS, INTS, LINE, Flag
 from vbraille.engine.ticks import replay
 from vbraille.render.program import nothing, scratch_for
+from vbraille.sessions.record.progress import stimulus_of
 from vbraille.sessions.record.traces import TRACE, read_trace
 
 if TYPE_CHECKING:
@@ -138,7 +139,7 @@ class StimulusPrograms:
 
     Attributes
     ----------
-    shown : dict[int, tuple[Trial, Showing]]
+    shown : dict[int, tuple[Trial, Presented]]
         For each line number, the trial and the showing that it belongs to.
     """
 
@@ -153,7 +154,7 @@ class StimulusPrograms:
 
     def of(self, line: int) -> Program:
         """Picture of a line number."""
-        trial, showing = self.shown[line]
-        stimulus = showing.stimulus_of(trial)
+        _, showing = self.shown[line]
+        stimulus = stimulus_of(showing)
         tuning = replace(stimulus.tuning, **showing.tuning)
         return self._protocol.program(stimulus, tuning)

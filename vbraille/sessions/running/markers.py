@@ -15,7 +15,7 @@ from importlib import import_module
 from queue import Empty, Full, Queue
 from statistics import median
 from threading import Thread
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
 from vbraille.sessions.record.events import AnyTime, JournalEvent
@@ -85,16 +85,6 @@ class Marker:
         return f"{self.kind}{where}{' stimulus 2' if self.stimulus else ''}"
 
 
-class MarkerPort(Protocol):
-    """Something that markers are sent to."""
-
-    def send(self, marker: Marker) -> None:
-        """Send a marker; an OSError or a RuntimeError says that it was not taken."""
-
-    def close(self) -> None:
-        """Let the recorder go."""
-
-
 @dataclass(frozen=True, slots=True)
 class MarkerSpec:
     """A recorder that is sent markers, as somebody names it.
@@ -117,7 +107,7 @@ class MarkerSpec:
         baud = f":{self.baud}" if self.kind == "serial" and self.baud != BAUD else ""
         return f"{self.kind}:{self.name}{baud}"
 
-    def open(self) -> MarkerPort:
+    def open(self) -> _LslStream | _SerialPort:
         """Open it.
 
         Raises
@@ -240,7 +230,7 @@ class Markers:
     ) -> None:
         self._spec = spec
         self._now_ns = now_ns
-        self._port: MarkerPort | None = spec.open()
+        self._port: _LslStream | _SerialPort | None = spec.open()
         self._again_ns = 0
         self._queue: Queue[Marker | None] = Queue(room)
         self._thread: Thread | None = None
