@@ -12,6 +12,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -230,14 +231,11 @@ def changes_of_a_file(shapes: int, bar_ms: float) -> Iterator[Result]:
         with host:
             feeler = Feeler(
                 loaded,
-                host,
-                where=lambda: None,
+                SimpleNamespace(engine=host, pose=None, style=MODEL.style, steering=steering),
                 rate_hz=1000.0,
-                style=MODEL.style,
                 say=lambda _: None,
                 bound=BOUND,
                 room=3 * program.nbytes,
-                steering=steering,
             )
             feeler.start(program)
             watch = FileWatch(path)

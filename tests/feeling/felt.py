@@ -35,7 +35,7 @@ fill = { texture = { kind = "linear-grating", ridge_mm = 2, gap_mm = 2 } }
 
 
 class Felt:
-    """Somebody who feels a file; where the finger is, what was said, and the keys."""
+    """Somebody who feels a file, and the device: where the finger is, what was said, the keys."""
 
     def __init__(
         self, path, *, display=DISPLAY, steering=None, entering=False, room=1 << 22, rate_hz=1000.0
@@ -43,22 +43,25 @@ class Felt:
         self.at = (10.0, 10.0)
         self.bench = Bench(lambda _: (*self.at, 0.0), display)
         self.said = []
-        style = MODELS["stress2-8x8"].style
-        self.loaded = load_scene(path, style)
+        self.engine, self.steering = self.bench.engine, steering
+        self.style = MODELS["stress2-8x8"].style
+        self.loaded = load_scene(path, self.style)
         self.feeler = Feeler(
             self.loaded,
-            self.bench.engine,
-            where=lambda: None if self.at is None else Pose(0, *self.at),
+            self,
             rate_hz=rate_hz,
-            style=style,
             say=self.said.append,
             bound=BOUND,
             room=room,
-            steering=steering,
             entering=entering,
         )
         self.feeler.start(compose(self.loaded, display, rate_hz=rate_hz))
         self.said.clear()
+
+    @property
+    def pose(self):
+        """Pose of the array; None before it is known."""
+        return None if self.at is None else Pose(0, *self.at)
 
     def press(self, *keys):
         """Press keys; what was said."""

@@ -192,15 +192,12 @@ class BookFigures:
             raise InputError(f"{loaded.title} is too large; feel it by vbraille feel")
         feeler = Feeler(
             loaded,
-            device.engine,
-            where=lambda: device.pose,
+            device,
             rate_hz=self._rate_hz,
-            style=device.style,
             say=say,
             bound=BOUND_FROM_TEXT,
             room=self._room,
             cue=cue,
-            steering=device.steering,
         )
         feeler.start(program)
         return feeler

@@ -19,14 +19,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.display import Display
-    from vbraille.engine.engine import Engine
     from vbraille.feeling.index import NamedElement
     from vbraille.feeling.loading import LoadedScene
-    from vbraille.pose import Pose
     from vbraille.reading.bindings import Bound
-    from vbraille.render.braille.style import BrailleStyle
+    from vbraille.reading.device import OpenDevice
     from vbraille.render.program import Program
-    from vbraille.simulation.steering import Steering
 
 _EVERY_S: Final = 1.0
 _THERE_MM: Final = 3.0
@@ -89,14 +86,10 @@ class Feeler(Activity):
     ----------
     loaded
         The scene.
-    engine
-        Engine that drives the device, which is started.
-    where
-        Function that tells where the array is; None before that is known.
+    device
+        Device that it is felt on, whose engine is started.
     rate_hz
         Frames a second.
-    style
-        How the braille of labels is shown.
     say
         Function that says a sentence.
     cue
@@ -105,8 +98,6 @@ class Feeler(Activity):
         Commands with their keys.
     room
         Bytes of the largest program that the engine has room for.
-    steering
-        Channel of orders to a simulated hand; None if a person moves the device.
     at_mm
         Height at which an array is that moves along x alone; None for the middle of the canvas.
     entering
@@ -125,30 +116,24 @@ class Feeler(Activity):
     def __init__(
         self,
         loaded: LoadedScene,
-        engine: Engine,
+        device: OpenDevice,
         *,
-        where: Callable[[], Pose | None],
         rate_hz: float,
-        style: BrailleStyle,
         say: Callable[[str], None],
         bound: Bound,
         room: int,
         cue: Callable[[Cue], None] = lambda _: None,
-        steering: Steering | None = None,
         at_mm: float | None = None,
         entering: bool = False,
     ) -> None:
-        super().__init__(engine, say, bound, cue)
+        super().__init__(device.engine, say, bound, cue)
         self.loaded = loaded
         self.contrast = 1.0
         self.entering = entering
         self.under: NamedElement | None = None
-        self.shown = 0  # how many pictures were
-        self._where = where
-        self._style = style
+        self._device = device
         self._room = room
         self._rate_hz = rate_hz
-        self._steering = steering
         self._at_mm = loaded.scene.canvas.height_mm / 2 if at_mm is None else at_mm
         self._aim: tuple[float, float] | None = None  # where keys have sent the hand
         self._looked_at = (math.nan, math.nan)
@@ -164,7 +149,7 @@ class Feeler(Activity):
     @property
     def place(self) -> tuple[float, float] | None:
         """Place of the array's centre on the canvas, in mm; None before it is known."""
-        pose = self._where()
+        pose = self._device.pose
         return None if pose is None else (pose.x_mm, pose.y_mm)
 
     def start(self, program: Program) -> None:
@@ -246,7 +231,7 @@ class Feeler(Activity):
             self.cue(Cue.NOT_FOUND)
             self.say(f"element: none is called {name}; {self.key('ELEMENTS', 'e')} says them all")
         else:
-            if self._steering is not None:
+            if self._device.steering is not None:
                 self.say(f"going to: {found.name}")
             self._lead(found.name, found.center_mm)
 
@@ -268,7 +253,7 @@ class Feeler(Activity):
         if not self.display.height_mm and down_mm:
             self._choose_height(self._at_mm + down_mm)
             return
-        if self._steering is None:
+        if self._device.steering is None:
             self.say("hand: a person moves this device; move it by hand")
             return
         begun = self._aim or self.place
@@ -297,7 +282,7 @@ class Feeler(Activity):
     def reload(self) -> None:
         """Read the file again, and show what it holds now; what is wrong with it is said."""
         try:
-            loaded = load_scene(self.loaded.opened.path, self._style)
+            loaded = load_scene(self.loaded.opened.path, self._device.style)
             check_fits(loaded.scene, self.display)
             program = self._compose(loaded)
             if program.nbytes > self._room:
@@ -323,7 +308,7 @@ class Feeler(Activity):
 
     def _lead(self, name: str, to: tuple[float, float]) -> None:
         """Have a simulated hand go to a place, or say the way there."""
-        if self._steering is not None:
+        if self._device.steering is not None:
             self._glide(to, LED_MM_S)
         else:
             self._guide = Guide(name, to, down=self.display.height_mm > 0)
@@ -333,8 +318,9 @@ class Feeler(Activity):
         x_mm = min(max(to[0], -display.span_mm / 2), display.travel_mm - display.span_mm / 2)
         y_mm = min(max(to[1], 0.0), display.height_mm)
         self._aim = x_mm, y_mm
-        if self._steering is not None:
-            self._steering.give(GlideTo(x_mm, y_mm, speed_mm_s))
+        steering = self._device.steering
+        if steering is not None:
+            steering.give(GlideTo(x_mm, y_mm, speed_mm_s))
 
     def _compose(self, loaded: LoadedScene) -> Program:
         return compose(
@@ -347,7 +333,6 @@ class Feeler(Activity):
 
     def _show(self, program: Program) -> None:
         self._program = program
-        self.shown += 1
         self.engine.show(program, 1)
 
     def _index_of(self, loaded: LoadedScene) -> SceneIndex:

@@ -1,4 +1,4 @@
-"""What of a scene is at a place: found by a grid, so that asking does not grow with the scene."""
+"""What of a scene is at a place: only what has its box there is asked."""
 
 from __future__ import annotations
 
@@ -17,8 +17,6 @@ from vbraille.scene.scene import Scene
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from numpy.typing import NDArray
-
     from vbraille.render.scene.assets import Assets
     from vbraille.scene.bounds import Box
     from vbraille.scene.patterns import AnyPattern, Image, Label
@@ -27,10 +25,11 @@ if TYPE_CHECKING:
 # only one there.
 _FELT: Final = 0.5
 _TRACE: Final = 0.02
-_TILE_MM: Final = 4.0
-_MOST_ENTRIES: Final = 2_000_000
 _MOST_LOOKED_AT: Final = 64  # of those that lie over each other, from the top
 _MOST_COMPILED: Final = 100
+
+
+_EVERYWHERE: Final = (-math.inf, -math.inf, math.inf, math.inf)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,40 +92,29 @@ class SceneIndex:
         # In compiled code, which thousands of dots do not hold up.
         self._map_of = lru_cache(_MOST_COMPILED)(self._compile)
         self._known = {} if known is None else known
-        width_mm, height_mm = scene.canvas.width_mm, scene.canvas.height_mm
-        self._middle = width_mm / 2, height_mm / 2
+        self._size_mm = scene.canvas.width_mm, scene.canvas.height_mm
         self.elements: list[NamedElement] = []
         self._leaves: list[_Leaf] = []
         for pattern in scene.elements:
             self._leaves += self._leaves_of(pattern, None)
-        self._tile_mm, order, tiles = _laid_out([leaf.box for leaf in self._leaves], scene)
-        self._columns = math.ceil(width_mm / self._tile_mm)
-        self._rows = math.ceil(height_mm / self._tile_mm)
-        self._starts = np.searchsorted(tiles, np.arange(self._columns * self._rows + 1))
-        self._order = order
+        boxes = [_EVERYWHERE if leaf.box is None else leaf.box for leaf in self._leaves]
+        self._edges = np.array(boxes, float).reshape(-1, 4).T
 
     def here(self, x_mm: float, y_mm: float) -> NamedElement | None:
         """Find the uppermost element with a name at a place in mm; None if there is none."""
-        if not (math.isfinite(x_mm) and math.isfinite(y_mm)):
+        width_mm, height_mm = self._size_mm
+        if not (0 <= x_mm <= width_mm and 0 <= y_mm <= height_mm):
             return None
-        column, row = math.floor(x_mm / self._tile_mm), math.floor(y_mm / self._tile_mm)
-        if not (0 <= column < self._columns and 0 <= row < self._rows):
-            return None
-        tile = row * self._columns + column
-        begin, end = self._starts[tile], self._starts[tile + 1]
-        looked_at, found, most = 0, None, _TRACE
-        for at in self._order[begin:end][::-1].tolist():
-            leaf = self._leaves[at]
-            if leaf.box is not None and not leaf.box.holds(x_mm, y_mm):
-                continue
+        left, top, right, bottom = self._edges
+        there = (left <= x_mm) & (x_mm <= right) & (top <= y_mm) & (y_mm <= bottom)
+        found, most = None, _TRACE
+        for at in np.flatnonzero(there)[: -1 - _MOST_LOOKED_AT : -1].tolist():
+            element = self._leaves[at].element
             share = self.opacity(at, x_mm, y_mm)
             if share >= _FELT:
-                return leaf.element
+                return element
             if share > most:
-                found, most = leaf.element, share
-            looked_at += 1
-            if looked_at == _MOST_LOOKED_AT:
-                break
+                found, most = element, share
         return found
 
     def opacity(self, number: int, x_mm: float, y_mm: float) -> float:
@@ -161,7 +149,7 @@ class SceneIndex:
         if name or (pattern.description and above is None):
             if isinstance(pattern, Group):
                 box = bounds(pattern, self._known)
-            center = self._middle
+            center = self._size_mm[0] / 2, self._size_mm[1] / 2
             if box is not None and not box.is_empty:
                 center = (box.left + box.right) / 2, (box.top + box.bottom) / 2
             above = NamedElement(name or "without a title", pattern, center)
@@ -178,33 +166,3 @@ class SceneIndex:
 def _is_open(group: Group) -> bool:
     """Whether the parts of a group are felt where they are, each by itself."""
     return group.operation in ("overwrite", "maximum", "add") and not group.inverted
-
-
-def _laid_out(
-    boxes: list[Box | None], scene: Scene
-) -> tuple[float, NDArray[np.intp], NDArray[np.int64]]:
-    """Tiles that boxes lie in: their size, and box and tile of each entry, sorted by tile."""
-    width_mm, height_mm = scene.canvas.width_mm, scene.canvas.height_mm
-    edges = np.array(
-        [(0, 0, width_mm, height_mm) if box is None else box for box in boxes], float
-    ).reshape(-1, 4)
-    inside = (edges[:, 2] >= edges[:, 0]) & (edges[:, 3] >= edges[:, 1])
-    tile_mm = max(_TILE_MM, math.sqrt(width_mm * height_mm / 200_000))
-    while True:
-        columns, rows = math.ceil(width_mm / tile_mm), math.ceil(height_mm / tile_mm)
-        most = np.array([columns, rows, columns - 1, rows - 1])
-        # What is beyond the canvas lies in no tile, and not in those at its edge.
-        spans = np.clip(np.floor(edges / tile_mm), [0, 0, -1, -1], most).astype(int)
-        wide = np.where(inside, np.maximum(spans[:, 2] - spans[:, 0] + 1, 0), 0)
-        high = np.where(inside, np.maximum(spans[:, 3] - spans[:, 1] + 1, 0), 0)
-        counts = wide * high
-        if counts.sum() <= _MOST_ENTRIES or max(columns, rows) == 1:
-            break
-        tile_mm *= 2
-    which = np.repeat(np.arange(len(boxes)), counts)
-    within = np.arange(which.size) - np.repeat(np.cumsum(counts) - counts, counts)
-    column = spans[which, 0] + within % np.maximum(wide[which], 1)
-    row = spans[which, 1] + within // np.maximum(wide[which], 1)
-    tiles = row * columns + column
-    order = np.argsort(tiles, kind="stable")
-    return tile_mm, which[order], tiles[order]

@@ -69,9 +69,9 @@ class Monitor:
         blind: bool = False,
         steers: bool = True,
     ) -> None:
-        self._host, self._port = host, port
-        self._pointer = pointer
-        self._blind, self._steers = blind, steers
+        self._pointer = pointer  # whose memory the process has a share in
+        held = None if pointer is None else pointer.descriptor
+        self._begin = Begin(-1, host, port, held, blind, steers)
         self._line: socket.socket | None = None
         self._process: subprocess.Popen[bytes] | None = None
         self._asked: list[PagePress | Turn] = []
@@ -85,18 +85,10 @@ class Monitor:
         if self._process is not None:
             return
         self._line, other = open_line()
-        pointer = None if self._pointer is None else self._pointer.descriptor
         # What a browser writes is not for whoever reads.
         writes = tracebacks_wanted() or kept() == "-"
-        begin = Begin(
-            other.fileno(),
-            host=self._host,
-            port=self._port,
-            pointer=pointer,
-            blind=self._blind,
-            steers=self._steers,
-            opens=has_desktop(),
-            log=kept(),
+        begin = msgspec.structs.replace(
+            self._begin, line=other.fileno(), opens=has_desktop(), log=kept()
         )
         with other:
             try:
@@ -105,7 +97,7 @@ class Monitor:
                     stdin=subprocess.DEVNULL,
                     stdout=subprocess.DEVNULL,
                     stderr=None if writes else subprocess.DEVNULL,
-                    pass_fds=(begin.line, *(() if pointer is None else (pointer,))),
+                    pass_fds=[end for end in (begin.line, begin.pointer) if end is not None],
                     start_new_session=True,
                 )
             except OSError as error:

@@ -13,6 +13,8 @@ from vbraille.render.braille.mappings import NONE
 from vbraille.render.braille.models import swing_of
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from vbraille.braille.geometry import Geometry
     from vbraille.display import Display
     from vbraille.layout.lines import Line
@@ -69,6 +71,19 @@ def knobs_shown(style: BrailleStyle) -> list[KnobShown]:
         )
         for knob in KNOBS.values()
     ]
+
+
+def cells_shown(
+    number: int,
+    masks: Iterable[int],
+    text: str = "",
+    *,
+    top_mm: float = 0.0,
+    under: bool = False,
+) -> LineShown:
+    """Cells as a page draws them, of which it is not known what of a text each stands for."""
+    cells = [int(mask) for mask in masks]
+    return LineShown(number, text, 0.0, top_mm, cells, [(0, 0)] * len(cells), under)
 
 
 def line_shown(

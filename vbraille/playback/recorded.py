@@ -19,11 +19,8 @@ import numpy as np
 from vbraille.errors import InputError
 from vbraille.live.framing import NO_DEFLECTIONS, FrameHeader, frame_bytes, thinned
 from vbraille.live.maps import picture
-from vbraille.live.messages import LineShown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from numpy.typing import NDArray
 
     from vbraille.live.messages import Map, Next, PlayedEvent, ViewState
@@ -254,11 +251,3 @@ class RecordingViewer:
         chosen = thinned(ticks.size)
         samples = now_s - ticks["time_s"][chosen], ticks["x_mm"][chosen], followed[chosen]
         return np.stack(samples, axis=1).astype(np.float32)
-
-
-def line_shown(
-    number: int, masks: Iterable[int], top_mm: float = 0.0, *, under: bool = False
-) -> LineShown:
-    """Describe a recorded line of cells, whose text is not recorded."""
-    cells = [int(mask) for mask in masks]
-    return LineShown(number, "", 0.0, top_mm, cells, [(0, 0)] * len(cells), under)

@@ -14,8 +14,8 @@ from vbraille.braille.geometry import Geometry
 from vbraille.display import Display
 from vbraille.errors import InputError
 from vbraille.live.messages import PlayedEvent, SceneShown, ViewState
-from vbraille.live.states import array_shown, geometry_shown, rows_shown
-from vbraille.playback.recorded import PLAYED, Piece, Recording, line_shown
+from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
+from vbraille.playback.recorded import PLAYED, Piece, Recording
 from vbraille.recording import check_format, scene_of
 from vbraille.render import MAPPINGS, MODELS, STRESS2, Tuning, single_row
 
@@ -250,10 +250,10 @@ class Rendered(Recording):
         top = first if self._paged else row
         geometry = STRESS2.style.geometry if self._style is None else self._style.geometry
         return [
-            line_shown(
+            cells_shown(
                 at + self._first_line,
                 () if (masks := self._masks(at)) is None else masks,
-                (at - top) * geometry.line_pitch_mm,
+                top_mm=(at - top) * geometry.line_pitch_mm,
                 under=at == row,
             )
             for at in range(max(first, row - _AROUND), min(stop, row + _AROUND + 1))

@@ -15,8 +15,8 @@ from msgspec import structs
 from vbraille.braille.spelling import to_braille
 from vbraille.errors import InputError, VbrailleError
 from vbraille.live.messages import PlayedEvent, ViewState
-from vbraille.live.states import array_shown, geometry_shown, rows_shown
-from vbraille.playback.recorded import PLAYED, Piece, Recording, line_shown
+from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
+from vbraille.playback.recorded import PLAYED, Piece, Recording
 from vbraille.render import work
 from vbraille.render.program import Program, nothing
 from vbraille.sessions.record import events, journal
@@ -183,7 +183,7 @@ class Traced(Recording):
             geometry=geometry_shown(stimulus.geometry),
             mapping=f"mapping: {mapping.name}",
             rows_shown=rows_shown(style, self._display),
-            lines=[line_shown(scene, protocol.line(stimulus.masks), under=True)],
+            lines=[cells_shown(scene, protocol.line(stimulus.masks), under=True)],
             place=_name(trial),
             facts=facts,
         )

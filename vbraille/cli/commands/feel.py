@@ -83,15 +83,12 @@ def run(arguments: argparse.Namespace) -> int:
             keys = around.keys()
             feeler = Feeler(
                 loaded,
-                device.engine,
-                where=lambda: device.pose,
+                device,
                 rate_hz=rate_hz,
-                style=model.style,
                 say=outputs.say,
                 bound=BOUND,
                 room=room,
                 cue=outputs.cue,
-                steering=device.steering,
                 at_mm=arguments.at,
                 entering=arguments.say_entering,
             )

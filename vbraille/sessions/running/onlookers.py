@@ -19,8 +19,8 @@ from vbraille.devices.base import Placing
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host
 from vbraille.engine.record import Flag
-from vbraille.live.messages import LineShown, ViewState
-from vbraille.live.states import array_shown, geometry_shown, rows_shown
+from vbraille.live.messages import ViewState
+from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
 from vbraille.render.braille.knobs import say_mapping
 from vbraille.sessions.planning.stimuli import Stimulus, Trial, said_value
 from vbraille.sessions.record.events import LiveView
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from vbraille.engine.shared import Extent
+    from vbraille.live.messages import LineShown
     from vbraille.live.monitor import Monitor
     from vbraille.sessions.planning.protocol import Protocol
 
@@ -175,16 +176,8 @@ def _unhidden(state: ViewState, course: Course) -> ViewState:
 def _line(course: Course, stimulus: Stimulus) -> LineShown:
     """Line on which a stimulus is shown."""
     assert course.display is not None
-    cells = list(course.protocol.line(stimulus.masks))
-    return LineShown(
-        number=course.display.line,
-        text=stimulus.text or "",
-        start_mm=0.0,
-        top_mm=0.0,
-        cells=cells,
-        sources=[(0, 0)] * len(cells),
-        under=True,
-    )
+    cells = course.protocol.line(stimulus.masks)
+    return cells_shown(course.display.line, cells, stimulus.text or "", under=True)
 
 
 def _asked(protocol: Protocol, trial: Trial, stimulus: Stimulus) -> str:
