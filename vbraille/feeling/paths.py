@@ -102,25 +102,21 @@ def path_of(options: PathOptions, canvas: Canvas, span_mm: float, rate_hz: float
     kind, _, rest = options.name.partition(":")
     if kind == "recorded" and rest:
         _refuse(options, kind)
-        motion = load_recorded(rest).motion()
-        t_s = _times(motion.duration_s, rate_hz)
-        places = (motion.x_mm, motion.y_mm, motion.theta_rad)
-        x_mm, y_mm, theta_rad = (
-            np.zeros(t_s.size) if values is None else np.interp(t_s, motion.t_s, values)
-            for values in places
+        course = load_recorded(rest).motion()
+        theta_rad, left_mm = course.theta_rad, span_mm / 2
+    else:
+        course = _course(options, canvas)
+        theta_rad, left_mm = None, 0.0
+    t_s = np.arange(1 + int(course.duration_s * rate_hz + SLACK)) / rate_hz
+    x_mm, y_mm, theta_rad = (
+        np.full(t_s.size, usual) if values is None else np.interp(t_s, course.t_s, values)
+        for values, usual in (
+            (course.x_mm, 0.0),
+            (course.y_mm, canvas.height_mm / 2),
+            (theta_rad, 0.0),
         )
-        if motion.y_mm is None:
-            y_mm = np.full(t_s.size, canvas.height_mm / 2)
-        return PosedPath(t_s, x_mm + span_mm / 2, y_mm, theta_rad)
-    course = _course(options, canvas)
-    t_s = _times(course.duration_s, rate_hz)
-    x_mm = np.interp(t_s, course.t_s, course.x_mm)
-    y_mm = np.interp(t_s, course.t_s, course.y_mm)
-    return PosedPath(t_s, x_mm, y_mm, np.zeros(t_s.size))
-
-
-def _times(duration_s: float, rate_hz: float) -> NDArray[np.float64]:
-    return np.arange(1 + int(duration_s * rate_hz + SLACK)) / rate_hz
+    )
+    return PosedPath(t_s, x_mm + left_mm, y_mm, theta_rad)
 
 
 def _course(options: PathOptions, canvas: Canvas) -> ExploringPath:

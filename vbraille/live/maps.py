@@ -96,7 +96,8 @@ def picture(program: Program, form: str, title: str, note: str = "") -> bytes:
         raise ValueError(f"a {kind} has no map of lines; vbraille map draws tactile pictures")
     cell_mm = float(program.numbers[work.CELL_PITCH]) or _BAR_MM  # no braille, no cells
     cells = max(int(program.numbers[work.SLOTS]) // 2 - 2, 0)
-    x_mm = STEP_MM * np.arange(int((cells + 2) * cell_mm / STEP_MM + 1e-9) + 1) - cell_mm
+    places = int((cells + 2) * cell_mm / STEP_MM + 1e-9) + 1
+    x_mm = STEP_MM * np.arange(places, dtype=np.float64) - cell_mm
     grey = _grey(program, deflections_at(program, x_mm))
     width_mm, height_mm = grey.shape[1] * STEP_MM, grey.shape[0] * STEP_MM
     title = _clean(title)

@@ -25,7 +25,6 @@ from vbraille.live.talking import MOST_QUEUED, Held, Talk
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from types import TracebackType
     from typing import Self
 
     from vbraille.live.sources import LiveSource
@@ -145,14 +144,10 @@ class LiveServer:
         self.admission = Admission(self._host, port, self._steers)
         return self
 
-    async def __aexit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    async def __aexit__(self, *_: object) -> None:
         self._drawer.shutdown(wait=False, cancel_futures=True)
-        await self._serving.__aexit__(kind, error, traceback)
+        self._serving.close()
+        await self._serving.wait_closed()
 
     def _serve(self, address: str) -> Serving:
         return serve(

@@ -15,6 +15,8 @@ from vbraille.render.braille.models import swing_of
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from numpy.typing import NDArray
+
     from vbraille.braille.geometry import Geometry
     from vbraille.display import Display
     from vbraille.layout.lines import Line
@@ -115,16 +117,13 @@ def line_shown(
     """
     count = len(line) - first if count is None else count
     wanted = np.arange(first, first + count)
-    inside = (wanted >= 0) & (wanted < len(line))
-    cells = np.zeros(count, np.uint8)
-    cells[inside] = line.masks[wanted[inside]]
-    begins, ends = _sources(line)
-    sources = np.full((count, 2), -1, np.int64)
-    felt = inside & (wanted >= line.indent)
-    sources[felt, 0] = begins[wanted[felt] - line.indent]
-    sources[felt, 1] = ends[wanted[felt] - line.indent]
+    at = np.where((wanted >= 0) & (wanted < len(line)), wanted, len(line))
+    cells = np.append(line.masks, np.uint8(0))[at]
+    sources = np.full((len(line) + 1, 2), -1, np.int64)
+    sources[line.indent : -1] = _sources(line)
+    sources = sources[at]
     text = "" if line.block.cells is not None else line.text
-    known = sources[felt]
+    known = sources[sources[:, 0] >= 0]
     cut_from = 0
     if known.size and count < len(line):  # of a long line, only what is shown
         cut_from = int(known[:, 0].min())
@@ -141,14 +140,10 @@ def line_shown(
     )
 
 
-def _sources(line: Line) -> tuple[np.ndarray, np.ndarray]:
+def _sources(line: Line) -> NDArray[np.int64]:
     """Where in the line's text what each cell after the indent stands for begins and ends."""
     starts, places = line.cells.starts, line.block.text.places
     after = np.searchsorted(starts, starts, side="right")
     following = np.append(starts, line.cells.end)[after]
-    length = line.after - line.first
-    begins, ends = (
-        np.clip(np.searchsorted(places, there) - line.first, 0, length)
-        for there in (starts, following)
-    )
-    return begins, ends
+    there = np.searchsorted(places, np.stack((starts, following), axis=1)) - line.first
+    return np.clip(there, 0, line.after - line.first)

@@ -23,6 +23,7 @@ from vbraille.live.maps import picture
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from vbraille.display import Display
     from vbraille.live.messages import Map, Next, PlayedEvent, ViewState
     from vbraille.live.sources import Steering
     from vbraille.render.program import Program
@@ -66,6 +67,11 @@ class Piece:
 
     ticks: NDArray[np.void]
     frames: NDArray[np.float32]
+
+    @classmethod
+    def damaged(cls, display: Display) -> Piece:
+        """Make a piece without frames, for what cannot be read."""
+        return cls(np.zeros(0, PLAYED), np.zeros((0, *display.shape), np.float32))
 
     def after(self, at_s: float, stop: int | None = None) -> int:
         """Index of the first of some frames that is later than a time; their number if none is."""

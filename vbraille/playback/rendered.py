@@ -88,7 +88,7 @@ class Rendered(Recording):
             for name in ("x_mm", "y_mm", "theta_rad", "part"):
                 ticks[name] = self._numbers[name][span]
         except OSError:
-            return Piece(np.zeros(0, PLAYED), np.zeros((0, *self._display.shape), np.float32))
+            return Piece.damaged(self._display)
         rows = np.where((lines >= 0) & (lines < self._lengths.size), lines, -1)
         ticks["scene"] = rows + 1
         ticks["line"] = np.where(rows >= 0, rows + self._first_line, 0)

@@ -139,7 +139,7 @@ class Traced(Recording):
         chunk = number - run.first
         ticks = run.trace.ticks(chunk)
         if not ticks.size:
-            return Piece(np.zeros(0, PLAYED), np.zeros((0, *self._display.shape), np.float32))
+            return Piece.damaged(self._display)
         before = self._before(run.trace, chunk, ticks)
         replay = Replay(self._picture, self._display)
         if before.size:
