@@ -13,13 +13,9 @@ from vbraille.analysis.input.trials import natural
 from vbraille.braille.spelling import to_braille
 from vbraille.render.braille.models import MODELS
 from vbraille.sessions.planning.chance import balanced_orders
+from vbraille.sessions.planning.choosing import varied
 from vbraille.sessions.planning.factors import within
-from vbraille.sessions.planning.procedures import (
-    FixedProcedure,
-    QuestProcedure,
-    StaircaseProcedure,
-    varied,
-)
+from vbraille.sessions.planning.procedures import FixedProcedure, QuestProcedure, StaircaseProcedure
 from vbraille.sessions.planning.questions import (
     DetectQuestion,
     FreeQuestion,

@@ -15,8 +15,8 @@ from vbraille.errors import InputError, VbrailleError
 from vbraille.files import check_free
 from vbraille.sessions.conditions import USUAL, Conditions
 from vbraille.sessions.planning.appearance import CONVENTIONAL
+from vbraille.sessions.planning.choosing import procedure_of
 from vbraille.sessions.planning.making import make_plan
-from vbraille.sessions.planning.procedures import procedure_of
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.protocolfiles import load_protocol
 from vbraille.sessions.planning.spellings import made_by

@@ -277,7 +277,7 @@ class TestChoices:
             '[procedure]\nkind = "quest"\nparameter = "dot_width_mm"\nleast = 0.5\nmost = 2.0\n'
             "step = 0.5\nspread = [0.2]\n"
         )
-        from vbraille.sessions.planning.procedures import procedure_of
+        from vbraille.sessions.planning.choosing import procedure_of
 
         protocol = parse(text)
         procedure = procedure_of(protocol, make_plan(protocol, "P01", 1))

@@ -10,8 +10,8 @@ from msgspec import structs
 from tests.sessions.sittings import MINI, Person, Played, Session, crash, of
 from vbraille.devices import open_device
 from vbraille.engine.batch import BatchEngine
+from vbraille.sessions.planning.choosing import Answered, FixedOrder
 from vbraille.sessions.planning.plan import stimulus_to_json
-from vbraille.sessions.planning.procedures import Answered, FixedOrder
 from vbraille.sessions.planning.stimuli import Stimuli, Trial
 from vbraille.sessions.record.export import rows
 from vbraille.sessions.record.folder import Record, load

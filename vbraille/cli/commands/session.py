@@ -64,7 +64,7 @@ def _plan(arguments: argparse.Namespace) -> int:
     if plan.group:
         _say(f"group: {plan.group}")
     if protocol.adaptive:
-        from vbraille.sessions.planning.procedures import describe
+        from vbraille.sessions.planning.choosing import describe
 
         _say(f"procedure: {describe(protocol)}")
     block = None

@@ -11,9 +11,9 @@ from msgspec import structs
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.chance import Chance, balanced_orders
+from vbraille.sessions.planning.choosing import varied
 from vbraille.sessions.planning.design import Catch, Choice, Item, StringList
 from vbraille.sessions.planning.plan import Plan
-from vbraille.sessions.planning.procedures import varied
 from vbraille.sessions.planning.sequencing import arranged
 from vbraille.sessions.planning.spellings import WrittenText
 from vbraille.sessions.planning.stimuli import Stimuli, Trial, check_participant, check_seed

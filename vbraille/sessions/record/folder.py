@@ -20,9 +20,9 @@ import numpy as np
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_folder
+from vbraille.sessions.planning.choosing import Procedure, procedure_of
 from vbraille.sessions.planning.making import check_plan
 from vbraille.sessions.planning.plan import Plan
-from vbraille.sessions.planning.procedures import Procedure, procedure_of
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Closed, Lost, Run, Session
@@ -113,11 +113,7 @@ def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:
     VbrailleError
         If the journal cannot be read, or its first line is damaged.
     """
-    path = folder / journal.NAME
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise _no_journal(folder, error) from None
+    path, content = folder / journal.NAME, _journal_bytes(folder)
     told = salvage(content) if salvaged else journal.decode(content)
     if not told.events:
         raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
@@ -144,10 +140,7 @@ def whole_lines(folder: Path) -> bytes:
     VbrailleError
         If the journal cannot be read.
     """
-    try:
-        content = (folder / journal.NAME).read_bytes()
-    except OSError as error:
-        raise _no_journal(folder, error) from None
+    content = _journal_bytes(folder)
     return content[: content.rfind(b"\n") + 1]
 
 
@@ -263,6 +256,13 @@ def versions() -> dict[str, str]:
         **{name: version(name) for name in _TOLD_VERSIONS},
         "system": platform.platform(),
     }
+
+
+def _journal_bytes(folder: Path) -> bytes:
+    try:
+        return (folder / journal.NAME).read_bytes()
+    except OSError as error:
+        raise _no_journal(folder, error) from None
 
 
 def _no_journal(folder: Path, error: OSError) -> VbrailleError:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from msgspec import structs
 
 from vbraille.errors import VbrailleError
+from vbraille.sessions.planning.choosing import Answered, FixedOrder, Procedure
 from vbraille.sessions.planning.plan import Plan, stimulus_from_json
-from vbraille.sessions.planning.procedures import Answered, FixedOrder, Procedure
 from vbraille.sessions.planning.stimuli import Stimuli, Stimulus, Trial
 from vbraille.sessions.record import events
 

@@ -9,7 +9,7 @@ from vbraille.braille.spelling import to_braille
 from vbraille.conventional.brlapi import CellsTaken, DisplayAway, DisplayStands
 from vbraille.errors import DeviceError, InputError
 from vbraille.sessions.record import events
-from vbraille.sessions.running.course import Happened
+from vbraille.sessions.running.logbook import Happened
 from vbraille.wording import setting
 
 if TYPE_CHECKING:

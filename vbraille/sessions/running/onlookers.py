@@ -306,26 +306,12 @@ class Onlookers:
 
     def begin(self, engine: object) -> None:
         """Start the live view, and have it see the memory of an engine that is not launched yet."""
-        monitor = self._monitor
-        if monitor is None:
-            return
-        try:
-            monitor.launch()
-        except Exception as fault:
-            _log.info("the live view did not start: %r", fault)
-            self._end(monitor)
-            return
+        self._try("did not start", lambda monitor: monitor.launch())
         if isinstance(engine, Host):
             engine.on_share = self._share
 
     def _share(self, descriptor: int, extent: Extent) -> None:
-        if self._monitor is None:
-            return
-        try:
-            self._monitor.share(descriptor, extent)
-        except Exception as fault:
-            _log.info("the live view was not given the memory: %r", fault)
-            self._end(self._monitor)
+        self._try("was not given the memory", lambda monitor: monitor.share(descriptor, extent))
 
     def beside(self, say: Callable[[str], None]) -> Callable[[str], None]:
         """Give the function that says a sentence to the experimenter by ``say``, and to the pages.
@@ -347,19 +333,24 @@ class Onlookers:
 
     def look(self, course: Course) -> None:
         """Tell the pages what has changed, and refuse what they ask for."""
-        if self._monitor is None:
-            return
-        try:
-            self._look(self._monitor, course)
-        except Exception as fault:
-            _log.info("the live view has failed: %r", fault)
-            self._end(self._monitor)
+        self._try("has failed", lambda monitor: self._look(monitor, course))
 
     def close(self) -> None:
         """End the live view."""
         monitor, self._monitor = self._monitor, None
         if monitor is not None:
             _close(monitor)
+
+    def _try(self, fails: str, act: Callable[[Monitor], object]) -> None:
+        """Do something with the live view, if there is one; it is ended if that fails."""
+        monitor = self._monitor
+        if monitor is None:
+            return
+        try:
+            act(monitor)
+        except Exception as fault:
+            _log.info("the live view %s: %r", fails, fault)
+            self._end(monitor)
 
     def _look(self, monitor: Monitor, course: Course) -> None:
         for note in monitor.notes():

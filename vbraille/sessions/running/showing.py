@@ -15,7 +15,7 @@ from vbraille.engine.watchers import HOME_MM, EndOfLine, Upright
 from vbraille.sessions.record import events
 from vbraille.sessions.record.traces import TraceWriter
 from vbraille.sessions.record.trajectory import first_edge_mm
-from vbraille.sessions.running.course import Happened, of_device, reported
+from vbraille.sessions.running.logbook import Happened, of_device, reported
 from vbraille.sessions.simulated.skin import Exploration
 from vbraille.simulation.steering import ReadLine
 

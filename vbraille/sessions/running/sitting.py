@@ -139,6 +139,7 @@ class Sitting:
             if (onlookers := self.onlookers) is not None:
                 told["monitor"] = onlookers.told()
             practises = self.answers.typed or progress.begun
+            fault: VbrailleError | None = None
             try:
                 if not practises:
                     told["practice"] = "left out"
@@ -150,7 +151,11 @@ class Sitting:
                 Console(course, self.answers, say=self.say, real=self.real, look=look).run()
             finally:
                 self.before_rest()
-                fault = None if display is None else _closed(display)
+                if display is not None:
+                    try:
+                        display.close()
+                    except (DeviceError, HostDiedError) as error:
+                        fault = error  # of a device that could not be let go
             if display is not None:
                 counts = {name: count for name, count in display.engine.counts.items() if count}
                 lost = display.engine.lost
@@ -205,15 +210,6 @@ def _gap(last: JournalEvent, *, same_start: bool) -> dict[str, Any]:
         return {"gap_s": round(up_s() - last.up_s, 3), "gap_by": "machine"}
     gap_s = (datetime.now(UTC) - datetime.fromisoformat(last.wall)).total_seconds()
     return {"gap_by": "wall"} if gap_s < 0 else {"gap_s": round(gap_s, 3), "gap_by": "wall"}
-
-
-def _closed(display: OnDevice) -> VbrailleError | None:
-    """Close a display, and give the fault of a device that could not be let go."""
-    try:
-        display.close()
-    except (DeviceError, HostDiedError) as fault:
-        return fault
-    return None
 
 
 def make_sound(wanted: str, answers: Answers, say: Callable[[str], None]) -> Sound:

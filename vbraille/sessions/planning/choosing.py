@@ -1,0 +1,314 @@
+"""Trials that are chosen by the answers.
+
+The plan is a deck of trials, made before the session as for a fixed order: it has the order of
+conditions, blocks and strings, and where two values are compared, which of the two comes first.
+A procedure takes the next trial of the deck and decides the values that it is shown with.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from msgspec import structs
+
+from vbraille.adaptive.staircase import Asked
+from vbraille.errors import VbrailleError
+from vbraille.sessions.planning.design import Choice
+from vbraille.sessions.planning.procedures import (
+    PREFERRED,
+    THRESHOLD,
+    FixedProcedure,
+    QuestProcedure,
+    StaircaseProcedure,
+)
+from vbraille.sessions.planning.stimuli import KNOBS, Stimuli, Trial, value_at, with_value
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from vbraille.adaptive.questplus import GridQuest
+    from vbraille.adaptive.staircase import Staircases, StopRule
+    from vbraille.sessions.planning.plan import Plan
+    from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.questions import AnyQuestion
+
+
+@dataclass(frozen=True, slots=True)
+class Answered:
+    """A trial that was answered.
+
+    Parameters
+    ----------
+    trial
+        The trial; as it was shown, if the answers choose what is shown.
+    answer
+        The answer that counts; `vbraille.braille.spelling` says how it is written.
+    t_s
+        Seconds of the session at the answer; if it was taken back, at the one given instead.
+    """
+
+    trial: Trial
+    answer: str
+    t_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class FixedOrder:
+    """Procedure that follows a plan, whatever is answered.
+
+    Parameters
+    ----------
+    trials
+        All trials of the plan, in order.
+    """
+
+    trials: tuple[Trial, ...]
+
+    def next(self, history: Sequence[Answered], /) -> Trial | None:
+        """Trial of the plan that follows the answered ones; None after the last."""
+        done = len(history)
+        return self.trials[done] if done < len(self.trials) else None
+
+    def found(self, _history: Sequence[Answered], /) -> Sequence[str]:
+        """No sentence: nothing is made of the answers."""
+        return ()
+
+
+@dataclass(frozen=True, slots=True)
+class ByQuest:
+    """Choice of values by QUEST+.
+
+    Parameters
+    ----------
+    quest
+        Grid of stimuli and parameters.
+    name
+        Name of the parameter of the grid that is estimated.
+    stop
+        When enough was asked.
+    """
+
+    quest: GridQuest
+    name: str
+    stop: StopRule
+
+    def next(self, history: Sequence[Asked]) -> tuple[float, ...] | None:
+        """Value or pair of values that is asked next; None if enough was asked."""
+        if self.stop.out_of_limits(history):
+            return None
+        told = self._told(history)
+        if self.stop.by_precision and self.stop.precise(
+            len(told), self.quest.estimate(told, self.name)
+        ):
+            return None
+        return self.quest.next(told)
+
+    def found(self, history: Sequence[Asked], what: str, unit: str) -> tuple[str, ...]:
+        """Sentences on the parameter that is estimated."""
+        known = self.quest.estimate(self._told(history), self.name)
+        return (
+            f"{self.name} {what}: {known.mean:.3g}{unit}",
+            f"95 % interval: {known.low:.3g} to {known.high:.3g}{unit}",
+        )
+
+    def _told(self, history: Sequence[Asked]) -> list[tuple[tuple[float, ...], int]]:
+        for asked in history:
+            if asked.stimulus not in self.quest:
+                values = " and ".join(f"{value:g}" for value in asked.stimulus)
+                raise VbrailleError(
+                    f"the journal is damaged: it has shown {values}, which the protocol's "
+                    f"procedure never asks; nothing was changed"
+                )
+        return [(asked.stimulus, asked.outcome) for asked in history]
+
+
+@dataclass(frozen=True, slots=True)
+class ByStaircases:
+    """Choice of values by staircases.
+
+    Parameters
+    ----------
+    staircases
+        The staircases, interleaved.
+    stop
+        When enough was asked, beside their own end.
+    """
+
+    staircases: Staircases
+    stop: StopRule
+
+    def next(self, history: Sequence[Asked]) -> tuple[float, ...] | None:
+        """Value that is shown next; None if enough was asked."""
+        if self.stop.out_of_limits(history):
+            return None
+        level = self.staircases.next(history)
+        return None if level is None else (level,)
+
+    def found(self, history: Sequence[Asked], what: str, unit: str) -> tuple[str, ...]:
+        """Sentences on the level that the staircases came to."""
+        known = self.staircases.estimate(history)
+        if known is None:
+            return (f"{THRESHOLD} {what}: not known, no staircase turned round with its last step",)
+        return (
+            f"{THRESHOLD} {what}: {known.mean:.3g}{unit}",
+            f"reversals: {known.reversals}, standard deviation {known.sd:.2g}{unit}",
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ByAnswers:
+    """Procedure that takes trials from a deck, and decides the values by the answers.
+
+    Each condition has its own history. A condition of which enough is known is left out from then
+    on.
+
+    Parameters
+    ----------
+    deck
+        Trials of the plan, in order.
+    choosers
+        Choice of values in each condition, by the condition's name.
+    protocol
+        Protocol of the session.
+    """
+
+    deck: tuple[Trial, ...]
+    choosers: Mapping[str, ByQuest | ByStaircases]
+    protocol: Protocol
+    _of: Mapping[str, tuple[Trial, ...]] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        of: dict[str, list[Trial]] = defaultdict(list)
+        for trial in self.deck:
+            of[trial.condition].append(trial)
+        object.__setattr__(self, "_of", {name: tuple(trials) for name, trials in of.items()})
+
+    @property
+    def trials(self) -> None:
+        """None: which trials there are depends on the answers."""
+        return
+
+    @property
+    def parameter(self) -> str:
+        """Name of what is varied, such as dot_width_mm or contrast."""
+        return varied(self.protocol)
+
+    @property
+    def most(self) -> int:
+        """Largest number of trials that there may be."""
+        most = Counter(trial.condition for trial in self.deck)
+        limits = {name: chooser.stop.trials for name, chooser in self.choosers.items()}
+        return sum(min(most[name], limit or most[name]) for name, limit in limits.items())
+
+    def next(self, history: Sequence[Answered], /) -> Trial | None:
+        """Trial that follows a history, with the values that the procedure chooses."""
+        asked = self.asked(history)
+        for place, condition in self._places(asked):
+            chosen = self.choosers[condition].next(asked[condition])
+            if chosen is not None:
+                trial = self._of[condition][place]
+                stimuli = _at(self.protocol, trial.stimuli, chosen)
+                return structs.replace(trial, number=len(history) + 1, stimuli=stimuli)
+        return None
+
+    def found(self, history: Sequence[Answered], /) -> tuple[str, ...]:
+        """Sentences on what was found in each condition that has answers."""
+        knob = KNOBS[self.parameter]
+        what, unit = knob.words, knob.unit
+        sentences: list[str] = []
+        for name, own in self.asked(history).items():
+            if own and len(self.choosers) > 1:
+                sentences.append(f"condition: {name}")
+            if own:
+                sentences += self.choosers[name].found(own, what, unit)
+        return tuple(sentences)
+
+    def asked(self, history: Sequence[Answered]) -> dict[str, list[Asked]]:
+        """Questions and outcomes of each condition, as the choosers know them."""
+        asked: dict[str, list[Asked]] = {name: [] for name in self.choosers}
+        for answered in history:
+            told = _asked(answered, self.parameter, self.protocol.asks)
+            asked[answered.trial.condition].append(told)
+        return asked
+
+    def _places(self, asked: Mapping[str, Sequence[Asked]]) -> list[tuple[int, str]]:
+        """Next trial of each condition that has one left, in the order of the deck."""
+        left = [(self._of[name][len(own)].number, len(own), name)
+                for name, own in asked.items() if len(own) < len(self._of[name])]  # fmt: skip
+        return [(place, name) for _, place, name in sorted(left)]
+
+
+# Rule that chooses the next trial by the history, which leaves practice out, and has an answer that
+# was given anew in the place of the one taken back. The same history must give the same trial.
+Procedure = FixedOrder | ByAnswers
+
+
+def procedure_of(protocol: Protocol, plan: Plan) -> Procedure:
+    """Procedure by which the trials of a session follow each other."""
+    table, design = protocol.procedure, protocol.design
+    names = tuple(dict.fromkeys(trial.condition for trial in plan.trials))
+    choosers: dict[str, ByQuest | ByStaircases] = {}
+    match table:
+        case QuestProcedure():
+            name = PREFERRED if isinstance(design, Choice) else THRESHOLD
+            for condition in names:
+                choosers[condition] = ByQuest(table.quest(design), name, table.stop)
+        case StaircaseProcedure():
+            for condition in names:
+                seed = f"{plan.protocol} {plan.seed} {plan.participant} {condition}"
+                choosers[condition] = ByStaircases(table.staircases(seed), table.stop)
+        case _:
+            return FixedOrder(plan.trials)
+    return ByAnswers(plan.trials, choosers, protocol)
+
+
+def varied(protocol: Protocol) -> str:
+    """Name of what a procedure varies, such as dot_width_mm or contrast; empty if nothing."""
+    table = protocol.procedure
+    own = "" if isinstance(table, FixedProcedure) else table.parameter
+    return protocol.parameter or own or ""
+
+
+def describe(protocol: Protocol) -> str:
+    """Say which trials a session asks, for a protocol whose trials depend on the answers."""
+    table, design = protocol.procedure, protocol.design
+    knob = KNOBS[varied(protocol)]
+    what, unit = knob.words, knob.unit
+    values = table.values(design)
+    ends = f"{values[0]:g} to {values[-1]:g}{unit}"
+    if isinstance(table, QuestProcedure):
+        return f"quest, {what} by the answers, {len(values)} values from {ends}"
+    return f"staircase, {what} by the answers, from {ends}"
+
+
+def _asked(answered: Answered, parameter: str, question: AnyQuestion) -> Asked:
+    """Question and outcome of an answered trial; of two values, the lower stands first."""
+    trial, t_s = answered.trial, answered.t_s
+    if len(trial.stimuli) == 1:
+        value = value_at(trial.stimuli[0], parameter)
+        return Asked((value,), int(question.positive(trial, answered.answer)), t_s)
+    first, second = values_of(trial)
+    chosen = (first, second)[int(answered.answer) - 1]
+    low, high = sorted((first, second))
+    return Asked((low, high), int(chosen == low), t_s)
+
+
+def _at(protocol: Protocol, stimuli: Stimuli, chosen: tuple[float, ...]) -> Stimuli:
+    """Stimuli of a trial of the deck, shown with the values that were chosen."""
+    knob = varied(protocol)
+    if len(stimuli) == 1:
+        (stimulus,), (value,) = stimuli, chosen
+        return Stimuli((with_value(stimulus, knob, value),))
+    first, second = (stimulus.value or 0.0 for stimulus in stimuli)
+    ordered = chosen if first < second else chosen[::-1]
+    return Stimuli(
+        with_value(replace(stimulus, value=value), knob, value)
+        for stimulus, value in zip(stimuli, ordered, strict=True)
+    )
+
+
+def values_of(trial: Trial) -> tuple[float, ...]:
+    """Values that a trial compares, in the order in which they are shown."""
+    return tuple(stimulus.value or 0.0 for stimulus in trial.stimuli)
