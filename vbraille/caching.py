@@ -24,6 +24,9 @@ _log = logging.getLogger(__name__)
 _PROCESSOR_VARIABLES = ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES", "NUMBA_ENABLE_AVX")
 # What tells kinds of processors apart, of Intel's and AMD's and of ARM's; how fast one is does not.
 _PROCESSOR_LINES = ("vendor_id", "cpu family", "model", "stepping", "flags", "Features", "CPU ")
+# Libraries that numba would load for what no kernel here needs, linear algebra and C's declarations,
+# and its modules that look for them. Together they take a third of the time of loading numba.
+_LEFT_OUT = (("scipy.linalg", "numba.np.arraymath"), ("cffi", "numba.core.typing.cffi_utils"))
 # The files that hold kernels, and what kernels call.
 _ROOMS = ("render/**/*.py", "devices/**/*.py", "engine/*.py")
 
@@ -37,7 +40,8 @@ def keep_compiled() -> bool:
     only, and would go on using one that has a changed function of another file compiled into it.
     It is named by the processor, too, since what is compiled for another is of no use.
     """
-    _leave_scipy_out()
+    for library, wanted_by in _LEFT_OUT:
+        _leave_out(library, wanted_by)
     folder = _compiled_folder()
     if folder is None:
         _log.info("nothing compiled can be kept, so that every process compiles again")
@@ -77,19 +81,23 @@ def _compiled_folder() -> Path | None:
     return None if place is None else place / f"vbraille-compiled-{_source()}-{_processor()}"
 
 
-def _leave_scipy_out() -> None:
-    """Keep numba from importing scipy.linalg, which takes as long as loading all compiled code.
+def _leave_out(library: str, wanted_by: str) -> None:
+    """Keep a module of numba from importing a library; it can still be imported later.
 
-    numba looks for scipy's linear algebra once, when it loads its array arithmetic, and does
-    without it where there is none. No kernel here needs it. It can still be imported later.
+    Parameters
+    ----------
+    library
+        Name of the library; nothing is done where it has been imported already.
+    wanted_by
+        Module of numba that does without the library where there is none.
     """
-    if "scipy.linalg" in sys.modules:
+    if library in sys.modules:
         return
-    sys.modules["scipy.linalg"] = None  # pyright: ignore[reportArgumentType]
+    sys.modules[library] = None  # pyright: ignore[reportArgumentType]
     try:
-        importlib.import_module("numba.np.arraymath")
+        importlib.import_module(wanted_by)
     finally:
-        del sys.modules["scipy.linalg"]
+        del sys.modules[library]
 
 
 def _source() -> str:

@@ -1,11 +1,16 @@
 """A braille display at a pseudo-terminal, which is plugged in and taken away."""
 
+import array
+import fcntl
 import os
 import pty
 import select
 import termios
 import threading
+import time
 import tty
+
+READ_WITHIN_S = 1.0
 
 
 class PluggedDisplay:
@@ -50,15 +55,28 @@ class PluggedDisplay:
         termios.tcsetattr(self._port, termios.TCSAFLUSH, self._usual)
 
     def unplug(self):
-        """Take it away."""
+        """Take it away, once what it has said was read.
+
+        A BRLTTY whose display is gone before it has read that its cells were taken waits for that
+        again and again, and never finds out.
+        """
         if self._end is None:
             return
         os.write(self._end, b"x")
         self._thread.join()
+        end_s = time.monotonic() + READ_WITHIN_S  # a driver that has ended reads nothing
+        while self._unread() and time.monotonic() < end_s:
+            time.sleep(0.001)
         self.link.unlink()
         for descriptor in (self._master, self._port, self._end):
             os.close(descriptor)
         self._end = None
+
+    def _unread(self):
+        """Count the bytes that the display has said and its driver has not read."""
+        count = array.array("i", [0])
+        fcntl.ioctl(self._port, termios.FIONREAD, count)
+        return count[0]
 
     def _serve(self, stop):
         begun = b""
