@@ -24,8 +24,8 @@ _log = logging.getLogger(__name__)
 _PROCESSOR_VARIABLES = ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES", "NUMBA_ENABLE_AVX")
 # What tells kinds of processors apart, of Intel's and AMD's and of ARM's; how fast one is does not.
 _PROCESSOR_LINES = ("vendor_id", "cpu family", "model", "stepping", "flags", "Features", "CPU ")
-# Libraries that numba would load for what no kernel here needs, linear algebra and C's declarations,
-# and its modules that look for them. Together they take a third of the time of loading numba.
+# Libraries that numba would load for what no kernel here needs, and its modules that look for them:
+# linear algebra, and declarations in C. Together they take a third of the time of loading it.
 _LEFT_OUT = (("scipy.linalg", "numba.np.arraymath"), ("cffi", "numba.core.typing.cffi_utils"))
 # The files that hold kernels, and what kernels call.
 _ROOMS = ("render/**/*.py", "devices/**/*.py", "engine/*.py")

@@ -40,29 +40,44 @@ def test_y_and_the_angle_of_a_compiled_tick_are_the_carriage_s(rigs):
     assert knobs_of(rig) == [Knob(1, 128 / 255)]
 
 
+def left_after_a_pose(rigs):
+    """Record of a tick that Python was left with after compiled code had taken a pose.
+
+    A machine that stops this process for 15 ms has what follows the pose come too late for that
+    tick, and one that stops it for 40 ms has the device at rest; another rig is tried then.
+    """
+    for _ in range(50):
+        rig = rigs(None, 50.0, 50.0, height_mm=200.0, turns=True)
+        rig.loop.show(PICTURES[0], 0)
+        rig.y_mm, rig.theta_rad = 30.0, 0.1
+        rig.settle()
+        rig.y_mm, rig.theta_rad = 31.0, 0.11
+        rig.put(rig.say())
+        ended = threading.Event()
+        line = threading.Thread(target=follow_with_damage, args=(rig, ended))
+        line.start()
+        rig.asked.clear()
+        rig.loop.run()
+        ended.set()
+        line.join()
+        record = rig.drain()[-1]
+        if not rig.compiled and not rig.waiting() and not record["flags"] & Flag.HELD:
+            return record
+    raise AssertionError("no tick is left to Python")
+
+
+def follow_with_damage(rig, ended):
+    # Until the pose has been taken, long before the tick is due, or the tick went by without it.
+    while rig.waiting() and not ended.is_set():
+        os.sched_yield()
+    rig.put(b"\x02 damaged\0")
+
+
 def test_a_pose_that_came_before_what_python_is_left_with_keeps_y_and_the_angle(rigs):
-    rig = rigs(None, 50.0, 50.0, height_mm=200.0, turns=True)
-    rig.loop.show(PICTURES[0], 0)
-    rig.y_mm, rig.theta_rad = 30.0, 0.1
-    rig.settle()
-    rig.y_mm, rig.theta_rad = 31.0, 0.11
-    rig.put(rig.say())
-
-    def follow_it():
-        while rig.waiting():  # until that has been taken, long before the tick is due
-            os.sched_yield()
-        rig.put(b"\x02 damaged\0")
-
-    line = threading.Thread(target=follow_it)
-    line.start()
-    rig.asked.clear()
-    rig.loop.run()
-    line.join()
-    record = rig.drain()[-1]
+    record = left_after_a_pose(rigs)
     assert not record["flags"] & Flag.CHANGED
     assert record["y_mm"] == pytest.approx(31.0)
     assert record["theta_rad"] == pytest.approx(0.11, abs=1e-4)
-    assert not rig.compiled
 
 
 def knobs_of(rig):
