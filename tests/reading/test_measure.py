@@ -74,7 +74,7 @@ def test_a_percentage_that_is_gone_to_is_the_one_that_is_told(percent):
 
 def test_a_book_that_is_not_read_to_its_end_is_told_about():
     # More than is looked through for what is said of a place, however quick the machine.
-    long = html(BEFORE * 100, f"class='{'x' * 2_000}'")
+    long = html(BEFORE * 400, f"class='{'x' * 2_000}'")
     source = HtmlBook.open(io.BytesIO(long.encode()), "b.html")
     assert not source.complete
     bench = Bench(book=Book(source, TABLE), width=26)

@@ -22,7 +22,7 @@ from vbraille.sessions.record.export import NEVER_CAME
 
 
 def reading(pattern=ONE_PASS, duration_s=4.5, passes=1, right=20.0, left=80.0):
-    return Reading(pattern, duration_s, left is not None, passes, 0, 1, 1, right, left)
+    return Reading(pattern, duration_s, left is not None, passes, 0, right, left)
 
 
 def sitting(readings, who="P1", conditions=("T0",), session="s1"):
