@@ -94,7 +94,7 @@ class Pose(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Make:
-    """What a device of two axes with absolute encoders is, as INFO tells it."""
+    """Describe a device of two axes with absolute encoders, as INFO does."""
 
     rows: int = 6
     columns: int = 10

@@ -77,17 +77,17 @@ class StopRule:
 
     @property
     def by_precision(self) -> bool:
-        """Whether an estimate is needed to say whether enough was asked."""
+        """True if the end of the questions depends on an estimate."""
         return self.sd is not None or self.width is not None
 
     def out_of_limits(self, history: Sequence[Asked]) -> bool:
-        """Whether there were as many questions, or as many seconds, as are allowed."""
+        """Tell if the allowed number of questions or seconds is used up."""
         if self.trials is not None and len(history) >= self.trials:
             return True
         return self.seconds is not None and bool(history) and history[-1].t_s >= self.seconds
 
     def precise(self, asked: int, found: GridEstimate) -> bool:
-        """Whether an estimate after a number of questions is precise enough."""
+        """Tell if an estimate after a number of questions is precise enough."""
         if asked < self.at_least or not self.by_precision:
             return False
         return (self.sd is None or found.sd <= self.sd) and (

@@ -102,7 +102,7 @@ def _check_neighbours(protocol, trials):
 
 
 def _wanted(protocol):
-    """How often each condition must show each item."""
+    """Count how often each condition must show each item."""
     design = protocol.design
     if isinstance(design, Combinations):
         things = product(design.characters, repeat=design.length)

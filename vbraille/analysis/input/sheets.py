@@ -228,7 +228,7 @@ def parse_seconds(text: str, *, value: Callable[[str], float]) -> float:
 
 
 def is_pair(presented: str) -> bool:
-    """Whether two values were presented, and not a string of cells."""
+    """True if two values were presented, and not a string of cells."""
     return _PAIR.fullmatch(presented) is not None
 
 

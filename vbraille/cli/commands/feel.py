@@ -115,7 +115,7 @@ def _check(loaded: LoadedScene, display: Display, at_mm: float | None) -> None:
 
 
 def _view(device: OpenDevice, feeler: Feeler, said: Said, facts: list[tuple[str, str]]) -> FeltView:
-    """What is felt, as the state of the live view."""
+    """Describe what is felt, as the state of the live view."""
     # Only who has a live view waits for what it needs.
     from vbraille.feeling.viewed import FeltView
 

@@ -187,7 +187,7 @@ class _Reading(AtDevice):
 
 
 def _view(device: OpenDevice, said: Said, facts: list[tuple[str, str]]) -> ReadView:
-    """What is read, as the state of the live view."""
+    """Describe what is read, as the state of the live view."""
     # Only a reading that has a live view waits for what it needs.
     from vbraille.reading.viewed import ReadView
 
