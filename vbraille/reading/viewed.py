@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Changed, Silent, Stalled, Stranger, Unplugged
-from vbraille.devices.saying import say
+from vbraille.devices.sentences import say
 from vbraille.live.messages import LineShown, ViewState
 from vbraille.live.states import (
     array_shown,

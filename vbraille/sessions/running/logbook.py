@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from vbraille.devices.events import HandHeld
-from vbraille.devices.saying import told
+from vbraille.devices.sentences import told
 from vbraille.sessions.record import events
 
 if TYPE_CHECKING:

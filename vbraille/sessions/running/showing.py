@@ -8,7 +8,7 @@ import numpy as np
 
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Button
-from vbraille.devices.saying import placing_sentence
+from vbraille.devices.sentences import placing_sentence
 from vbraille.engine.engine import Engine, placing_of
 from vbraille.engine.record import Flag
 from vbraille.engine.watchers import HOME_MM, EndOfLine, Upright
