@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.documents import DOCS, TABLES, with_table
 from vbraille.cli.parser import parse
 
 ROOT = Path(__file__).parents[1]
@@ -135,3 +136,11 @@ def test_the_glossary_has_each_word_once():
     page = (ROOT / "docs/glossary.md").read_text(encoding="utf-8")
     words = re.findall(r"\*\*([^*]+)\*\*", page)
     assert sorted(set(words)) == sorted(words)
+
+
+@pytest.mark.parametrize(
+    ("name", "rows"), TABLES, ids=lambda part: part if type(part) is str else ""
+)
+def test_each_table_is_what_the_program_has(name, rows):
+    text = (DOCS / name).read_text(encoding="utf-8")
+    assert with_table(text, rows) == text, "python -m tests.documents writes it"

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tiers import examples
+from vbraille.config.knobs import KNOBS
 from vbraille.layout.pages import Layout
 from vbraille.live.states import (
     array_shown,
@@ -17,7 +18,6 @@ from vbraille.live.states import (
     rows_shown,
 )
 from vbraille.render import STRESS2, VBD
-from vbraille.render.braille.knobs import KNOBS
 from vbraille.render.braille.mappings import MAPPINGS
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.braillefiles.lines import open_brf
@@ -134,7 +134,7 @@ def test_rows_of_actuators_tell_the_rows_of_dots_that_they_show():
 
 
 def test_all_knobs_are_shown_with_their_bounds_and_why_one_is_fixed():
-    shown = {knob.name: knob for knob in knobs_shown(VBD.style)}
+    shown = {knob.key: knob for knob in knobs_shown(VBD.style)}
     assert list(shown) == list(KNOBS)
     assert shown["dot_width_mm"].value == 2.0
     assert (shown["texture"].low, shown["texture"].high, shown["texture"].step) == (0, 1, 0.1)

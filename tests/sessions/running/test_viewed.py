@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from tests.sessions.sittings import COMPARED, MINI, Session, of
 from tests.tiers import by_tier
+from vbraille.config.knobs import say_mapping
 from vbraille.engine.batch import BatchEngine
 from vbraille.live.messages import PagePress, Turn
-from vbraille.render.braille.knobs import say_mapping
 from vbraille.render.braille.mappings import MAPPINGS
 from vbraille.sessions.record.folder import check
 from vbraille.sessions.running.onlookers import ENDED, Heard, Onlookers

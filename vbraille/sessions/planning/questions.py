@@ -13,7 +13,7 @@ from vbraille.braille.spelling import UNREAD, parse_answer, parse_choice, say_ce
 from vbraille.errors import check_range
 from vbraille.sessions.planning.conduct import LONGEST_LINE, check_line
 from vbraille.sessions.planning.spellings import parse_text
-from vbraille.toml.tomlfile import Table
+from vbraille.tomlfile import Table
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

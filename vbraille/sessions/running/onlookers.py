@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Final
 from msgspec import structs
 
 from vbraille.braille.spelling import say_cells, to_braille
+from vbraille.config.knobs import say_mapping
 from vbraille.devices.base import Placing
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host
 from vbraille.engine.record import Flag
 from vbraille.live.messages import ViewState
 from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
-from vbraille.render.braille.knobs import say_mapping
 from vbraille.sessions.planning.stimuli import Stimulus, Trial, said_value
 from vbraille.sessions.record.events import LiveView
 from vbraille.sessions.running.course import Course, Phase
