@@ -134,7 +134,7 @@ def test_rows_of_actuators_tell_the_rows_of_dots_that_they_show():
 
 
 def test_all_knobs_are_shown_with_their_bounds_and_why_one_is_fixed():
-    shown = {knob.key: knob for knob in knobs_shown(VBD.style)}
+    shown = {knob.name: knob for knob in knobs_shown(VBD.style)}
     assert list(shown) == list(KNOBS)
     assert shown["dot_width_mm"].value == 2.0
     assert (shown["texture"].low, shown["texture"].high, shown["texture"].step) == (0, 1, 0.1)
