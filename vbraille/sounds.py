@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from vbraille.extras import lacking
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
@@ -81,8 +83,10 @@ class Tones:
 
     def __init__(self) -> None:
         with _quiet():
-            import sounddevice
-
+            try:
+                import sounddevice
+            except ModuleNotFoundError:
+                raise OSError(f"a tone {lacking('sounddevice')}") from None
             try:
                 sounddevice.check_output_settings(samplerate=_RATE_HZ, channels=1)
             except (sounddevice.PortAudioError, ValueError) as error:

@@ -16,14 +16,7 @@ from vbraille.sessions.planning.chance import balanced_orders
 from vbraille.sessions.planning.choosing import varied
 from vbraille.sessions.planning.factors import within
 from vbraille.sessions.planning.procedures import FixedProcedure, QuestProcedure, StaircaseProcedure
-from vbraille.sessions.planning.questions import (
-    DetectQuestion,
-    FreeQuestion,
-    MagnitudeQuestion,
-    RatingQuestion,
-    SameQuestion,
-    WhichQuestion,
-)
+from vbraille.sessions.planning.questions import of_all
 from vbraille.sessions.planning.stimuli import GAP, KNOBS
 from vbraille.version import __version__
 from vbraille.wording import count
@@ -345,57 +338,15 @@ def _span(numbers: Sequence[int], noun: str) -> str:
     return count(most, noun) if least == most else f"{least} to {count(most, noun)}"
 
 
-_LOOKED_FOR = ("hit", "miss")
-
-
-def of_all(number: int, rows: Sequence[Any], noun: str, of_the: str = "") -> str:
-    """Words for a number of things out of all.
-
-    >>> of_all(2, [0, 0, 0], "trial"), of_all(3, [0, 0, 0], "trial", "of the ")
-    ('2 of 3 trials', 'all 3 of the trials')
-    >>> of_all(1, [0], "trial"), of_all(0, [0], "trial")
-    ('the only trial', '0 of 1 trial')
-    """
-    if number == len(rows) == 1:
-        return f"the only {noun}"
-    part = f"all {number}" if number == len(rows) else f"{number} of {len(rows)}"
-    return f"{part} {of_the}{noun}{'s' * (len(rows) != 1)}"
-
-
 def asked(protocol: Protocol, rows: Sequence[dict[str, Any]]) -> Iterable[str]:
     """Sentences on the question, for trials that have an answer."""
     if not rows:
         return
-    question, looked_for = protocol.asks, sum(row["outcome"] in _LOOKED_FOR for row in rows)
+    question = protocol.asks
     if question.ask:
         yield f"They were asked: “{question.ask}”"
-    match question:
-        case WhichQuestion():
-            yield f"Of each pair one was chosen{_right(protocol, question)}"
-        case SameQuestion():
-            yield (
-                "Of each pair it was said whether the two were the same or different; "
-                f"{of_all(looked_for, rows, 'pair')} differed"
-            )
-        case DetectQuestion():
-            yield (
-                "It was said whether there was anything; there was something in "
-                f"{of_all(looked_for, rows, 'trial')}"
-            )
-        case RatingQuestion():
-            ends = f"from {_step(question, question.least)} to {_step(question, question.most)}"
-            yield f"They rated {question.scale} in whole numbers, {ends}"
-        case MagnitudeQuestion():
-            standard = (
-                "everybody chose their own standard"
-                if question.modulus is None
-                else f"the standard was {question.modulus:g}"
-            )
-            yield f"They estimated a magnitude, as a number above 0; {standard}"
-        case FreeQuestion():
-            yield "They answered in words of their own, which were not scored"
-        case _:
-            pass
+    if told := question.describe(rows, protocol.parameter):
+        yield told
     sure = sum(row["confidence"] != "" for row in rows)
     if question.confidence is not None and sure:
         scale = question.confidence
@@ -403,21 +354,6 @@ def asked(protocol: Protocol, rows: Sequence[dict[str, Any]]) -> Iterable[str]:
             f"After {of_all(sure, rows, 'answer')} they said how sure they were, from "
             f"{scale.least} to {scale.most}"
         )
-
-
-def _right(protocol: Protocol, question: WhichQuestion) -> str:
-    """Clause that says which one of two was right."""
-    if question.right is None:
-        return ", and neither was right or wrong"
-    knob = KNOBS[protocol.parameter or "contrast"]
-    if question.right == "nearest":
-        return f"; the one nearest to {question.reference:g}{knob.unit} was right"
-    return f"; the one with {question.right} {knob.words} was right"
-
-
-def _step(question: RatingQuestion, step: int) -> str:
-    label = question.named.get(step)
-    return f"{step}" if label is None else f"{step} ({label})"
 
 
 def caught(rows: Sequence[dict[str, Any]]) -> Iterable[str]:

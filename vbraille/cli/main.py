@@ -14,6 +14,7 @@ from io import BufferedWriter, FileIO, RawIOBase, TextIOWrapper
 
 from vbraille.cli.stopping import EAR, EXIT_CODE, SAID, Stopped
 from vbraille.errors import VbrailleError
+from vbraille.extras import needing_extras
 from vbraille.wording import printable, spelled
 
 TYPE_CHECKING = False  # importing typing, for its constant, takes as long as all the rest
@@ -111,7 +112,8 @@ class _Closed(RawIOBase):
 def _run(argv: Sequence[str] | None) -> tuple[str, int]:
     """Run a command; give a sentence on its failure, and its exit code."""
     try:
-        code = _call(argv)
+        with needing_extras():
+            code = _call(argv)
         sys.stdout.flush()
     except BrokenPipeError:  # whoever read our output has enough, and needs no sentence
         return "", EXIT_CODE

@@ -18,7 +18,12 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
 import msgspec
-import uvloop
+
+try:
+    # Each frame is a message to and one from, and uvloop takes a quarter less time for them.
+    from uvloop import run
+except ModuleNotFoundError:  # it is not made for all systems
+    from asyncio import run
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.live.channel import (
@@ -160,8 +165,7 @@ def main() -> int:
     begin = msgspec.json.decode(sys.argv[1], type=Begin)
     if begin.log is not None:
         keep(begin.log)
-    # Each frame is a message to and one from, and uvloop takes a quarter less time for them.
-    return uvloop.run(_main(begin))
+    return run(_main(begin))
 
 
 async def _main(begin: Begin) -> int:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
+from vbraille.extras import needing_extras
 from vbraille.scene.bitmap import WHOLE
 from vbraille.scene.imagefiles import intensities_of
 from vbraille.scene.images import MOST_PER_MM, named, naming, shape_of, size_mm
@@ -89,8 +90,9 @@ def dots_of(pattern: ImageDots, folder: Path) -> AnyPattern:
 def _blobs(pattern: ImageDots, gray: NDArray[np.uint16], size: Point) -> list[_Dot]:
     """Find a dot for each connected set of pixels above the threshold."""
     import numpy as np
-    from scipy import ndimage
 
+    with needing_extras():
+        from scipy import ndimage
     rows, columns = gray.shape
     wide, high = size[0] / columns, size[1] / rows
     labeled: Any = ndimage.label(gray > pattern.threshold * WHOLE, np.ones((3, 3)))
@@ -150,8 +152,8 @@ def _check_count(pattern: ImageDots, count: int) -> None:
 
 def _refuse_overlap(pattern: ImageDots, dots: list[_Dot]) -> None:
     """Refuse dots that overlap; the larger look for smaller ones, so that none looks far."""
-    from scipy.spatial import KDTree
-
+    with needing_extras():
+        from scipy.spatial import KDTree
     tree = KDTree([dot.center_mm for dot in dots])
     for number in sorted(range(len(dots)), key=lambda n: -dots[n].radius_mm):
         dot = dots[number]

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
+from vbraille.extras import needing_extras
 from vbraille.scene.bitmap import WHOLE, Bitmap
 from vbraille.scene.imagefiles import intensities_of
 from vbraille.scene.patterns import Image
@@ -195,8 +196,9 @@ def _laid(image: Image, folder: Path) -> _Laid:
 def _blurred(laid: _Laid, image: Image) -> _Laid:
     """Blur an image, which then reaches farther."""
     import numpy as np
-    from scipy.ndimage import gaussian_filter
 
+    with needing_extras():
+        from scipy.ndimage import gaussian_filter
     rows, columns = laid.intensities.shape
     pixel_mm = laid.width_mm / columns, laid.height_mm / rows
     sigmas = [image.blur_mm / of for of in pixel_mm]

@@ -183,10 +183,10 @@ def test_without_the_table_it_is_as_it_was():
 
 def test_shipped_protocols_have_what_their_question_needs():
     of = load_protocol("detection")
-    told = [of.asks.looked_for(trial) for trial in make_plan(of, "P1", 1).trials]
+    told = [of.asks.has_signal(trial) for trial in make_plan(of, "P1", 1).trials]
     assert (told.count(False), len(told)) == (12, 48)
     of = load_protocol("same-different")
-    told = [of.asks.looked_for(trial) for trial in make_plan(of, "P1", 1).trials]
+    told = [of.asks.has_signal(trial) for trial in make_plan(of, "P1", 1).trials]
     assert (told.count(False), len(told)) == (36, 72)
 
 

@@ -16,7 +16,7 @@ from vbraille.render import (
     Tuning,
     single_row,
 )
-from vbraille.sessions.running.reader import felt_mm, nearer, nominal_mm
+from vbraille.sessions.simulated.feeling import felt_mm, nearer, nominal_mm
 from vbraille.sessions.simulated.observer import Observer, Touch
 from vbraille.sessions.simulated.skin import Exploration, reference_per_mm2, smoothing_mm
 from vbraille.simulation.specs import parse_hand

@@ -3,7 +3,7 @@
 Judgements have a row for each answered trial, with the columns ``participant``, ``session``,
 ``protocol``, ``condition`` (categories in natural order), ``block``, ``trial``, and
 
-- ``question``: kind of the question, a key of `QUESTIONS`;
+- ``question``: kind of the question, a key of `vbraille.sessions.planning.questions.KINDS`;
 - ``presented``, ``answered``: text as it was exported; of two values, each as numbers are written
   here, so that equal values are equal texts;
 - ``number``: float64, the answer as a number; NaN for questions that have none;
@@ -27,34 +27,13 @@ import pandas as pd
 from vbraille.analysis.input.sheets import is_pair, parse_pair
 from vbraille.analysis.statistics.intervals import LARGEST
 from vbraille.errors import InputError
+from vbraille.sessions.planning.questions import KINDS, OneOfTwo
 
 if TYPE_CHECKING:
     from vbraille.analysis.input.sheets import Sheet
 
-_RIGHT = frozenset(("right", "wrong"))
-_FOUND = frozenset(("hit", "miss", "false alarm", "correct rejection"))
-# Outcomes that each kind of question may have, beside none.
-QUESTIONS = {
-    "identify": _RIGHT,
-    "which": _RIGHT,
-    "same-different": _FOUND,
-    "detect": _FOUND,
-    "rating": frozenset(),
-    "magnitude": frozenset(),
-    "free": frozenset(),
-}
-# Words that are answered, the one that is looked for first; tables of other programs may have them
-# for what was presented as well.
-_WORDS = {"same-different": ("different", "same"), "detect": ("yes", "no")}
-# Outcomes by whether what is looked for was there, and whether the answer says so.
-_FOUND_BY = {
-    (True, True): "hit",
-    (True, False): "miss",
-    (False, True): "false alarm",
-    (False, False): "correct rejection",
-}
 USUAL = ("identify", "which")  # questions whose answers are trials or comparisons
-_NUMBERS = ("rating", "magnitude")
+_NUMBERS = [name for name, kind in KINDS.items() if kind.numeric]
 LEVELS = (
     "contrast", "texture", "dot_width_mm", "dot_spacing_mm", "cell_gap_mm", "row_spacing_mm",
 )  # fmt: skip
@@ -72,10 +51,10 @@ def judged(sheet: Sheet, rows: pd.DataFrame) -> pd.Series:
         return pd.Series(False, rows.index)
     kinds = rows["question"].str.strip()
     for row, kind in kinds.items():
-        if kind not in (*QUESTIONS, ""):
+        if kind not in (*KINDS, ""):
             raise InputError(
                 f"{sheet.place(row)}: question is {kind!r}; it must be one of "
-                f"{', '.join(QUESTIONS)}, or empty"
+                f"{', '.join(KINDS)}, or empty"
             )
     return ~kinds.isin((*USUAL, ""))
 
@@ -106,8 +85,8 @@ def read_judgements(sheet: Sheet, rows: pd.DataFrame, who: pd.DataFrame) -> pd.D
     if not kept.any():
         return None
     for row in rows.index[kept]:
-        if outcome[row] and outcome[row] not in QUESTIONS[kinds[row]]:
-            known = ", ".join(sorted(QUESTIONS[kinds[row]])) or "none"
+        if outcome[row] and outcome[row] not in KINDS[kinds[row]].outcomes:
+            known = ", ".join(sorted(KINDS[kinds[row]].outcomes)) or "none"
             raise InputError(
                 f"{sheet.place(row)}: outcome is {outcome[row]!r}; of the question "
                 f"{kinds[row]!r} it must be one of: {known}"
@@ -169,8 +148,10 @@ def _outcomes(sheet: Sheet, rows: pd.DataFrame, kinds: pd.Series) -> pd.Series:
     right = correct.map({"1": "right", "1.0": "right", "0": "wrong", "0.0": "wrong"}).fillna("")
     found = given.where(given != "", right.where(kinds.isin(USUAL), ""))
     presented, answered = (rows[name].astype(str).str.strip() for name in ("presented", "answered"))
-    for kind, words in _WORDS.items():
-        own = kinds == kind
+    for kind, asked in KINDS.items():
+        if not issubclass(asked, OneOfTwo):
+            continue
+        own, words = kinds == kind, asked.words
         either = f"{words[0]} or {words[1]}"
         for row in rows.index[own & ~answered.isin(words)][:1]:
             raise InputError(
@@ -184,7 +165,7 @@ def _outcomes(sheet: Sheet, rows: pd.DataFrame, kinds: pd.Series) -> pd.Series:
                 f"which does not tell it; give outcome, or presented as {either}"
             )
         told = (presented + " " + answered).map(
-            {f"{there} {said}": _FOUND_BY[there == words[0], said == words[0]]
+            {f"{there} {said}": asked.score(there == words[0], said)
              for there in words for said in words}
         )  # fmt: skip
         found = found.mask(untold, told)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
+from vbraille.extras import needing_extras
 from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.joints import joints, rounding_radius_mm
 from vbraille.scene.measures import LEAST_MM, MOST_MM
@@ -475,7 +476,7 @@ def _touch(centers: tuple[Point, ...], apart: float) -> bool:
         return False
     if len(set(centers)) < len(centers):
         return True
-    from scipy.spatial import KDTree
-
+    with needing_extras():
+        from scipy.spatial import KDTree
     nearest, _ = KDTree(centers).query(centers, k=2)
     return bool(nearest[:, 1].min() < apart - 1e-9)

@@ -12,6 +12,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError, VbrailleError
+from vbraille.extras import lacking
 from vbraille.scene.svg.drawing import view_of
 from vbraille.scene.svg.numbers import PX_MM
 from vbraille.scene.svg.reading import size_px
@@ -97,10 +98,7 @@ def _drawn(root: Element, path: Path) -> bytes:
     from lxml import etree
 
     if find_spec("resvg_py") is None:
-        raise InputError(
-            f"{path} is an SVG, which needs resvg-py to be an image: "
-            "pip install 'vbraille[graphics]' installs it"
-        )
+        raise InputError(f"{path} is an SVG, and to be an image {lacking('resvg_py')}")
     limits = str(MOST_S), str(_MOST_BYTES)
     try:
         done = subprocess.run(

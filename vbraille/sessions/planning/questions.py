@@ -1,24 +1,48 @@
 """The table ``[question]`` of a protocol: what is asked of a trial, a class for each kind.
 
-Without the table, a string is to be identified, and of two stimuli one is to be chosen.
+A class has all that is known of its kind: which answers there are, how they are read, scored and
+said, the sentence on it in a report, and how the simulated reader answers. Without the table, a
+string is to be identified, and of two stimuli one is to be chosen.
+
+**The simulated reader** goes by one number of a stimulus where it is not asked which cells there
+are: a length in mm, or how strong its strongest dot is felt, in units of E₀
+(`vbraille.sessions.simulated.observer`). Where it is asked which of two it likes, it takes the one
+nearer to the length that it was told, or the stronger one. Noise is normal. It says yes, or
+different, beyond one standard deviation of its noise, so that it gives a false alarm in 16 % of
+trials with nothing. On a scale it puts strengths of 0 to 1 evenly from end to end, and as a
+magnitude it gives the strength times the modulus. How sure it is it cannot tell: its confidence is
+the middle of the scale. All this is for trying out protocols, and claims nothing about people.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
-from vbraille.braille.spelling import UNREAD, parse_answer, parse_choice, say_cells, to_braille
+from vbraille.braille.spelling import (
+    UNREAD,
+    parse_answer,
+    parse_choice,
+    say_cells,
+    to_answer,
+    to_braille,
+)
 from vbraille.errors import check_range
 from vbraille.sessions.planning.conduct import LONGEST_LINE, check_line
 from vbraille.sessions.planning.spellings import parse_text
+from vbraille.sessions.planning.stimuli import KNOBS, said_value
+from vbraille.sessions.simulated.feeling import nearer
+from vbraille.sessions.simulated.observer import LEAST_FELT, TIE
 from vbraille.tomlfile import Table
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Sequence
+
+    import numpy as np
 
     from vbraille.sessions.planning.stimuli import Trial
+    from vbraille.sessions.simulated.feeling import FeltTrial
 
 
 RIGHT, WRONG = "right", "wrong"
@@ -26,6 +50,7 @@ HIT, MISS, FALSE_ALARM, REJECTION = "hit", "miss", "false alarm", "correct rejec
 GOOD = frozenset((RIGHT, HIT, REJECTION))  # outcomes of right answers
 _MOST_STEPS = 101
 LARGEST = 1e9
+LEAST_MAGNITUDE = 1e-3  # smallest magnitude given, as a share of the modulus: none may be 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +129,12 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
     """
 
     stimuli: ClassVar[tuple[int, ...]] = (1, 2)  # how many stimuli a trial may have
+    outcomes: ClassVar[frozenset[str]] = frozenset()  # how answers may be scored
+    words: ClassVar[tuple[str, ...]] = ()  # all answers, the one that is looked for first
+    numeric: ClassVar[bool] = False  # whether answers are numbers on a scale
     positive_known: ClassVar[bool] = False  # whether a procedure can go by the answers
+    simulated: ClassVar[bool] = True  # whether the simulated reader can answer
+    typed: ClassVar[str] = "the answer"  # what may be typed as an answer
 
     ask: str = ""
     confidence: ConfidenceScale | None = None
@@ -118,10 +148,9 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
         """Name of the kind in tables."""
         return str(self.__struct_config__.tag)
 
-    @property
-    def typed(self) -> str:
-        """What may be typed as an answer, in words for people."""
-        return "the answer"
+    def prompt(self) -> str:
+        """Say what may be typed as an answer."""
+        return self.typed
 
     def problem(self, stimuli: int, *, adaptive: bool) -> str:
         """Say why this question cannot be asked of trials; empty if it can.
@@ -146,21 +175,9 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
             )
         return ""
 
-    def positive(self, trial: Trial, answer: str, /) -> bool:
-        """Whether an answer counts as a positive one for a procedure."""
-        return self.good(trial, answer)
-
-    def outcome(self, _trial: Trial, _answer: str, /) -> str:
-        """How an answer is scored, such as "right" or "hit"; empty if it is not."""
-        return ""
-
-    def good(self, trial: Trial, answer: str, /) -> bool:
-        """Whether an answer is right."""
-        return self.outcome(trial, answer) in GOOD
-
-    def was(self, _trial: Trial, _keys: Mapping[str, int], /) -> str:
-        """Words for what is right, for practice; empty if nothing is."""
-        return ""
+    def help(self, _keys: dict[str, int], _written: bool, /) -> str:
+        """Say at the console what may be typed, where strings are written in print or in cells."""
+        return self.prompt()
 
     def parse(self, text: str, trial: Trial, spelling: CellSpelling, /) -> str:
         """Read an answer, and bring it into the spelling in which it is kept.
@@ -172,13 +189,72 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
         """
         raise NotImplementedError
 
+    def positive(self, trial: Trial, answer: str, /) -> bool:
+        """Whether an answer counts as a positive one for a procedure."""
+        return self.good(trial, answer)
+
+    def outcome(self, _trial: Trial, _answer: str, /) -> str:
+        """Score an answer, as "right" or "hit" for example; empty if it is not scored."""
+        return ""
+
+    def good(self, trial: Trial, answer: str, /) -> bool:
+        """Whether an answer is right."""
+        return self.outcome(trial, answer) in GOOD
+
+    def was(self, _trial: Trial, _keys: dict[str, int], /) -> str:
+        """Words for what is right; empty if nothing is."""
+        return ""
+
     def said(self, answer: str, _keys: dict[str, int], /) -> str:
         """Words for an answer."""
         return answer
 
+    def verdict(self, trial: Trial, answer: str, keys: dict[str, int], _knob: str | None, /) -> str:
+        """Words for an answer, and for whether it is right."""
+        said, was = self.said(answer, keys), self.was(trial, keys)
+        if not was:
+            return said
+        return f"{said}, right" if self.good(trial, answer) else f"{said}, wrong: it was {was}"
+
+    def feedback(self, trial: Trial, answer: str, keys: dict[str, int], knob: str | None, /) -> str:
+        """Words for what a practice trial has shown; empty if there is nothing to say."""
+        if was := self.was(trial, keys):
+            return f"{'right' if self.good(trial, answer) else 'wrong'}, it was {was}"
+        values = [said_value(s.value, knob) for s in trial.stimuli if s.value is not None]
+        return f"they were {values[0]} and {values[1]}" if len(values) == 2 else ""
+
     def cell(self, _trial: Trial, answer: str, /) -> str:
         """Text for an answer in tables."""
         return answer
+
+    def columns(self, trial: Trial, answer: str | None, /) -> dict[str, Any]:
+        """Cells of a trial's row for the question and the answer's score; see `COLUMNS`."""
+        row: dict[str, Any] = {"question": self.name}
+        if answer is not None and (outcome := self.outcome(trial, answer)):
+            row |= {"outcome": outcome, "correct": int(outcome in GOOD)}
+        return row
+
+    def describe(self, _rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
+        """Sentence on the question in a report, for some answered trials; may be empty."""
+        return ""
+
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
+        """Answer by what was felt, with normal noise of a standard deviation."""
+        raise NotImplementedError
+
+
+def of_all(number: int, rows: Sequence[Any], noun: str, of_the: str = "") -> str:
+    """Words for a number of things out of all.
+
+    >>> of_all(2, [0, 0, 0], "trial"), of_all(3, [0, 0, 0], "trial", "of the ")
+    ('2 of 3 trials', 'all 3 of the trials')
+    >>> of_all(1, [0], "trial"), of_all(0, [0], "trial")
+    ('the only trial', '0 of 1 trial')
+    """
+    if number == len(rows) == 1:
+        return f"the only {noun}"
+    part = f"all {number}" if number == len(rows) else f"{number} of {len(rows)}"
+    return f"{part} {of_the}{noun}{'s' * (len(rows) != 1)}"
 
 
 def check_scale(least: int, most: int) -> None:
@@ -234,6 +310,14 @@ class IdentifyQuestion(QuestionTable, frozen=True, kw_only=True, tag="identify")
 
     positive_known: ClassVar[bool] = True
     stimuli: ClassVar[tuple[int, ...]] = (1,)
+    outcomes: ClassVar[frozenset[str]] = frozenset((RIGHT, WRONG))
+
+    def help(self, keys: dict[str, int], written: bool, /) -> str:
+        """Say how cells, or a text, may be typed."""
+        if written:
+            return "the text that was read; ? for a cell not read, or for nothing"
+        own = f"the keys {' '.join(keys)}, " if keys else ""
+        return f"letters, dot numbers with a space between cells, {own}? for a place not read"
 
     def outcome(self, trial: Trial, answer: str, /) -> str:
         """Right if all cells are; of a blank catch trial, if no dot was felt."""
@@ -241,9 +325,9 @@ class IdentifyQuestion(QuestionTable, frozen=True, kw_only=True, tag="identify")
             return RIGHT if set(answer) <= {UNREAD, to_braille((0,))} else WRONG
         return RIGHT if answer == trial.presented else WRONG
 
-    def was(self, trial: Trial, keys: Mapping[str, int], /) -> str:
+    def was(self, trial: Trial, keys: dict[str, int], /) -> str:
         """Words for the cells, or the text that they stand for."""
-        return trial.stimuli[0].text or self.said(trial.presented, dict(keys))
+        return trial.stimuli[0].text or self.said(trial.presented, keys)
 
     def parse(self, text: str, trial: Trial, spelling: CellSpelling, /) -> str:
         """Read cells, or a text; see `vbraille.braille.spelling.parse_answer`, `parse_text`."""
@@ -258,6 +342,10 @@ class IdentifyQuestion(QuestionTable, frozen=True, kw_only=True, tag="identify")
     def said(self, answer: str, keys: dict[str, int], /) -> str:
         """Words for the cells."""
         return say_cells(answer, keys)
+
+    def simulate(self, felt: FeltTrial, _noise: float, random: np.random.Generator, /) -> str:
+        """Give the cells as they were felt."""
+        return to_answer(felt.cells(random))
 
 
 class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
@@ -278,6 +366,8 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
 
     positive_known: ClassVar[bool] = True
     stimuli: ClassVar[tuple[int, ...]] = (2,)
+    outcomes: ClassVar[frozenset[str]] = frozenset((RIGHT, WRONG))
+    typed: ClassVar[str] = "1 or 2, for the first or the second"
 
     right: Literal["more", "less", "nearest"] | None = None
     reference: float | None = None
@@ -289,11 +379,6 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
             raise ValueError(
                 "right = 'nearest' and reference go together; give both, or neither of them"
             )
-
-    @property
-    def typed(self) -> str:
-        """What may be typed: 1 or 2."""
-        return "1 or 2, for the first or the second"
 
     def right_one(self, trial: Trial) -> str:
         """Right answer, "1" or "2"; empty if there is none."""
@@ -316,7 +401,7 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
         right = self.right_one(trial)
         return "" if not right else RIGHT if answer == right else WRONG
 
-    def was(self, trial: Trial, _keys: Mapping[str, int], /) -> str:
+    def was(self, trial: Trial, _keys: dict[str, int], /) -> str:
         """Words for the right one of two."""
         right = self.right_one(trial)
         return self.said(right, {}) if right else ""
@@ -333,28 +418,66 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
         """Value that was chosen."""
         return f"{trial.stimuli[int(answer) - 1].value:g}"
 
+    def verdict(self, trial: Trial, answer: str, _keys: dict[str, int], knob: str | None, /) -> str:
+        """Words for the value that was chosen, of both."""
+        values = [said_value(stimulus.value or 0.0, knob) for stimulus in trial.stimuli]
+        return f"{values[int(answer) - 1]} of {values[0]} and {values[1]}"
 
-class _OneOfTwo(QuestionTable, frozen=True, kw_only=True):
-    """A question that is answered by one of two words, of which the first is what is looked for."""
+    def describe(self, _rows: Sequence[dict[str, Any]], knob: str | None, /) -> str:
+        """Sentence on the choice, and on which one was right."""
+        of = KNOBS[knob or "contrast"]
+        if self.right is None:
+            how = ", and neither was right or wrong"
+        elif self.right == "nearest":
+            how = f"; the one nearest to {self.reference:g}{of.unit} was right"
+        else:
+            how = f"; the one with {self.right} {of.words} was right"
+        return f"Of each pair one was chosen{how}"
 
-    words: ClassVar[tuple[str, str]]
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
+        """Choose the larger, the one nearer to the nominal length, or the one that is right."""
+        one, two, unit = felt.values()
+        if self.right is None and felt.by_length:
+            return str(nearer(one, two, unit, noise, random))
+        if self.right is not None:
+            one, two = self.worth(one), self.worth(two)
+        drawn = noise * unit * random.standard_normal(2)
+        one, two = (-math.inf if math.isnan(value) else value for value in (one, two))
+        return "2" if two + drawn[1] > one + drawn[0] else "1"
 
-    @property
-    def typed(self) -> str:
-        """What may be typed: one of the two words, or the letter that it begins with."""
+
+class OneOfTwo(QuestionTable, frozen=True, kw_only=True):
+    """A question answered by one of two words; trials with a signal are answered by the first."""
+
+    outcomes: ClassVar[frozenset[str]] = frozenset((HIT, MISS, FALSE_ALARM, REJECTION))
+    noun: ClassVar[str]  # what a trial shows
+    clauses: ClassVar[tuple[str, str]]  # of the sentence in a report, around a number
+
+    def prompt(self) -> str:
+        """Name the two words, and the letters that they begin with."""
         first, second = self.words
         return f"{first} or {second} ({first[0]} or {second[0]})"
 
-    def looked_for(self, trial: Trial) -> bool:
-        """Whether the trial has what is looked for."""
+    def has_signal(self, trial: Trial) -> bool:
+        """Whether the trial has a signal, such as a difference."""
         raise NotImplementedError
 
     def outcome(self, trial: Trial, answer: str, /) -> str:
-        """Hit or miss, or without what is looked for, false alarm or correct rejection."""
-        said = answer == self.words[0]
-        if self.looked_for(trial):
-            return HIT if said else MISS
-        return FALSE_ALARM if said else REJECTION
+        """Hit or miss with a signal, false alarm or correct rejection without one."""
+        return self.score(self.has_signal(trial), answer)
+
+    @classmethod
+    def score(cls, signal: bool, answer: str) -> str:
+        """Score an answer to a trial with a signal, or without one."""
+        positive = answer == cls.words[0]
+        if signal:
+            return HIT if positive else MISS
+        return FALSE_ALARM if positive else REJECTION
+
+    def describe(self, rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
+        """Sentence on what was asked, and how many trials had a signal."""
+        signals = of_all(sum(row["outcome"] in (HIT, MISS) for row in rows), rows, self.noun)
+        return signals.join(self.clauses)
 
     def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
         """Read one of the two words, in either case, or its first letter."""
@@ -365,40 +488,63 @@ class _OneOfTwo(QuestionTable, frozen=True, kw_only=True):
         raise ValueError(f"{quoted(text)}type {self.words[0]} or {self.words[1]}")
 
 
-class SameQuestion(_OneOfTwo, frozen=True, kw_only=True, tag="same-different"):
+class SameQuestion(OneOfTwo, frozen=True, kw_only=True, tag="same-different"):
     """The question whether two stimuli were different or the same."""
 
     stimuli: ClassVar[tuple[int, ...]] = (2,)
-    words: ClassVar[tuple[str, str]] = (DIFFERENT, SAME)
+    words: ClassVar[tuple[str, ...]] = (DIFFERENT, SAME)
+    noun: ClassVar[str] = "pair"
+    clauses: ClassVar[tuple[str, str]] = (
+        "Of each pair it was said whether the two were the same or different; ",
+        " differed",
+    )
 
-    def looked_for(self, trial: Trial) -> bool:
+    def has_signal(self, trial: Trial) -> bool:
         """Whether the two differ in anything."""
         return trial.stimuli[0] != trial.stimuli[1]
 
-    def was(self, trial: Trial, _keys: Mapping[str, int], /) -> str:
+    def was(self, trial: Trial, _keys: dict[str, int], /) -> str:
         """Words for what the two were."""
-        return DIFFERENT if self.looked_for(trial) else SAME
+        return DIFFERENT if self.has_signal(trial) else SAME
+
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
+        """Say that two differ if they are felt to, beyond the noise of both."""
+        one, two, unit = felt.values()
+        if math.isnan(one) or math.isnan(two):
+            return DIFFERENT if math.isnan(one) != math.isnan(two) else SAME
+        apart = (one - two) / unit + noise * math.sqrt(2) * float(random.standard_normal())
+        return DIFFERENT if abs(apart) > max(noise * math.sqrt(2), TIE) else SAME
 
 
-class DetectQuestion(_OneOfTwo, frozen=True, kw_only=True, tag="detect"):
+class DetectQuestion(OneOfTwo, frozen=True, kw_only=True, tag="detect"):
     """The question whether there was anything: a cell with dots, and some contrast to feel it."""
 
     positive_known: ClassVar[bool] = True
     stimuli: ClassVar[tuple[int, ...]] = (1,)
-    words: ClassVar[tuple[str, str]] = (YES, NO)
+    words: ClassVar[tuple[str, ...]] = (YES, NO)
+    noun: ClassVar[str] = "trial"
+    clauses: ClassVar[tuple[str, str]] = (
+        "It was said whether there was anything; there was something in ",
+        "",
+    )
 
     def positive(self, _trial: Trial, answer: str, /) -> bool:
         """Whether the answer is yes."""
         return answer == YES
 
-    def looked_for(self, trial: Trial) -> bool:
+    def has_signal(self, trial: Trial) -> bool:
         """Whether there was anything to be felt in the cells asked for."""
         (stimulus,) = trial.stimuli
         return stimulus.tuning.contrast > 0 and any(stimulus.masks[slice(*trial.asked)])
 
-    def was(self, trial: Trial, _keys: Mapping[str, int], /) -> str:
+    def was(self, trial: Trial, _keys: dict[str, int], /) -> str:
         """Words for what there was."""
-        return "something" if self.looked_for(trial) else "nothing"
+        return "something" if self.has_signal(trial) else "nothing"
+
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
+        """Say yes beyond one standard deviation of the noise."""
+        strength = felt.strength() + noise * float(random.standard_normal())
+        return YES if strength > max(noise, LEAST_FELT) else NO
 
 
 class RatingQuestion(QuestionTable, frozen=True, kw_only=True, tag="rating"):
@@ -419,6 +565,8 @@ class RatingQuestion(QuestionTable, frozen=True, kw_only=True, tag="rating"):
     ValueError
         If the scale is read backwards or is too long, or the labels are not one for each.
     """
+
+    numeric: ClassVar[bool] = True
 
     scale: str
     least: int
@@ -451,9 +599,8 @@ class RatingQuestion(QuestionTable, frozen=True, kw_only=True, tag="rating"):
             return dict(zip((self.least, self.most), self.labels, strict=True))
         return dict(enumerate(self.labels, self.least))
 
-    @property
-    def typed(self) -> str:
-        """What may be typed: the numbers of the scale."""
+    def prompt(self) -> str:
+        """Name the numbers of the scale, with the labels of its ends."""
         named = self.named
         if not named:
             return f"{self.least} to {self.most} for {self.scale}"
@@ -472,6 +619,19 @@ class RatingQuestion(QuestionTable, frozen=True, kw_only=True, tag="rating"):
         label = self.named.get(int(answer), "")
         return f"{answer}, {label}" if label else answer
 
+    def describe(self, _rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
+        """Sentence on the scale."""
+        least, most = (
+            f"{step} ({self.named[step]})" if step in self.named else f"{step}"
+            for step in (self.least, self.most)
+        )
+        return f"They rated {self.scale} in whole numbers, from {least} to {most}"
+
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
+        """Put a strength of 0 to 1 evenly on the scale."""
+        share = felt.strength() + noise * float(random.standard_normal())
+        return str(self.least + round(min(max(share, 0.0), 1.0) * (self.most - self.least)))
+
 
 class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude"):
     """The question how strong something is, as a positive number.
@@ -488,6 +648,8 @@ class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude
         If the modulus is not a positive number.
     """
 
+    numeric: ClassVar[bool] = True
+
     modulus: float | None = None
 
     def __post_init__(self) -> None:
@@ -495,9 +657,8 @@ class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude
         if self.modulus is not None and not 0 < self.modulus <= LARGEST:
             raise ValueError(f"modulus is {self.modulus:g}; it must be a number above 0")
 
-    @property
-    def typed(self) -> str:
-        """What may be typed: a number above 0."""
+    def prompt(self) -> str:
+        """Ask for a number above 0, and tell the standard's."""
         told = "" if self.modulus is None else f"; the standard is {self.modulus:g}"
         return f"a number above 0{told}"
 
@@ -511,14 +672,31 @@ class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude
             raise ValueError(f"{quoted(text)}type a number above 0, such as 12 or 0.5")
         return f"{number:.15g}"
 
+    def describe(self, _rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
+        """Sentence on the standard."""
+        standard = (
+            "everybody chose their own standard"
+            if self.modulus is None
+            else f"the standard was {self.modulus:g}"
+        )
+        return f"They estimated a magnitude, as a number above 0; {standard}"
+
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
+        """Give the strength times the modulus, with noise on its logarithm; above 0."""
+        share = max(felt.strength(), LEAST_MAGNITUDE)
+        share *= math.exp(noise * float(random.standard_normal()))
+        return f"{(self.modulus or 1.0) * max(share, LEAST_MAGNITUDE):.3g}"
+
 
 class FreeQuestion(QuestionTable, frozen=True, kw_only=True, tag="free"):
-    """A question that is answered in words, which nobody scores."""
+    """A question that is answered in words, which are not scored."""
 
-    @property
-    def typed(self) -> str:
-        """What may be typed: any words."""
-        return "the answer in words"
+    simulated: ClassVar[bool] = False
+    typed: ClassVar[str] = "the answer in words"
+
+    def describe(self, _rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
+        """Sentence on the words."""
+        return "They answered in words of their own, which were not scored"
 
     def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
         """Read any line of text that is not empty."""
@@ -539,6 +717,9 @@ AnyQuestion = (
     | MagnitudeQuestion
     | FreeQuestion
 )
+KINDS: dict[str, type[QuestionTable]] = {
+    str(kind.__struct_config__.tag): kind for kind in get_args(AnyQuestion)
+}
 
 
 def usual_question(stimuli: int) -> AnyQuestion:

@@ -21,21 +21,7 @@ import numpy as np
 from vbraille.errors import InputError
 from vbraille.files import missing, write_file
 from vbraille.sessions.record.codebook import CodebookEntry, describe_design, entry_of
-from vbraille.sessions.record.events import (
-    Answer,
-    AnyTime,
-    BreakWanted,
-    Closed,
-    Device,
-    End,
-    Ended,
-    Fault,
-    JournalEvent,
-    Lost,
-    Note,
-    Run,
-    Tuning,
-)
+from vbraille.sessions.record.events import AnyTime, JournalEvent, Note, Run
 from vbraille.sessions.record.export import (
     PlacedNote,
     Traces,
@@ -70,7 +56,6 @@ EVENT_COLUMNS = {
         "semicolon; of a note, its text; else what"
     },
 }
-_LEFT_OUT = (Run, BreakWanted, Tuning, Closed, Lost)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +91,7 @@ class BidsRun:
         rows = [
             self._row(event, begun_s, without_times)
             for event in self.events
-            if not isinstance(event, (*_LEFT_OUT, Note) if without_times else _LEFT_OUT)
+            if event.exported and not (without_times and isinstance(event, Note))
         ]
         # The journal may have an event a little later than one that happened after it.
         rows.sort(key=lambda row: row["onset"])
@@ -124,7 +109,7 @@ class BidsRun:
 
     def _row(self, event: JournalEvent, begun_s: float, without_times: bool) -> dict[str, Any]:
         note = self.notes.get(event.n)
-        text = _text_of(event)
+        text = event.said
         return {
             "onset": round(event.t_s - begun_s, 6),
             "duration": "",
@@ -135,23 +120,6 @@ class BidsRun:
             "trial_after": note.after or "" if note else "",
             "value": without_paths(text) if without_times else text,
         }
-
-
-def _text_of(event: JournalEvent) -> str:
-    """Text that an event carries; empty for kinds without one."""
-    match event:
-        case Answer():
-            sure = "" if event.confidence is None else f"; {event.confidence}"
-            return event.answer + sure
-        case Ended():
-            return event.by
-        case Note():
-            return event.text
-        case Fault() | Device():
-            return event.what
-        case End():
-            return event.why
-    return ""
 
 
 def runs_of(record: Record) -> list[BidsRun]:

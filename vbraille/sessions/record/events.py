@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import json
 import re
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Union
 
 import msgspec
+
+OTHER = 255  # byte of a marker of an event that has none of its own
 
 
 def _kind_of(name: str) -> str:
@@ -44,8 +46,11 @@ class JournalEvent(
         Number of the line in an answers file that caused the event; 0 if no such line did.
     """
 
+    # Byte of a marker of the kind. It is no longer another kind's once sessions were recorded.
+    code: ClassVar[int] = OTHER
     # Whether events of the kind are on the disk before the console says anything about them.
     durable: ClassVar[bool] = False
+    exported: ClassVar[bool] = True  # whether tables of events have the kind
 
     n: int = 0
     t_s: float
@@ -57,6 +62,11 @@ class JournalEvent(
     def kind(self) -> str:
         """Name of the event's kind, as in the journal."""
         return str(self.__struct_config__.tag)
+
+    @property
+    def said(self) -> str:
+        """Text that the event carries, for tables of events; empty for kinds without one."""
+        return ""
 
 
 class AnyTime(JournalEvent, frozen=True, kw_only=True):
@@ -97,175 +107,19 @@ class WithStimulus(InTrial, frozen=True, kw_only=True):
     stimulus: int
 
 
-class Presented(WithStimulus, frozen=True, kw_only=True):
-    """A stimulus was put under the hand.
+class Session(JournalEvent, frozen=True, forbid_unknown_fields=False, kw_only=True):
+    """The session was put on the disk; this is the first event of every journal.
 
     Parameters
     ----------
-    line
-        Number of the showing, which the trace has as `line`; left out on paper, and on a
-        conventional display.
-    tuning
-        Contrast or texture that the experimenter has set instead of the stimulus's own.
-    shown
-        The stimulus itself, in the form that `plan.json` has.
+    format
+        Format of the session's files.
+    sha256
+        SHA-256 of session.json, protocol.toml and plan.json, by the names of the files.
     """
 
-    line: int = 0
-    tuning: dict[str, float] = {}
-    shown: dict[str, Any]
-
-
-class Stood(WithStimulus, frozen=True, kw_only=True):
-    """Cells were put on the conventional display.
-
-    Parameters
-    ----------
-    cells
-        What stands on it from its left, in Unicode braille; left out if nothing does any more.
-    reference
-        Whether that is what the stimuli are compared with, and not the stimulus itself.
-    time_ns
-        Time at which the display's driver had taken it, by the host's monotonic clock.
-    """
-
-    cells: str = ""
-    reference: bool = False
-    time_ns: int
-
-
-class Cue(InTrial, frozen=True):
-    """The start signal sounded."""
-
-
-class Contact(WithStimulus, frozen=True, kw_only=True):
-    """The array came to the first dot.
-
-    Parameters
-    ----------
-    tick, time_ns
-        Number and time of the tick at which it came there, as in the trace.
-    """
-
-    tick: int
-    time_ns: int
-
-
-class Read(WithStimulus, frozen=True, kw_only=True):
-    """The stimulus was read: the hand went to its end and back, or off the device Enter said so.
-
-    Parameters
-    ----------
-    tick, time_ns
-        Number and time of the tick at which it was read, as in the trace; left out off the device.
-    """
-
-    tick: int | None = None
-    time_ns: int | None = None
-
-
-class Ended(WithStimulus, frozen=True, kw_only=True):
-    """The participant's own key ended the reading of a stimulus.
-
-    Parameters
-    ----------
-    by
-        Which key it was: "button:N" of the device, or "key:NAME".
-    time_ns
-        Time of it by the host's monotonic clock, as in the trace; left out if it is not known.
-    """
-
-    by: str
-    time_ns: int | None = None
-
-
-class Warning(InTrial, frozen=True):  # noqa: A001 - the protocol calls it so
-    """The warning sounded."""
-
-
-class Answer(InTrial, frozen=True, kw_only=True):
-    """An answer was given.
-
-    Parameters
-    ----------
-    attempt
-        Number of the attempt at the trial that was answered.
-    answer
-        The answer: Unicode braille with `?` for a place not read; 1 or 2, for the stimulus
-        chosen; or as `[question]` has it: yes or no, same or different, a number, or words.
-    corrects
-        Whether the answer replaces one that was taken back.
-    early
-        Whether the answer came before the trial was read to its end.
-    confidence
-        How sure the answer is, on the protocol's scale; left out if that is not asked.
-    confidence_s
-        Seconds from the answer to its confidence, with which it was written.
-    ended_by
-        What ended reading: "button:N", "key:NAME", or "answer" if the answer came before the
-        participant's key; left out if the protocol has no such key.
-    """
-
-    durable: ClassVar[bool] = True
-
-    attempt: int
-    answer: str
-    corrects: bool = False
-    early: bool = False
-    confidence: int | None = None
-    confidence_s: float = 0.0
-    ended_by: str = ""
-
-
-class Undo(InTrial, frozen=True):
-    """The last answer was taken back; the record keeps it."""
-
-    durable: ClassVar[bool] = True
-
-
-class Repeat(InTrial, frozen=True):
-    """The experimenter asked for the trial to be shown again."""
-
-    durable: ClassVar[bool] = True
-
-
-class Fault(InTrial, frozen=True, kw_only=True):
-    """The stimulus could no longer be felt, because of the device or the engine.
-
-    Parameters
-    ----------
-    what
-        What went wrong, in words for people.
-    attempt
-        Number of the attempt at the trial in which it went wrong.
-    stimulus
-        Which stimulus of the trial it is: 0, or 1 for the second of two; left out if the engine
-        died.
-    tick, time_ns
-        Number and time of the first tick that was not felt, as in the trace; left out if the
-        engine died.
-    """
-
-    durable: ClassVar[bool] = True
-
-    what: str
-    attempt: int
-    stimulus: int | None = None
-    tick: int | None = None
-    time_ns: int | None = None
-
-
-class Well(WithStimulus, frozen=True, kw_only=True):
-    """The stimulus could be felt again after a fault.
-
-    Parameters
-    ----------
-    tick, time_ns
-        Number and time of the first tick that was felt again, as in the trace.
-    """
-
-    tick: int
-    time_ns: int
+    format: int
+    sha256: dict[str, str]
 
 
 class LiveView(msgspec.Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
@@ -284,21 +138,6 @@ class LiveView(msgspec.Struct, frozen=True, omit_defaults=True, forbid_unknown_f
     blind: bool
     host: str
     pointer: bool = False
-
-
-class Session(JournalEvent, frozen=True, forbid_unknown_fields=False, kw_only=True):
-    """The session was put on the disk; this is the first event of every journal.
-
-    Parameters
-    ----------
-    format
-        Format of the session's files.
-    sha256
-        SHA-256 of session.json, protocol.toml and plan.json, by the names of the files.
-    """
-
-    format: int
-    sha256: dict[str, str]
 
 
 class Run(JournalEvent, frozen=True, kw_only=True):
@@ -347,6 +186,8 @@ class Run(JournalEvent, frozen=True, kw_only=True):
         the `actuators` were `tried`; left out if deflections were sent as they are.
     """
 
+    code: ClassVar[int] = 1
+    exported: ClassVar[bool] = False
     durable: ClassVar[bool] = True
 
     why: str
@@ -368,6 +209,27 @@ class Run(JournalEvent, frozen=True, kw_only=True):
     calibration: dict[str, Any] | None = None
 
 
+class Presented(WithStimulus, frozen=True, kw_only=True):
+    """A stimulus was put under the hand.
+
+    Parameters
+    ----------
+    line
+        Number of the showing, which the trace has as `line`; left out on paper, and on a
+        conventional display.
+    tuning
+        Contrast or texture that the experimenter has set instead of the stimulus's own.
+    shown
+        The stimulus itself, in the form that `plan.json` has.
+    """
+
+    code: ClassVar[int] = 2
+
+    line: int = 0
+    tuning: dict[str, float] = {}
+    shown: dict[str, Any]
+
+
 class DisplayBeside(JournalEvent, frozen=True, kw_only=True):
     """A conventional display stands ready, or another one than before.
 
@@ -381,6 +243,7 @@ class DisplayBeside(JournalEvent, frozen=True, kw_only=True):
         Display that was asked for.
     """
 
+    code: ClassVar[int] = 27
     durable: ClassVar[bool] = True
 
     driver: str
@@ -388,6 +251,191 @@ class DisplayBeside(JournalEvent, frozen=True, kw_only=True):
     columns: int
     rows: int
     spec: str
+
+
+class Stood(WithStimulus, frozen=True, kw_only=True):
+    """Cells were put on the conventional display.
+
+    Parameters
+    ----------
+    cells
+        What stands on it from its left, in Unicode braille; left out if nothing does any more.
+    reference
+        Whether that is what the stimuli are compared with, and not the stimulus itself.
+    time_ns
+        Time at which the display's driver had taken it, by the host's monotonic clock.
+    """
+
+    code: ClassVar[int] = 26
+
+    cells: str = ""
+    reference: bool = False
+    time_ns: int
+
+
+class Cue(InTrial, frozen=True):
+    """The start signal sounded."""
+
+    code: ClassVar[int] = 3
+
+
+class Contact(WithStimulus, frozen=True, kw_only=True):
+    """The array came to the first dot.
+
+    Parameters
+    ----------
+    tick, time_ns
+        Number and time of the tick at which it came there, as in the trace.
+    """
+
+    code: ClassVar[int] = 4
+
+    tick: int
+    time_ns: int
+
+
+class Read(WithStimulus, frozen=True, kw_only=True):
+    """The stimulus was read: the hand went to its end and back, or off the device Enter said so.
+
+    Parameters
+    ----------
+    tick, time_ns
+        Number and time of the tick at which it was read, as in the trace; left out off the device.
+    """
+
+    code: ClassVar[int] = 5
+
+    tick: int | None = None
+    time_ns: int | None = None
+
+
+class Ended(WithStimulus, frozen=True, kw_only=True):
+    """The participant's own key ended the reading of a stimulus.
+
+    Parameters
+    ----------
+    by
+        Which key it was: "button:N" of the device, or "key:NAME".
+    time_ns
+        Time of it by the host's monotonic clock, as in the trace; left out if it is not known.
+    """
+
+    code: ClassVar[int] = 22
+
+    by: str
+    time_ns: int | None = None
+
+    @property
+    def said(self) -> str:
+        """Text of the event."""
+        return self.by
+
+
+class Warning(InTrial, frozen=True):  # noqa: A001 - the protocol calls it so
+    """The warning sounded."""
+
+    code: ClassVar[int] = 6
+
+
+class Answer(InTrial, frozen=True, kw_only=True):
+    """An answer was given.
+
+    Parameters
+    ----------
+    attempt
+        Number of the attempt at the trial that was answered.
+    answer
+        The answer: Unicode braille with `?` for a place not read; 1 or 2, for the stimulus
+        chosen; or as `[question]` has it: yes or no, same or different, a number, or words.
+    corrects
+        Whether the answer replaces one that was taken back.
+    early
+        Whether the answer came before the trial was read to its end.
+    confidence
+        How sure the answer is, on the protocol's scale; left out if that is not asked.
+    confidence_s
+        Seconds from the answer to its confidence, with which it was written.
+    ended_by
+        What ended reading: "button:N", "key:NAME", or "answer" if the answer came before the
+        participant's key; left out if the protocol has no such key.
+    """
+
+    code: ClassVar[int] = 7
+    durable: ClassVar[bool] = True
+
+    attempt: int
+    answer: str
+    corrects: bool = False
+    early: bool = False
+    confidence: int | None = None
+    confidence_s: float = 0.0
+    ended_by: str = ""
+
+    @property
+    def said(self) -> str:
+        """Answer, with its confidence."""
+        return self.answer + ("" if self.confidence is None else f"; {self.confidence}")
+
+
+class Undo(InTrial, frozen=True):
+    """The last answer was taken back; the record keeps it."""
+
+    code: ClassVar[int] = 8
+    durable: ClassVar[bool] = True
+
+
+class Repeat(InTrial, frozen=True):
+    """The experimenter asked for the trial to be shown again."""
+
+    code: ClassVar[int] = 9
+    durable: ClassVar[bool] = True
+
+
+class Fault(InTrial, frozen=True, kw_only=True):
+    """The stimulus could no longer be felt, because of the device or the engine.
+
+    Parameters
+    ----------
+    what
+        What went wrong, in words for people.
+    attempt
+        Number of the attempt at the trial in which it went wrong.
+    stimulus
+        Which stimulus of the trial it is: 0, or 1 for the second of two; left out if the engine
+        died.
+    tick, time_ns
+        Number and time of the first tick that was not felt, as in the trace; left out if the
+        engine died.
+    """
+
+    code: ClassVar[int] = 10
+    durable: ClassVar[bool] = True
+
+    what: str
+    attempt: int
+    stimulus: int | None = None
+    tick: int | None = None
+    time_ns: int | None = None
+
+    @property
+    def said(self) -> str:
+        """Text of the event."""
+        return self.what
+
+
+class Well(WithStimulus, frozen=True, kw_only=True):
+    """The stimulus could be felt again after a fault.
+
+    Parameters
+    ----------
+    tick, time_ns
+        Number and time of the first tick that was felt again, as in the trace.
+    """
+
+    code: ClassVar[int] = 11
+
+    tick: int
+    time_ns: int
 
 
 class Device(JournalEvent, frozen=True, kw_only=True):
@@ -399,40 +447,59 @@ class Device(JournalEvent, frozen=True, kw_only=True):
         What the device reported, in words for people.
     """
 
+    code: ClassVar[int] = 18
+
     what: str
+
+    @property
+    def said(self) -> str:
+        """Text of the event."""
+        return self.what
 
 
 class HandTaken(AnyTime, frozen=True):
     """A page of the live view became the hand of the simulated device."""
 
+    code: ClassVar[int] = 23
+
 
 class HandGivenBack(AnyTime, frozen=True):
     """The simulated hand was let go at the live view, and moves by itself."""
+
+    code: ClassVar[int] = 24
 
 
 class Pause(AnyTime, frozen=True):
     """The session was paused, and the array brought to rest."""
 
+    code: ClassVar[int] = 12
     durable: ClassVar[bool] = True
 
 
 class Go(AnyTime, frozen=True):
     """The session went on after a pause or a break. An answer ends a pause as well."""
 
+    code: ClassVar[int] = 13
+
 
 class BreakWanted(AnyTime, frozen=True):
     """The experimenter asked for a break."""
+
+    code: ClassVar[int] = 25
+    exported: ClassVar[bool] = False
 
 
 class Break(JournalEvent, frozen=True):
     """A break began."""
 
+    code: ClassVar[int] = 14
     durable: ClassVar[bool] = True
 
 
 class Begin(JournalEvent, frozen=True):
     """Practice was ended."""
 
+    code: ClassVar[int] = 15
     durable: ClassVar[bool] = True
 
 
@@ -447,6 +514,8 @@ class Tuning(AnyTime, frozen=True, kw_only=True):
         New number of the showing, which the trace has as `line`; left out if no trial was open.
     """
 
+    code: ClassVar[int] = 17
+    exported: ClassVar[bool] = False
     durable: ClassVar[bool] = True
 
     tuning: dict[str, float]
@@ -462,14 +531,21 @@ class Note(AnyTime, frozen=True, kw_only=True):
         Text of the note.
     """
 
+    code: ClassVar[int] = 16
     durable: ClassVar[bool] = True
 
     text: str
+
+    @property
+    def said(self) -> str:
+        """Text of the event."""
+        return self.text
 
 
 class Stop(JournalEvent, frozen=True):
     """The session was stopped, and can be resumed."""
 
+    code: ClassVar[int] = 19
     durable: ClassVar[bool] = True
 
 
@@ -482,9 +558,15 @@ class End(JournalEvent, frozen=True, kw_only=True):
         Reason for the end, in words for people.
     """
 
+    code: ClassVar[int] = 20
     durable: ClassVar[bool] = True
 
     why: str
+
+    @property
+    def said(self) -> str:
+        """Text of the event."""
+        return self.why
 
 
 class Closed(JournalEvent, frozen=True, kw_only=True):
@@ -505,6 +587,8 @@ class Closed(JournalEvent, frozen=True, kw_only=True):
         SHA-256 of the trace file.
     """
 
+    code: ClassVar[int] = 21
+    exported: ClassVar[bool] = False
     durable: ClassVar[bool] = True
 
     lost: int | None = None
@@ -514,15 +598,19 @@ class Closed(JournalEvent, frozen=True, kw_only=True):
     trace_sha256: str = ""
 
 
+# All kinds that a journal may have, in the order of this file.
+KINDS = tuple(
+    kind
+    for kind in list(globals().values())
+    if isinstance(kind, type) and issubclass(kind, JournalEvent) and not kind.__subclasses__()
+)
+AnyEvent = Union[KINDS]  # noqa: UP007 - pyright: ignore[reportInvalidTypeForm]
+
+
 class Lost(JournalEvent, frozen=True):
     """Stand-in for a damaged event when a journal is salvaged; no journal has this kind."""
 
-
-AnyEvent = (
-    Session | Run | Presented | DisplayBeside | Stood | Cue | Contact | Read | Ended | Warning
-    | Answer | Undo | Repeat | Fault | Well | Device | HandTaken | HandGivenBack | Pause | Go
-    | BreakWanted | Break | Begin | Tuning | Note | Stop | End | Closed
-)  # fmt: skip
+    exported: ClassVar[bool] = False
 
 
 _FROM_JSON = msgspec.json.Decoder(AnyEvent)

@@ -262,12 +262,8 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
 def _asked(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     """Cells of a trial's row for what was asked, and what was answered."""
     question, t_s = record.protocol.asks, told.t_s
-    row: dict[str, Any] = {"question": question.name, "ended_by": told.ended_by}
+    row = question.columns(trial, told.answer) | {"ended_by": told.ended_by}
     row["confidence"] = "" if told.confidence is None else told.confidence
-    if told.answer is not None:
-        row["outcome"] = question.outcome(trial, told.answer)
-        if row["outcome"]:
-            row["correct"] = int(question.good(trial, told.answer))
     values = [f"{stimulus.value:g}" for stimulus in trial.stimuli if stimulus.value is not None]
     if len(trial.stimuli) == 2:
         row["parameter"] = record.protocol.parameter

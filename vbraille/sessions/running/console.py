@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
 from vbraille.sessions.planning.conduct import ENTER
-from vbraille.sessions.planning.stimuli import Trial, said_value
 from vbraille.sessions.record import events
 from vbraille.sessions.running.answers import Answers, KeyPress, Typed
 from vbraille.sessions.running.course import POLL_S, Course, HalfAnswer, Phase
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.stimuli import Trial
 
 
 @dataclass(frozen=True, slots=True)
@@ -377,17 +377,8 @@ class Console:
         question = self._course.protocol.asks
         if question.ask:
             self._say(f"question: {question.ask}")
-        if question.name == "identify" and self._course.protocol.written:
-            self._say("an answer: the text that was read; ? for a cell not read, or for nothing")
-        elif question.name != "identify":
-            self._say(f"an answer: {question.typed}")
-        else:
-            keys = " ".join(self._course.protocol.keys)
-            self._say(
-                "an answer: letters, dot numbers with a space between cells, "
-                + (f"the keys {keys}, " if keys else "")
-                + "? for a place not read"
-            )
+        protocol = self._course.protocol
+        self._say(f"an answer: {question.help(protocol.keys, protocol.written)}")
         if question.confidence is not None:
             self._say(f"confidence: {question.confidence.typed}, after the answer or a semicolon")
         if self._keyed is not None:
@@ -437,15 +428,10 @@ class Console:
     def _tell(self, trial: Trial, answer: str) -> None:
         """Say what a practice trial has shown."""
         trial = self._progress.told(trial).shown
-        question, parameter = self._course.protocol.asks, self._course.protocol.parameter
-        was = question.was(trial, self._course.protocol.keys)
-        values = [stimulus.value for stimulus in trial.stimuli if stimulus.value is not None]
-        if was:
-            right = "right" if question.good(trial, answer) else "wrong"
-            self._say(f"practice: {right}, it was {was}")
-        elif len(values) == 2:
-            first, second = (said_value(value, parameter) for value in values)
-            self._say(f"practice: they were {first} and {second}")
+        protocol = self._course.protocol
+        told = protocol.asks.feedback(trial, answer, protocol.keys, protocol.parameter)
+        if told:
+            self._say(f"practice: {told}")
 
     def _asks_whether(self, trial: Trial, answer: str) -> bool:
         """Ask once about an answer that was typed before the trial was read; True if it asks."""

@@ -244,7 +244,7 @@ class Course:
     @property
     def prompt(self) -> str:
         """What the experimenter is to type as an answer."""
-        return "the answer" if self.protocol.question is None else self.protocol.question.typed
+        return "the answer" if self.protocol.question is None else self.protocol.question.prompt()
 
     def told_ready(self, trial: Trial, *, waits: bool) -> str:
         """Sentence that says that a trial is ready, to somebody who presses keys if it waits."""

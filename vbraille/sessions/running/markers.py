@@ -27,15 +27,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-# The byte of each kind of event; an event of another kind has that of OTHER.
-CODES = {
-    "run": 1, "presented": 2, "cue": 3, "contact": 4, "read": 5, "warning": 6, "answer": 7,
-    "undo": 8, "repeat": 9, "fault": 10, "well": 11, "pause": 12, "go": 13, "break": 14,
-    "begin": 15, "note": 16, "tuning": 17, "device": 18, "stop": 19, "end": 20, "closed": 21,
-    "ended": 22, "hand_taken": 23, "hand_given_back": 24, "break_wanted": 25, "stood": 26,
-    "display_beside": 27,
-}  # fmt: skip
-OTHER = 255
 STREAM = "vbraille"
 BAUD = 115_200
 _WRITE_S = 1.0  # a port that takes no byte for so long is taken for one that is gone
@@ -58,6 +49,8 @@ class Marker:
         Whether that trial is practice.
     stimulus
         Which stimulus of the trial it was: 0, or 1 for the second of two.
+    code
+        Byte of the event's kind, from 1 to 255.
     happened_ns
         When it happened, by `time.monotonic_ns`.
     """
@@ -67,18 +60,14 @@ class Marker:
     trial: int
     practice: bool
     stimulus: int
+    code: int
     happened_ns: int
-
-    @property
-    def code(self) -> int:
-        """Byte of the event's kind, from 1 to 255."""
-        return CODES.get(self.kind, OTHER)
 
     @property
     def text(self) -> str:
         """Words for the event, without what was shown or answered.
 
-        >>> Marker(9, "presented", 3, False, 1, 0).text
+        >>> Marker(9, "presented", 3, False, 1, 2, 0).text
         'presented trial 3 stimulus 2'
         """
         where = f" {'practice' if self.practice else 'trial'} {self.trial}" if self.trial else ""
@@ -273,6 +262,7 @@ class Markers:
             told.trial if told else 0,
             told.practice if told else False,
             getattr(event, "stimulus", 0) or 0,
+            event.code,
             self._now_ns() - ago_ns,
         )
         self._marked += 1

@@ -147,7 +147,8 @@ def _unhidden(state: ViewState, course: Course) -> ViewState:
     facts, trial = [*state.facts], course.trial
     answered = course.progress.last_answered
     if answered is not None and (answer := course.progress.told(answered).answer) is not None:
-        facts.append(("last answer", _answer(course.protocol, answered, answer)))
+        of, knob = course.protocol, course.protocol.parameter
+        facts.append(("last answer", of.asks.verdict(answered, answer, of.keys, knob)))
     if trial is None:
         return structs.replace(state, facts=facts)
     facts.append(("condition", trial.condition))
@@ -185,18 +186,6 @@ def _asked(protocol: Protocol, trial: Trial, stimulus: Stimulus) -> str:
     if stimulus.value is not None:
         return said_value(stimulus.value, protocol.parameter)
     return say_cells(to_braille(stimulus.masks[slice(*trial.asked)]), protocol.keys)
-
-
-def _answer(protocol: Protocol, trial: Trial, answer: str) -> str:
-    """Words for an answer, and whether it is right."""
-    question = protocol.asks
-    if question.name == "which":
-        values = [said_value(s.value or 0.0, protocol.parameter) for s in trial.stimuli]
-        return f"{values[int(answer) - 1]} of {values[0]} and {values[1]}"
-    said, was = question.said(answer, protocol.keys), question.was(trial, protocol.keys)
-    if not was:
-        return said
-    return f"{said}, right" if question.good(trial, answer) else f"{said}, wrong: it was {was}"
 
 
 def _facts(course: Course) -> list[tuple[str, str]]:
