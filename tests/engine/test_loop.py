@@ -292,6 +292,39 @@ def test_a_hand_that_goes_on_in_a_gap_is_caught_up_with(gap):
     assert gap == "slow" or still <= asked + 1e-9
 
 
+@pytest.mark.parametrize("moving", [False, True])
+def test_a_gap_is_caught_up_with_only_if_the_hand_moved_in_it(clock, device, moving):
+    device.move(straight((0, 3.0), (20, 3.0 + 600.0 * moving)))
+    ring = Ring.alone((6, 10), 2000)
+    reader = ring.reader()
+    loop = Loop(device, clock, ring=ring)
+    loop.show(picture())
+    run(loop, 0.3)
+    reader.drain()
+    clock.advance_ns(30 * MS)
+    run(loop, 0.1)
+    after = reader.drain()[1:]
+    assert (after["share"] < 1).any() == moving
+    assert (after["flags"] & Flag.CHANGED).any() == moving
+
+
+@pytest.mark.parametrize("late_ms", [11, 39])
+def test_a_fade_goes_on_as_it_was_over_a_gap_in_which_the_hand_stands_still(clock, device, late_ms):
+    device.move(straight((0, 3.0), (20, 3.0)))
+    ring = Ring.alone((6, 10), 2000)
+    reader = ring.reader()
+    loop = Loop(device, clock, ring=ring)
+    run(loop, 0.1)
+    loop.show(picture())
+    run(loop, 0.05)
+    clock.advance_ns(late_ms * MS)
+    run(loop, 0.1)
+    assert biggest_step(device.sent) <= 1 / 100 + 1e-9
+    steps = np.diff(reader.drain()["share"][101:])
+    assert steps.min() >= 0
+    assert steps.max() <= 1 / 100 + 1e-9
+
+
 def test_while_frames_are_not_taken_the_array_rests_and_fades_in_then(clock, device):
     device.move(straight((0, 3.0), (20, 3.0)))
     ring = Ring.alone((6, 10), 2000)

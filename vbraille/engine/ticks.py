@@ -174,7 +174,11 @@ def _take_pose(state, window_ns, window_mm, velocities, now_ns, device_ns, pose,
             _change(state, now["fade_ns"], output, held)
         else:
             gap = gap_ns > GAP_PERIODS * now["period_ns"]
-            if now["shown"] != 0 and (gap or now["behind_ns"] != 0):
+            # Where the hand stood still, what lies under it is what was sent; a frame that goes by
+            # the hand's speed changes with that speed, which a gap makes 0.
+            still = step == 0.0 and y == now["y_mm"] and turn_mm == 0.0
+            still = still and now["vx_mm_s"] == 0.0 and now["vy_mm_s"] == 0.0
+            if now["shown"] != 0 and ((gap and not still) or now["behind_ns"] != 0):
                 _fall_behind(state, gap_ns)
             if step > 0:
                 now["forward_mm"] += step
