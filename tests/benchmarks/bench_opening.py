@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from tests.benchmarks.big_texts import big_text
 from tests.benchmarks.timing import Result
-from vbraille.reading.places import BookOptions, KeptPlaces, resume
+from vbraille.reading.places import KeptPlaces, book_options, resume
 from vbraille.translate.formats import open_source
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def _leave(path: Path) -> None:
     assert block is not None
     with KeptPlaces.open() as places:
         kept = places.book(path)
-        resume(source, kept, BookOptions())
+        resume(source, kept, book_options({}))
         kept.keep_at(source, int(block.text.places[0]))
         kept.keep_index(source.index())
         kept.close()

@@ -94,5 +94,5 @@ def test_help_loads_none_of_it():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = set(done.stdout.splitlines()[-1].split())
-    assert "vbraille.cli.options.live" in loaded
+    assert "vbraille.config.options" in loaded
     assert not loaded & {"websockets", "PIL", "numpy", "h5py", "vbraille.live.server"}

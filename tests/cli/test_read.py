@@ -12,7 +12,7 @@ from tests.cli import program
 from tests.tiers import heavy
 from vbraille.layout.pages import Layout
 from vbraille.reading import COMMANDS, Context
-from vbraille.reading.commands.table import commands_of
+from vbraille.reading.commands.table import BOUND
 from vbraille.translate import Book, BrailleTable, Document
 
 SUMMARY = r"summary: lines (\d+), seconds (\d+\.\d), mean scanning speed (\d+\.\d) mm/s"
@@ -147,7 +147,7 @@ def test_keys_at_a_terminal(tmp_path, text):
         assert terminal.settings() != terminal.before
         helped = press("h", "q: stop reading").splitlines()
         assert [line for line in helped if ": " in line and not line.startswith("speed")] == [
-            f"{command.spoken_keys}: {command.help}" for command in commands_of(Context.READING)
+            f"{command.spoken_keys}: {command.help}" for command in BOUND.of(Context.READING)
         ]
         word = ""
         while "two" not in word:

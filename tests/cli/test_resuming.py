@@ -5,7 +5,7 @@ import pytest
 from tests.reading.test_reader import Bench
 from vbraille.cli.parser import parse
 from vbraille.cli.resuming import open_to_resume
-from vbraille.cli.settled import settle
+from vbraille.config.settings import settle
 from vbraille.reading.places import KeptPlaces
 from vbraille.render import STRESS2
 

@@ -53,7 +53,7 @@ def test_a_course_is_led_left_taken_up_and_saved(tmp_path):
     course = TuningCourse(STRESS2, (2, 1) * 14)
     saved = kept(path)["evening"]["stress2"]
     for found in course.found:
-        assert saved[found.knob.name] == found.value
+        assert saved[found.knob.key] == found.value
     assert path.read_text().startswith("# my own\n")
     assert [each.name for each in tmp_path.iterdir()] == ["mine.toml"]
 

@@ -1,24 +1,10 @@
 """The table of keys of whoever feels a picture, against its document."""
 
-from pathlib import Path
-
 import pytest
 
 from tests.feeling.felt import SCENE, Felt
-from vbraille.feeling.commands import BOUND, BUTTONS, COMMANDS
+from vbraille.feeling.commands import BOUND, BUTTONS
 from vbraille.reading.bindings import Context
-
-DOCUMENT = Path(__file__).parents[2] / "docs" / "feeling.md"
-
-
-def test_the_document_has_the_table():
-    rows = [
-        f"| `{command.name}` | {command.spoken_keys} | {command.help} "
-        f"| {', '.join(context.value for context in command.contexts)} |"
-        for command in COMMANDS
-    ]
-    table = [line for line in DOCUMENT.read_text().splitlines() if line.startswith("| `")]
-    assert table == rows
 
 
 @pytest.mark.parametrize("context", Context)

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import msgspec
 import numpy as np
 
+from vbraille.config.knobs import KNOBS, say_mapping
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
 from vbraille.live.framing import FrameHeader, frame_bytes
@@ -36,7 +37,6 @@ from vbraille.live.messages import (
     ViewState,
 )
 from vbraille.live.server import LiveServer
-from vbraille.render.braille.knobs import KNOBS, say_mapping
 from vbraille.render.braille.models import STRESS2, VBD, Model
 from vbraille.translate.book import Book
 from vbraille.translate.documents import Document
@@ -192,7 +192,7 @@ class Scene:
             if blind
             else [
                 KnobShown(
-                    knob.name,
+                    knob.key,
                     knob.label,
                     knob.unit,
                     knob.value(style),

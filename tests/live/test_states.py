@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tiers import examples
+from vbraille.config.knobs import KNOBS
 from vbraille.layout.pages import Layout
 from vbraille.live.states import (
     array_shown,
@@ -17,7 +18,6 @@ from vbraille.live.states import (
     rows_shown,
 )
 from vbraille.render import STRESS2, VBD
-from vbraille.render.braille.knobs import KNOBS
 from vbraille.render.braille.mappings import MAPPINGS
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.braillefiles.lines import open_brf

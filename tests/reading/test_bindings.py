@@ -6,13 +6,13 @@ import pytest
 
 from tests.reading.commands.test_choosing import Scroll
 from tests.reading.test_reader import TEXT, Bench
-from vbraille.cli.options import groups
+from vbraille.config.options import OPTIONS
+from vbraille.config.settings import parse_settings
 from vbraille.errors import InputError
 from vbraille.reading.bindings import Bindings, Context
 from vbraille.reading.commands.table import KEY_SETS, bound_by, press_button, turn_knob
 from vbraille.reading.device import SETTLED_S, KnobTurns
 from vbraille.reading.outputs import Echo
-from vbraille.settings.tables import parse_settings
 from vbraille.translate import Book, BrailleTable
 from vbraille.translate.documents.html import HtmlBook
 from vbraille.translate.documents.markup.tree import read_tree
@@ -132,7 +132,7 @@ def test_keys_are_named_in_words_that_speech_says(sent, name):
 
 
 def test_options_and_settings_know_the_ready_sets():
-    assert tuple(KEY_SETS) == groups.KEY_SETS
+    assert tuple(KEY_SETS) == OPTIONS["keys"].choices
     for keys in KEY_SETS:
         settings = parse_settings(f'[read]\nkeys = "{keys}"\n', Path("settings.toml"))
         assert settings.read["keys"] == keys

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tiers import examples
+from vbraille.config.knobs import KNOBS
 from vbraille.errors import InputError
 from vbraille.reading.tuning_course import (
     CHOICES_PER_KNOB,
@@ -15,7 +16,6 @@ from vbraille.reading.tuning_course import (
     to_json,
 )
 from vbraille.render import STRESS2, VBD
-from vbraille.render.braille.knobs import KNOBS
 
 SHARE = st.floats(0, 1)
 # Least and largest value that is tried, as the course has them for each of the two displays.
@@ -50,9 +50,9 @@ def nearer_to(liked, noise=0.0, rng=None):
     """Choose whichever is nearer to what is liked of each knob, but for noise."""
 
     def choose(course):
-        away = [abs(value(course, which) - liked[course.knob.name]) for which in (1, 2)]
+        away = [abs(value(course, which) - liked[course.knob.key]) for which in (1, 2)]
         if rng is not None:
-            low, high = TRIED[course.start.name][course.knob.name]
+            low, high = TRIED[course.start.name][course.knob.key]
             away = [a + rng.normal(0, noise * (high - low)) for a in away]
         return 1 if away[0] <= away[1] else 2
 
@@ -67,13 +67,13 @@ def test_what_a_chooser_likes_is_found(shares, model):
         n: tried[n][0] + s * (tried[n][1] - tried[n][0]) for n, s in zip(tried, shares, strict=True)
     }
     course = complete(model, nearer_to(liked))
-    assert [found.knob.name for found in course.found] == list(ORDER)
+    assert [found.knob.key for found in course.found] == list(ORDER)
     for knob, found, least, most in course.found:
-        low, high = tried[knob.name]
-        assert abs(found - liked[knob.name]) <= 0.06 * (high - low) + 0.011
+        low, high = tried[knob.key]
+        assert abs(found - liked[knob.key]) <= 0.06 * (high - low) + 0.011
         assert knob.value(course.style) == found
         assert low <= least <= found <= most <= high
-        assert least - 0.011 <= liked[knob.name] <= most + 0.011
+        assert least - 0.011 <= liked[knob.key] <= most + 0.011
 
 
 def test_a_chooser_who_is_not_sure_comes_near_it():
@@ -83,9 +83,9 @@ def test_a_chooser_who_is_not_sure_comes_near_it():
     for _ in range(30):
         course = complete(STRESS2, nearer_to(liked, 0.1, rng))
         for knob, found, least, most in course.found:
-            low, high = TRIED["stress2"][knob.name]
-            away.append(abs(found - liked[knob.name]) / (high - low))
-            held.append(least <= liked[knob.name] <= most)
+            low, high = TRIED["stress2"][knob.key]
+            away.append(abs(found - liked[knob.key]) / (high - low))
+            held.append(least <= liked[knob.key] <= most)
     assert np.median(away) < 0.05  # of what is tried; by chance it would be some 0.3
     assert np.mean(held) >= 0.9  # 120 intervals of 95 %
 
@@ -95,7 +95,7 @@ def test_it_takes_seven_choices_a_knob_and_no_two_values_are_alike_or_a_world_ap
     for number in range(course.total):
         one, other = value(course, 1), value(course, 2)
         assert (one < other) == (number % 2 == 0)
-        low, high = TRIED["stress2"][course.knob.name]
+        low, high = TRIED["stress2"][course.knob.key]
         assert 0.02 <= abs(one - other) / (high - low) <= 0.51
         course = course.choose(1)
     assert course.total == 4 * CHOICES_PER_KNOB == 28
@@ -111,7 +111,7 @@ def test_whoever_always_wants_more_or_less_gets_all_or_least(lower):
         return 1 if (value(course, 1) < value(course, 2)) == lower else 2
 
     for knob, found, least, most in complete(STRESS2, choose).found:
-        assert found == TRIED["stress2"][knob.name][0 if lower else 1] == (least if lower else most)
+        assert found == TRIED["stress2"][knob.key][0 if lower else 1] == (least if lower else most)
 
 
 @given(choices=st.lists(st.sampled_from((1, 2)), max_size=28))

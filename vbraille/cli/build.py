@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.geometry import PRESETS
 from vbraille.cli.terminal import say_line
+from vbraille.config.settings import missing_profile
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line, choose_table
@@ -27,13 +28,13 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator
 
+    from vbraille.config.settings import Settings
     from vbraille.layout.pages import Line
     from vbraille.reading.places import KeptPlace
     from vbraille.translate import Source
 
 
 _ALL_DOTS = 0xFF
-_MOST_HEIGHT_MM = 10_000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +155,7 @@ def build_page(arguments: argparse.Namespace, model: Model) -> Model:
     """
     display, style = model.display, model.style
     if arguments.height is not None:
-        display = replace(display, height_mm=check_height(arguments.height))
+        display = replace(display, height_mm=arguments.height)
     try:
         straying = replace(style.straying, **_given(arguments, manner="straying", band="band"))
     except ValueError as error:
@@ -163,17 +164,13 @@ def build_page(arguments: argparse.Namespace, model: Model) -> Model:
     return replace(model, display=display, style=style)
 
 
-def check_height(height_mm: float) -> float:
-    """How far a carriage goes along y, if one can.
-
-    Raises
-    ------
-    InputError
-        If it is not 0 to 10,000 mm.
-    """
-    if not 0 <= height_mm <= _MOST_HEIGHT_MM:
-        raise InputError(f"--height is {height_mm:g} mm; it must be 0 to {_MOST_HEIGHT_MM:g} mm")
-    return height_mm
+def chosen_profile(arguments: argparse.Namespace, settings: Settings) -> str:
+    """Name of the profile in use; one that an option names and is not there is said on stderr."""
+    if arguments.profile is None:
+        return settings.profile
+    if note := missing_profile(settings, arguments.profile):
+        say_line(note, aside=True)
+    return arguments.profile
 
 
 def build_table(arguments: argparse.Namespace, language: str = "") -> BrailleTable:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from vbraille.cli.options import forecast, lab, live, pictures, reading
+from vbraille.cli.options import forecast, lab, pictures, reading
 from vbraille.cli.options.commandparser import CommandParser
+from vbraille.config.options import OPTIONS, PROFILE
 from vbraille.errors import InputError
 from vbraille.version import __version__
 
@@ -68,7 +69,7 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
     ),
     "monitor": (
         "Play back a recording or a session in a browser, until Ctrl-C.",
-        live.monitor,
+        reading.monitor,
         "vbraille monitor --play reading.h5",
     ),
     "plot": (
@@ -231,6 +232,12 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
             isinstance(value, list) and name != "paths"
         ):  # Python before 3.13 takes the value of --name=-- away
             parser.error(f"argument --{name.replace('_', '-')}: expected one argument")
+    for name, value in vars(arguments).items():
+        if name in OPTIONS and PROFILE not in OPTIONS[name].holds:  # styles check themselves
+            try:
+                OPTIONS[name].check(value, OPTIONS[name].flag)
+            except ValueError as error:
+                raise InputError(str(error)) from None
     return arguments
 
 
@@ -259,27 +266,11 @@ def _add(
         dest=dest, required=True, metavar=metavar, parser_class=CommandParser
     )
     for name, (text, add_options, example) in commands.items():
-        command = added.add_parser(
+        added.add_parser(
             name,
             help=text,
             description=text,
             epilog=f"example:\n  {example}",
             add_help=False,
+            options=add_options,
         )
-        command.add_argument("-h", "--help", action="help", help="Print this help.")
-        add_options(command)
-        if add_options.__name__ != "<lambda>":  # one whose actions have options of their own
-            _add_common(command)
-
-
-def _add_common(command: CommandParser) -> None:
-    command.flag(
-        "--verbose",
-        "Say more, such as how far a search has come, and print the traceback of a fault.",
-    )
-    command.option(
-        "--log",
-        "FILE",
-        "Keep a log for developers in a file, which is appended to, or on standard error with - "
-        "(default: no log).",
-    )

@@ -7,29 +7,24 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import msgspec
-
 from vbraille.cli.build import book_of, build_book
-from vbraille.cli.settled import TRANSLATION
 from vbraille.cli.terminal import say_line
+from vbraille.config.knobs import kept_values, with_values
+from vbraille.config.options import BOOK, CHOICE_OF_TABLE, OPTIONS, held_in
+from vbraille.config.settings import display_name
 from vbraille.errors import InputError
-from vbraille.reading.places import BookOptions, book_to_open, last_book, resume
+from vbraille.reading.places import book_options, book_to_open, last_book, resume
 from vbraille.reading.search.queries import BookOpening
 from vbraille.reading.search.seeker import Seeker
-from vbraille.render.braille.knobs import kept_values, with_values
-from vbraille.settings.values import display_name
 from vbraille.translate import Document
 
 if TYPE_CHECKING:
     import argparse
 
-    from vbraille.reading.places import KeptBook, KeptPlace, KeptPlaces
+    from vbraille.reading.places import BookOptions, KeptBook, KeptPlace, KeptPlaces
     from vbraille.reading.reader import Reader
     from vbraille.render import BrailleStyle, Model
     from vbraille.translate import Book
-
-# What a book that is opened again without a name is opened with, beside its translation.
-_TAKEN = ("foreign", "undefined", "encoding", "form", "brf_table", "keep_lines")
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +108,7 @@ class BookToRead:
         if self.book.table is None or book.table is None or book.table.name == self.book.table.name:
             return
         turned = {"language": book.language, "grade": book.grade, "table": None, "turned": True}
-        self.kept.keep_options(msgspec.structs.replace(self.kept.options, **turned))
+        self.kept.keep_options({**self.kept.options, **turned})
 
 
 def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToRead:
@@ -141,23 +136,19 @@ def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToR
         return BookToRead(book)
     source = book.source
     kept = places.book(str(arguments.file), title=source.title)
-    turned = kept.options.turned and book.table is not None
+    turned = kept.options["turned"] and book.table is not None
     if turned := turned and _take_translation(arguments, kept.options, said):
         with suppress(InputError):  # the language has no table any more
             book = book_of(source, arguments)
     if (note := places.note()) is not None:
         say_line(note, aside=True)
+    # What only the settings file says is for every book.
     given = {
-        name: None if name in arguments.settled else getattr(arguments, name)
-        for name in ("language", "grade", "table", "encoding", "form", "brf_table")
+        name: value
+        for name, value in vars(arguments).items()
+        if name not in arguments.settled or OPTIONS[name].default is not None
     }
-    options = BookOptions(
-        **given,
-        foreign=arguments.foreign,
-        undefined=arguments.undefined,
-        keep_lines=bool(arguments.keep_lines),
-        turned=turned,
-    )
+    options = book_options(given, turned=bool(turned))
     place, note = resume(source, kept, options)
     if note is not None:
         say_line(note, aside=True)
@@ -166,7 +157,7 @@ def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToR
 
 def _said(arguments: argparse.Namespace) -> frozenset[str]:
     """Which of the options on translation were given, and are not from the settings file."""
-    given = {name for name in TRANSLATION if getattr(arguments, name) is not None}
+    given = {name for name in CHOICE_OF_TABLE if getattr(arguments, name) is not None}
     return frozenset(given - arguments.settled)
 
 
@@ -178,15 +169,14 @@ def _take_last(arguments: argparse.Namespace, places: KeptPlaces, said: frozense
     kept = last_book(places) if arguments.book is None else book_to_open(places, arguments.book)
     arguments.file = str(kept.path)
     options = kept.options
-    if any(getattr(options, name) is not None for name in TRANSLATION):
+    if any(options[name] is not None for name in CHOICE_OF_TABLE):
         _take_translation(arguments, options, said)
-    for name in _TAKEN:
-        value = getattr(options, name)
-        unsaid = (
-            getattr(arguments, name) in (None, False, "mark", "switch") or name in arguments.settled
-        )
-        if value is not None and unsaid:
-            setattr(arguments, name, value)
+    for option in held_in(BOOK):
+        name = option.name
+        if name in CHOICE_OF_TABLE or options[name] is None:
+            continue
+        if getattr(arguments, name) in (None, option.default) or name in arguments.settled:
+            setattr(arguments, name, options[name])
             arguments.settled -= {name}
 
 
@@ -200,9 +190,9 @@ def _take_translation(
     bool
         Whether the book's language or table is taken; a grade that is given holds in any case.
     """
-    if said & {"language", "table"} or (said and options.table is not None):
+    if said & {"language", "table"} or (said and options["table"] is not None):
         return False
-    for name in set(TRANSLATION) - said:
-        setattr(arguments, name, getattr(options, name))
-    arguments.settled -= set(TRANSLATION)
+    for name in set(CHOICE_OF_TABLE) - said:
+        setattr(arguments, name, options[name])
+    arguments.settled -= set(CHOICE_OF_TABLE)
     return True

@@ -5,7 +5,7 @@ from __future__ import annotations
 from vbraille.devices.calibration import Calibration, State, Tried
 from vbraille.display import MOST_COLUMNS, MOST_ROWS
 from vbraille.errors import check_range
-from vbraille.toml.tomlfile import Table, TomlFile
+from vbraille.tomlfile import Table, TomlFile
 
 
 class ActuatorTable(Table, frozen=True):

@@ -53,7 +53,7 @@ def load(settings: Path, device: Device) -> Calibration | None:
         return None
     # Imported here, since most have no such file, and need not wait for what reads it.
     from vbraille.devices.calibrationfile import parse
-    from vbraille.toml.textfile import read_text
+    from vbraille.files import read_text
 
     found = parse(read_text(path, "calibration"), str(path))
     if found.device != name:

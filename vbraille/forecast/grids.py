@@ -15,13 +15,13 @@ import numpy as np
 
 from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.errors import VbrailleError, check_range
+from vbraille.files import read_text
 from vbraille.forecast.workers import KeptResults, work_on
 from vbraille.render import MODELS
 from vbraille.sessions.planning.spellings import Masks, SpellingKeys, spelled
 from vbraille.sessions.simulated.observer import Observer
 from vbraille.sessions.simulated.skin import Exploration
-from vbraille.toml.textfile import read_text
-from vbraille.toml.tomlfile import Table, TomlFile, which
+from vbraille.tomlfile import Table, TomlFile, which
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.config.knobs import KNOBS, fixed
 from vbraille.live.messages import ArrayShown, KnobShown, LineShown
-from vbraille.render.braille.knobs import KNOBS, fixed
 from vbraille.render.braille.mappings import NONE
 from vbraille.render.braille.models import swing_of
 
@@ -62,7 +62,7 @@ def knobs_shown(style: BrailleStyle) -> list[KnobShown]:
     """Knobs of a style, with their values and bounds."""
     return [
         KnobShown(
-            name=knob.name,
+            name=knob.key,
             label=knob.label,
             unit=knob.unit,
             value=float(knob.value(style)),

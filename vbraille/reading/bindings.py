@@ -107,6 +107,8 @@ class Command:
         Function that does it, which is given the `vbraille.reading.reader.Reader`.
     contexts
         Contexts in which the command can be called.
+    paged
+        Whether a page of the live view may call it, too.
     """
 
     name: str
@@ -115,6 +117,7 @@ class Command:
     # A reader knows its bindings, so that naming its type here would be a circle.
     handler: Callable[[Any], None]
     contexts: tuple[Context, ...] = (Context.READING,)
+    paged: bool = False
 
     @property
     def spoken_keys(self) -> str:

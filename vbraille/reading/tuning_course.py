@@ -15,13 +15,14 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from vbraille.adaptive.questplus import GridAxis, geometric, nearer_quest, ordered_pairs
+from vbraille.config.knobs import KNOBS, kept_values, obstacle, with_values
 from vbraille.errors import InputError
-from vbraille.render.braille.knobs import KNOBS, StyleKnob, kept_values, obstacle, with_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from vbraille.adaptive.questplus import GridQuest
+    from vbraille.config.options import StyleKnob
     from vbraille.render import Model
     from vbraille.render.braille.style import BrailleStyle
 
@@ -232,11 +233,11 @@ def _lower_first(number: int) -> bool:
 def _span(knob: StyleKnob, style: BrailleStyle, start: Model) -> Span:
     """Interval of values of a knob that are tried in a style."""
     low, high = knob.low, knob.high
-    if knob.name == "contrast":
+    if knob.key == "contrast":
         low = _LEAST_CONTRAST
-    if knob.name in _SHARES:
+    if knob.key in _SHARES:
         value = knob.value(start.style)
-        low, high = (round(value * share, _PLACES) for share in _SHARES[knob.name])
+        low, high = (round(value * share, _PLACES) for share in _SHARES[knob.key])
     low, high = max(low, knob.low), min(high, knob.high)
     for end in _halves(high, low):
         if not obstacle(knob, style.geometry, start.display, end):

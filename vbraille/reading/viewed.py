@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final
 
+from vbraille.config.knobs import say_mapping
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Changed, Silent, Stalled, Stranger, Unplugged
 from vbraille.devices.sentences import say
@@ -19,7 +20,6 @@ from vbraille.live.states import (
 )
 from vbraille.reading.commands.paged import obey
 from vbraille.reading.whereabouts import is_counted, line_name, percent
-from vbraille.render.braille.knobs import say_mapping
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from vbraille.scene.scene import Scene
     from vbraille.scene.traversal import Steps
-    from vbraille.toml.tomlfile import TomlFile
+    from vbraille.tomlfile import TomlFile
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from vbraille.scene.measures import check_share
 from vbraille.scene.strokes import Vibration
-from vbraille.toml.tomlfile import Table
+from vbraille.tomlfile import Table
 
 
 class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):

@@ -29,7 +29,7 @@ from vbraille.scene.textures import (
     Uniform,
     UniformVibration,
 )
-from vbraille.toml.tomlfile import Table
+from vbraille.tomlfile import Table
 
 
 class Label(Pattern, frozen=True, kw_only=True, tag="label"):

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
+from vbraille.files import read_text
 from vbraille.scene.origins import ForeignOrigin, OpenedScene, Origins, TomlOrigin
 from vbraille.scene.patterns import AnyPattern, Group, Image, ImageDots, Label, Operation
 from vbraille.scene.resolving import MOST_PATTERNS, resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.svg.looks import ClassLook
 from vbraille.scene.traversal import with_children
-from vbraille.toml.textfile import read_text
-from vbraille.toml.tomlfile import Table, TomlFile
+from vbraille.tomlfile import Table, TomlFile
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

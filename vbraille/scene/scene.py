@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from vbraille.errors import check_range
 from vbraille.scene.patterns import AnyPattern, Operation
-from vbraille.toml.tomlfile import Table
+from vbraille.tomlfile import Table
 
 
 class Canvas(Table, frozen=True, kw_only=True):

@@ -15,7 +15,7 @@ from vbraille.scene.measures import (
     check_length,
     check_share,
 )
-from vbraille.toml.tomlfile import Table
+from vbraille.tomlfile import Table
 
 _MOST_CYCLES = 100
 

@@ -18,7 +18,7 @@ from vbraille.scene.measures import (
     check_share,
 )
 from vbraille.scene.pattern import Pattern
-from vbraille.toml.tomlfile import Table
+from vbraille.tomlfile import Table
 
 _LEAST_FACTOR, _MOST_FACTOR = 0.05, 20.0
 _LEAST_DEG = 0.5

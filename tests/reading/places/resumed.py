@@ -13,7 +13,7 @@ def open_kept(places, file, options=None):
         kept = places.book(file)
     options = kept.options if options is None else options
     path = str(kept.path) if file is None else file
-    source = Document.open(path, options.encoding, keep_lines=options.keep_lines)
+    source = Document.open(path, options["encoding"], keep_lines=options["keep_lines"])
     kept = kept or places.book(path)
     place, note = resume(source, kept, options)
     return SimpleNamespace(source=source, kept=kept, options=options, place=place, note=note)

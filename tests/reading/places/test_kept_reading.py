@@ -2,7 +2,7 @@
 
 from tests.reading.places.resumed import open_kept
 from vbraille.layout.pages import Layout
-from vbraille.reading.places import BookOptions, KeptPlaces
+from vbraille.reading.places import KeptPlaces, book_options
 from vbraille.reading.reader import Keeping
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.documents.chapters import ChapterSource, Passage
@@ -14,7 +14,7 @@ TEXT = "\n\n".join(f"Paragraph number {n} says {n * n} and no more." for n in ra
 def read(folder, then):
     """Open a book where it was left, and do something with what is kept of it."""
     with KeptPlaces.open(folder / "places.sqlite") as places:
-        resumed = open_kept(places, str(folder / "book.txt"), BookOptions())
+        resumed = open_kept(places, str(folder / "book.txt"), book_options({}))
         book = Book(resumed.source, BrailleTable("en-ueb-g2.ctb"))
         start, before, line = 0, 0, None
         if resumed.place is not None:

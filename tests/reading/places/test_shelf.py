@@ -10,9 +10,9 @@ from tests.reading.places.shelved import TEXT, keep, kept_place, opened
 from vbraille.errors import InputError
 from vbraille.reading.places import (
     Bookmark,
-    BookOptions,
     KeptPlace,
     KeptPlaces,
+    book_options,
     last_book,
 )
 from vbraille.reading.places.place import place_in
@@ -27,7 +27,7 @@ class TestContent:
         document = Document.open(folder / "book.txt")
         document.block(150)
         place = place_in(document, TEXT.index("number 100"))
-        options = BookOptions(language="fr", keep_lines=True)
+        options = book_options({"language": "fr", "keep_lines": True})
         keep(
             folder,
             place=place,
@@ -84,7 +84,7 @@ def test_names_and_texts_that_are_no_text(folder):
     path = folder / os.fsdecode(b"b\xffk.txt")
     path.write_bytes("\ud800 and more".encode("utf-32-le", "surrogatepass"))
     with opened(folder) as places:
-        options = BookOptions(encoding="utf-32-le")
+        options = book_options({"encoding": "utf-32-le"})
         resumed = open_kept(places, str(path), options)
         resumed.kept.keep_at(resumed.source, 6)
         resumed.kept.set_bookmark(Bookmark("\udcff", 0, "\ud800"))
@@ -192,7 +192,9 @@ class TestList:
 
     def test_the_last_book_opens_as_it_was_open(self, folder):
         with opened(folder) as places:
-            options = BookOptions(encoding="latin-1", keep_lines=True, table="de-g1.ctb")
+            options = book_options(
+                {"encoding": "latin-1", "keep_lines": True, "table": "de-g1.ctb"}
+            )
             resumed = open_kept(places, str(folder / "book.txt"), options)
             assert resumed.place is None
             resumed.kept.keep_at(resumed.source, 5000, line=77, width=26, table="de-g1.ctb")
@@ -209,5 +211,5 @@ class TestList:
         (folder / "empty.txt").write_bytes(b"")
         with opened(folder) as places:
             with pytest.raises(InputError):
-                open_kept(places, str(folder / "empty.txt"), BookOptions())
+                open_kept(places, str(folder / "empty.txt"), book_options({}))
             assert places.listed() == []

@@ -18,7 +18,7 @@ from vbraille.scene.strokes import Along, Stroke
 from vbraille.scene.svg.looks import BY_HUE, color_of, hue_of
 from vbraille.scene.svg.reading import read_svg
 from vbraille.scene.traversal import each
-from vbraille.toml.tomlfile import TomlFile
+from vbraille.tomlfile import TomlFile
 
 FILES = Path(__file__).parent / "files"
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.cli.atdevice import AtDevice, say_summary, surrounded
-from vbraille.cli.options.live import check_live_options
+from vbraille.cli.options.reading import check_live_options
 from vbraille.cli.terminal import say_line
 from vbraille.devices.events import Button
 from vbraille.devices.registry import check_actuators, find_driver

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.cli.settled import bind_settings
 from vbraille.cli.terminal import print_json
+from vbraille.config.settings import load_settings
 from vbraille.reading.bindings import spoken
-from vbraille.settings.loading import load_settings
+from vbraille.reading.commands.table import bound_for
 
 if TYPE_CHECKING:
     import argparse
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print a line for each command: its name, its keys, and what it does."""
-    bound = bind_settings(load_settings(arguments.settings), arguments.keys)
+    bound = bound_for(load_settings(arguments.settings), arguments.keys)
     if arguments.json:
         print_json(_rows(bound))
         return 0

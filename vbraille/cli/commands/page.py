@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import build_book, build_lengths, lay_out
-from vbraille.cli.settled import TRANSLATION, settle
 from vbraille.cli.terminal import say_line
+from vbraille.config.options import CHOICE_OF_TABLE
+from vbraille.config.settings import settle
 from vbraille.errors import InputError
 from vbraille.files import check_unused, write_file
 from vbraille.layout.braillepages import (
@@ -38,7 +39,7 @@ _MOST_CELLS = 200
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the lines, or write them to a file."""
-    settle(arguments, TRANSLATION)
+    settle(arguments, CHOICE_OF_TABLE)
     _check(arguments)
     book = build_book(arguments, six_dots=arguments.format == "brf")
     if _keeps_pages(arguments, book):

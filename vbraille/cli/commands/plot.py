@@ -14,7 +14,8 @@ import numpy as np
 
 from vbraille import pictures
 from vbraille.cli.build import build_book, build_lengths, build_show, build_table, lay_out
-from vbraille.cli.settled import TRANSLATION, settle
+from vbraille.config.options import CHOICE_OF_TABLE
+from vbraille.config.settings import settle
 from vbraille.errors import InputError
 from vbraille.render import MODELS, VBD
 from vbraille.translate import Document
@@ -66,7 +67,7 @@ def _table(arguments: argparse.Namespace) -> FigureTable:
         if arguments.model is not None:
             raise InputError("the resolution is of the Tactograph's arms; leave --model out")
         return pictures.resolution()
-    settle(arguments, TRANSLATION)
+    settle(arguments, CHOICE_OF_TABLE)
     if arguments.model is None:
         arguments.model = "vbd" if arguments.kind in ("wave", "strain") else "stress2"
     model = MODELS[arguments.model]

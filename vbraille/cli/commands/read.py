@@ -9,21 +9,28 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from vbraille.cli.atdevice import AtDevice, say_summary, surrounded
-from vbraille.cli.build import build_lengths, build_page, build_show, lay_out, note_unseen_dots
-from vbraille.cli.options.live import check_live_options
+from vbraille.cli.build import (
+    build_lengths,
+    build_page,
+    build_show,
+    chosen_profile,
+    lay_out,
+    note_unseen_dots,
+)
+from vbraille.cli.options.reading import check_live_options
 from vbraille.cli.resuming import open_to_resume
-from vbraille.cli.settled import bind_settings, chosen_profile, settle
 from vbraille.cli.terminal import say_line
+from vbraille.config.settings import settle, with_profile
 from vbraille.devices.registry import check_actuators, check_height, check_travel, find_driver
 from vbraille.display import USUAL_RATE_HZ, check_rate
 from vbraille.errors import InputError
+from vbraille.reading.commands.table import bound_for
 from vbraille.reading.device import HAND
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.outputs import Echo, language_of
 from vbraille.reading.places import KeptPlaces
 from vbraille.reading.scrolling import Scroll
 from vbraille.render import MODELS, model_of
-from vbraille.settings.values import with_profile
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
 from vbraille.translate.documents.document import Document
 from vbraille.wording import spelled
@@ -53,9 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
     profile = chosen_profile(arguments, settings)
     rate_hz = USUAL_RATE_HZ if arguments.rate is None else check_rate(arguments.rate)
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
-    if arguments.cells is not None and arguments.cells < 1:
-        raise InputError(f"--cells is {arguments.cells}; it must be 1 or more")
-    bound = bind_settings(settings, arguments.keys)
+    bound = bound_for(settings, arguments.keys)
     hand = HAND if arguments.hand is None else arguments.hand
     # An unknown hand is refused before anything is opened.
     parse_hand(hand, pointed=arguments.monitor)
@@ -221,7 +226,7 @@ def _figures(page: Page, folder: Path, device: OpenDevice, rate_hz: float) -> Fi
 def _save(path: Path, profile: str, model: Model) -> str:
     """Save how braille feels in a profile, and give a sentence on that."""
     # Most readings save nothing, and need not wait for what writes settings.
-    from vbraille.settings.saving import save_profile
+    from vbraille.config.settings import save_profile
 
     return save_profile(path, profile, model)
 

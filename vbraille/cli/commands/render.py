@@ -21,9 +21,10 @@ from vbraille.cli.build import (
     note_unseen_dots,
 )
 from vbraille.cli.options.pictures import PATH_OPTIONS
-from vbraille.cli.settled import TRANSLATION, settle
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import WorkProgress
+from vbraille.config.options import CHOICE_OF_TABLE
+from vbraille.config.settings import settle
 from vbraille.display import check_rate
 from vbraille.engine.watchers import EndOfLine
 from vbraille.errors import InputError
@@ -63,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
         from vbraille.cli.commands import renderscene  # loads what only pictures need
 
         return renderscene.run(arguments)
-    settle(arguments, TRANSLATION)
+    settle(arguments, CHOICE_OF_TABLE)
     model = build_show(arguments, MODELS[arguments.model or "stress2"])
     rate_hz = check_rate(arguments.rate)
     hand = parse_hand(arguments.hand, arguments.seed)

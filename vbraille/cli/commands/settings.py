@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.cli.build import build_lengths, build_show
-from vbraille.cli.settled import bind_settings, chosen_profile
+from vbraille.cli.build import build_lengths, build_show, chosen_profile
 from vbraille.cli.terminal import say_line
+from vbraille.config.options import PROFILE, held_in
+from vbraille.config.settings import (
+    load_settings,
+    say_bindings,
+    say_settings,
+    say_tuning,
+    with_profile,
+)
 from vbraille.files import settings_path
+from vbraille.reading.commands.table import bound_for
 from vbraille.render import MODELS
-from vbraille.render.braille.knobs import KNOBS
-from vbraille.settings.loading import load_settings
-from vbraille.settings.origins import say_bindings, say_settings, say_tuning
-from vbraille.settings.values import with_profile
 
 if TYPE_CHECKING:
     import argparse
@@ -24,7 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
         say_line(str(settings_path(arguments.settings)))
         return 0
     settings = load_settings(arguments.settings)
-    bind_settings(settings, None)  # which refuses what reading would
+    bound_for(settings)  # which refuses what reading would
     there = "" if settings.path.exists() else " (not there)"
     say_line(f"settings file: {settings.path}{there}")
     profile = chosen_profile(arguments, settings)
@@ -39,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
     shown = build_lengths(arguments, shown)
     for sentence in (
         *say_tuning(settings, profile, model, shown.style, _given(arguments)),
-        *say_settings(settings, vars(arguments), arguments.usual),
+        *say_settings(settings, vars(arguments)),
         *say_bindings(settings),
     ):
         say_line(sentence)
@@ -48,5 +52,5 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _given(arguments: argparse.Namespace) -> set[str]:
     """Names, as a settings file has them, of what options say about the style."""
-    names = {name: name.removesuffix("_mm") for name in (*KNOBS, "mapping", "dot_row")}
-    return {name for name, option in names.items() if getattr(arguments, option) is not None}
+    options = held_in(PROFILE)
+    return {each.key for each in options if getattr(arguments, each.name) is not None}

@@ -6,12 +6,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 from vbraille.cli.atdevice import AtDevice, surrounded
-from vbraille.cli.settled import chosen_profile, settle
+from vbraille.cli.build import chosen_profile
+from vbraille.config.settings import display_name, save_profile, settle, with_profile
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import check_actuators
 from vbraille.display import USUAL_RATE_HZ, check_rate
 from vbraille.errors import InputError
-from vbraille.files import write_file
+from vbraille.files import read_text, write_file
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line, choose_table
 from vbraille.reading.activity import Activity
@@ -21,10 +22,7 @@ from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.outputs import language_of
 from vbraille.reading.tuning_course import TuningCourse, from_json, practice_text, to_json
 from vbraille.render import MODELS, model_of
-from vbraille.settings.saving import save_profile
-from vbraille.settings.values import display_name, with_profile
 from vbraille.simulation.specs import is_simulated, refuse_hand
-from vbraille.toml.textfile import read_text
 from vbraille.translate import Book, Document
 
 if TYPE_CHECKING:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 
+from vbraille.config.options import COMMON, FILE, OPTIONS, held_in, number, whole
 from vbraille.errors import InputError
 
 TYPE_CHECKING = False  # as in vbraille.cli
@@ -33,6 +34,7 @@ def _with_default(text: str, default: object) -> str:
     return f"{text.removesuffix('.')} (default: {said})."
 
 
+_READERS = {int: whole, float: number}
 # Options that there were, and what does the same.
 _GONE = {
     "--abstract": "--outline draws what is felt",
@@ -50,10 +52,59 @@ _GONE = {
 
 
 class CommandParser(argparse.ArgumentParser):
-    """A parser of kinds of options, whose errors are one sentence."""
+    """A parser of kinds of options, whose errors are one sentence.
 
-    def __init__(self, **settings) -> None:
+    Parameters
+    ----------
+    options
+        Function that adds the options, called when the command is; None if none are added so.
+    settings
+        As for an `argparse.ArgumentParser`.
+    """
+
+    def __init__(
+        self, *, options: Callable[[CommandParser], None] | None = None, **settings
+    ) -> None:
         super().__init__(**settings, formatter_class=_Help, allow_abbrev=False)
+        self._options = options
+
+    def parse_known_args(self, args=None, namespace=None):
+        """Parse, as argparse does, with the options of this command added now."""
+        if self._options is not None:
+            options, self._options = self._options, None
+            self.add_argument("-h", "--help", action="help", help="Print this help.")
+            options(self)
+            if self._subparsers is None:  # one without actions, which have options of their own
+                self.take(*COMMON)
+        return super().parse_known_args(args, namespace)
+
+    def take(self, *names: str, unset: bool = False) -> None:
+        """Add options of the schema, by their names.
+
+        Parameters
+        ----------
+        names
+            Names of the options.
+        unset
+            Whether one that is not given has no value, so that it is known not to be given.
+        """
+        for option in map(OPTIONS.__getitem__, names):
+            if option.kind is bool:
+                self.flag(option.flag, option.sentence)
+                continue
+            kind = str if option.choices else _READERS.get(option.kind, option.kind)
+            added = self.add_argument(
+                option.flag,
+                metavar=option.metavar,
+                help=option.sentence,
+                type=kind,
+                default=None if unset else option.default,
+            )
+            added.choices = option.choices  # not looked at before they are needed
+
+    def leave_to_settings(self) -> None:
+        """Leave options that a settings file may say without a value."""
+        self.set_defaults(**{option.name: None for option in held_in(FILE)})
 
     def flag(self, name: str, text: str) -> None:
         """Add an option that is given or not, and the sentence that help has of it."""

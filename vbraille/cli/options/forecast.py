@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 import re
 
-from vbraille.cli.options.groups import number, protocol, seed, whole
+from vbraille.cli.options.lab import protocol
+from vbraille.config.options import number, seed, whole
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:

@@ -2,23 +2,58 @@
 
 from __future__ import annotations
 
-from vbraille.cli.options.groups import (
-    HANDS,
-    SPEC,
-    Pairs,
-    checksum,
-    marks,
-    names,
-    number,
-    protocol,
-    seed,
-    whole,
-)
-from vbraille.cli.options.live import add_live_options
+import argparse
+import re
+
+from vbraille.config.options import HANDS, LIVE, SPEC, number, seed, whole
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from vbraille.cli.options.commandparser import CommandParser
+
+
+class Pairs(argparse.Action):
+    """Options NAME=VALUE, gathered in a dictionary."""
+
+    def __call__(
+        self,
+        _parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: str | Sequence[object] | None,
+        _option: str | None = None,
+    ) -> None:
+        """Add a pair to those before."""
+        name, equals, value = str(values).partition("=")
+        if not equals or not name:
+            raise argparse.ArgumentError(self, f"{values!r} is not NAME=VALUE")
+        setattr(namespace, self.dest, {**getattr(namespace, self.dest), name: value})
+
+
+def checksum(text: str) -> str:
+    """Read a SHA-256, or enough of its first digits to tell it from others."""
+    if not re.fullmatch(r"[0-9a-fA-F]{16,64}", text):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no SHA-256; give its 64 digits, 0 to 9 and a to f, or the first 16"
+        )
+    return text.lower()
+
+
+def names(text: str) -> tuple[str, ...]:
+    """Read names with commas between."""
+    given = tuple(name.strip() for name in text.split(","))
+    if not all(given) or len(set(given)) < len(given):
+        raise argparse.ArgumentTypeError(f"{text!r} is no list of different names, such as a,b")
+    return given
+
+
+def marks(text: str) -> tuple[int, ...]:
+    """Read counts with commas between, each larger than the one before."""
+    counts = tuple(whole(count) for count in text.split(","))
+    if list(counts) != sorted(set(counts)) or counts[0] < 0:
+        raise argparse.ArgumentTypeError(f"{text!r} are no counts that grow, such as 4,9")
+    return counts
 
 
 def session_protocols(parser: CommandParser) -> None:
@@ -236,4 +271,13 @@ def _conduct(parser: CommandParser) -> None:
         "Send a marker of each event to another recorder: to a stream of the Lab Streaming Layer "
         "(pip install pylsl), or a byte to a serial port (default: none).",
     )
-    add_live_options(parser)
+    parser.take(*LIVE)
+
+
+def protocol(parser: CommandParser) -> None:
+    """Add the protocol that a command is about."""
+    parser.add_argument(
+        "protocol",
+        metavar="PROTOCOL",
+        help="Take this protocol: a name, or a file such as mine.toml.",
+    )

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from vbraille.cli.options import groups
-from vbraille.cli.options.groups import MODELS, number, seed, whole
-from vbraille.cli.options.live import add_live_options
+from vbraille.config.options import HAND, HEARD, LIVE, OPTIONS, number, seed, whole
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
@@ -16,19 +14,24 @@ if TYPE_CHECKING:
 PATH_OPTIONS = ("at", "radius", "seconds", "spacing", "speed", "sway", "unsteady", "back")
 
 
+def add_model(parser: CommandParser, text: str, default: str | None = None) -> None:
+    """Add the display, with a sentence on what a command does with it."""
+    added = parser.add_argument("--model", help=text, default=default)
+    added.choices = OPTIONS["model"].choices
+
+
 def feel(parser: CommandParser) -> None:
     """Add the options of ``vbraille feel``."""
     parser.add_argument(
         "file", metavar="FILE", help="Feel this scene, SVG or file of OpenLatero's."
     )
-    groups.device(parser)
-    parser.choice(
-        "--model",
-        MODELS,
+    parser.take("device")
+    add_model(
+        parser,
         "Simulate this display, or refuse a device that is another one (default: the STReSS² of "
         "8 × 8 on the Tactograph).",
     )
-    groups.hand(parser)
+    parser.take(*HAND)
     parser.set_defaults(hand=None, seed=None)
     parser.option(
         "--at",
@@ -38,8 +41,7 @@ def feel(parser: CommandParser) -> None:
         number,
     )
     parser.flag("--say-entering", "Say the name of each element when the finger comes to it.")
-    groups.heard(parser)
-    add_live_options(parser)
+    parser.take(*HEARD, *LIVE)
 
 
 def path(parser: CommandParser) -> None:
@@ -68,7 +70,7 @@ def profile(parser: CommandParser) -> None:
     parser.add_argument(
         "file", metavar="FILE", help="Time the frames of this scene, SVG or file of OpenLatero's."
     )
-    parser.choice("--model", MODELS, "Render for this display.", default="stress2-8x8")
+    add_model(parser, "Render for this display (default: stress2-8x8).", "stress2-8x8")
     path(parser)
     parser.flag(
         "--elements", "Say, too, how much longer a frame takes with each element than without it."
@@ -80,7 +82,7 @@ def profile(parser: CommandParser) -> None:
         "(default: none).",
     )
     parser.option("--map", "FILE.png", "Draw the map of the cost as PNG or SVG (default: none).")
-    groups.force(parser)
+    parser.take("force")
 
 
 def check(parser: CommandParser) -> None:
@@ -102,7 +104,7 @@ def convert(parser: CommandParser) -> None:
         "Convert what OpenLatero shows, where that is not what its file says (default: what the "
         "file says).",
     )
-    groups.force(parser)
+    parser.take("force")
 
 
 def scene_map(parser: CommandParser) -> None:
@@ -119,7 +121,7 @@ def scene_map(parser: CommandParser) -> None:
         "a row for each pixel with x, y and the deflection there.",
         required=True,
     )
-    groups.force(parser)
+    parser.take("force")
     parser.option(
         "--resolution", "N", "Draw so many pixels a mm (default: 4; abstract drawings 12).", number
     )
@@ -153,11 +155,11 @@ def scene_map(parser: CommandParser) -> None:
         "(default: no array).",
         place,
     )
-    parser.choice(
-        "--model",
-        MODELS,
-        "Draw the array of this display, in whose style labels are written as well.",
-        default="stress2-8x8",
+    add_model(
+        parser,
+        "Draw the array of this display, in whose style labels are written as well (default: "
+        "stress2-8x8).",
+        "stress2-8x8",
     )
     parser.flag("--axes", "Draw axes in mm around the picture.")
     parser.flag(

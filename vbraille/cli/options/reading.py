@@ -1,10 +1,29 @@
-"""The options of reading, drawing and devices, each with a sentence that stands alone."""
+"""The options of reading, drawing and devices, and of the live view, by commands."""
 
 from __future__ import annotations
 
-from vbraille.cli.options import groups, pictures
-from vbraille.cli.options.groups import MODELS, SPEC, duration, number, whole
-from vbraille.cli.options.live import add_live_options
+import argparse
+import re
+
+from vbraille.cli.options.pictures import add_model, path
+from vbraille.config.options import (
+    ADDRESS,
+    HAND,
+    LAYOUT,
+    LIVE,
+    OPTIONS,
+    PAGE,
+    READING,
+    SHOW,
+    SOURCE,
+    SPEC,
+    TEXT,
+    TRANSLATION,
+    number,
+    whole,
+)
+from vbraille.errors import InputError
+from vbraille.wording import setting
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
@@ -13,34 +32,21 @@ if TYPE_CHECKING:
 PLOTS = ("profile", "mapping", "wave", "strain", "page", "resolution")
 
 
-_OWN_RATE = "1000, or what the device takes if that is less"
-
-
 def nothing(_parser: CommandParser) -> None:
     """Add no option."""
 
 
 def read(parser: CommandParser) -> None:
     """Add the options of ``vbraille read``."""
-    groups.text(parser, optional=True)
-    parser.option(
-        "--book",
-        "N",
-        "Read on in the book with this number in the list of vbraille books (default: FILE, or "
-        "the book that was read last).",
-        whole,
-    )
+    _file(parser, optional=True)
+    parser.take(*TEXT, "book")
     _reading(parser)
-    parser.flag(
-        "--no-places",
-        "Begin at the beginning, and keep neither the place nor anything else of the book.",
-    )
-    add_live_options(parser)
+    parser.take("no_places", *LIVE)
 
 
 def settings(parser: CommandParser) -> None:
     """Add the options of ``vbraille settings``, which are those of reading."""
-    groups.text(parser, file=False)
+    parser.take(*TEXT)
     _reading(parser)
     parser.flag("--path", "Print where the settings file is, and nothing else.")
 
@@ -50,53 +56,30 @@ def tune(parser: CommandParser) -> None:
     parser.add_argument(
         "file", nargs="?", metavar="TEXT", help="Practise on this text (default: a short one)."
     )
-    groups.profile(parser)
-    groups.device(parser)
-    parser.choice("--model", MODELS, "Refuse a device that is not this display.")
-    groups.translation(parser)
-    groups.hand(parser, _OWN_RATE)
+    parser.take("profile", "device")
+    add_model(parser, "Refuse a device that is not this display.")
+    parser.take(*TRANSLATION)
+    parser.take(*HAND, unset=True)
     parser.flag("--again", "Begin anew, and forget the choices made so far.")
-    parser.set_defaults(hand=None, seed=None, rate=None, monitor=False)
-    groups.leave_to_settings(parser)
+    parser.set_defaults(monitor=False)
+    parser.leave_to_settings()
 
 
 def _reading(parser: CommandParser) -> None:
     """Add the options of reading that are not the text's."""
-    groups.show(parser)
-    groups.profile(parser)
-    groups.device(parser)
-    parser.choice(
-        "--advance",
-        ("return", "key"),
-        "Say when the next line comes: when the hand returns to the left, or only by a key.",
-        default="return",
+    parser.take(*READING, unset=True)  # only a simulated device has a hand
+    parser.leave_to_settings()
+
+
+def _file(parser: CommandParser, *, optional: bool = False) -> None:
+    """Add the text that is read, and how it is read."""
+    parser.add_argument(
+        "file",
+        metavar="FILE",
+        nargs="?" if optional else None,
+        help="Take this text file, or standard input for -.",
     )
-    parser.choice(
-        "--echo",
-        ("none", "text", "cells", "both"),
-        "Say what is printed of each line: nothing, its text, its cells in Unicode braille, or "
-        "both (default: none at a terminal, otherwise both).",
-    )
-    groups.heard(parser)
-    parser.option(
-        "--also",
-        "DISPLAY",
-        "Show each line on a conventional display beside, and obey its keys: brlapi for the one "
-        "that BRLTTY drives, brlapi:HOST:N for BRLTTY at another address (default: none).",
-    )
-    groups.keys(parser)
-    parser.option(
-        "--cells",
-        "N",
-        "Lay out lines of so many cells; the hand goes along a longer one part by part (default: "
-        "as many as the hand can cross).",
-        whole,
-    )
-    groups.page(parser)
-    groups.hand(parser, _OWN_RATE)
-    # The model is the device's own, and only a simulated one has a hand.
-    parser.set_defaults(model=None, hand=None, seed=None, rate=None)
-    groups.leave_to_settings(parser)
+    parser.take(*SOURCE)
 
 
 def books(parser: CommandParser) -> None:
@@ -122,15 +105,13 @@ def books(parser: CommandParser) -> None:
 def keys(parser: CommandParser) -> None:
     """Add the options of ``vbraille keys``."""
     parser.flag("--json", "Print the commands as JSON, for other programs.")
-    groups.keys(parser)
-    parser.set_defaults(keys=None)
-    groups.settings_file(parser)
+    parser.take("keys", "settings", unset=True)
 
 
 def page(parser: CommandParser) -> None:
     """Add the options of ``vbraille page``."""
-    groups.text(parser)
-    groups.layout(parser)
+    _file(parser)
+    parser.take(*TEXT, *LAYOUT)
     parser.choice(
         "--format",
         ("unicode", "brf", "dots", "text", "pef"),
@@ -138,7 +119,7 @@ def page(parser: CommandParser) -> None:
         default="unicode",
     )
     parser.option("--out", "FILE", "Write to this file, whole or not at all (default: print).")
-    groups.force(parser)
+    parser.take("force")
     parser.option(
         "--cells",
         "N",
@@ -146,28 +127,22 @@ def page(parser: CommandParser) -> None:
         "in PEF).",
         whole,
     )
-    parser.set_defaults(model=None)  # so that it is known whether a display was asked for
 
 
 def structure(parser: CommandParser) -> None:
     """Add the options of ``vbraille structure``."""
-    groups.source(parser)
+    _file(parser)
     parser.flag("--json", "Print the same as JSON.")
-    parser.set_defaults(table=None, language=None, grade=None, undefined="mark", keep_lines=False)
-    parser.set_defaults(foreign="switch")
-    parser.set_defaults(settled=frozenset())
+    parser.set_defaults(**{name: OPTIONS[name].default for name in TEXT}, settled=frozenset())
 
 
 def render(parser: CommandParser) -> None:
     """Add the options of ``vbraille render``."""
-    groups.text(parser)
-    groups.show(parser)
-    groups.hand(parser)
+    _file(parser)
+    parser.take(*TEXT, *SHOW, *HAND)
     parser.option("--out", "FILE.h5", "Write to this file.", required=True)
-    groups.page(parser)
-    groups.force(parser)
-    pictures.path(parser)
-    parser.set_defaults(model=None)  # which is another one for lines than for pictures
+    parser.take(*PAGE, "force")
+    path(parser)
     parser.flag("--plain", "Print progress as lines, without a bar.")
 
 
@@ -182,8 +157,8 @@ def plot(parser: CommandParser) -> None:
         "dot), strain (between neighbouring actuators), page (lines with the array on one) or "
         "resolution (how finely the arms of the Tactograph measure, over its tray).",
     )
-    groups.text(parser, optional=True)
-    groups.show(parser)
+    _file(parser, optional=True)
+    parser.take(*TEXT, *SHOW)
     parser.option(
         "--out", "F.png|F.svg", "Write the picture to this file (default: a new vbraille-KIND.png)."
     )
@@ -196,7 +171,6 @@ def plot(parser: CommandParser) -> None:
         default=20.0,
     )
     parser.add_argument("--letter", help="Of a mapping: show this letter (default: z).")
-    parser.set_defaults(model=None)  # the one that the source drew the figure for
 
 
 def simulate(parser: CommandParser) -> None:
@@ -208,15 +182,13 @@ def simulate(parser: CommandParser) -> None:
         default="serial",
         help="Be a device at a serial port, or a Latero on the network (default: serial).",
     )
-    parser.choice(
-        "--model",
-        MODELS,
+    add_model(
+        parser,
         "Be this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, that on the Pantograph, "
-        "the Latero, or the VBD.",
-        default="stress2",
+        "the Latero, or the VBD (default: stress2).",
+        "stress2",
     )
-    groups.hand(parser)
-    parser.set_defaults(rate=1000)
+    parser.take(*HAND)
     parser.option(
         "--link", "PATH", "Make a link to the port at this path, and remove it at the end."
     )
@@ -324,7 +296,7 @@ def simulate_latero(parser: CommandParser) -> None:
 def device_info(parser: CommandParser) -> None:
     """Add the options of ``vbraille device info`` and ``check``."""
     parser.add_argument("spec", metavar="SPEC", help=f"{SPEC}.")
-    parser.choice("--model", MODELS, "Refuse a device that is not this display.")
+    add_model(parser, "Refuse a device that is not this display.")
 
 
 def device_calibrate(parser: CommandParser) -> None:
@@ -342,3 +314,45 @@ def device_calibrate(parser: CommandParser) -> None:
 def tables(parser: CommandParser) -> None:
     """Add the options of ``vbraille tables``."""
     parser.option("--language", "TAG", "List only tables of this language, such as fr or fr-CA.")
+
+
+def monitor(parser: CommandParser) -> None:
+    """Add the options of ``vbraille monitor``."""
+    parser.option(
+        "--play",
+        "FILE",
+        "Play back what vbraille render wrote, the directory of a session, or one of its traces "
+        "(default: nothing is played).",
+    )
+    parser.take(*ADDRESS)
+
+
+def check_live_options(arguments: argparse.Namespace) -> None:
+    """Refuse options of the live view that cannot be.
+
+    Raises
+    ------
+    InputError
+        If there is an address without a live view, or an empty one.
+    """
+    for name in ADDRESS:
+        if getattr(arguments, name) is not None and not getattr(arguments, "monitor", True):
+            raise InputError(
+                f"{setting(name)} is for the live view; add {setting('monitor')}, or leave "
+                f"{setting(name)} out"
+            )
+    if arguments.host == "":
+        raise InputError(
+            f"{setting('host')} is empty; give an address of this machine, or leave it out"
+        )
+
+
+def duration(text: str) -> float:
+    """Read the seconds of a duration such as 200ms or 5s."""
+    found = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,9})?)(ms|s)", text)
+    seconds = float(found[1]) / (1000 if found[2] == "ms" else 1) if found else 0.0
+    if not 0.001 <= seconds <= 3600:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no duration from 1ms to 3600s, such as 200ms or 5s"
+        )
+    return seconds

@@ -5,16 +5,19 @@ Names are BRLTTY's where it has the command.
 
 from __future__ import annotations
 
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ParamSpec
 
+from vbraille.config.options import knobs
 from vbraille.reading.activity import LONGEST
 from vbraille.reading.bindings import ANY, Bindings, Bound, Command, Context, bind, spoken
 from vbraille.reading.keys import PASTE, pasted
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
+    from vbraille.config.settings import Settings
     from vbraille.reading.activity import Activity
     from vbraille.reading.commands import (
         asking,
@@ -63,6 +66,10 @@ HEADING, LIST, TABLE, QUOTE = "heading", "item", "row", "quote"
 EACH_ITEM, LINK, IMAGE = "each item", "link", "image"
 
 _LEVELS = 6
+# A command that pages of the live view may call, too. Not what asks for a text, which is typed
+# where the reader is; what is kept for another time, and the end of reading, which are the
+# reader's; and what only somebody beside the device can know, such as that its carriage is at rest.
+shared = partial(Command, paged=True)
 
 
 def made(
@@ -78,6 +85,25 @@ def made(
 
 # Values of the tuning that a knob of the device may turn.
 TURNED = {"TEXTURE": "texture", "CONTRAST": "contrast"}
+
+
+def bound_for(settings: Settings, keys: str | None = None) -> Bound:
+    """Give the commands the keys and buttons of a settings file.
+
+    Parameters
+    ----------
+    settings
+        Settings of the file.
+    keys
+        Name of the ready set of keys; None for the one of the settings.
+
+    Raises
+    ------
+    InputError
+        If a command is not known, a key would call two commands, or a button is none.
+    """
+    ready = keys or settings.read.get("keys", "usual")
+    return bound_by(Bindings(settings.keys, settings.buttons, settings.where), ready)
 
 
 def bound_by(bindings: Bindings, keys: str = "usual") -> Bound:
@@ -97,11 +123,6 @@ def bound_by(bindings: Bindings, keys: str = "usual") -> Bound:
     """
     ready = bind(COMMANDS, Bindings(KEY_SETS[keys])).commands
     return bind(ready, bindings, tuple(TURNED))
-
-
-def commands_of(context: Context) -> tuple[Command, ...]:
-    """Commands that can be called in a context."""
-    return tuple(BOUND.of(context))
 
 
 def find(key: str, context: Context) -> Command | None:
@@ -205,7 +226,7 @@ def _learn(reader: Activity, name: str, command: Command | None) -> None:
 def _levels(*, backward: bool) -> tuple[Command, ...]:
     """Commands that go by headings down to a level."""
     return tuple(
-        Command(
+        shared(
             f"{'PR' if backward else 'NX'}HEADING{level}",
             (f"alt-{level}" if backward else str(level),),
             f"{'previous' if backward else 'next'} heading of level {level}"
@@ -214,6 +235,15 @@ def _levels(*, backward: bool) -> tuple[Command, ...]:
         )
         for level in range(1, _LEVELS + 1)
     )
+
+
+def _knobs() -> Iterator[Command]:
+    """Commands that turn the knobs of the schema."""
+    for knob in knobs():
+        name = knob.name.upper()
+        for at, key in enumerate(knob.keys):
+            turned = made(turning.turn, knob.key, -1 if at else 1)
+            yield shared(f"{name}_{'DOWN' if at else 'UP'}", (key,), knob.turns[at], turned)
 
 
 _TYPING = (Context.PROMPT,)
@@ -245,62 +275,62 @@ TYPING = (
     Command("SAY_TYPED", ("\t",), "say what is typed so far", control.say_typed, _TYPING),
 )
 COMMANDS = (
-    Command("LNDN", ("n", "down"), "next line", moving.next_line),
-    Command("LNUP", ("p", "up"), "previous line", moving.previous_line),
-    Command("FWINRT", ("right",), "on along the line, then the next line", moving.pan_right),
-    Command("FWINLT", ("left",), "back along the line, then the line before", moving.pan_left),
-    Command("WINDN", ("]", "ctrl-pagedown"), "next page of the surface", turning.next_page),
-    Command("WINUP", ("[", "ctrl-pageup"), "previous page of the surface", turning.previous_page),
-    Command("LNBEG", ("home",), "start of the line", moving.line_start),
-    Command("LNEND", ("end",), "end of the line", moving.line_end),
-    Command("NXPGRPH", ("a", "ctrl-down"), "next paragraph", structure.next_paragraph),
-    Command("PRPGRPH", ("A", "ctrl-up"), "previous paragraph", structure.previous_paragraph),
-    Command("NXPAGE", ("f", "pagedown"), "next page", structure.next_page),
-    Command("PRPAGE", ("F", "pageup"), "previous page", structure.previous_page),
-    Command("NXHEADING", ("e",), "next heading", made(structure.go_to, HEADING)),
-    Command("PRHEADING", ("E",), "previous heading", made(structure.go_to, HEADING, backward=True)),
+    shared("LNDN", ("n", "down"), "next line", moving.next_line),
+    shared("LNUP", ("p", "up"), "previous line", moving.previous_line),
+    shared("FWINRT", ("right",), "on along the line, then the next line", moving.pan_right),
+    shared("FWINLT", ("left",), "back along the line, then the line before", moving.pan_left),
+    shared("WINDN", ("]", "ctrl-pagedown"), "next page of the surface", turning.next_page),
+    shared("WINUP", ("[", "ctrl-pageup"), "previous page of the surface", turning.previous_page),
+    shared("LNBEG", ("home",), "start of the line", moving.line_start),
+    shared("LNEND", ("end",), "end of the line", moving.line_end),
+    shared("NXPGRPH", ("a", "ctrl-down"), "next paragraph", structure.next_paragraph),
+    shared("PRPGRPH", ("A", "ctrl-up"), "previous paragraph", structure.previous_paragraph),
+    shared("NXPAGE", ("f", "pagedown"), "next page", structure.next_page),
+    shared("PRPAGE", ("F", "pageup"), "previous page", structure.previous_page),
+    shared("NXHEADING", ("e",), "next heading", made(structure.go_to, HEADING)),
+    shared("PRHEADING", ("E",), "previous heading", made(structure.go_to, HEADING, backward=True)),
     *_levels(backward=False),
     *_levels(backward=True),
-    Command("NXLIST", ("l",), "next list", made(structure.go_to, LIST)),
-    Command("PRLIST", ("L",), "previous list", made(structure.go_to, LIST, backward=True)),
-    Command("NXITEM", ("I",), "next item of a list", made(structure.go_to, EACH_ITEM)),
-    Command(
+    shared("NXLIST", ("l",), "next list", made(structure.go_to, LIST)),
+    shared("PRLIST", ("L",), "previous list", made(structure.go_to, LIST, backward=True)),
+    shared("NXITEM", ("I",), "next item of a list", made(structure.go_to, EACH_ITEM)),
+    shared(
         "PRITEM",
         ("alt-i",),
         "previous item of a list",
         made(structure.go_to, EACH_ITEM, backward=True),
     ),
-    Command("NXTABLE", ("r",), "next table", made(structure.go_to, TABLE)),
-    Command("PRTABLE", ("R",), "previous table", made(structure.go_to, TABLE, backward=True)),
-    Command("NXQUOTE", ("Q",), "next quotation", made(structure.go_to, QUOTE)),
-    Command(
+    shared("NXTABLE", ("r",), "next table", made(structure.go_to, TABLE)),
+    shared("PRTABLE", ("R",), "previous table", made(structure.go_to, TABLE, backward=True)),
+    shared("NXQUOTE", ("Q",), "next quotation", made(structure.go_to, QUOTE)),
+    shared(
         "PRQUOTE", ("alt-q",), "previous quotation", made(structure.go_to, QUOTE, backward=True)
     ),
-    Command("NXLINK", ("k",), "next link or note", made(structure.go_to_mark, LINK)),
-    Command(
+    shared("NXLINK", ("k",), "next link or note", made(structure.go_to_mark, LINK)),
+    shared(
         "PRLINK", ("K",), "previous link or note", made(structure.go_to_mark, LINK, backward=True)
     ),
-    Command("NXFIGURE", (",",), "next figure or picture", made(structure.go_to_mark, IMAGE)),
-    Command(
+    shared("NXFIGURE", (",",), "next figure or picture", made(structure.go_to_mark, IMAGE)),
+    shared(
         "PRFIGURE",
         (";",),
         "previous figure or picture",
         made(structure.go_to_mark, IMAGE, backward=True),
     ),
-    Command(
+    shared(
         "FOLLOW",
         ("\n",),
         "follow the link or note under the finger; from a note, go back",
         structure.follow,
     ),
     Command("FEEL", ("G",), "feel the figure of this line, alone", structure.feel),
-    Command("TOP", ("<", "ctrl-home"), "first line of the text", moving.top),
-    Command("BOT", (">", "ctrl-end"), "last line of the text", moving.bottom),
+    shared("TOP", ("<", "ctrl-home"), "first line of the text", moving.top),
+    shared("BOT", (">", "ctrl-end"), "last line of the text", moving.bottom),
     Command(
         "GOTOLINE", ("g", "\x07"), "go to a page, or to percent of the text", structure.ask_place
     ),
     Command("CONTENTS", ("O",), "list the headings, and go to one", structure.ask_heading),
-    Command("BACK", ("b", "alt-left"), "back to the place before the last jump", moving.back),
+    shared("BACK", ("b", "alt-left"), "back to the place before the last jump", moving.back),
     Command("NXSEARCH", ("/", "f3"), "search forward for a text", searching.search_forward),
     Command("PRSEARCH", ("\\", "f4"), "search backward for a text", searching.search_backward),
     Command("SEARCH_AGAIN", (".",), "search again in the same direction", searching.search_again),
@@ -311,42 +341,25 @@ COMMANDS = (
     Command("GOTOMARK", ("o",), "go to a bookmark", marking.ask_way),
     Command("SAY_MARKS", ("B",), "say the bookmarks", marking.say_marks),
     Command("DELMARK", ("delete", "X"), "delete a bookmark", marking.ask_deletion),
-    Command("INFO", ("i",), "say line, page, percent, heading, words left", asking.say_place),
-    Command("DESC_CURR_CHAR", ("u",), "say what is under the finger", asking.say_character),
-    Command("SPEAK_CURR_WORD", ("w",), "say the word under the finger", asking.say_word),
-    Command("SPELL_CURR_WORD", ("W",), "spell the word under the finger", asking.spell_word),
-    Command("SAY_LINE", ("V", "f5"), "say the line again", asking.say_line),
-    Command("SAY_HEADERS", ("H",), "say the headers of the table", asking.say_headers),
-    Command("CONTRACTED", ("x",), "contracted braille, or uncontracted", turning.contracted),
+    shared("INFO", ("i",), "say line, page, percent, heading, words left", asking.say_place),
+    shared("DESC_CURR_CHAR", ("u",), "say what is under the finger", asking.say_character),
+    shared("SPEAK_CURR_WORD", ("w",), "say the word under the finger", asking.say_word),
+    shared("SPELL_CURR_WORD", ("W",), "spell the word under the finger", asking.spell_word),
+    shared("SAY_LINE", ("V", "f5"), "say the line again", asking.say_line),
+    shared("SAY_HEADERS", ("H",), "say the headers of the table", asking.say_headers),
+    shared("CONTRACTED", ("x",), "contracted braille, or uncontracted", turning.contracted),
     Command("LANGUAGE", ("y",), "translate by the table of a language", turning.ask_language),
-    Command("SKPBLNKWINS", ("z",), "pass over blank lines, or read them", turning.skip_blank),
-    Command("AUTOSCROLL", ("v", "f6"), "lines come by time, or no longer", turning.scroll),
-    Command("AUTOSCROLL_FASTER", ("+", "f8"), "lines come sooner", turning.faster),
-    Command("AUTOSCROLL_SLOWER", ("-", "f7"), "lines come later", turning.slower),
-    Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
-    Command("TEXTURE_UP", ("t",), "more texture", made(turning.turn, "texture", 1)),
-    Command("TEXTURE_DOWN", ("T",), "less texture", made(turning.turn, "texture", -1)),
-    Command("CONTRAST_UP", ("c",), "more contrast", made(turning.turn, "contrast", 1)),
-    Command("CONTRAST_DOWN", ("C",), "less contrast", made(turning.turn, "contrast", -1)),
-    Command("DOT_WIDTH_UP", ("d",), "wider dots", made(turning.turn, "dot_width_mm", 1)),
-    Command("DOT_WIDTH_DOWN", ("D",), "narrower dots", made(turning.turn, "dot_width_mm", -1)),
-    Command(
-        "DOT_SPACING_UP", ("s",), "dots farther apart", made(turning.turn, "dot_spacing_mm", 1)
-    ),
-    Command(
-        "DOT_SPACING_DOWN", ("S",), "dots closer together", made(turning.turn, "dot_spacing_mm", -1)
-    ),
-    Command("CELL_GAP_UP", ("j",), "cells farther apart", made(turning.turn, "cell_gap_mm", 1)),
-    Command(
-        "CELL_GAP_DOWN", ("J",), "cells closer together", made(turning.turn, "cell_gap_mm", -1)
-    ),
-    Command("MAPPING", ("#",), "another way to show dots by actuators", turning.change_mapping),
-    Command(
-        "STRAYING", ("=",), "keep the finger on its line, or show all", turning.change_straying
-    ),
-    Command("BAND_UP", (")",), "leave a line of a page later", made(turning.turn_band, 1)),
-    Command("BAND_DOWN", ("(",), "leave a line of a page sooner", made(turning.turn_band, -1)),
-    Command("UNDO", ("U",), "take back the last change of how braille feels", turning.undo_turn),
+    shared("SKPBLNKWINS", ("z",), "pass over blank lines, or read them", turning.skip_blank),
+    shared("AUTOSCROLL", ("v", "f6"), "lines come by time, or no longer", turning.scroll),
+    shared("AUTOSCROLL_FASTER", ("+", "f8"), "lines come sooner", turning.faster),
+    shared("AUTOSCROLL_SLOWER", ("-", "f7"), "lines come later", turning.slower),
+    shared("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
+    *_knobs(),
+    shared("MAPPING", ("#",), "another way to show dots by actuators", turning.change_mapping),
+    shared("STRAYING", ("=",), "keep the finger on its line, or show all", turning.change_straying),
+    shared("BAND_UP", (")",), "leave a line of a page later", made(turning.turn_band, 1)),
+    shared("BAND_DOWN", ("(",), "leave a line of a page sooner", made(turning.turn_band, -1)),
+    shared("UNDO", ("U",), "take back the last change of how braille feels", turning.undo_turn),
     Command("PREFSAVE", ("P",), "save how braille feels", turning.save_settings),
     Command("HELP", ("h", "f1"), "say the keys", say_keys),
     Command(

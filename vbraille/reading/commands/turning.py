@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
+from vbraille.config.knobs import KNOBS, fixed, next_mapping, obstacle, say_mapping
 from vbraille.errors import InputError, VbrailleError
 from vbraille.reading.cues import Cue
-from vbraille.render.braille.knobs import KNOBS, fixed, next_mapping, obstacle, say_mapping
 from vbraille.render.braille.straying import BAND_BOUNDS
 from vbraille.translate import Book, BrailleTable, find_table
 from vbraille.wording import spelled
@@ -15,9 +15,9 @@ from vbraille.wording import spelled
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from vbraille.config.options import StyleKnob
     from vbraille.reading.reader import Reader
     from vbraille.reading.scrolling import Scroll
-    from vbraille.render.braille.knobs import StyleKnob
     from vbraille.render.braille.straying import Straying
     from vbraille.render.braille.style import BrailleStyle
 

@@ -1,7 +1,7 @@
 """Places in books, kept from one reading to the next."""
 
 from vbraille.reading.places.book import KeptBook
-from vbraille.reading.places.place import Bookmark, BookOptions, KeptPlace, ListedBook
+from vbraille.reading.places.place import Bookmark, BookOptions, KeptPlace, ListedBook, book_options
 from vbraille.reading.places.shelf import KeptPlaces, book_to_open, last_book, resume
 
 __all__ = [
@@ -11,6 +11,7 @@ __all__ = [
     "KeptPlace",
     "KeptPlaces",
     "ListedBook",
+    "book_options",
     "book_to_open",
     "last_book",
     "resume",

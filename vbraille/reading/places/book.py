@@ -13,6 +13,7 @@ from vbraille.reading.places.place import (
     BookOptions,
     KeptPlace,
     anchored,
+    book_options,
     place_in,
     storable,
 )
@@ -52,7 +53,7 @@ class KeptBook:
         Place at which reading goes on; None if the book was not read yet.
     tuning : dict or None
         How the book's braille was tuned; None if nobody kept that.
-    options : BookOptions
+    options : dict
         Options with which the book was opened.
     """
 
@@ -69,7 +70,7 @@ class KeptBook:
         )
         settled, options, place, tuning = row or (1, None, None, None)
         self._settled = bool(settled)
-        self.options = decoded(options, BookOptions) or BookOptions()
+        self.options = {**book_options({}), **(decoded(options, BookOptions) or {})}
         self.place: KeptPlace | None = decoded(place, KeptPlace)
         self.tuning: dict[str, Any] | None = decoded(tuning, dict)
 

@@ -6,13 +6,20 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from vbraille.config.options import BOOK, held_in
 from vbraille.reading.search.answering import answer
 from vbraille.reading.search.queries import FindShare, FindText, Found
 from vbraille.translate.source import share_before
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import Any
+
     from vbraille.reading.search.queries import Query
     from vbraille.translate.source import Source
+
+
+BookOptions = dict[str, bool | int | str | None]
 
 
 def storable(text: str) -> str:
@@ -89,23 +96,14 @@ class Bookmark(msgspec.Struct, frozen=True):
     after: str = ""
 
 
-class BookOptions(msgspec.Struct, frozen=True):
-    """Options with which a book was opened; None for what is usual.
+def book_options(given: Mapping[str, Any], *, turned: bool = False) -> BookOptions:
+    """Choose the options that are kept with a book, of values by their names; None is usual.
 
-    `turned` says that language and grade were chosen by keys while the book was read: they hold
-    the next time, too, unless options say otherwise then.
+    With `turned`, language and grade were chosen by keys while the book was read: they hold the
+    next time, too, unless options say otherwise then.
     """
-
-    language: str | None = None
-    grade: int | None = None
-    table: str | None = None
-    foreign: str = "switch"
-    undefined: str = "mark"
-    encoding: str | None = None
-    form: str | None = None
-    brf_table: str | None = None
-    keep_lines: bool = False
-    turned: bool = False
+    kept = {option.name: given.get(option.name, option.default) for option in held_in(BOOK)}
+    return {**kept, "turned": turned}
 
 
 class ListedBook(msgspec.Struct, frozen=True):

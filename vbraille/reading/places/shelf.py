@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 _END_BYTES = 1_000_000  # at the beginning of a file, and at its end, by which it is known
+_TEXT = ("encoding", "keep_lines", "form")  # options that decide on the characters of a file
 _FORGETTING = (
     "DELETE FROM bookmarks WHERE book = ?",
     "DELETE FROM indices WHERE book = ?",
@@ -250,11 +251,7 @@ def resume(
         Place at which reading goes on, None for the beginning; and a sentence for the reader, such
         as that the text has changed, None if there is none.
     """
-    same_text = (kept.options.encoding, kept.options.keep_lines, kept.options.form) == (
-        options.encoding,
-        options.keep_lines,
-        options.form,
-    )
+    same_text = all(kept.options[name] == options[name] for name in _TEXT)
     note = None
     index = kept.index
     if index is not None:

@@ -11,7 +11,7 @@ from vbraille.scene.measures import LEAST_MM
 from vbraille.scene.patterns import Fill, Uniform, Use
 from vbraille.scene.strokes import Along, Dotting, Stroke
 from vbraille.scene.svg.numbers import length_px
-from vbraille.toml.tomlfile import Table
+from vbraille.tomlfile import Table
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

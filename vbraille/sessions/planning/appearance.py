@@ -12,7 +12,7 @@ from vbraille.errors import check_range
 from vbraille.render import MAPPINGS, Profile, Tuning, single_row
 from vbraille.sessions.planning.conduct import check_name
 from vbraille.sessions.planning.spellings import Masks
-from vbraille.toml.tomlfile import Table, which
+from vbraille.tomlfile import Table, which
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

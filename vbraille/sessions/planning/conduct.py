@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from vbraille.errors import check_range
-from vbraille.toml.tomlfile import Table
+from vbraille.tomlfile import Table
 
 # Form of the names of conditions and fields, which become columns of tables and parts of file
 # names.

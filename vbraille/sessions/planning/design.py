@@ -13,7 +13,7 @@ from vbraille.errors import check_range
 from vbraille.sessions.planning.conduct import check_file_name
 from vbraille.sessions.planning.spellings import Mask, Masks, WrittenText
 from vbraille.sessions.planning.stimuli import KNOBS, KnobName, StimulusKnob
-from vbraille.toml.tomlfile import Table
+from vbraille.tomlfile import Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -9,7 +9,7 @@ from msgspec import structs
 
 from vbraille.sessions.planning.appearance import Condition
 from vbraille.sessions.planning.conduct import check_name
-from vbraille.toml.tomlfile import Table
+from vbraille.tomlfile import Table
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from vbraille.sessions.planning.conduct import NAME, check_file_name
 from vbraille.sessions.planning.design import MOST_TRIALS
 from vbraille.sessions.planning.spellings import Mask, Masks, SpellingKeys, read_written
 from vbraille.sessions.planning.stimuli import check_seed
-from vbraille.toml.tomlfile import Table, which
+from vbraille.tomlfile import Table, which
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:

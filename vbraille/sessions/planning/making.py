@@ -17,7 +17,7 @@ from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.sequencing import arranged
 from vbraille.sessions.planning.spellings import WrittenText
 from vbraille.sessions.planning.stimuli import Stimuli, Trial, check_participant, check_seed
-from vbraille.toml.tomlfile import which
+from vbraille.tomlfile import which
 from vbraille.wording import setting
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from vbraille.adaptive.staircase import StaircaseRule, Staircases, StopRule
 from vbraille.errors import check_range
 from vbraille.sessions.planning.design import MOST_TRIALS, Choice, Design
 from vbraille.sessions.planning.stimuli import KNOBS, KnobName
-from vbraille.toml.tomlfile import Table
+from vbraille.tomlfile import Table
 
 THRESHOLD, PREFERRED = "threshold", "preferred"
 _MOST_VALUES = 1000

@@ -55,7 +55,7 @@ from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
 from vbraille.sessions.planning.questions import AnyQuestion, CellSpelling, usual_question
 from vbraille.sessions.planning.spellings import SpellingKeys, WrittenText, cells_of
 from vbraille.sessions.planning.stimuli import Stimulus, with_value
-from vbraille.toml.tomlfile import Table, which
+from vbraille.tomlfile import Table, which
 
 if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry

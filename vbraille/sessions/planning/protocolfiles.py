@@ -12,6 +12,7 @@ from msgspec import field
 
 from vbraille.braille.spelling import name_dots, to_braille
 from vbraille.errors import InputError
+from vbraille.files import read_text
 from vbraille.render import Profile
 from vbraille.sessions.planning.appearance import CONVENTIONAL, LENGTHS, Condition
 from vbraille.sessions.planning.design import MOST_TRIALS, UNFELT, Choice, ItemList, StringList
@@ -28,8 +29,7 @@ from vbraille.sessions.planning.spellings import (
     spelled,
 )
 from vbraille.sessions.planning.stimuli import GAP, KNOBS, with_value
-from vbraille.toml.textfile import read_text
-from vbraille.toml.tomlfile import TomlFile, which
+from vbraille.tomlfile import TomlFile, which
 
 if TYPE_CHECKING:
     from collections.abc import Callable

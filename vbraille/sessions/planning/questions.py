@@ -34,7 +34,7 @@ from vbraille.sessions.planning.spellings import parse_text
 from vbraille.sessions.planning.stimuli import KNOBS, said_value
 from vbraille.sessions.simulated.feeling import nearer
 from vbraille.sessions.simulated.observer import LEAST_FELT, TIE
-from vbraille.toml.tomlfile import Table
+from vbraille.tomlfile import Table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -9,7 +9,7 @@ import numpy as np
 
 from vbraille.braille.spelling import UNREAD, spell, spell_string, to_answer, to_braille
 from vbraille.errors import InputError
-from vbraille.toml.tomlfile import quote
+from vbraille.tomlfile import quote
 
 if TYPE_CHECKING:
     from collections.abc import Callable

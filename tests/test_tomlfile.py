@@ -8,7 +8,7 @@ import pytest
 from msgspec import field
 
 from vbraille.errors import InputError
-from vbraille.toml.tomlfile import Table, TomlFile
+from vbraille.tomlfile import Table, TomlFile
 
 
 class Point(Table, frozen=True, array_like=True):
@@ -137,7 +137,7 @@ def test_what_nests_deep_is_refused_in_little_memory(text):
     script = (
         "import resource, sys\n"
         "from vbraille.errors import InputError\n"
-        "from vbraille.toml.tomlfile import TomlFile\n"
+        "from vbraille.tomlfile import TomlFile\n"
         "resource.setrlimit(resource.RLIMIT_AS, (500 << 20,) * 2)\n"
         "resource.setrlimit(resource.RLIMIT_CPU, (20,) * 2)\n"
         "try:\n    TomlFile(sys.stdin.read(), 'room.toml').lines()\n"

@@ -4,20 +4,21 @@ from pathlib import Path
 
 import pytest
 
-from vbraille.cli.parser import parse
+from vbraille.config.settings import (
+    display_name,
+    load_settings,
+    missing_profile,
+    parse_settings,
+    say_bindings,
+    say_settings,
+    say_tuning,
+    with_profile,
+)
 from vbraille.errors import InputError
 from vbraille.files import settings_path
 from vbraille.reading.bindings import Bindings
 from vbraille.reading.commands.table import bound_by
 from vbraille.render import STRESS2, VBD
-from vbraille.settings.loading import load_settings
-from vbraille.settings.origins import say_bindings, say_settings, say_tuning
-from vbraille.settings.tables import parse_settings
-from vbraille.settings.values import (
-    display_name,
-    missing_profile,
-    with_profile,
-)
 
 FILE = Path("settings.toml")
 TEXT = """# mine
@@ -72,9 +73,7 @@ def test_each_setting_is_one_line_with_where_it_comes_from():
     ]
     given = list(say_tuning(settings, "evening", STRESS2, style, ("texture",)))
     assert given[0] == "texture: 0.8 (option)"
-    said = list(
-        say_settings(settings, {"device": "sim:", "grade": None}, parse(["settings"]).usual)
-    )
+    said = list(say_settings(settings, {"device": "sim:", "grade": None}))
     assert said[:3] == [
         "device: sim: (option)",
         "language: fr (settings.toml line 3)",

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from vbraille import tomlfile
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text
-from vbraille.toml import tomlfile
-from vbraille.toml.tomlfile import lines_of
+from vbraille.tomlfile import lines_of
 
 NASTY = (
     r"""# first = 0

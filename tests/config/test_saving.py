@@ -6,12 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from vbraille.config.settings import load_settings, parse_settings, save_profile, with_profile
 from vbraille.errors import InputError, VbrailleError
 from vbraille.render import STRESS2, VBD, model_of
-from vbraille.settings.loading import load_settings
-from vbraille.settings.saving import save_profile
-from vbraille.settings.tables import parse_settings
-from vbraille.settings.values import with_profile
 
 TEXT = """# mine
 [read]

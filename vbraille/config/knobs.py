@@ -1,102 +1,29 @@
-"""What a reader turns while reading: a table of knobs, and how far each of them goes.
+"""Knobs of a style: what keeps one from turning, the mappings in turn, and values for files.
 
-A knob is a field of the style with a name, a unit, a step and bounds. Mappings and dot rows are
-no numbers; the ones that a display can show come one after the other.
+`vbraille.config.options` declares them. Mappings and dot rows are no numbers; the ones that a
+display can show come one after the other.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.dots import DOT_ROWS
-from vbraille.braille.geometry import BOUNDS_MM
+from vbraille.config.options import knobs
 from vbraille.errors import InputError
 from vbraille.render.braille.mappings import MAPPINGS, single_row
-from vbraille.render.braille.profiles import MOST_TEXTURE_CYCLES, Profile
+from vbraille.render.braille.profiles import Profile
 
 if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
+    from vbraille.config.options import StyleKnob
     from vbraille.display import Display
     from vbraille.render.braille.mappings import Mapping
     from vbraille.render.braille.style import BrailleStyle
 
-_PLACES = 6  # decimal places, so that ten steps of 0.1 are 1
 _CELL = ("dot_width_mm", "dot_spacing_mm", "cell_gap_mm")
 _SHOWN_ROWS = DOT_ROWS - 1  # the row of dots 7 and 8 is not shown alone
-
-
-@dataclass(frozen=True, slots=True)
-class StyleKnob:
-    """A number of a style that a reader turns.
-
-    Parameters
-    ----------
-    name
-        Name in commands and in settings files.
-    field
-        Field that `BrailleStyle.replace` takes.
-    label
-        Name in sentences.
-    unit
-        Unit in sentences; empty without one.
-    step
-        Number that a turn adds.
-    low, high
-        Bounds of the value.
-    """
-
-    name: str
-    field: str
-    label: str
-    unit: str
-    step: float
-    low: float
-    high: float
-
-    def applied(self, style: BrailleStyle, value: float) -> BrailleStyle:
-        """Style in which the knob has another value."""
-        changes: dict[str, Any] = {self.field: value}
-        return style.replace(**changes)
-
-    def value(self, style: BrailleStyle) -> float:
-        """Value of a style."""
-        part = style.geometry if self.unit == "mm" else style.tuning
-        return getattr(part, self.field)
-
-    def said(self, value: float) -> str:
-        """Words for a value, such as "dot width: 2.2 mm"."""
-        return f"{self.label}: {value:g} {self.unit}".rstrip()
-
-    def turned(self, value: float, steps: int) -> float:
-        """Value after so many steps up, or down if negative; it stops at the bounds."""
-        return self.nearest(value + steps * self.step)
-
-    def nearest(self, value: float) -> float:
-        """Value that the knob can have, within its bounds, that is nearest to another."""
-        within = min(max(value, self.low), self.high)
-        if isinstance(self.low, int):  # only whole steps make sense
-            return round(self.low + self.step * round((within - self.low) / self.step))
-        return round(within, _PLACES)
-
-
-def _length(name: str, step: float) -> StyleKnob:
-    low, high = BOUNDS_MM[f"{name}_mm"]
-    return StyleKnob(f"{name}_mm", f"{name}_mm", name.replace("_", " "), "mm", step, low, high)
-
-
-KNOBS = {
-    knob.name: knob
-    for knob in (
-        StyleKnob("texture", "texture", "texture", "", 0.1, 0.0, 1.0),
-        StyleKnob("contrast", "contrast", "contrast", "", 0.1, 0.0, 1.0),
-        StyleKnob("texture_cycles", "cycles", "texture cycles", "", 2, 1, MOST_TEXTURE_CYCLES),
-        _length("dot_width", 0.2),
-        _length("dot_spacing", 0.2),
-        _length("cell_gap", 0.2),
-        _length("line_pitch", 0.5),
-    )
-}
+KNOBS = {knob.key: knob for knob in knobs()}
 
 
 def fixed(knob: StyleKnob, style: BrailleStyle) -> str:

@@ -1,0 +1,68 @@
+"""Tables of documents that follow from the program; `python -m tests.documents` writes them."""
+
+import re
+from pathlib import Path
+
+from vbraille.config.options import BOOK, FILE, PROFILE, held_in
+from vbraille.feeling.commands import COMMANDS as FEELING
+from vbraille.reading.commands.table import COMMANDS as READING
+
+DOCS = Path(__file__).parents[1] / "docs"
+
+
+def _value(option):
+    """The value of an option, in words."""
+    if option.choices:
+        return " or ".join(f"`{name}`" for name in option.choices)
+    words = {bool: "true or false", int: "a whole number", float: "a number"}
+    bounds = "" if option.low is None else f", {option.low:g} to {option.high:g}"
+    return f"{words.get(option.kind, 'a text')}{bounds} {option.unit}".rstrip()
+
+
+def _row(*parts):
+    return f"| {' | '.join(part.replace('|', chr(92) + '|') for part in parts)} |"
+
+
+def _read():
+    yield _row("key", "value", "what it does", "usual", "kept with a book")
+    for option in held_in(FILE):
+        kept = "yes" if BOOK in option.holds else ""
+        usual = option.usual or "false"
+        yield _row(f"`{option.key}`", _value(option), option.does, usual, kept)
+
+
+def _profile():
+    yield _row("value", "what it may be", "what it does", "usual")
+    for option in held_in(PROFILE):
+        yield _row(f"`{option.key}`", _value(option), option.does, option.usual)
+
+
+def _keys(commands):
+    yield _row("command", "keys", "what it does", "when")
+    for command in commands:
+        when = ", ".join(context.value for context in command.contexts)
+        yield _row(f"`{command.name}`", command.spoken_keys, command.help, when)
+
+
+# Each document with its tables, which begin with the first row of each.
+TABLES = (
+    ("settings.md", list(_read())),
+    ("settings.md", list(_profile())),
+    ("keys.md", list(_keys(READING))),
+    ("feeling.md", list(_keys(FEELING))),
+)
+
+
+def with_table(text, rows):
+    """A document in which the table that begins with the first row has these rows."""
+    first, *others = rows
+    table = "\n".join((first, "|" + "---|" * (first.count("|") - 1), *others, ""))
+    start = text.index(f"{first}\n")
+    found = re.compile(r"(?:\|.*\n)+").match(text, start)
+    return text[:start] + table + text[found.end() :]
+
+
+if __name__ == "__main__":
+    for name, rows in TABLES:
+        page = DOCS / name
+        page.write_text(with_table(page.read_text(encoding="utf-8"), rows), encoding="utf-8")
