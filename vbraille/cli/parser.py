@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from vbraille.cli.options import forecast, lab, pictures, reading
+import sys
+
+from vbraille.cli.options import completion, forecast, lab, pictures, reading
 from vbraille.cli.options.commandparser import CommandParser
 from vbraille.config.options import OPTIONS, PROFILE
 from vbraille.errors import InputError
@@ -89,12 +91,12 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
     ),
     "device": (
         "Say which devices there are, and try one.",
-        lambda parser: _add(parser, "action", "ACTION", DEVICE_ACTIONS),
+        lambda parser: _add(parser, "action", "ACTION", ACTIONS["device"]),
         "vbraille device check serial:/dev/ttyACM0",
     ),
     "session": (
         "Run legibility sessions, and keep every answer.",
-        lambda parser: _add(parser, "action", "ACTION", SESSION_ACTIONS),
+        lambda parser: _add(parser, "action", "ACTION", ACTIONS["session"]),
         "vbraille session run legibility --participant P07 --seed 42",
     ),
     "analyse": (
@@ -114,13 +116,18 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
     ),
     "scene": (
         "Look through tactile pictures, and convert those of others.",
-        lambda parser: _add(parser, "action", "ACTION", SCENE_ACTIONS),
+        lambda parser: _add(parser, "action", "ACTION", ACTIONS["scene"]),
         "vbraille scene check texts/scenes/house.scene",
     ),
     "tables": (
         "List the braille tables that there are, and which a language takes.",
         reading.tables,
         "vbraille tables --language fr",
+    ),
+    "completion": (
+        "Print what makes a shell complete commands, options and values.",
+        completion.completion,
+        "vbraille completion fish > ~/.config/fish/completions/vbraille.fish",
     ),
 }
 SCENE_ACTIONS: dict[str, tuple[str, Options, str]] = {
@@ -209,6 +216,35 @@ SESSION_ACTIONS: dict[str, tuple[str, Options, str]] = {
 }
 
 
+# Actions of the commands that have any.
+ACTIONS = {"device": DEVICE_ACTIONS, "scene": SCENE_ACTIONS, "session": SESSION_ACTIONS}
+
+# Commands as the overview has them.
+GROUPS = {
+    "reading": ("read", "books", "keys", "settings", "tune", "structure", "tables"),
+    "pictures": ("feel", "map", "scene", "profile"),
+    "a page, its frames and drawings": ("page", "render", "plot", "monitor"),
+    "devices": ("device", "simulate"),
+    "for a lab": ("session", "analyse", "power", "predict"),
+    "for the shell": ("completion",),
+}
+
+
+class _Overview(CommandParser):
+    """The parser of all commands, whose help has them in groups."""
+
+    def format_help(self) -> str:
+        """Help on all commands, a line for each, under the name of its group."""
+        width = max(map(len, COMMANDS))
+        lines = [self.format_usage(), self.description or ""]
+        for title, names in GROUPS.items():
+            lines.append(f"\n{title}:")
+            lines += [f"    {name:{width}}  {COMMANDS[name][0]}" for name in names]
+        lines += ["\noptions:", "    -h, --help     Print this help."]
+        lines += ["    -V, --version  Print the version.", "", self.epilog or "", ""]
+        return "\n".join(lines)
+
+
 def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     """Read the command line.
 
@@ -217,19 +253,27 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     InputError
         If it cannot be understood.
     """
-    parser = CommandParser(
+    argv = sys.argv[1:] if argv is None else list(argv)
+    if argv[:1] == ["help"]:
+        argv = [*argv[1:], "--help"]
+    parser = _Overview(
         prog="vbraille",
         description="Read braille under one fingertip, on a page as large as you like.",
-        epilog="example:\n  vbraille read book.txt\n\nvbraille COMMAND --help says more of each.",
+        epilog="example:\n  vbraille read book.txt\n\nvbraille help COMMAND says more of each.",
     )
     parser.add_argument(
-        "--version", action="version", version=f"vbraille {__version__}", help="Print the version."
+        "-V",
+        "--version",
+        action="version",
+        version=f"vbraille {__version__}",
+        help="Print the version.",
     )
     _add(parser, "command", "COMMAND", COMMANDS)
     arguments = parser.parse_args(argv)
     for name, value in vars(arguments).items():
-        if (
-            isinstance(value, list) and name != "paths"
+        if isinstance(value, list) and name not in (
+            "paths",
+            "words",
         ):  # Python before 3.13 takes the value of --name=-- away
             parser.error(f"argument --{name.replace('_', '-')}: expected one argument")
     for name, value in vars(arguments).items():
