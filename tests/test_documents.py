@@ -15,8 +15,9 @@ PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
 # Pages that lead somebody to a first success: their commands are copied as they stand.
 DOORS = [ROOT / "README.md", *(ROOT / f"docs/{name}.md" for name in ("reading", "lab", "building"))]
 
-_BLOCK = re.compile(r"^```\w*\n(.*?)^```$|^    (\S.*\n)", re.MULTILINE | re.DOTALL)
-_COMMANDS = re.compile(r"^```sh\n(.*?)^```$|^    (\S[^\n]*\n)", re.MULTILINE | re.DOTALL)
+_INDENTED = r"(?<=\n\n)((?:    \S[^\n]*\n)+)"
+_BLOCK = re.compile(rf"^```\w*\n(.*?)^```$|{_INDENTED}", re.MULTILINE | re.DOTALL)
+_COMMANDS = re.compile(rf"^```sh\n(.*?)^```$|{_INDENTED}", re.MULTILINE | re.DOTALL)
 _INLINE = re.compile(r"`([^`\n]+)`")
 _LINK = re.compile(r"\]\(([^)#\s]+)[^)\s]*\)")
 _OPTION = re.compile(r"--[a-z][a-z-]*")
@@ -48,7 +49,7 @@ def helps(capsys, *words):
     with pytest.raises(SystemExit):
         parse([*words, "--help"])
     text = capsys.readouterr().out
-    names = re.findall(r"^    ([a-z]+) ", text, re.MULTILINE) if "..." in text else []
+    names = re.findall(r"^    ([a-z]+)(?: |$)", text, re.MULTILINE) if "..." in text else []
     return text + "".join(helps(capsys, *words, name) for name in names)
 
 

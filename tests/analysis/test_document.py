@@ -1,4 +1,4 @@
-"""docs/analysis.md says what every table has, in the tables' own words."""
+"""docs/tables.md says what every table has, in the tables' own words."""
 
 import importlib
 import pkgutil
@@ -9,7 +9,7 @@ import pytest
 import vbraille.analysis
 from vbraille.analysis.schemas import Schema
 
-DOCUMENT = Path("docs/analysis.md").read_text(encoding="utf-8")
+DOCUMENT = Path("docs/tables.md").read_text(encoding="utf-8")
 
 
 def schemas():

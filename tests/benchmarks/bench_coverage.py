@@ -1,4 +1,4 @@
-"""How often the analysis's 95 % intervals hold the truth; its tables stand in docs/analysis.md.
+"""How often the analysis's 95 % intervals hold the truth; its tables stand in docs/validation.md.
 
 `OMP_NUM_THREADS=1 python -m tests.benchmarks.bench_coverage` writes them there: every number
 comes from seeds of its own cell, so that a rerun writes the same.
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from tests.benchmarks.coverage_people import Found
 
-DOCUMENT = Path("docs/analysis.md")
+DOCUMENT = Path("docs/validation.md")
 BEGIN, END = "<!-- coverage: begin -->", "<!-- coverage: end -->"
 STUDIES, FEWER, SLOW, FEWEST = 10_000, 1_000, 500, 100
 LOW, HIGH = 93.0, 98.0

@@ -65,8 +65,8 @@ _START = """
 import time
 begun_s = time.perf_counter()
 import vbraille.cli.commands.session
-import vbraille.sessions.running.console, vbraille.sessions.running.course
-import vbraille.sessions.running.showing
+import vbraille.sessions.running.console, vbraille.sessions.running.runner
+import vbraille.sessions.running.presenters
 from vbraille.engine.host import Host
 from vbraille.render import VBD
 imported_s = time.perf_counter()

@@ -1,7 +1,7 @@
 """How often the intervals of the trials' model, d′ and psychometric functions hold the truth.
 
 `OMP_NUM_THREADS=1 python -m tests.benchmarks.bench_trials_coverage` writes its tables into
-docs/analysis.md: every number comes from seeds of its own cell, so that a rerun writes the same.
+docs/validation.md: every number comes from seeds of its own cell, so that a rerun writes the same.
 Names of tables after it make these alone, and print them instead.
 """
 
@@ -20,7 +20,7 @@ from tests.benchmarks.timing import Result
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-DOCUMENT = Path("docs/analysis.md")
+DOCUMENT = Path("docs/validation.md")
 BEGIN, END = "<!-- coverage of trials: begin -->", "<!-- coverage of trials: end -->"
 STUDIES, FEWER, SLOW = 10_000, 2_000, 1_000
 LOW, HIGH, MOST_MISLED, MOST_BIASED = 93.0, 98.0, 6.0, 0.02

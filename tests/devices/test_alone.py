@@ -21,7 +21,7 @@ from tests.devices.pagecontroller import (
     unstuffed,
 )
 from vbraille.devices.events import Button, Knob
-from vbraille.devices.saying import told
+from vbraille.devices.sentences import told
 from vbraille.devices.serial.wire import Decoder
 from vbraille.simulation.firmware import Controller
 

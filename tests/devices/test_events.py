@@ -30,7 +30,7 @@ from vbraille.devices.events import (
     to_json,
 )
 from vbraille.devices.latero.device import DISPLAY as LATERO
-from vbraille.devices.saying import placing_sentence, say, told
+from vbraille.devices.sentences import placing_sentence, say, told
 from vbraille.display import Display
 
 SAID = [

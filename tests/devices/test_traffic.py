@@ -8,7 +8,7 @@ import pytest
 from tests.devices.bench import DOWN_BYTES, HALF, REST, Bench, shown
 from tests.devices.serial.test_transitions import AFTER_THE_START, ROWS, watched
 from tests.tiers import by_tier
-from vbraille.devices.serial.transitions import Stage
+from vbraille.devices.serial.conversation import Stage
 from vbraille.devices.serial.wire import (
     PLACED,
     RESTING,

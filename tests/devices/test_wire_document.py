@@ -12,9 +12,9 @@ import pytest
 from cobs import cobs
 
 from vbraille.devices.serial import wire
+from vbraille.devices.serial.conversation import TRANSITIONS, Stage
 from vbraille.devices.serial.device import LOWEST_RATE_HZ
-from vbraille.devices.serial.sensors import CarriagePlace
-from vbraille.devices.serial.transitions import TRANSITIONS, Stage
+from vbraille.devices.serial.hardware import CarriagePlace
 from vbraille.devices.serial.wire import (
     CRC_RESIDUE,
     FAULTY,

@@ -4,7 +4,7 @@ from contextlib import ExitStack, closing
 
 import pytest
 
-from tests.engine.lendable import PICTURES, Rig
+from tests.engine.steady import PICTURES, Rig
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.engine.lendable import PICTURES, levels_of, sockets, terminal
+from tests.engine.steady import PICTURES, levels_of, sockets, terminal
 from vbraille.devices.events import Knob, Notice, Silent, Unplugged
 from vbraille.devices.serial.wire import SILENCE_MS, Decoder, Error, Frame, encode
 from vbraille.engine.record import Flag
@@ -230,7 +230,7 @@ def test_a_line_that_is_hung_up_is_gone(rigs, ends):
     assert rig.port.gone
     assert rig.loop.tally.ticks == before + 1
     assert Unplugged() in rig.device.take_events()
-    assert rig.device.lend() is None
+    assert rig.device.begin_steady() is None
 
 
 def test_a_line_that_takes_nothing_more_is_gone(rig):
@@ -242,7 +242,7 @@ def test_a_line_that_takes_nothing_more_is_gone(rig):
     rig.tick()
     assert rig.port.gone
     assert rig.loop.tally.ticks == before + 1
-    assert rig.device.lend() is None
+    assert rig.device.begin_steady() is None
 
 
 @pytest.mark.parametrize("mm_per_count", [float("nan"), float("inf"), 1e6])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tests.engine.lendable import PICTURES, TOP, Twin, assert_same_tick, levels_of
+from tests.engine.steady import PICTURES, TOP, Twin, assert_same_tick, levels_of
 from vbraille.devices.calibration import Calibration, Tried
 from vbraille.devices.serial.wire import Decoder
 

@@ -10,7 +10,7 @@ from contextlib import suppress
 import numpy as np
 import pytest
 
-from tests.engine.lendable import (
+from tests.engine.steady import (
     PICTURES,
     TOP,
     Twin,

@@ -113,7 +113,7 @@ class Session:
         """A person who types these lines."""
         return Person(list(script))
 
-    def sit(self, *script, engine=BatchEngine, noise=0.0, onlookers=None):
+    def sit(self, *script, engine=BatchEngine, noise=0.0, view=None):
         """Run it: by a person, or one who types these lines, else by a simulated reader."""
         person = script[0] if script and isinstance(script[0], Person) else self.person(*script)
         said, played = person.said, Played()
@@ -123,7 +123,7 @@ class Session:
             engine=lambda spec, wanted: engine(open_device(spec, wanted), poll_ticks=100),
         )
         answers = person if script else f"simulated:{noise:g}"
-        session.run(answers, say=said.append, sound=played, onlookers=onlookers)
+        session.run(answers, say=said.append, sound=played, view=view)
         record = session.record
         progress = Progress(self.plan, record.told.events, record.procedure)
         return Sat(said, record.told.events, played.tones, record, progress, session.progress)

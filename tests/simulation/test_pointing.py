@@ -12,7 +12,7 @@ import pytest
 from tests.tiers import by_tier
 from vbraille.devices import open_device
 from vbraille.devices.events import HandHeld
-from vbraille.devices.saying import told
+from vbraille.devices.sentences import told
 from vbraille.engine.clock import ManualClock
 from vbraille.errors import InputError
 from vbraille.render import STRESS2

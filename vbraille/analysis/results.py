@@ -100,7 +100,7 @@ class Results:
         return {table.name: table.frame for table in self.result_tables()}
 
     def table(self, name: str) -> pd.DataFrame:
-        """One table as a data frame: docs/analysis.md describes its columns.
+        """One table as a data frame: docs/tables.md describes its columns.
 
         Raises
         ------

@@ -14,7 +14,7 @@ from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import opened_device
-from vbraille.devices.saying import placing_sentence
+from vbraille.devices.sentences import placing_sentence
 from vbraille.engine.host import OPEN_S, OPENING, HostDiedError, too_slow
 from vbraille.errors import InputError
 from vbraille.reading.commands.table import press

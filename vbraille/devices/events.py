@@ -1,6 +1,6 @@
 """What a device, or the engine that drives it, has to tell: facts with numbers, no sentences.
 
-`vbraille.devices.saying` makes sentences of them. What has no kind of its own here, a driver
+`vbraille.devices.sentences` makes sentences of them. What has no kind of its own here, a driver
 tells as a `Notice`.
 """
 

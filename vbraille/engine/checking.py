@@ -9,7 +9,7 @@ import numpy as np
 
 from vbraille.devices.base import Placing
 from vbraille.devices.events import WatchdogTripped
-from vbraille.devices.saying import shown_place, told
+from vbraille.devices.sentences import shown_place, told
 from vbraille.devices.serial.wire import RAMP_MS, WATCHDOG_MS
 from vbraille.engine.checkup import (
     NS_PER_S,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from vbraille.devices.serial.lending import example
+from vbraille.devices.serial.kernels import example
 from vbraille.engine import serialtick
 from vbraille.engine.constants import FADE_S, IDLE_S, NS_PER_S
 from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK, Flag, Tally
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from vbraille.devices.base import Device
     from vbraille.devices.events import Event
     from vbraille.devices.serial.device import SerialDevice
-    from vbraille.devices.serial.lending import Lent
+    from vbraille.devices.serial.kernels import SteadyConversation
     from vbraille.engine.clock import Clock
     from vbraille.engine.mailbox import Mailbox
     from vbraille.render.program import Program
@@ -82,7 +82,7 @@ class Loop:
     ) -> None:
         self.device = device
         # It is known by its method: its module loads pyserial, which no other device needs.
-        self._lender = cast("SerialDevice", device) if hasattr(device, "lend") else None
+        self._serial = cast("SerialDevice", device) if hasattr(device, "begin_steady") else None
         self.clock = clock
         self.rate_hz = rate_hz
         display = device.display
@@ -160,19 +160,19 @@ class Loop:
     def run(self, mailbox: Mailbox | None = None) -> None:
         """Do some ticks, until the mailbox says something new or it is time to look around.
 
-        Compiled code does them for a device that lends its numbers (`SerialDevice.lend`), as long
-        as nothing unusual happens; a tick in which something does is done in Python.
+        Compiled code does them for a serial device (`SerialDevice.begin_steady`) as long as
+        nothing unusual happens; a tick in which something does is done in Python.
 
         Raises
         ------
         DeviceError
             If the device is gone, or says that its carriage is where none can be.
         """
-        lent = None if self._lender is None else self._lender.lend()
-        if lent is None:
+        steady = None if self._serial is None else self._serial.begin_steady()
+        if self._serial is None or steady is None:
             self.tick()
         else:
-            self._run_steadily(lent, mailbox)
+            self._run_steadily(self._serial, steady, mailbox)
 
     def tick(self) -> None:
         """Wait for the next deadline; then read, make the frame and write it.
@@ -259,24 +259,27 @@ class Loop:
             f"its encoder and its counts with 'vbraille device check'"
         )
 
-    def _run_steadily(self, lent: Lent, mailbox: Mailbox | None) -> None:
+    def _run_steadily(
+        self, device: SerialDevice, steady: SteadyConversation, mailbox: Mailbox | None
+    ) -> None:
         """Do ticks in compiled code, and in Python the one that compiled code stopped at."""
         told, ring = self._told, self.ring
-        told[serialtick.DESCRIPTOR], told[serialtick.HELD] = lent.descriptor, lent.begun
+        told[serialtick.DESCRIPTOR], told[serialtick.HELD] = steady.descriptor, steady.begun
         told[serialtick.DEADLINE], told[serialtick.APPENDED] = self._deadline_ns, ring.appended
         told[serialtick.LATE_SO_FAR], told[serialtick.OVERRUNS_SO_FAR] = self.late, self.overruns
         told[serialtick.UNSENT], told[serialtick.RESTED] = 0, self.device.rested
         orders, known = self._silence if mailbox is None else (mailbox.orders, mailbox.obeyed)
-        why = self.state.run_steadily(told, orders, known, lent, self._times_ns, self._poses, ring)
+        why = self.state.run_steadily(
+            told, orders, known, steady, self._times_ns, self._poses, ring
+        )
         done = int(told[serialtick.APPENDED]) - ring.appended
         ring.end(done)
         self.late = int(told[serialtick.LATE_SO_FAR])
         self._deadline_ns = int(told[serialtick.DEADLINE])
         woken_ns, lateness_ns = int(told[serialtick.WOKEN]), int(told[serialtick.LATENESS_OF_IT])
         unwritten = slice(told[serialtick.WRITTEN], told[serialtick.SIZE])
-        torn = bytes(lent.out[unwritten]) if why == serialtick.TORN else b""
-        assert self._lender is not None
-        self._lender.take_back(lent, int(told[serialtick.HELD]), int(told[serialtick.UNSENT]), torn)
+        torn = bytes(steady.out[unwritten]) if why == serialtick.TORN else b""
+        device.end_steady(int(told[serialtick.HELD]), int(told[serialtick.UNSENT]), torn)
         if why == serialtick.NOWHERE:
             raise self._nowhere()
         if why == serialtick.UNMADE:

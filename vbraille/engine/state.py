@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.events import Event
-    from vbraille.devices.serial.lending import Lent
+    from vbraille.devices.serial.kernels import SteadyConversation
     from vbraille.display import Display
     from vbraille.engine.ring import Ring
     from vbraille.render.program import Program
@@ -220,21 +220,21 @@ class LoopState:
         told: NDArray[np.int64],
         orders: NDArray[np.int64],
         known: NDArray[np.int64],
-        lent: Lent,
+        steady: SteadyConversation,
         times_ns: NDArray[np.int64],
         poses: NDArray[np.float64],
         ring: Ring,
     ) -> int:
-        """Do ticks of a device that lends its numbers; see `vbraille.engine.serialtick.run`."""
+        """Do ticks of a steady serial conversation; see `vbraille.engine.serialtick.run`."""
         return serialtick.run(
             told,
             orders,
             known,
-            lent.received,
-            lent.work,
-            lent.out,
-            lent.talk,
-            lent.actuators,
+            steady.received,
+            steady.work,
+            steady.out,
+            steady.talk,
+            steady.actuators,
             *self._arrays,
             times_ns,
             poses,

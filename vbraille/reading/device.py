@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Self, Unpack
 from vbraille.devices.base import Device, Placing
 from vbraille.devices.events import Button, Knob, NotInTime
 from vbraille.devices.registry import check_actuators, check_travel, find_driver
-from vbraille.devices.saying import told
+from vbraille.devices.sentences import told
 from vbraille.display import check_rate
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 from vbraille.config.knobs import KNOBS, say_mapping
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Changed, Silent, Stalled, Stranger, Unplugged
-from vbraille.devices.saying import say
+from vbraille.devices.sentences import say
 from vbraille.errors import InputError
 from vbraille.live.messages import LineShown, PagePress, SceneShown, Turn, ViewState
 from vbraille.live.monitor import Monitor

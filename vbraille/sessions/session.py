@@ -23,9 +23,9 @@ from vbraille.sessions.planning.spellings import made_by
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.folder import FORMAT, Record, create, load, versions
 from vbraille.sessions.record.progress import Progress
-from vbraille.sessions.running.given import answers_from
 from vbraille.sessions.running.markers import Markers, parse_markers
 from vbraille.sessions.running.reader import seed_of
+from vbraille.sessions.running.sources import responses_of
 from vbraille.simulation.specs import device_spec, has_hand, refuse_hand, steering_of
 from vbraille.simulation.steering import Pointer
 from vbraille.wording import setting
@@ -35,11 +35,11 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.sessions.planning.plan import Plan
-    from vbraille.sessions.running.answers import Answers
     from vbraille.sessions.running.conventional import OnConventional
-    from vbraille.sessions.running.given import Source
-    from vbraille.sessions.running.onlookers import Onlookers
-    from vbraille.sessions.running.showing import RunEngine
+    from vbraille.sessions.running.liveview import SessionView
+    from vbraille.sessions.running.presenters import RunEngine
+    from vbraille.sessions.running.responses import Responses
+    from vbraille.sessions.running.sources import Source
     from vbraille.simulation.steering import Steering
     from vbraille.sounds import Sound
 
@@ -143,7 +143,7 @@ def head_of(
     }
 
 
-def _nobody(_sentence: str) -> None:
+def _ignore(_sentence: str) -> None:
     """Ignore a sentence: this is where sentences go that nobody wants to hear."""
 
 
@@ -215,7 +215,7 @@ class Session:
             self._pointer = Pointer() if has_hand(conditions.device) else None
         if conditions.markers is not None:
             parse_markers(conditions.markers)
-        check_beside(protocol, conditions)
+        check_conventional(protocol, conditions)
         spec = device_spec(
             conditions.device, conditions.hand, seed_of(drawn), self._steering, self._pointer
         )
@@ -358,7 +358,7 @@ class Session:
         """
         self.fields = told_fields(self.protocol, fields)
 
-    def answers(self, source: Source | None = None) -> Answers:
+    def answers(self, source: Source | None = None) -> Responses:
         """Make the source of answers for `run`, and check it before anything is begun.
 
         Raises
@@ -368,17 +368,17 @@ class Session:
         """
         chosen = self.conditions.answers if source is None else source
         fast = self.conditions.fast
-        return answers_from(chosen, self.protocol, self.plan, self.progress, fast=fast)
+        return responses_of(chosen, self.protocol, self.plan, self.progress, fast=fast)
 
     def run(
         self,
         answers: Source | None = None,
         *,
-        say: Say = _nobody,
-        warn: Say = _nobody,
+        say: Say = _ignore,
+        warn: Say = _ignore,
         sound: Sound | None = None,
         before_rest: Callable[[], None] = _nothing,
-        onlookers: Onlookers | None = None,
+        view: SessionView | None = None,
     ) -> Self:
         """Conduct the session until its end, or until it is stopped.
 
@@ -397,7 +397,7 @@ class Session:
         before_rest
             Function that is called just before the array is brought to rest, which nothing may
             interrupt.
-        onlookers
+        view
             Pages that watch; None for those that the conditions ask for.
 
         Returns
@@ -414,22 +414,24 @@ class Session:
         """
         given = self.answers(answers)
         begins = not self._begun
-        if onlookers is None:
-            onlookers = usual_onlookers(self.protocol, self.conditions, self._pointer)
-        if onlookers is not None:
-            say = onlookers.beside(say)
-            onlookers.begin(self._engine)
-        markers = beside = None
+        if view is None:
+            view = usual_view(self.protocol, self.conditions, self._pointer)
+        if view is not None:
+            say = view.relay(say)
+            view.begin(self._engine)
+        markers = conventional = None
         try:
             if self.conditions.markers is not None:
                 markers = Markers(parse_markers(self.conditions.markers))
-            beside = usual_beside(self.protocol, self.plan, self.conditions, felt=given.felt)
+            conventional = usual_conventional(
+                self.protocol, self.plan, self.conditions, felt=given.felt
+            )
             if isinstance(self._engine, Host):
                 self._engine.launch()
             # This import stands here because numba takes long to load; the host starts meanwhile.
-            from vbraille.sessions.running.sitting import Sitting, make_sound
+            from vbraille.sessions.running.apparatus import Apparatus, make_sound
 
-            sitting = Sitting(
+            apparatus = Apparatus(
                 self._engine,
                 given,
                 self._steering,
@@ -438,12 +440,12 @@ class Session:
                 say=say,
                 warn=warn,
                 before_rest=before_rest,
-                onlookers=onlookers,
+                view=view,
                 markers=markers,
-                beside=beside,
+                conventional=conventional,
             )
             if begins:
-                sitting.open(self.protocol, self.plan)
+                apparatus.open(self.protocol, self.plan)
                 began = replace(self.conditions, answers=given.name)
                 head = head_of(self.protocol, self.plan, self.fields, began)
                 create(self.folder, self.protocol, self.plan, head)
@@ -451,7 +453,7 @@ class Session:
                 if self._drawn:
                     warn(f"seed: {self.plan.seed}")
                 say(f"session: {self.folder}")
-            self.progress = sitting.run(
+            self.progress = apparatus.run(
                 self.record,
                 why="start" if begins else "resume",
                 spec=self.conditions.device,
@@ -461,10 +463,10 @@ class Session:
             if self._engine is not None:
                 before_rest()
                 self._engine.close()
-            if onlookers is not None:
-                onlookers.close()
-            if beside is not None:
-                beside.close()
+            if view is not None:
+                view.close()
+            if conventional is not None:
+                conventional.close()
             if markers is not None:
                 for sentence in markers.close():
                     say(sentence)
@@ -503,9 +505,9 @@ def usual_engine(
     return Host(spec, wanted, protocol.model.style.room(wanted, most), pass_fds=inherited)
 
 
-def usual_onlookers(
+def usual_view(
     protocol: Protocol, conditions: Conditions, pointer: Pointer | None
-) -> Onlookers | None:
+) -> SessionView | None:
     """Make the pages of the live view that is wanted; None if none is.
 
     Parameters
@@ -520,14 +522,14 @@ def usual_onlookers(
         return None
     # Imported here, since a session that nobody watches needs none of it.
     from vbraille.live.monitor import Monitor
-    from vbraille.sessions.running.onlookers import LOOPBACK, Onlookers
+    from vbraille.sessions.running.liveview import LOOPBACK, SessionView
 
     blind, steers = protocol.session.blind, pointer is not None
     monitor = Monitor(host=live.host, port=live.port, pointer=pointer, blind=blind, steers=steers)
-    return Onlookers(monitor, blind=blind, host=live.host or LOOPBACK, simulated=steers)
+    return SessionView(monitor, blind=blind, host=live.host or LOOPBACK, simulated=steers)
 
 
-def usual_beside(
+def usual_conventional(
     protocol: Protocol, plan: Plan, conditions: Conditions, *, felt: bool
 ) -> OnConventional | None:
     """Begin to drive the conventional display that the protocol needs; None if it needs none.
@@ -558,7 +560,7 @@ def cells_needed(protocol: Protocol, plan: Plan) -> int:
     return max(len(table.placed(masks)) for masks in [table.reference, *shown])
 
 
-def check_beside(protocol: Protocol, conditions: Conditions) -> None:
+def check_conventional(protocol: Protocol, conditions: Conditions) -> None:
     """Check that the protocol and a conventional display go together.
 
     Raises

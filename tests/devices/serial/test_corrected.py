@@ -89,15 +89,15 @@ def test_what_was_found_is_made_up_for_when_the_device_is_back():
     assert levels(made).tolist() == before
 
 
-def test_nothing_is_lent_while_an_actuator_is_on_its_way():
+def test_nothing_is_steady_while_an_actuator_is_on_its_way():
     made, device = corrected()
     drive = device.conversation.drive
-    made.port.bare_descriptor = -1  # nothing is done with what is lent
+    made.port.bare_descriptor = -1  # nothing is done with these numbers
     assert not drive.settled
-    assert device.lend() is None
+    assert device.begin_steady() is None
     made.run(device, 150, HALF)
     assert drive.settled
-    lent = device.lend()
-    assert lent is not None
-    assert lent.actuators.swing[0, 0] == 0
-    assert lent.actuators.rest[2, 3] == 1023
+    steady = device.begin_steady()
+    assert steady is not None
+    assert steady.actuators.swing[0, 0] == 0
+    assert steady.actuators.rest[2, 3] == 1023

@@ -5,7 +5,7 @@ import pytest
 
 from tests.controllers import HastyController
 from tests.devices.bench import DEVICE_LATE, HALF, HOME_MM, HOST_LATE, LINE_LATE, REST, Bench
-from vbraille.devices.saying import told
+from vbraille.devices.sentences import told
 from vbraille.devices.serial.wire import Frame, Levels, Rest, State, Watchdog, encode
 from vbraille.errors import DeviceError
 from vbraille.simulation.firmware import Controller

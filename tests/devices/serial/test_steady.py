@@ -19,7 +19,7 @@ from tests.troubles import Troubles
 from tests.wired import Wired, reading
 from vbraille.devices.serial import kernels
 from vbraille.devices.serial.conversation import IDLE_MS, Conversation
-from vbraille.devices.serial.lending import Actuators, Lending
+from vbraille.devices.serial.kernels import Actuators, SteadyConversation
 from vbraille.devices.serial.wire import (
     CRC_BYTES,
     FAULTY,
@@ -39,32 +39,31 @@ from vbraille.simulation.firmware import Controller
 NS_PER_MS = 1_000_000
 
 
-def lent(conversation):
-    """What a conversation lends, copied, and the part of a message that has come; None if nothing.
+def steady(conversation):
+    """Numbers of a conversation, copied, and the part of a message that has come; None if none are.
 
     The conversation is as it was before.
     """
-    lending = Lending()
-    begun = lending.lend(conversation)
-    if begun is None:
+    numbers = SteadyConversation()
+    if not numbers.take_from(conversation):
         return None
-    part = lending.received[:begun].tobytes()
+    part = numbers.received[: numbers.begun].tobytes()
     conversation.decoder.feed(part)
-    actuators = lending.actuators
-    lending.actuators = actuators._replace(
+    actuators = numbers.actuators
+    numbers.actuators = actuators._replace(
         last=actuators.last.copy(), wanted=actuators.wanted.copy()
     )
-    return lending, part
+    return numbers, part
 
 
-def numbers_of(lending):
+def numbers_of(numbers):
     """All numbers of a conversation but the last place, which is there once a STATE was taken."""
-    return {name: lending.talk[name][0] for name in kernels.CONVERSATION.names if name != "x_mm"}
+    return {name: numbers.talk[name][0] for name in kernels.CONVERSATION.names if name != "x_mm"}
 
 
-def record_of(lending):
+def record_of(numbers):
     """The same numbers, as compiled code takes and changes them."""
-    return lending.talk.view(np.recarray)[0]
+    return numbers.talk.view(np.recarray)[0]
 
 
 class Beside(Conversation):
@@ -76,43 +75,43 @@ class Beside(Conversation):
         super().__init__(now_ns, rate_hz)
 
     def mind_stall(self, now_ns):
-        self._before = lent(self)
+        self._before = steady(self)
         return super().mind_stall(now_ns)
 
     def hear(self, chunk, now_ns):
         pose = super().hear(chunk, now_ns)
         if self._before is None:
             return pose
-        (lending, part), self._before = self._before, None
-        begun, talk = numbers_of(lending), record_of(lending)
+        (numbers, part), self._before = self._before, None
+        begun, talk = numbers_of(numbers), record_of(numbers)
         received = np.frombuffer(part + chunk, np.uint8).copy()
-        consumed, states = kernels.take(received, received.size, now_ns, talk, lending.work)
+        consumed, states = kernels.take(received, received.size, now_ns, talk, numbers.work)
         if consumed == kernels.SOMETHING_ELSE:
             self.other_reads += 1
-            assert numbers_of(lending) == begun
+            assert numbers_of(numbers) == begun
             return pose
         self.steady_reads += 1
-        assert self.is_as(lending) == received[consumed:].tobytes()
+        assert self.is_as(numbers) == received[consumed:].tobytes()
         assert (pose is None) == (states == 0)
         assert pose is None or pose == (talk.device_ns, talk.x_mm, talk.y_mm, talk.theta_rad)
         return pose
 
     def show(self, frame, now_ns):
-        before = lent(self)
+        before = steady(self)
         super().show(frame, now_ns)
         if before is None:
             return
-        lending, _ = before
-        begun, talk = numbers_of(lending), record_of(lending)
-        size = kernels.make(frame, now_ns, talk, lending.actuators, lending.out)
+        numbers, _ = before
+        begun, talk = numbers_of(numbers), record_of(numbers)
+        size = kernels.make(frame, now_ns, talk, numbers.actuators, numbers.out)
         if size == kernels.SOMETHING_ELSE:
             self.other_frames += 1
-            assert numbers_of(lending) == begun
+            assert numbers_of(numbers) == begun
             return
         self.steady_frames += 1
-        assert self.due() == lending.out[:size].tobytes()
-        kernels.sent(now_ns, talk, lending.actuators)
-        self._made = lending
+        assert self.due() == numbers.out[:size].tobytes()
+        kernels.sent(now_ns, talk, numbers.actuators)
+        self._made = numbers
 
     def sent(self):
         super().sent()
@@ -121,12 +120,12 @@ class Beside(Conversation):
             np.testing.assert_array_equal(self._made.actuators.last, self.drive.last)
             self._made = None
 
-    def is_as(self, lending):
+    def is_as(self, numbers):
         """Assert that it is what the compiled functions came to; the part of a message."""
-        python, left = lent(self)
-        assert numbers_of(python) == numbers_of(lending)
-        lending.give_back(self)
-        assert numbers_of(lent(self)[0]) == numbers_of(lending)
+        python, left = steady(self)
+        assert numbers_of(python) == numbers_of(numbers)
+        numbers.give_to(self)
+        assert numbers_of(steady(self)[0]) == numbers_of(numbers)
         return left
 
 

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from tests.devices.bench import DOWN_BYTES, HALF, REST, Bench
-from vbraille.devices.serial.conversation import Conversation
+from vbraille.devices.serial.conversation import TALKING, TRANSITIONS, Cause, Conversation, Stage
 from vbraille.devices.serial.device import SerialDevice, greet
-from vbraille.devices.serial.transitions import TALKING, TRANSITIONS, Cause, Stage
 from vbraille.devices.serial.wire import (
     PLACED,
     RESTING,

@@ -3,8 +3,8 @@
 import pytest
 
 from tests.devices.bench import Bench, shown
-from vbraille.devices.saying import told
-from vbraille.devices.serial.transitions import Stage
+from vbraille.devices.sentences import told
+from vbraille.devices.serial.conversation import Stage
 from vbraille.devices.serial.wire import Decoder, Hello, enframe
 from vbraille.errors import DeviceError
 from vbraille.simulation.firmware import Controller

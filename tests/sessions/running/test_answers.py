@@ -8,9 +8,9 @@ from tests.tiers import by_tier, heavy
 from vbraille.errors import InputError
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import builtin_text, parse_protocol
-from vbraille.sessions.running.answers import ScriptedAnswers
-from vbraille.sessions.running.given import parse_answers
 from vbraille.sessions.running.reader import Simulated
+from vbraille.sessions.running.responses import Scripted
+from vbraille.sessions.running.sources import parse_responses
 from vbraille.sessions.simulated.skin import Exploration
 
 # Coverage would double their time, and others cover what these do.
@@ -84,9 +84,9 @@ def test_a_repeated_trial_has_noise_of_its_own(tmp_path):
 def test_a_file_gives_its_lines_in_order_without_comments(tmp_path):
     path = tmp_path / "answers"
     path.write_text("# of P07\nab\n\n  cd \nundo\n", "utf-8-sig")
-    script = ScriptedAnswers(path)
+    script = Scripted(path)
     assert [script.next(None, 1, []) for _ in range(4)] == [("ab", 2), ("cd", 4), ("undo", 5), None]
-    assert ScriptedAnswers(path, after=2).left == [("cd", 4), ("undo", 5)]
+    assert Scripted(path, after=2).left == [("cd", 4), ("undo", 5)]
 
 
 @pytest.mark.parametrize("spec", ["simulated:x", "simulated:-1", "simulated:nan", "simulated:1e9"])
@@ -94,11 +94,11 @@ def test_a_noise_that_is_none_is_one_sentence(spec):
     protocol = parse_protocol(MINI, "test")
     plan = make_plan(protocol, "P1", 1)
     with pytest.raises(InputError, match="noise is"):
-        parse_answers(spec, protocol, plan)
+        parse_responses(spec, protocol, plan)
 
 
 def test_paper_cannot_be_felt():
     paper = parse_protocol(builtin_text("control"), "test")
     plan = make_plan(paper, "P1", 1)
     with pytest.raises(InputError, match="control is read on paper"):
-        parse_answers("simulated", paper, plan)
+        parse_responses("simulated", paper, plan)

@@ -7,7 +7,7 @@ from vbraille.braille.spelling import say_cells
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.record import Flag
 from vbraille.sessions.record.export import read_notes
-from vbraille.sessions.running.console import ORDERS
+from vbraille.sessions.running.console import COMMANDS
 
 PRACTICE = '[practice]\ntrials = 2\nstrings = ["ac", "ca"]\n'
 ALL = [("read:", "c")] * 4
@@ -298,7 +298,7 @@ def test_a_trial_is_not_begun_while_the_device_is_silent(tmp_path):
 
 def test_help_says_every_order(session):
     sat = session.sit(("ready", "help"), ("help:", "stop"))
-    for order in ORDERS:
+    for order in COMMANDS:
         assert f"{order.word}: {order.help}" in sat.said
 
 

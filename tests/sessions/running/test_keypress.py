@@ -8,7 +8,7 @@ import pytest
 
 from tests.sessions.sittings import MINI, Session, of
 from vbraille.sessions.record.export import rows
-from vbraille.sessions.running.answers import TerminalKey
+from vbraille.sessions.running.responses import TerminalKey
 
 
 @pytest.fixture

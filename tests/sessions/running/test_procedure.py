@@ -17,7 +17,7 @@ from vbraille.sessions.record.export import rows
 from vbraille.sessions.record.folder import Record, load
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.replay import frames
-from vbraille.sessions.running.sitting import Sitting
+from vbraille.sessions.running.apparatus import Apparatus
 from vbraille.simulation.specs import device_spec, steering_of
 
 PRACTICE = MINI + '[practice]\ntrials = 1\nstrings = ["ca"]\n'
@@ -96,7 +96,7 @@ def sit(session, answers=None):
     engine = BatchEngine(
         open_device(spec, session.protocol.model.on(session.protocol.geometry)), poll_ticks=100
     )
-    sitting = Sitting(
+    sitting = Apparatus(
         engine, Reader() if answers is None else answers, steering, sound=Played, real=False,
         say=said.append if answers is None else answers.said.append, warn=said.append,
         before_rest=lambda: None,

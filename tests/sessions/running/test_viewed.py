@@ -14,7 +14,7 @@ from vbraille.engine.batch import BatchEngine
 from vbraille.live.messages import PagePress, Turn
 from vbraille.render.braille.mappings import MAPPINGS
 from vbraille.sessions.record.folder import check
-from vbraille.sessions.running.onlookers import ENDED, Heard, Onlookers
+from vbraille.sessions.running.liveview import ENDED, SafeSentences, SessionView
 
 SEEING = "[session]\nblind = false\n"
 PRACTICE = '[practice]\ntrials = 2\nstrings = ["ac", "ca"]\n'
@@ -67,8 +67,8 @@ def watch(session, *script, monitor=None, engine=BatchEngine):
     """Sit a session before a live view; the states that its pages were told, and what came."""
     monitor = FakeMonitor() if monitor is None else monitor
     blind = session.protocol.session.blind
-    onlookers = Onlookers(monitor, blind=blind, host="127.0.0.1", simulated=True)
-    return monitor.states, session.sit(*script, engine=engine, onlookers=onlookers)
+    view = SessionView(monitor, blind=blind, host="127.0.0.1", simulated=True)
+    return monitor.states, session.sit(*script, engine=engine, view=view)
 
 
 def placed(states):
@@ -192,7 +192,7 @@ def test_a_fault_of_the_view_ends_the_view_alone(tmp_path, where):
 
 @pytest.mark.parametrize("blind", [True, False])
 def test_of_many_sentences_the_last_are_kept(blind):
-    heard = Heard(blind=blind)
+    heard = SafeSentences(blind=blind)
     for number in range(50):
         heard.hear(f"cue: trial {number}")
         heard.hear("session: P07-legibility")
@@ -317,8 +317,8 @@ class TestTheJournal:
 
     def test_a_run_shown_against_the_protocol_is_a_fault(self, tmp_path):
         session = Session(tmp_path / "s")
-        onlookers = Onlookers(FakeMonitor(), blind=False, host="::", simulated=False)
-        sat = session.sit(onlookers=onlookers)
+        view = SessionView(FakeMonitor(), blind=False, host="::", simulated=False)
+        sat = session.sit(view=view)
         (bad,) = [finding for finding in check(sat.record) if not finding.good]
         assert bad.text == (
             "live view: run 1 was shown at :: with its stimuli, and the protocol says blind"

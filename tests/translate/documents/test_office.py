@@ -341,6 +341,15 @@ def test_comments_and_deleted_text_of_odt_are_not_read():
     assert odt_texts(body) == ["yes and so on"]
 
 
+def test_fields_of_odt_are_read_and_descriptions_of_pictures_once():
+    body = (
+        "<text:p>See <text:title>The Harbour</text:title> "
+        '<draw:frame xmlns:draw="d" xmlns:svg="s"><draw:image/><svg:title>a rock</svg:title>'
+        "</draw:frame></text:p>"
+    )
+    assert odt_texts(body) == ["See The Harbour a rock"]
+
+
 def test_lists_and_tables_of_odt():
     levels = (
         '<text:list-style style:name="L"><text:list-level-style-number text:level="1" '

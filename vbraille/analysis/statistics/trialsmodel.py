@@ -10,7 +10,7 @@ what each participant's own answers can vary by (Bell and McCaffrey 2002 take th
 variances instead): where most participants have everything right and only a few tell anything,
 there are few degrees of freedom. Of those tried by simulation it is the only one that holds the
 truth in 93 to 98 of 100 studies of three to twenty participants near the ceiling too;
-docs/analysis.md has the numbers.
+docs/validation.md has the numbers.
 
 What a participant contributes to all of this is one vector and two matrices as large as the
 design has columns, so that thousands of studies are fitted in one go.

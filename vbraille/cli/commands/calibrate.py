@@ -12,7 +12,7 @@ from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.calibration import Calibration
 from vbraille.devices.calibrations import load, name_of, path_of, save
-from vbraille.devices.saying import placing_sentence, told
+from vbraille.devices.sentences import placing_sentence, told
 from vbraille.engine.clock import RealClock
 from vbraille.engine.swinging import Swinging
 from vbraille.errors import DeviceError, InputError

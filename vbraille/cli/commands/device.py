@@ -9,7 +9,7 @@ from vbraille.cli.commands.calibrate import calibrate, say_calibration
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.registry import find_driver
-from vbraille.devices.saying import say
+from vbraille.devices.sentences import say
 from vbraille.engine.checking import check
 from vbraille.engine.checkup import warm_up
 from vbraille.engine.clock import RealClock

@@ -15,7 +15,7 @@ from vbraille.errors import InputError
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.planning.stimuli import said_value
 from vbraille.sessions.record.folder import nearly_same
-from vbraille.sessions.running.answers import Typed
+from vbraille.sessions.running.responses import Typed
 from vbraille.simulation.specs import refuse_hand
 from vbraille.wording import spelled
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.conduct import Question
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.running.answers import Answers
+    from vbraille.sessions.running.responses import Responses
     from vbraille.sessions.session import Session
 
 
@@ -106,7 +106,7 @@ def _resume(arguments: argparse.Namespace) -> int:
     return _conduct(session, session.answers())
 
 
-def _conduct(session: Session, answers: Answers) -> int:
+def _conduct(session: Session, answers: Responses) -> int:
     session.run(answers, say=_say, warn=partial(say_line, aside=True), before_rest=EAR.close)
     return 0
 
@@ -213,7 +213,7 @@ def _cells(trial: Trial):
     return Cells.bare(np.array(trial.stimuli[0].masks, np.uint8))
 
 
-def _ask_who(room: Path, participant: str, answers: Answers) -> None:
+def _ask_who(room: Path, participant: str, answers: Responses) -> None:
     """Ask whether a new participant is one whose pseudonym is nearly the same.
 
     Raises
@@ -241,7 +241,7 @@ def _ask_who(room: Path, participant: str, answers: Answers) -> None:
 
 
 def _ask_fields(protocol: Protocol, given: dict[str, str], typed: Typed) -> dict[str, str]:
-    """Answers to what the protocol asks about the participant: as given, otherwise as typed."""
+    """Responses to what the protocol asks about the participant: as given, otherwise as typed."""
     return {
         field.name: given[field.name] if field.name in given else _ask(field, typed)
         for field in protocol.fields

@@ -1,7 +1,7 @@
 """The host's end of a serial conversation: no port, no clock, no thread.
 
 It is given the time, bytes that came and what is wanted; it gives places, events, and the
-messages that are due, one after the other. `transitions` says what leads where.
+messages that are due, one after the other.
 
     conversation = Conversation(now_ns)
     while (message := conversation.due()) is not None:
@@ -10,6 +10,15 @@ messages that are due, one after the other. `transitions` says what leads where.
         else:
             conversation.refused()
     pose = conversation.hear(port.read(), now_ns)
+
+`Conversation` goes from stage to stage by `TRANSITIONS` and by nothing else: what happens in a
+stage that has no row for it changes nothing. `docs/wire-protocol.md` prints the same table.
+
+A device rests when it is told to, and by its watchdog, perhaps while the host was itself
+stopped and could not hear of it. On its ramp to rest a FRAME would jump, and one from after
+it too. So a host that has stopped, for whatever reason, sends none until the device has said
+for the ramp's time that it rests. It then sends FRAMEs of rest, until the device says that it
+has taken one: what that STATE and those after it tell is no older, and the array may fade in.
 """
 
 from __future__ import annotations
@@ -33,17 +42,27 @@ from vbraille.devices.events import (
     Unplugged,
     WatchdogTripped,
 )
-from vbraille.devices.serial.actuators import Delivery, Drive, Trips
-from vbraille.devices.serial.info import changes, differences, info_of, misfit, particulars_of
-from vbraille.devices.serial.sensors import CarriagePlace, DeviceTime, Panel
-from vbraille.devices.serial.transitions import RESTING, TALKING, TRANSITIONS, UNTOLD, Cause, Stage
+from vbraille.devices.serial.hardware import (
+    ButtonsAndKnobs,
+    CarriagePlace,
+    DeviceTime,
+    Drive,
+    changes,
+    differences,
+    info_of,
+    misfit,
+    particulars_of,
+)
 from vbraille.devices.serial.wire import (
     ANSWER_MS,
     DELIMITER,
     HELLO_PERIOD_MS,
     LOST_MS,
     NOTICES,
+    RAMP_MS,
     SILENCE_MS,
+    STALL_MS,
+    WATCHDOG_MS,
     Decoder,
     Error,
     Hello,
@@ -68,6 +87,7 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger(__name__)
 _NS_PER_MS: Final = 1_000_000
+_STALL_NS: Final = STALL_MS * _NS_PER_MS
 _SILENCE_NS: Final = SILENCE_MS * _NS_PER_MS
 _LOST_NS: Final = LOST_MS * _NS_PER_MS
 # Time in which a device whose timer goes makes several STATEs.
@@ -79,7 +99,288 @@ IDLE_MS: Final = 5000
 _HELLO: Final = DELIMITER + encode(Hello())  # the zero ends whatever was on the line before
 _REST: Final = encode(Rest())
 _U16: Final = 0xFFFF
+_U32: Final = 0xFFFF_FFFF
+_US_PER_S: Final = 1_000_000
+
+
+class Stage(Enum):
+    """Where a conversation is; the value says it to those who read the protocol's page."""
+
+    GREETING = "HELLO is due, and has not gone out yet"
+    ASKED = "HELLO went out, and INFO is waited for"
+    RAMPING = "the device goes to rest, or is told to; it is sent no FRAME"
+    AT_REST = "the device is at rest; it is sent FRAMEs of rest until it has taken one"
+    LIVE = "FRAMEs hold the actuators"
+    IDLE_RAMPING = "there is nothing to feel, and the device goes to rest"
+    IDLE = "there is nothing to feel, and the device is at rest"
+    SILENT = "STATEs are missing; the device is told to rest"
+    STRANGER = "what answered cannot be read on, and is told nothing more"
+    GONE = "the port is gone"
+    FAILED = "the device cannot go on, or none answered at the start"
+    CLOSED = "the host has taken leave"
+
+
+class Cause(Enum):
+    """What may lead from one stage to another."""
+
+    ASKED = "HELLO has gone out"
+    ANSWERED = "INFO came of a device that can be read on"
+    TURNED_AWAY = "INFO came of another device, of another version, or one that cannot be"
+    NO_ANSWER = "at the start, no INFO came for 3000 ms"
+    HEARD = "STATE came"
+    RAMPS = "STATE says *resting*, but not for long enough yet"
+    RESTED = "STATEs have said *resting* for the ramp's time and a period"
+    HELD = "STATE says that a FRAME holds the actuators that should not"
+    TOOK = "STATE says that a FRAME of rest holds the actuators, sent since they rested"
+    FELL = "STATE or WATCHDOG says that the device went to rest by itself"
+    STALLED = "the host's last FRAME is 40 ms old"
+    PLACE_LOST = "the place of the carriage is not known any more"
+    NOTHING_TO_FEEL = "FRAMEs had nothing to feel for 5 s"
+    FELT = "there is something to feel again"
+    REST_WANTED = "the host wants rest"
+    SILENCE = "STATE is missing for 100 ms"
+    LOST = "STATE is missing for 500 ms"
+    UNPLUGGED = "the port went away"
+    PLUGGED_IN = "the port is back"
+    FAULT = "the device says ERROR or *faulty*, or does not go to rest"
+    CLOSED = "the host takes leave"
+
+
+# What may happen to any device that has answered, wherever its actuators are.
+_ANSWERED: Final = {
+    Cause.SILENCE: Stage.SILENT,
+    Cause.UNPLUGGED: Stage.GONE,
+    Cause.FAULT: Stage.FAILED,
+    Cause.CLOSED: Stage.CLOSED,
+}
+
+TRANSITIONS: Final[dict[Stage, dict[Cause, Stage]]] = {
+    Stage.GREETING: {
+        Cause.ASKED: Stage.ASKED,
+        Cause.NO_ANSWER: Stage.FAILED,
+        Cause.REST_WANTED: Stage.GREETING,
+        Cause.UNPLUGGED: Stage.GONE,
+        Cause.CLOSED: Stage.CLOSED,
+    },
+    Stage.ASKED: {
+        Cause.ANSWERED: Stage.RAMPING,
+        Cause.TURNED_AWAY: Stage.STRANGER,
+        Cause.NO_ANSWER: Stage.FAILED,
+        Cause.REST_WANTED: Stage.ASKED,
+        Cause.UNPLUGGED: Stage.GONE,
+        Cause.CLOSED: Stage.CLOSED,
+    },
+    Stage.RAMPING: {
+        Cause.RESTED: Stage.AT_REST,
+        Cause.TOOK: Stage.LIVE,
+        Cause.STALLED: Stage.RAMPING,
+        Cause.REST_WANTED: Stage.RAMPING,
+        **_ANSWERED,
+    },
+    Stage.AT_REST: {
+        Cause.RAMPS: Stage.RAMPING,
+        Cause.HELD: Stage.RAMPING,
+        Cause.TOOK: Stage.LIVE,
+        Cause.STALLED: Stage.RAMPING,
+        Cause.REST_WANTED: Stage.RAMPING,
+        **_ANSWERED,
+    },
+    Stage.LIVE: {
+        Cause.FELL: Stage.RAMPING,
+        Cause.STALLED: Stage.RAMPING,
+        Cause.PLACE_LOST: Stage.RAMPING,
+        Cause.NOTHING_TO_FEEL: Stage.IDLE_RAMPING,
+        Cause.REST_WANTED: Stage.RAMPING,
+        **_ANSWERED,
+    },
+    Stage.IDLE_RAMPING: {
+        Cause.RESTED: Stage.IDLE,
+        Cause.FELT: Stage.RAMPING,
+        Cause.REST_WANTED: Stage.IDLE_RAMPING,
+        **_ANSWERED,
+    },
+    Stage.IDLE: {
+        Cause.RAMPS: Stage.IDLE_RAMPING,
+        Cause.HELD: Stage.IDLE_RAMPING,
+        Cause.FELT: Stage.AT_REST,
+        Cause.REST_WANTED: Stage.IDLE_RAMPING,
+        **_ANSWERED,
+    },
+    Stage.SILENT: {
+        Cause.HEARD: Stage.RAMPING,
+        Cause.LOST: Stage.GREETING,
+        Cause.REST_WANTED: Stage.SILENT,
+        Cause.UNPLUGGED: Stage.GONE,
+        Cause.FAULT: Stage.FAILED,
+        Cause.CLOSED: Stage.CLOSED,
+    },
+    Stage.STRANGER: {
+        Cause.UNPLUGGED: Stage.GONE,
+        Cause.CLOSED: Stage.CLOSED,
+    },
+    Stage.GONE: {
+        Cause.PLUGGED_IN: Stage.GREETING,
+        Cause.CLOSED: Stage.CLOSED,
+    },
+    Stage.FAILED: {
+        Cause.CLOSED: Stage.CLOSED,
+    },
+    Stage.CLOSED: {},
+}
+
+# Stages in which the device has answered, and what it says is of this conversation.
+TALKING: Final = frozenset(
+    {
+        Stage.RAMPING,
+        Stage.AT_REST,
+        Stage.LIVE,
+        Stage.IDLE_RAMPING,
+        Stage.IDLE,
+        Stage.SILENT,
+    }
+)
+# Stages in which FRAMEs are wanted, and do not hold the actuators.
+RESTING: Final = frozenset({Stage.RAMPING, Stage.AT_REST, Stage.FAILED})
+# Stages in which the device is not there to be told that the host takes leave.
+UNTOLD: Final = frozenset({Stage.STRANGER, Stage.GONE, Stage.CLOSED})
 _GREETING: Final = frozenset({Stage.GREETING, Stage.ASKED})
+
+
+class Delivery:
+    """Knowledge of FRAMEs and rest in one conversation, which begins at rest.
+
+    Parameters
+    ----------
+    rate_hz
+        STATEs a second that the device sends; its ramp ends with a period.
+
+    Attributes
+    ----------
+    rest_due : bool
+        Whether the device must be told to rest: it may not know yet, or not have heard.
+    sent_ns : int or None
+        Time at which the last FRAME was sent; None if none was since the device was to rest.
+    """
+
+    def __init__(self, rate_hz: int) -> None:
+        self.rest_due = False
+        self.sent_ns: int | None = None
+        self._sent = 0  # sequence of the FRAME sent last
+        self._ramp_us = RAMP_MS * 1000 + -(-_US_PER_S // rate_hz)
+        self._resting_us: int | None = None  # since when it says so, by its own clock
+        self._resting_sequence = 0
+        self._held_us: int | None = None  # since when a FRAME wrongly holds it, likewise
+        self._told_ns: int | None = None
+        self._offered: int | None = None  # sequence of the first FRAME of rest sent since
+
+    def sent(self, sequence: int, now_ns: int, *, holding: bool) -> None:
+        """Note that a FRAME was sent: one of rest, if FRAMEs are not holding the actuators."""
+        if not holding and self._offered is None:
+            self._offered = sequence
+        self._sent, self.sent_ns = sequence, now_ns
+
+    def told(self, now_ns: int) -> None:
+        """Note that REST was sent."""
+        self.rest_due, self._told_ns = False, now_ns
+
+    def stop(self, *, tell: bool) -> None:
+        """Begin to wait until the device is at rest; with `tell`, have it told to rest."""
+        self.rest_due = tell
+        self._resting_us = self._held_us = self._told_ns = self._offered = self.sent_ns = None
+
+    def give_time(self, now_ns: int) -> None:
+        """Leave going to rest to the device's watchdog for a while, before telling the device."""
+        self._told_ns = now_ns + WATCHDOG_MS * _NS_PER_MS
+
+    def stalled(self, now_ns: int) -> bool:
+        """Whether FRAMEs are owed, and the last is so old that the device may rest by now."""
+        return self.sent_ns is not None and now_ns - self.sent_ns >= _STALL_NS
+
+    def judge(self, state: State, now_ns: int) -> Cause:
+        """Cause that a STATE gives if the device is not known to be held by FRAMEs."""
+        if state.resting:
+            return self._rest_on(state)
+        if self._has_taken(state.frame_sequence):
+            self.rest_due = False
+            return Cause.TOOK
+        return self._mind_held(state.time_us, now_ns)
+
+    def _rest_on(self, state: State) -> Cause:
+        self.rest_due = False
+        self._held_us = None
+        if self._resting_us is None or state.frame_sequence != self._resting_sequence:
+            self._resting_us, self._resting_sequence = state.time_us, state.frame_sequence
+        rested_us = (state.time_us - self._resting_us) & _U32
+        return Cause.RESTED if rested_us >= self._ramp_us else Cause.RAMPS
+
+    def _has_taken(self, sequence: int) -> bool:
+        """Whether the FRAME that holds the device is one of rest, sent since it went to rest."""
+        if self._offered is None:
+            return False
+        return (sequence - self._offered) & _U16 <= (self._sent - self._offered) & _U16
+
+    def _mind_held(self, time_us: int, now_ns: int) -> Cause:
+        """Cause if a FRAME holds it: REST is under way or lost, or an old FRAME came after it."""
+        self._resting_us = None
+        if self._held_us is None:
+            self._held_us = time_us
+        if self._told_ns is None or now_ns - self._told_ns >= RAMP_MS * _NS_PER_MS:
+            self.rest_due = True
+        stuck = (time_us - self._held_us) & _U32 >= LOST_MS * 1000
+        return Cause.FAULT if stuck else Cause.HELD
+
+
+class Trips:
+    """Count of a watchdog's trips, by its reports and by STATEs, each trip once.
+
+    Attributes
+    ----------
+    count : int
+        Number of trips since the first WATCHDOG.
+    disbelieved : int
+        Number of reports that tell of more trips than there was time for.
+    """
+
+    def __init__(self) -> None:
+        self.count = self.disbelieved = 0
+        self._reported_ns = 0
+        self._reported: int | None = None
+        self._counted = False  # whether the trip that STATEs tell of was counted
+        self._unreported = 0  # trips that only STATEs have told of
+
+    @property
+    def tripped(self) -> bool:
+        """Whether the last STATE told of a trip."""
+        return self._counted
+
+    def restart(self) -> None:
+        """Take the next report for the first one, since a conversation begins."""
+        self._reported_ns, self._reported = 0, None
+        self._counted, self._unreported = False, 0
+
+    def take_report(self, watchdog: Watchdog, now_ns: int) -> bool:
+        """Take a report; tell whether it has new trips that can be believed."""
+        tripped = 0 if self._reported is None else (watchdog.trips - self._reported) & _U32
+        # A trip takes a frame, and then its time without one; a device's clock may go a bit fast.
+        elapsed_ms = (now_ns - self._reported_ns) // _NS_PER_MS
+        believable = 1 + elapsed_ms * 5 // (WATCHDOG_MS * 4)
+        self._reported, self._reported_ns = watchdog.trips, now_ns
+        if tripped > believable:
+            self.disbelieved += 1
+            return False
+        if not tripped:
+            return False
+        self.count += max(tripped - self._unreported, 0)
+        self._unreported = 0
+        self._counted = True
+        return True
+
+    def take_state(self, *, tripped: bool) -> None:
+        """Note whether a STATE tells of a trip; count the trip if its report was lost."""
+        if tripped and not self._counted:
+            self.count += 1
+            self._unreported += 1
+        self._counted = tripped
 
 
 class _Wish(Enum):
@@ -165,7 +466,7 @@ class Conversation:
         How often the actuators went to rest otherwise than by FRAMEs, so that all must fade in.
     reconnections : int
         How often the device was greeted again.
-    decoder, states, frames, trips, panel, delivery, place, time, drive
+    decoder, states, frames, trips, controls, delivery, place, time, drive
         What is known of received bytes, STATEs, FRAMEs, the watchdog, buttons and knobs, rest, the
         carriage, the device's clock, and the actuators. `drive` is set once `info` is.
     """
@@ -188,7 +489,7 @@ class Conversation:
         self.states = States(now_ns)
         self.frames = Frames(now_ns)
         self.trips = Trips()
-        self.panel = Panel()
+        self.controls = ButtonsAndKnobs()
         self.time = DeviceTime()
         self._rate_hz = rate_hz
         self._calibration: Calibration | None = None
@@ -288,7 +589,7 @@ class Conversation:
         if state.faulty:  # the ERROR that says why was lost
             self._fail(Fault(self._name), now_ns)
             return None
-        for event in self.panel.take(state, now_ns):
+        for event in self.controls.take(state, now_ns):
             self._tell(event, now_ns)
         self.trips.take_state(tripped=state.tripped)
         if self.stage is not Stage.LIVE:
@@ -323,7 +624,7 @@ class Conversation:
 
     def _let_go(self, now_ns: int) -> None:
         """Take the buttons for let go: nobody holds those of a device that is not there."""
-        for event in self.panel.let_go(now_ns):
+        for event in self.controls.let_go(now_ns):
             self._tell(event, now_ns)
 
     def _mind_placing(self, now_ns: int) -> None:
@@ -359,7 +660,7 @@ class Conversation:
         self.time.restart()
         self.delivery = Delivery(info.rate_hz)
         self.place = CarriagePlace(info)
-        self.panel.fit(info.buttons, info.knobs)
+        self.controls.fit(info.buttons, info.knobs)
         if before is None:
             self._placing = self.place.placing
         self._mind_placing(now_ns)

@@ -12,11 +12,10 @@ import serial
 
 from vbraille.devices.base import Device
 from vbraille.devices.events import Fault, Stranger
-from vbraille.devices.saying import say
-from vbraille.devices.serial.conversation import Conversation
-from vbraille.devices.serial.lending import Lending, Lent
+from vbraille.devices.sentences import say
+from vbraille.devices.serial.conversation import Conversation, Stage
+from vbraille.devices.serial.kernels import SteadyConversation
 from vbraille.devices.serial.port import BAUD, DRAIN_MS, LOOK_S, SerialPort, parse_address
-from vbraille.devices.serial.transitions import Stage
 from vbraille.devices.serial.wire import (
     DELIMITER,
     STALL_MS,
@@ -87,8 +86,8 @@ class SerialDevice(Device):
         self._pause = pause
         self._losses = port.losses
         self._unsent = 0
-        self._lending = Lending()
-        self._left_over = b""  # bytes that came while the conversation was lent
+        self._steady = SteadyConversation()
+        self._left_over = b""  # bytes that came while the conversation was steady
         self._copy()
 
     @property
@@ -167,29 +166,30 @@ class SerialDevice(Device):
             raise DeviceError(say(conversation.failure))
         return pose
 
-    def lend(self) -> Lent | None:
-        """What the engine needs to do steady ticks by itself; None if the line does not suit."""
+    def begin_steady(self) -> SteadyConversation | None:
+        """Numbers by which the engine does steady ticks itself; None if the line does not suit."""
         descriptor = self.port.bare_descriptor
         if descriptor is None or self._left_over or not self.conversation.drive.settled:
             return None
-        begun = self._lending.lend(self.conversation)
-        if begun is None:
+        if not self._steady.take_from(self.conversation):
             return None
-        lending = self._lending
-        return Lent(
-            descriptor,
-            begun,
-            lending.received,
-            lending.work,
-            lending.out,
-            lending.talk,
-            lending.actuators,
-        )
+        self._steady.descriptor = descriptor
+        return self._steady
 
-    def take_back(self, lent: Lent, received: int, unsent: int, torn: bytes) -> None:
-        """Take back what was lent: `read` then begins with the bytes that were not taken."""
-        self._lending.give_back(self.conversation)
-        left_over = lent.received[:received].tobytes()
+    def end_steady(self, received: int, unsent: int, torn: bytes) -> None:
+        """Go on from the numbers that the engine left.
+
+        Parameters
+        ----------
+        received
+            Number of bytes that were not taken, with which `read` begins.
+        unsent
+            Number of FRAMEs that found no room.
+        torn
+            Rest of a FRAME of which a part went out.
+        """
+        self._steady.give_to(self.conversation)
+        left_over = self._steady.received[:received].tobytes()
         if DELIMITER in left_over:
             self._left_over = left_over
         else:

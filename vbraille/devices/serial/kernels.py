@@ -7,21 +7,27 @@ another message, silence, a rest, a fault, a stall, a deflection that is none - 
 `SOMETHING_ELSE`. Then nothing of the conversation was changed, and `SerialDevice` does with the
 same bytes, or the same frame, what there is to do.
 
-Nothing here allocates, waits or raises. Places in an array are given as its first index and
-the one after its last. What is asked of bytes that cannot be true, or of an array that is too
-small, is answered with a negative number, and never read or written past an array's end.
+`SteadyConversation` takes these numbers from a `Conversation` and gives them back to it, some ticks
+later, as if the conversation had heard and said all of that itself.
+
+Nothing that is compiled here allocates, waits or raises. Places in an array are given as its first
+index and the one after its last. What is asked of bytes that cannot be true, or of an array that is
+too small, is answered with a negative number, and never read or written past an array's end.
 """
 
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 from numba import njit
 
 from vbraille.caching import keep_compiled
 from vbraille.devices import framekernels
+from vbraille.devices.serial.conversation import IDLE_MS
 from vbraille.devices.serial.wire import (
+    CRC_BYTES,
     FAULTY,
     KNOB_STEP,
     KNOB_TOP,
@@ -34,14 +40,22 @@ from vbraille.devices.serial.wire import (
     Frame,
     State,
     fields_of,
+    frame_head,
+    line_bytes,
     places_of,
 )
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vbraille.devices.serial.conversation import Conversation
+    from vbraille.devices.serial.hardware import CarriagePlace, Drive
+    from vbraille.display import Display
 
 BAD_COBS = -1
 BAD_CRC = -2
 TOO_SMALL = -3
 
-_CRC_BYTES = 4
 _POLYNOMIAL = 0xEDB88320
 _LONGEST_RUN = 0xFE  # bytes that are not zero, in one block of COBS
 
@@ -193,10 +207,10 @@ def unframe(source, start, end, body):
     size = cobs_decode(source, start, end, body)
     if size < 0:
         return size
-    size -= _CRC_BYTES
+    size -= CRC_BYTES
     if size < 1:
         return BAD_CRC
-    if crc32(body, 0, size) != number(body, size, _CRC_BYTES, 0):
+    if crc32(body, 0, size) != number(body, size, CRC_BYTES, 0):
         return BAD_CRC
     return size
 
@@ -222,11 +236,11 @@ def enframe(body, size, out, at):
         Index in ``out`` after the delimiter; TOO_SMALL, with no frame written, if the body or
         ``out`` has no room.
     """
-    if size < 0 or size + _CRC_BYTES > body.size:
+    if size < 0 or size + CRC_BYTES > body.size:
         return TOO_SMALL
-    put_number(body, size, _CRC_BYTES, crc32(body, 0, size))
+    put_number(body, size, CRC_BYTES, crc32(body, 0, size))
     # The last byte of `out` is kept for the delimiter.
-    at = cobs_encode(body, 0, size + _CRC_BYTES, out[: out.size - 1], at)
+    at = cobs_encode(body, 0, size + CRC_BYTES, out[: out.size - 1], at)
     if at < 0:
         return TOO_SMALL
     out[at] = 0
@@ -349,7 +363,7 @@ def silent(talk, now_ns):
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def _turned(before, now, knobs):
-    """Whether any of so many knobs was turned, as `vbraille.devices.serial.sensors.turned` says."""
+    """Whether any of so many knobs was turned, as `hardware.turned` says."""
     if before == now:
         return False
     for knob in range(knobs):
@@ -499,7 +513,7 @@ def make(deflections, now_ns, talk, actuators, out):
     if not felt and now_ns - talk.felt_ns >= talk.idle_ns:
         return SOMETHING_ELSE
     put_number(actuators.body, _FRAME_AT, _FRAME_WIDTH, talk.sequence + 1)
-    size = enframe(actuators.body, actuators.body.size - _CRC_BYTES, out, 0)
+    size = enframe(actuators.body, actuators.body.size - CRC_BYTES, out, 0)
     if size < 0:
         return SOMETHING_ELSE
     if felt:
@@ -533,3 +547,190 @@ def sent(now_ns, talk, actuators):
     for row in range(rows):
         for column in range(columns):
             actuators.last[row, column] = actuators.wanted[row, column]
+
+
+class Actuators(NamedTuple):
+    """How FRAMEs are made, and the last of them.
+
+    Parameters
+    ----------
+    last, wanted : float64[rows, columns]
+        Deflections of the FRAME that went out last, and of the FRAME that was made last.
+    swing : float64[rows, columns]
+        Number of levels in a full swing, before it is inverted.
+    rest : int64[rows, columns]
+        Level at rest: 0, or the highest.
+    body : uint8[bytes]
+        Type, sequence and levels of a FRAME, and room for its CRC.
+    packed : uint8[bytes]
+        View of the levels in ``body``.
+    """
+
+    last: NDArray[np.float64]
+    wanted: NDArray[np.float64]
+    swing: NDArray[np.float64]
+    rest: NDArray[np.int64]
+    body: NDArray[np.uint8]
+    packed: NDArray[np.uint8]
+
+
+# Some ticks bring some hundred bytes; this leaves room for a stall.
+RECEIVED_BYTES: Final = 8192
+
+
+class SteadyConversation:
+    """The numbers of a conversation for compiled code, in memory that is the same each time.
+
+    Attributes
+    ----------
+    descriptor : int
+        Descriptor of the device's open line, which does not block.
+    begun : int
+        Number of bytes at the beginning of `received`: a part of a message.
+    talk : CONVERSATION[1]
+        Numbers of the conversation.
+    received : uint8[RECEIVED_BYTES]
+        Bytes that were received and not consumed, at the beginning of the array.
+    work, out : uint8[bytes]
+        Room to work in, and room for a FRAME as it goes over the line.
+    actuators : Actuators
+        How FRAMEs are made; set once numbers were taken.
+    """
+
+    actuators: Actuators
+
+    def __init__(self) -> None:
+        self.descriptor, self.begun = -1, 0
+        self.talk = np.zeros(1, CONVERSATION)
+        self.received = np.zeros(RECEIVED_BYTES, np.uint8)
+        self.work = np.zeros(WORK_BYTES, np.uint8)
+        self.out = np.zeros(0, np.uint8)
+        self._drive: Drive | None = None
+        self._body = self._packed = self.out
+
+    def take_from(self, conversation: Conversation) -> bool:
+        """Take over the numbers of a conversation, and the part of a message that has come.
+
+        Returns
+        -------
+        bool
+            False, with nothing taken, if the conversation is in a state that compiled code does
+            not handle.
+        """
+        states, frames, place, time = (
+            conversation.states,
+            conversation.frames,
+            conversation.place,
+            conversation.time,
+        )
+        ready = conversation.steady and place.known and not conversation.trips.tripped
+        if not ready or states.sequence is None or time.us is None:
+            return False
+        begun = conversation.decoder.take_begun()
+        if begun is None or len(begun) > WORK_BYTES:
+            conversation.decoder.feed(begun or b"")
+            return False
+        drive = conversation.drive
+        if drive is not self._drive:
+            self._fit(drive)
+        self.actuators = Actuators(
+            drive.last, drive.wanted, drive.swing, drive.rest_level, self._body, self._packed
+        )
+        talk = self.talk[0]
+        talk["heard_ns"], talk["state_sequence"] = states.heard_ns, states.sequence
+        talk["missed"] = states.missed
+        _fill_controls(talk, conversation)
+        _fill_place(talk, place)
+        talk["device_us"], talk["offset_ns"] = time.us, time.offset_ns
+        talk["device_ns"] = time.last_ns
+        talk["sequence"], talk["felt_ns"] = frames.sequence, frames.felt_ns
+        talk["sent_ns"] = _or_never(frames.sent_ns)
+        talk["acknowledged_ns"] = _or_never(frames.acknowledged_ns)
+        talk["owed_ns"] = _or_never(conversation.delivery.sent_ns)
+        talk["idle_ns"] = IDLE_MS * _NS_PER_MS
+        talk["moved_ns"], talk["period_ns"] = drive.last_ns, drive.period_ns
+        talk["slew_per_ns"] = drive.slew_per_ns if drive.limited else math.inf
+        talk["bits"] = drive.bits
+        self.received[: len(begun)] = np.frombuffer(begun, np.uint8)
+        self.begun = len(begun)
+        return True
+
+    def give_to(self, conversation: Conversation) -> None:
+        """Let the conversation know what was heard and said meanwhile, except bytes left over."""
+        talk, drive = self.talk[0], conversation.drive
+        states, frames, time = conversation.states, conversation.frames, conversation.time
+        states.heard_ns, states.sequence = int(talk["heard_ns"]), int(talk["state_sequence"])
+        states.missed = int(talk["missed"])
+        place = conversation.place
+        place.x.count = int(talk["count"])
+        if place.y is not None:
+            place.y.count = int(talk["y_count"])
+        if place.turn is not None:
+            place.turn.count = int(talk["theta_count"])
+        time.us, time.last_ns = int(talk["device_us"]), int(talk["device_ns"])
+        time.host_ns = states.heard_ns
+        frames.sequence, frames.felt_ns = int(talk["sequence"]), int(talk["felt_ns"])
+        frames.sent_ns = _or_none(talk["sent_ns"])
+        frames.acknowledged_ns = _or_none(talk["acknowledged_ns"])
+        owed_ns = _or_none(talk["owed_ns"])
+        if owed_ns is not None:
+            conversation.delivery.sent(frames.sequence, owed_ns, holding=True)
+        drive.last_ns = int(talk["moved_ns"])
+
+    def _fit(self, drive: Drive) -> None:
+        """Make room for the FRAMEs of a conversation."""
+        head = np.frombuffer(frame_head(0), np.uint8)
+        body_bytes = head.size + drive.packed.size
+        self._body = np.zeros(body_bytes + CRC_BYTES, np.uint8)
+        self._body[: head.size] = head
+        self._packed = self._body[head.size : body_bytes]
+        self.out = np.zeros(line_bytes(body_bytes), np.uint8)
+        self._drive = drive
+
+
+def _fill_controls(talk: np.void, conversation: Conversation) -> None:
+    """Fill in the buttons and knobs."""
+    controls = conversation.controls
+    talk["buttons"], talk["button_mask"] = controls.buttons or 0, (1 << controls.buttons_fitted) - 1
+    talk["knobs"], talk["knobs_fitted"] = controls.knobs or 0, controls.knobs_fitted
+
+
+def _fill_place(talk: np.void, place: CarriagePlace) -> None:
+    """Fill in the numbers of the carriage, whose place is known."""
+    x, y, turn = place.x, place.y, place.turn
+    # A place that is known has all of its counts.
+    assert x.count is not None
+    assert x.zero is not None
+    talk["count"], talk["count_bits"], talk["zero"] = x.count, x.bits, x.zero
+    talk["home_mm"], talk["mm_per_count"] = x.home_mm, x.mm_per_count
+    talk["must_be_placed"] = place.needs_mark
+    talk["y_mm"] = talk["theta_rad"] = 0.0
+    talk["has_y"] = y is not None
+    if y is not None and y.count is not None and y.zero is not None:
+        talk["y_count"], talk["y_zero"], talk["y_mm_per_count"] = y.count, y.zero, y.mm_per_count
+        talk["y_mm"] = y.place_mm or 0.0
+    talk["counts_per_turn"] = 0 if turn is None else turn.counts_per_turn
+    if turn is not None:
+        talk["straight"], talk["rad_per_count"] = turn.straight or 0, turn.rad_per_count
+        talk["theta_count"], talk["theta_rad"] = turn.count, turn.theta_rad
+
+
+def example(display: Display) -> SteadyConversation:
+    """Example of a steady conversation, to load compiled code with before a device is open.
+
+    Nothing can be done with it, since its descriptor is that of no line.
+    """
+    shape = display.shape
+    zeros = np.zeros(shape)
+    body = np.zeros(CRC_BYTES, np.uint8)
+    made = SteadyConversation()
+    made.actuators = Actuators(zeros, zeros, zeros, np.zeros(shape, np.int64), body, body)
+    return made
+
+
+def _or_never(time_ns: int | None) -> int:
+    return NEVER if time_ns is None else time_ns
+
+
+def _or_none(time_ns: NDArray[np.int64]) -> int | None:
+    return None if time_ns == NEVER else int(time_ns)

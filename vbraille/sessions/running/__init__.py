@@ -1,1 +1,1 @@
-"""Running of a session: the console, the course of the trials, stimuli and sounds."""
+"""Running of a session: runner, presenters, responses, console, live view, markers."""

@@ -9,7 +9,7 @@ from vbraille.braille.spelling import to_braille
 from vbraille.conventional.brlapi import CellsTaken, DisplayAway, DisplayStands
 from vbraille.errors import DeviceError, InputError
 from vbraille.sessions.record import events
-from vbraille.sessions.running.logbook import Happened
+from vbraille.sessions.running.presenters import Notice, Presentation, Presenter
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -17,15 +17,14 @@ if TYPE_CHECKING:
 
     from vbraille.conventional.display import ConventionalDisplay
     from vbraille.sessions.planning.appearance import ConventionalTable
-    from vbraille.sessions.planning.stimuli import Stimulus
 
 _COMES_S = 10.0  # by then a display that is there has said so
 _GONE_S = 2.0  # so long one may come that is not there yet
 _POLL_S = 0.02
 
 
-class OnConventional:
-    """The conventional display of a session.
+class OnConventional(Presenter):
+    """Presenter on a conventional display.
 
     Parameters
     ----------
@@ -37,17 +36,14 @@ class OnConventional:
         Number of cells that it must have.
     spec
         Display that was asked for.
-
-    Attributes
-    ----------
-    taken : bool
-        Whether what was shown last has come to the display.
     """
 
     def __init__(
         self, display: ConventionalDisplay, table: ConventionalTable, *, cells: int, spec: str
     ) -> None:
+        super().__init__()
         self.taken = False
+        self._presentation: Presentation | None = None
         self._display = display
         self._table = table
         self._cells = cells
@@ -57,16 +53,11 @@ class OnConventional:
         self._reference = False
         self._open = False  # whether a trial needs what was shown
         self._known: DisplayStands | None = None  # what the journal knows
-        self._early: list[Happened] = []  # what happened before the session began
-
-    @property
-    def ready(self) -> bool:
-        """Whether it is there, and long enough."""
-        return not self.why
+        self._early: list[Notice] = []  # what happened before the session began
 
     @property
     def why(self) -> str:
-        """Why nothing can stand on it, in words for people; empty if something can."""
+        """Reason why nothing can stand on it, in words for people; empty if something can."""
         standing = self._display.standing
         if standing is None:
             return self._display.away or "the conventional display is not there yet"
@@ -101,15 +92,27 @@ class OnConventional:
         if short := self._short(standing):
             raise InputError(f"{short}; give another display with {setting('also')}")
 
-    def show(self, stimulus: Stimulus) -> None:
+    def show(self, presentation: Presentation, *, first: bool = True) -> None:
         """Put a stimulus on the display."""
-        self._put(self._table.placed(stimulus.masks), reference=False)
+        super().show(presentation, first=first)
+        self._presentation = presentation
+        self._put(self._table.placed(presentation.masks), reference=False)
+
+    def go(self) -> None:
+        """Put the stimulus there again after a rest, unless it was read."""
+        if self._presentation is not None and not self.read:
+            self._put(self._table.placed(self._presentation.masks), reference=False)
+
+    def end_reading(self) -> None:
+        """Take the stimulus away, since it was read."""
+        super().end_reading()
+        self.rest()
 
     def show_reference(self) -> None:
         """Put what stimuli on the device are compared with on the display."""
         self._put(self._table.placed(self._table.reference), reference=True)
 
-    def clear(self) -> None:
+    def rest(self) -> None:
         """Take the stimulus away; a reference stays where it is, for a finger rests on it.
 
         The trial still needs the display, which may be found to be gone by this.
@@ -119,10 +122,10 @@ class OnConventional:
 
     def withdraw(self) -> None:
         """Take the stimulus away, since the attempt at the trial is over."""
-        self.clear()
+        self.rest()
         self._open = False
 
-    def poll(self) -> list[Happened]:
+    def poll(self) -> list[Notice]:
         """Give what has happened since the last call."""
         early, self._early = self._early, []
         return early + [each for message in self._display.poll() for each in self._take(message)]
@@ -136,20 +139,20 @@ class OnConventional:
         self._open = True
         self._number = self._display.show(cells)
 
-    def _take(self, message: object) -> list[Happened]:
+    def _take(self, message: object) -> list[Notice]:
         match message:
             case DisplayStands():
                 return self._come(message)
             case DisplayAway():
                 self.taken = False
                 said = f"display: {message.why}"
-                return [*self._lost(message.why), Happened(events.Device, {"what": said}, said)]
+                return [*self._lost(message.why), Notice(events.Device, {"what": said}, said)]
             case CellsTaken() if message.number == self._number:
                 first, self.taken = not self.taken, True
-                return [Happened(events.Stood, self._told(message.at_ns))] if first else []
+                return [Notice(events.Stood, self._told(message.at_ns))] if first else []
         return []
 
-    def _come(self, standing: DisplayStands) -> list[Happened]:
+    def _come(self, standing: DisplayStands) -> list[Notice]:
         """Say what display it is, and that what stood on another one is gone with it."""
         if standing == self._known:
             return []
@@ -157,7 +160,7 @@ class OnConventional:
         fields = {name: getattr(standing, name) for name in ("driver", "model", "columns", "rows")}
         said = f"display: {standing.title}, {standing.columns} cells"
         short = self._short(standing)
-        came = Happened(
+        came = Notice(
             events.DisplayBeside,
             {**fields, "spec": self._spec},
             f"{said}; {short}" if short else said,
@@ -165,8 +168,8 @@ class OnConventional:
         lost = self._lost("the conventional display is another one") if another else []
         return [*lost, came]
 
-    def _lost(self, why: str) -> list[Happened]:
-        return [Happened(events.Fault, {"what": why})] if self._open else []
+    def _lost(self, why: str) -> list[Notice]:
+        return [Notice(events.Fault, {"what": why})] if self._open else []
 
     def _short(self, standing: DisplayStands) -> str:
         if standing.columns >= self._cells:

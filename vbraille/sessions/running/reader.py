@@ -17,7 +17,7 @@ from vbraille.sessions.planning.appearance import CONVENTIONAL, Condition
 from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.questions import WhichQuestion
 from vbraille.sessions.record.trajectory import columns_of, edges_mm
-from vbraille.sessions.running.answers import AnswersAtTrials
+from vbraille.sessions.running.responses import TrialResponses
 from vbraille.sessions.simulated.feeling import CELL_GAP, LENGTHS, DotPair, FeltTrial
 from vbraille.sessions.simulated.observer import Observer
 
@@ -60,7 +60,7 @@ MOST_NOISE = 100.0
 _INSTEAD = "type the answers, or give a file of them"
 
 
-class Simulated(AnswersAtTrials):
+class Simulated(TrialResponses):
     """A simulated reader, which is given the frames sent to the device, and nothing of the plan.
 
     Like a person, it has been told the task: where a string begins, how many characters it has,

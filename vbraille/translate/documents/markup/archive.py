@@ -119,6 +119,38 @@ class Archive:
                 f"get the book again"
             ) from None
 
+    def plain(self, member: str, *, needed: bool = True) -> Any:
+        """Parse a member as XML whose names are told apart without their namespaces.
+
+        Parameters
+        ----------
+        member
+            Name of the member.
+        needed
+            Whether it must be there; otherwise an element with nothing in it stands for it.
+
+        Returns
+        -------
+        Element
+            Its root, with no comments and no entities; no name has a namespace.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read or is not XML.
+        """
+        from lxml import etree
+
+        if not needed and member not in self:
+            return etree.Element("missing")
+        root = self.xml(member)
+        etree.strip_tags(root, etree.Comment, etree.PI, etree.Entity)
+        for element in root.iter():
+            element.tag = element.tag.rpartition("}")[2]
+            for name in [name for name in element.attrib if name.startswith("{")]:
+                element.set(name.rpartition("}")[2], element.attrib.pop(name))
+        return root
+
     def any_of(self, members: Iterable[str]) -> str | None:
         """Give the first of some members that is there; None if none is."""
         return next((member for member in members if member in self), None)

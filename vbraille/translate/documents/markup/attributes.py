@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 _XML = "{http://www.w3.org/XML/1998/namespace}"
 _OPS = "{http://www.idpf.org/2007/ops}"
 _KNOWN_NAMES = (
-    "alt alttext aria-hidden aria-label aria-level class colspan data-latex display enum "
-    "epub:type hidden href id idref lang list-style name page render reversed role rowspan "
+    "alt alttext aria-hidden aria-label aria-level class colspan data-latex data-marker display "
+    "enum epub:type hidden href id idref lang list-style name page render reversed role rowspan "
     "span src start style summary title type value xlink:href xml:lang content http-equiv"
 )
 _KNOWN = frozenset(_KNOWN_NAMES.split())

@@ -464,7 +464,8 @@ def _terms(reader: MarkupReader, at: Begun) -> Steps:
 
 def _item(reader: MarkupReader, at: Begun) -> Steps:
     writing, place = reader.writing, reader.writing.place
-    writing.begin_item(BULLET if place.numbering is None else place.numbering.marker(at.found))
+    usual = BULLET if place.numbering is None else place.numbering.marker(at.found)
+    writing.begin_item(at.found.get("data-marker", usual))
     if place.is_note or (place.in_notes and place.items == 1):
         reader._begin_note()
     else:

@@ -1,4 +1,4 @@
-"""Where the answers of a session come from: a spec, lines or a function; and their check."""
+"""Sources of responses: made of a spec, lines or a function, and checked beforehand."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.sessions.running.answers import (
+from vbraille.sessions.running.console import find_command, read_line
+from vbraille.sessions.running.reader import Simulated
+from vbraille.sessions.running.responses import (
     PROGRAM,
-    Answers,
-    AnswersAtTrials,
-    ScriptedAnswers,
+    Responses,
+    Scripted,
+    TrialResponses,
     Typed,
 )
-from vbraille.sessions.running.console import find_order, read_line
-from vbraille.sessions.running.reader import Simulated
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 
     # What answers may be taken from: a spec as in `Conditions`, a source that is made already, a
     # line for each trial, or a function that gives the line for a trial.
-    Source = str | Answers | Iterable[str] | Callable[[Trial], str | None]
+    Source = str | Responses | Iterable[str] | Callable[[Trial], str | None]
 
 
-class GivenAnswers(AnswersAtTrials):
+class ProgramResponses(TrialResponses):
     """Source of answers that asks a program for a line whenever a trial has been read.
 
     Parameters
@@ -64,7 +64,7 @@ class GivenAnswers(AnswersAtTrials):
         Raises
         ------
         InputError
-            If the line is no text, or neither an answer to the trial nor an order.
+            If the line is no text, or neither an answer to the trial nor a command.
         """
         asked = trial.practice, trial.number, attempt
         line = None if asked == self._answered else self._give(trial)
@@ -82,7 +82,7 @@ class GivenAnswers(AnswersAtTrials):
         return line, 0
 
 
-def check_script(script: ScriptedAnswers, protocol: Protocol, progress: Progress) -> None:
+def check_script(script: Scripted, protocol: Protocol, progress: Progress) -> None:
     """Raise InputError if a line of an answers file does not answer its trial."""
     planned = progress.procedure.trials
     if planned is None:  # it is not known yet which trials will come
@@ -91,7 +91,7 @@ def check_script(script: ScriptedAnswers, protocol: Protocol, progress: Progress
     correcting, answered = progress.correcting, progress.last_answered
     half = again = None  # a trial without a confidence yet, and one whose answer was dropped so
     for line, number in script.left:
-        found = find_order(line)
+        found = find_command(line)
         word = "answer" if found is None else found[0].word
         if word in ("undo", "repeat") and half is not None:
             half, again = None, half
@@ -118,14 +118,14 @@ def check_script(script: ScriptedAnswers, protocol: Protocol, progress: Progress
 
 def _is_whole(protocol: Protocol, trial: Trial, line: str) -> bool:
     """Whether a line has all that is asked; ValueError if it does not suit its trial."""
-    found = find_order(line)
+    found = find_command(line)
     _, confidence = read_line(protocol, trial, line if found is None else found[1])
     return confidence is not None or protocol.asks.confidence is None
 
 
 def _is_answer(protocol: Protocol, trial: Trial, line: str) -> bool:
-    """Whether a line is an answer and no order; ValueError if it does not suit its trial."""
-    found = find_order(line)
+    """Whether a line is an answer and no command; ValueError if it does not suit its trial."""
+    found = find_command(line)
     if found is not None and found[0].word != "answer":
         return False
     scale = protocol.asks.confidence
@@ -136,7 +136,7 @@ def _is_answer(protocol: Protocol, trial: Trial, line: str) -> bool:
     return True
 
 
-def parse_answers(spec: str, protocol: Protocol, plan: Plan, after: int = 0) -> Answers:
+def parse_responses(spec: str, protocol: Protocol, plan: Plan, after: int = 0) -> Responses:
     """Make the source of answers for a spec.
 
     That is ``typed``, ``simulated[:NOISE]``, or a file's name.
@@ -165,14 +165,14 @@ def parse_answers(spec: str, protocol: Protocol, plan: Plan, after: int = 0) -> 
                 f"{spec} is no file; give typed, simulated:NOISE such as simulated:0.2, or the "
                 f"name of a file"
             )
-        answers = ScriptedAnswers(Path(spec), after)
+        answers = Scripted(Path(spec), after)
     answers.name = spec
     return answers
 
 
-def answers_from(
+def responses_of(
     source: Source, protocol: Protocol, plan: Plan, progress: Progress, *, fast: bool
-) -> Answers:
+) -> Responses:
     """Make the source of a session's answers, and check it.
 
     Parameters
@@ -191,16 +191,16 @@ def answers_from(
     """
     if isinstance(source, str):
         used = progress.script_lines.get(source, 0)
-        answers = parse_answers(source, protocol, plan, used)
-    elif isinstance(source, Answers):
+        answers = parse_responses(source, protocol, plan, used)
+    elif isinstance(source, Responses):
         answers = source
     else:
-        answers = GivenAnswers(protocol, source)
+        answers = ProgramResponses(protocol, source)
     if fast and isinstance(answers, Typed):
         raise InputError(
             f"{setting('fast')} is for answers that are not typed; "
             f"give {setting('answers')} simulated"
         )
-    if isinstance(answers, ScriptedAnswers):
+    if isinstance(answers, Scripted):
         check_script(answers, protocol, progress)
     return answers

@@ -1,4 +1,4 @@
-"""One run of a session with all that it needs around it, from the device to the record."""
+"""The apparatus of a run: engine, displays, responses and sounds, from the device to the record."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from vbraille.sessions.record.folder import Record, check_end
 from vbraille.sessions.record.journal import NAME, Journal, sum_of, up_s
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.console import Console
-from vbraille.sessions.running.course import Course
-from vbraille.sessions.running.showing import OnDevice, RunEngine
+from vbraille.sessions.running.presenters import OnDevice, RunEngine
+from vbraille.sessions.running.runner import Runner
 from vbraille.sounds import Bell, Silence, Tones
 from vbraille.wording import setting
 
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.events import JournalEvent
-    from vbraille.sessions.running.answers import Answers
     from vbraille.sessions.running.conventional import OnConventional
+    from vbraille.sessions.running.liveview import SessionView
     from vbraille.sessions.running.markers import Markers
-    from vbraille.sessions.running.onlookers import Onlookers
+    from vbraille.sessions.running.responses import Responses
     from vbraille.simulation.steering import Steering
     from vbraille.sounds import Sound
 
@@ -43,15 +43,15 @@ def _nothing() -> None:
 
 
 @dataclass(slots=True)
-class Sitting:
-    """One run of a session, with the engine, the answers and the signals that it needs.
+class Apparatus:
+    """What a run of a session needs: the engine, the responses and the signals.
 
     Parameters
     ----------
     engine
         Engine that drives the device; None on paper. Whoever made it closes it after a fault.
-    answers
-        Source of the answers.
+    responses
+        Source of the lines.
     steering
         Channel that tells the simulated hand what to read; None if a person's hand reads.
     sound
@@ -63,25 +63,25 @@ class Sitting:
         should be kept apart from those.
     before_rest
         Function that is called just before the array is brought to rest.
-    onlookers
+    view
         Live view of the session; None without one.
     markers
         Sender of markers to another recorder; None without one.
-    beside
+    conventional
         Conventional display of the session; None without one.
     """
 
     engine: RunEngine | None
-    answers: Answers
+    responses: Responses
     steering: Steering | None
     sound: Callable[[], Sound]
     real: bool
     say: Callable[[str], None]
     warn: Callable[[str], None]
     before_rest: Callable[[], None]
-    onlookers: Onlookers | None = None
+    view: SessionView | None = None
     markers: Markers | None = None
-    beside: OnConventional | None = None
+    conventional: OnConventional | None = None
     _opened: bool = field(default=False, init=False)
 
     def open(self, protocol: Protocol, plan: Plan) -> None:
@@ -91,8 +91,8 @@ class Sitting:
         self._opened = True
         if self.engine is not None:
             self._start(self.engine, protocol, plan)
-        if self.beside is not None:
-            self.beside.begin()
+        if self.conventional is not None:
+            self.conventional.begin()
 
     def _start(self, engine: RunEngine, protocol: Protocol, plan: Plan) -> None:
         if (note := compiling_note()) is not None:
@@ -115,69 +115,70 @@ class Sitting:
             torn_bytes = book.set_torn_aside()
             self.open(record.protocol, record.plan)
             progress = Progress(record.plan, book.told.events, record.procedure)
-            display = self._display(record, book)
+            device = self._device(record, book)
             sound = self.sound()
-            course = Course(
+            runner = Runner(
                 record.protocol,
                 record.plan,
                 book,
                 progress,
-                display,
-                waits=self.answers.typed,
-                corrects=not self.answers.felt,
+                self.responses,
+                device,
                 say=self.say,
                 play=sound.play,
                 real=self.real,
-                beside=self.beside,
+                conventional=self.conventional,
             )
             if self.markers is not None:
                 self.markers.begin(record.folder)
-                course.book.mark = self.markers.mark
+                runner.mark = self.markers.mark
             told = {"why": why, "torn_bytes": torn_bytes, "sound": sound.name}
             told |= self._since(book, progress)
-            told |= {"spec": spec, "hand": hand, "answers": self.answers.name}
-            if (onlookers := self.onlookers) is not None:
-                told["monitor"] = onlookers.told()
-            practises = self.answers.typed or progress.begun
+            told |= {"spec": spec, "hand": hand, "answers": self.responses.name}
+            if (view := self.view) is not None:
+                told["monitor"] = view.described()
+            practises = self.responses.typed or progress.begun
             fault: VbrailleError | None = None
             try:
                 if not practises:
                     told["practice"] = "left out"
-                course.start(**told, clock="machine" if self.real else "manual")
+                runner.start(**told, clock="machine" if self.real else "manual")
                 if not practises:
                     self.say("practice: left out, since answers are not typed")
-                    course.book.log(events.Begin)
-                look = _nothing if onlookers is None else partial(onlookers.look, course)
-                Console(course, self.answers, say=self.say, real=self.real, look=look).run()
+                    runner.log(events.Begin)
+                look = _nothing if view is None else partial(view.look, runner)
+                runner.run(Console(runner, self.say).take, look)
             finally:
                 self.before_rest()
-                if display is not None:
+                if device is not None:
                     try:
-                        display.close()
+                        device.close()
                     except (DeviceError, HostDiedError) as error:
                         fault = error  # of a device that could not be let go
-            if display is not None:
-                counts = {name: count for name, count in display.engine.counts.items() if count}
-                lost = display.engine.lost
-                trace = display.close_trace()
-                course.book.log(events.Closed, lost=lost, counts=counts, **trace)
+            if device is not None:
+                counts = {name: count for name, count in device.engine.counts.items() if count}
+                lost = device.engine.lost
+                trace = device.close_trace()
+                runner.log(events.Closed, lost=lost, counts=counts, **trace)
             self.say(f"record: {sum_of((record.folder / NAME).read_bytes())}")
         if fault is not None:
             raise fault
         return progress
 
-    def _display(self, record: Record, book: Journal) -> OnDevice | None:
-        """Make the display of the stimuli; None on paper."""
+    def _device(self, record: Record, book: Journal) -> OnDevice | None:
+        """Make the presenter on the device; None on paper."""
         if self.engine is None:
             return None
+        protocol = record.protocol
         return OnDevice(
             self.engine,
-            record.protocol,
+            protocol.model.display.span_mm,
             record.folder,
-            keeps=self.answers.felt,
+            button=protocol.trial.button,
+            keeps=self.responses.felt,
             tie=lambda: book.durable,
             steering=self.steering,
-            by_hand=not self.answers.typed or record.protocol.trial.end is None,
+            by_hand=not self.responses.typed or protocol.trial.end is None,
         )
 
     def _since(self, book: Journal, progress: Progress) -> dict[str, Any]:
@@ -212,7 +213,7 @@ def _gap(last: JournalEvent, *, same_start: bool) -> dict[str, Any]:
     return {"gap_by": "wall"} if gap_s < 0 else {"gap_s": round(gap_s, 3), "gap_by": "wall"}
 
 
-def make_sound(wanted: str, answers: Answers, say: Callable[[str], None]) -> Sound:
+def make_sound(wanted: str, responses: Responses, say: Callable[[str], None]) -> Sound:
     """Make the sound device for "auto", "tones", "bell" or "none".
 
     Raises
@@ -220,7 +221,7 @@ def make_sound(wanted: str, answers: Answers, say: Callable[[str], None]) -> Sou
     InputError
         If tones are asked for and there is no audio output.
     """
-    if wanted == "none" or (wanted == "auto" and not answers.typed):
+    if wanted == "none" or (wanted == "auto" and not responses.typed):
         return Silence()
     if wanted != "bell":
         try:

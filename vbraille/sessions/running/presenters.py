@@ -1,21 +1,25 @@
-"""Showing of stimuli on a device, every tick of which goes into a trace."""
+"""Presenters: what puts a stimulus before the participant, and tells what becomes of it.
+
+A presenter takes any program: a line, a page or a picture. On the device every tick goes into a
+trace; paper only waits for a key; `vbraille.sessions.running.conventional` has the display of pins.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from vbraille.devices.base import Placing
-from vbraille.devices.events import Button
-from vbraille.devices.saying import placing_sentence
+from vbraille.devices.events import Button, HandHeld
+from vbraille.devices.sentences import placing_sentence, told
 from vbraille.engine.engine import Engine, placing_of
 from vbraille.engine.record import Flag
 from vbraille.engine.watchers import HOME_MM, EndOfLine, Upright
 from vbraille.sessions.record import events
 from vbraille.sessions.record.traces import TraceWriter
 from vbraille.sessions.record.trajectory import first_edge_mm
-from vbraille.sessions.running.logbook import Happened, of_device, reported
 from vbraille.sessions.simulated.skin import Exploration
 from vbraille.simulation.steering import ReadLine
 
@@ -28,10 +32,148 @@ if TYPE_CHECKING:
 
     from vbraille.devices.events import Event
     from vbraille.render.braille.profiles import Tuning
+    from vbraille.render.program import Program
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.planning.stimuli import Stimulus
+    from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.record.journal import Tie
     from vbraille.simulation.steering import Steering
+
+
+@dataclass(frozen=True, slots=True)
+class Presentation:
+    """A stimulus as presenters take it.
+
+    Parameters
+    ----------
+    program
+        Picture for the device, by places of the array's centre.
+    end_mm
+        Right end of what is read from left to right; None if only a key ends reading.
+    edge_mm
+        Left edge of the first dot; None if none is shown.
+    masks
+        Dot masks for a display of pins.
+    """
+
+    program: Program
+    end_mm: float | None = None
+    edge_mm: float | None = None
+    masks: tuple[int, ...] = ()
+
+
+def presentation_of(protocol: Design, stimulus: Stimulus, tuning: Tuning) -> Presentation:
+    """Make the presentation of a string, with blank cells before it, as a protocol has it."""
+    line, geometry = protocol.line(stimulus.masks), stimulus.geometry
+    return Presentation(
+        protocol.program(stimulus, tuning),
+        geometry.extent_mm(len(line)),
+        first_edge_mm(line, protocol.mapping_of(stimulus), geometry),
+        stimulus.masks,
+    )
+
+
+class Notice(NamedTuple):
+    """Something that the experimenter or the journal should be told.
+
+    Parameters
+    ----------
+    kind
+        Kind of event: ``Contact`` if the array came to the first dot, ``Read`` if the hand went
+        to the end and back, ``Fault`` if the stimulus can no longer be felt, ``Well`` if it can be
+        felt again, ``Device`` if the device reports something, ``HandTaken`` and
+        ``HandGivenBack`` if a page of the live view becomes its hand or lets that go.
+    fields
+        Those fields of the kind that are known here.
+    said
+        Sentence for the experimenter; empty if there is none.
+    """
+
+    kind: type[JournalEvent]
+    fields: dict[str, Any]
+    said: str = ""
+
+
+def _reported(what: str) -> Notice:
+    """Make a notice of a sentence on the device."""
+    return Notice(events.Device, {"what": what}, what)
+
+
+def _notices_of(given: Iterable[Event]) -> list[Notice]:
+    """Notices of a device's events, or of its engine's."""
+    return [_notice(event, sentence) for event in given for sentence in told((event,))]
+
+
+def _notice(event: Event, sentence: str) -> Notice:
+    if not isinstance(event, HandHeld):
+        return _reported(sentence)
+    return Notice(events.HandTaken if event.held else events.HandGivenBack, {}, sentence)
+
+
+class Presenter:
+    """Presenter of what needs no display: a string on paper, which Enter times.
+
+    Other presenters drive a display, and are made of this one.
+
+    Attributes
+    ----------
+    by_key : bool
+        Whether Enter says when reading begins and ends, since no device feels it.
+    read : bool
+        Whether the stimulus has been read to its end.
+    taken : bool
+        Whether what was shown last has come to the display.
+    """
+
+    by_key = True
+
+    def __init__(self) -> None:
+        self.read = False
+        self.taken = True
+
+    @property
+    def why(self) -> str:
+        """Reason why nothing can be shown now, in words for people; empty if something can."""
+        return ""
+
+    @property
+    def ready(self) -> bool:
+        """Whether a trial may begin."""
+        return not self.why
+
+    @property
+    def reached(self) -> bool:
+        """Whether the hand has been at the end of the stimulus."""
+        return self.read
+
+    @property
+    def explorations(self) -> list[Exploration]:
+        """Frames and places of each stimulus of the trial so far; none off the device."""
+        return []
+
+    def show(self, _presentation: Presentation, *, first: bool = True) -> None:  # noqa: ARG002
+        """Put a stimulus before the participant; the first one of a trial, or another."""
+        self.read = False
+
+    def end_reading(self) -> None:
+        """Take the stimulus from under the hand, since a key has ended the reading."""
+        self.read = True
+
+    def rest(self) -> None:
+        """Have nothing be felt for a while."""
+
+    def go(self) -> None:
+        """Let the stimulus be felt again after a rest, unless its reading was ended."""
+
+    def withdraw(self) -> None:
+        """Take the stimulus away, since the attempt at the trial is over."""
+
+    def poll(self) -> list[Notice]:
+        """Give what has happened since the last call."""
+        return []
+
+
+Paper = Presenter
 
 
 # Flags of a device that cannot let a stimulus be felt, and of one that has just gone to rest.
@@ -67,7 +209,7 @@ class FaultWatch:
         """Begin a trial, or another attempt at it, with the showing of this line number."""
         self.away, self._told_ns, self._line = False, None, line
 
-    def look(self, ticks: NDArray[np.void], lost: NDArray[np.bool_]) -> list[Happened]:
+    def look(self, ticks: NDArray[np.void], lost: NDArray[np.bool_]) -> list[Notice]:
         """Faults that begin or end in these ticks.
 
         Parameters
@@ -90,19 +232,19 @@ class FaultWatch:
             return []
         unfelt = (ticks["flags"] & _UNFELT != 0) & ~self._wakes(ticks) | lost
         at = np.flatnonzero(unfelt)
-        happened = []
+        notices = []
         if at.size and not self.away:
             fault = ticks[int(at[0])]
             time_ns = int(fault["time_ns"])
             if self._told_ns is not None and time_ns - self._told_ns < _TOLD_S * 1e9:
                 return []
             self.away, self._told_ns = True, time_ns
-            happened.append(Happened(events.Fault, {"what": _why(fault), **when(fault)}))
+            notices.append(Notice(events.Fault, {"what": _why(fault), **when(fault)}))
         if self.away and not unfelt[-1]:
             self.away = False
             well = int(at[-1]) + 1 if at.size else 0
-            happened.append(Happened(events.Well, when(ticks[well])))
-        return happened
+            notices.append(Notice(events.Well, when(ticks[well])))
+        return notices
 
     def _wakes(self, ticks: NDArray[np.void]) -> NDArray[np.bool_]:
         """Mark ticks at which the device still wakes after the hand stood still."""
@@ -162,15 +304,17 @@ class RunEngine(Engine, Protocol):
         ...
 
 
-class OnDevice:
-    """Display of stimuli on a device.
+class OnDevice(Presenter):
+    """Presenter on a device.
 
     Parameters
     ----------
     engine
         Engine that drives the device.
-    protocol
-        Protocol of the session, which says how cells are shown.
+    span_mm
+        Distance from the array's left column to its right one.
+    button
+        Number of the device's button that ends reading; None if no button does.
     folder
         Directory of the session, in which traces are written.
     keeps
@@ -189,46 +333,43 @@ class OnDevice:
         Number of the last showing.
     newest : record or None
         Record of the newest tick that was polled; None before the first.
-    ready : bool
-        Whether the device works, and its carriage has just been at the left stop.
-    read : bool
-        Whether the hand has gone to the end of the stimulus and back.
     ended : bool
         Whether the participant's key has ended the reading of this stimulus.
-    explorations : list[Exploration]
-        Frames and places of each stimulus of the trial so far.
     """
+
+    by_key = False
 
     def __init__(
         self,
         engine: RunEngine,
-        protocol: Design,
+        span_mm: float,
         folder: Path,
         *,
+        button: int | None = None,
         keeps: bool,
         tie: Callable[[], Tie],
         steering: Steering | None = None,
         by_hand: bool = True,
     ) -> None:
+        super().__init__()
         self.engine = engine
         self.line = 0
-        self._protocol = protocol
-        self._span_mm = protocol.model.display.span_mm
+        self._span_mm = span_mm
         self._folder = folder
         self._keeps = keeps
         self._tie = tie
         self._steering = steering
-        self._button = protocol.trial.button
+        self._button = button
         self._by_hand = by_hand
         self.ended = False
         self._trace: TraceWriter | None = None
         self.newest: np.void | None = None
         self._placing = Placing.DONE
-        self._stimulus: Stimulus | None = None
-        self._end: EndOfLine
+        self._shown: Presentation | None = None
+        self._end: EndOfLine | None = None
         self._edge_mm: float | None = None
         self._shown_ns = 0
-        self._touched = self.read = self.ready = False
+        self._touched = self._ready = False
         self._shown_line = 0  # first line of the stimulus
         self._faults = FaultWatch()
         self._upright = Upright()
@@ -251,8 +392,8 @@ class OnDevice:
         while (self._folder / _trace_name(run)).exists():
             run += 1
         self._trace = TraceWriter(self._folder / _trace_name(run), self._tie)
-        self.newest = self._stimulus = None
-        self._faults.away = self.ready = False
+        self.newest = self._shown = None
+        self._faults.away = self._ready = False
         return _trace_name(run)
 
     @property
@@ -261,9 +402,14 @@ class OnDevice:
         return 0 if self.newest is None else int(self.newest["time_ns"])
 
     @property
+    def ready(self) -> bool:
+        """Whether the device works, and its carriage has just been at the left stop."""
+        return self._ready
+
+    @property
     def reached(self) -> bool:
         """Whether the hand has been at the end of the stimulus."""
-        return self.read or self._end.reached
+        return self.read or (self._end is not None and self._end.reached)
 
     @property
     def explorations(self) -> list[Exploration]:
@@ -271,45 +417,28 @@ class OnDevice:
         together = (np.concatenate(parts) for parts in self._felt)
         return [Exploration(t["frame"], t["x_mm"], t["time_ns"] / 1e9) for t in together]
 
-    def show(self, stimulus: Stimulus, tuning: Tuning, *, first: bool) -> None:
-        """Put a stimulus under the hand, as the showing with the next line number.
-
-        Parameters
-        ----------
-        stimulus, tuning
-            Stimulus, and the tuning that it is shown with.
-        first
-            Whether it is the first stimulus of a trial, and not the second of a comparison.
-        """
-        self._stimulus = stimulus
+    def show(self, presentation: Presentation, *, first: bool = True) -> None:
+        """Put a stimulus under the hand, as the showing with the next line number."""
         self._shown_ns = self.now_ns
         self._shown_line = self.line + 1
         if first:
             self._felt = []
             self._faults.begin(self._shown_line)
         self._felt.append([])
-        self._end = EndOfLine(self._span_mm, self._end_mm(stimulus))
-        edge_mm = first_edge_mm(
-            self._protocol.line(stimulus.masks),
-            self._protocol.mapping_of(stimulus),
-            stimulus.geometry,
-        )
+        end_mm, edge_mm = presentation.end_mm, presentation.edge_mm
+        self._end = None if end_mm is None else EndOfLine(self._span_mm, end_mm)
         self._edge_mm = None if edge_mm is None else edge_mm - self._span_mm / 2
         self._touched = self.read = self.ended = False
-        self.retune(tuning)
+        self.change(presentation)
         self.engine.paused = False
 
-    def retune(self, tuning: Tuning) -> None:
-        """Show the stimulus with another tuning, as the showing with the next line number."""
-        stimulus = self._stimulus
-        assert stimulus is not None, "nothing is shown"
+    def change(self, presentation: Presentation) -> None:
+        """Show the stimulus by another program, as the showing with the next line number."""
+        self._shown = presentation
         self.line += 1
-        self.engine.show(self._protocol.program(stimulus, tuning), self.line)
-        if self._steering is not None:
-            self._steering.give(ReadLine(self._end_mm(stimulus)))
-
-    def _end_mm(self, stimulus: Stimulus) -> float:
-        return stimulus.geometry.extent_mm(len(self._protocol.line(stimulus.masks)))
+        self.engine.show(presentation.program, self.line)
+        if self._steering is not None and presentation.end_mm is not None:
+            self._steering.give(ReadLine(presentation.end_mm))
 
     def rest(self) -> None:
         """Bring the array to rest at once."""
@@ -325,9 +454,11 @@ class OnDevice:
         self.rest()
 
     def withdraw(self) -> None:
-        """Take the stimulus away, since the attempt at the trial is over."""
+        """Take the stimulus away, and make sure that the trace of it is on the disk."""
         self.rest()
-        self._stimulus = None
+        self._shown = None
+        if self._trace is not None:
+            self._trace.sync()
 
     def confirm(self) -> bool:
         """Take Enter as the sign that the carriage is at its left stop, if that is awaited."""
@@ -336,7 +467,7 @@ class OnDevice:
         self.engine.set_zero()
         return True
 
-    def poll(self) -> list[Happened]:
+    def poll(self) -> list[Notice]:
         """Add the ticks since the last call to the trace, and return what happened in them.
 
         Raises
@@ -345,17 +476,17 @@ class OnDevice:
             If the engine has ended, or the disk does not take the trace.
         """
         ticks = self.engine.poll()
-        told = self.engine.take_events()
-        happened = of_device(told)
+        given = self.engine.take_events()
+        notices = _notices_of(given)
         if not ticks.size:
-            return happened + self._pressed(told)
+            return notices + self._pressed(given)
         before = ticks["tick"][0] - 1 if self.newest is None else self.newest["tick"]
         lost = np.diff(ticks["tick"], prepend=before) != 1
         self.newest = ticks[-1]
         # A carriage that a machine moves may be at the left for a few ticks only.
         at_left = ticks["x_mm"] <= HOME_MM - self._span_mm / 2
         well = ticks["flags"] & AWAY == 0
-        self.ready = bool(well[-1] and (at_left & well).any())
+        self._ready = bool(well[-1] and (at_left & well).any())
         if self._trace is not None:
             self._trace.add(ticks)
         placing = placing_of(self.newest)
@@ -363,31 +494,26 @@ class OnDevice:
             self._placing = placing
             display = self.engine.display
             said = placing_sentence(placing, display, press="press Enter")
-            happened.append(reported(said))
-        happened += map(reported, self._upright.watch(ticks[-1]))
-        if self._stimulus is not None:
-            happened += sorted(
+            notices.append(_reported(said))
+        notices += map(_reported, self._upright.watch(ticks[-1]))
+        if self._shown is not None:
+            notices += sorted(
                 self._faults.look(ticks, lost) + self._follow(ticks),
                 key=lambda each: each.fields["tick"],
             )
-        return happened + self._pressed(told)
+        return notices + self._pressed(given)
 
-    def _pressed(self, told: Iterable[Event]) -> list[Happened]:
+    def _pressed(self, given: Iterable[Event]) -> list[Notice]:
         """Press of the button that ends reading, if it is among these events."""
-        if self._stimulus is None or self.ended:
+        if self._shown is None or self.ended:
             return []
-        for event in told:
+        for event in given:
             if isinstance(event, Button) and event.pressed and event.number == self._button:
                 by = {"by": f"button:{event.number}"}
                 # A press from before the stimulus came is told now, and counts from now on.
                 at_ns = event.at_ns if event.at_ns and event.at_ns > self._shown_ns else None
-                return [Happened(events.Ended, by if at_ns is None else by | {"time_ns": at_ns})]
+                return [Notice(events.Ended, by if at_ns is None else by | {"time_ns": at_ns})]
         return []
-
-    def sync(self) -> None:
-        """Make sure that the trace is on the disk."""
-        if self._trace is not None:
-            self._trace.sync()
 
     def close(self) -> None:
         """Bring the array to rest, and close the engine and the trace."""
@@ -403,28 +529,25 @@ class OnDevice:
         self._trace.close()
         return self._trace.closed()
 
-    def _follow(self, ticks: NDArray[np.void]) -> list[Happened]:
+    def _follow(self, ticks: NDArray[np.void]) -> list[Notice]:
         """Touch of the first dot, and end of reading, if they are in these ticks."""
         ticks = ticks[(ticks["line"] >= self._shown_line) & (ticks["flags"] & _PAUSED == 0)]
         if not ticks.size:
             return []
-        happened = []
+        notices = []
         if self._keeps:
             self._felt[-1].append(ticks)
         if not self._touched and self._edge_mm is not None:
             on = np.flatnonzero(ticks["x_mm"] >= self._edge_mm)
             if on.size:
                 self._touched = True
-                happened.append(Happened(events.Contact, when(ticks[int(on[0])])))
+                notices.append(Notice(events.Contact, when(ticks[int(on[0])])))
         steered = self._steering is not None and self._steering.done_at(int(ticks["device_ns"][-1]))
-        if (
-            self._by_hand
-            and not self.read
-            and (self._end.find(ticks["x_mm"]) is not None or steered)
-        ):
+        end = None if self.read or not self._by_hand else self._end
+        if end is not None and (end.find(ticks["x_mm"]) is not None or steered):
             self.read = True
-            happened.append(Happened(events.Read, when(ticks[-1])))
-        return happened
+            notices.append(Notice(events.Read, when(ticks[-1])))
+        return notices
 
 
 def _trace_name(run: int) -> str:

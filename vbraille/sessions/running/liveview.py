@@ -24,7 +24,7 @@ from vbraille.live.messages import ViewState
 from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
 from vbraille.sessions.planning.stimuli import Stimulus, Trial, said_value
 from vbraille.sessions.record.events import LiveView
-from vbraille.sessions.running.course import Course, Phase
+from vbraille.sessions.running.runner import Phase, Runner
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -74,7 +74,7 @@ _PLACES: Final = {
 
 
 @dataclass(slots=True)
-class Heard:
+class SafeSentences:
     """The sentences for the experimenter that a page may be told.
 
     Parameters
@@ -102,13 +102,13 @@ class Heard:
             self.before += 1
 
 
-def state_of(course: Course, heard: Heard, *, simulated: bool = False) -> ViewState:
+def state_of(runner: Runner, heard: SafeSentences, *, simulated: bool = False) -> ViewState:
     """Make the state of a session that its pages show.
 
     Parameters
     ----------
-    course
-        Course of the session, which has a display.
+    runner
+        Runner of the session, which has a device.
     heard
         Sentences that pages may be told, and whether the session is blind.
     simulated
@@ -119,66 +119,66 @@ def state_of(course: Course, heard: Heard, *, simulated: bool = False) -> ViewSt
     ViewState
         ViewState without a number, which whoever sends it gives.
     """
-    assert course.display is not None, "paper cannot be watched"
-    engine, protocol = course.display.engine, course.protocol
+    assert runner.device is not None, "paper cannot be watched"
+    engine, protocol = runner.device.engine, runner.protocol
     state = ViewState(
         number=0,
         title=protocol.title,
         array=array_shown(engine.display),
         geometry=geometry_shown(protocol.geometry),
         rows_shown=rows_shown(protocol.style, engine.display),
-        place=_place(course),
+        place=_place(runner),
         mapping=say_mapping(protocol.mapping),
-        paused=course.paused,
+        paused=runner.paused,
         simulated=simulated,
-        held=course.progress.pointed,
-        device=_device(course.display.newest),
+        held=runner.progress.pointed,
+        device=_device(runner.device.newest),
         said=list(heard.last),
         said_before=heard.before,
-        facts=_facts(course),
+        facts=_facts(runner),
         blind=heard.blind,
-        done=course.phase is Phase.OVER,
+        done=runner.phase is Phase.OVER,
     )
-    return state if heard.blind else _unhidden(state, course)
+    return state if heard.blind else _unhidden(state, runner)
 
 
-def _unhidden(state: ViewState, course: Course) -> ViewState:
+def _unhidden(state: ViewState, runner: Runner) -> ViewState:
     """ViewState with all that a blind one keeps back."""
-    facts, trial = [*state.facts], course.trial
-    answered = course.progress.last_answered
-    if answered is not None and (answer := course.progress.told(answered).answer) is not None:
-        of, knob = course.protocol, course.protocol.parameter
+    facts, trial = [*state.facts], runner.trial
+    answered = runner.progress.last_answered
+    if answered is not None and (answer := runner.progress.told(answered).answer) is not None:
+        of, knob = runner.protocol, runner.protocol.parameter
         facts.append(("last answer", of.asks.verdict(answered, answer, of.keys, knob)))
     if trial is None:
         return structs.replace(state, facts=facts)
     facts.append(("condition", trial.condition))
-    if course.phase is not Phase.OPEN or course.by_key:
+    if runner.phase is not Phase.OPEN or runner.by_key:
         return structs.replace(state, facts=facts)
-    stimulus = trial.stimuli[course.stimulus]
-    tuning = asdict(stimulus.tuning) | course.progress.tuning
+    stimulus = trial.stimuli[runner.stimulus]
+    tuning = asdict(stimulus.tuning) | runner.progress.tuning
     facts += [
         ("contrast", f"{tuning['contrast']:g}"),
         ("texture", f"{tuning['texture']:g}"),
-        ("asked for", _asked(course.protocol, trial, stimulus)),
+        ("asked for", _asked(runner.protocol, trial, stimulus)),
     ]
     geometry = geometry_shown(stimulus.geometry)
-    style = replace(course.protocol.style, mapping=course.protocol.mapping_of(stimulus))
-    assert course.display is not None, "paper cannot be watched"
+    style = replace(runner.protocol.style, mapping=runner.protocol.mapping_of(stimulus))
+    assert runner.device is not None, "paper cannot be watched"
     return structs.replace(
         state,
         facts=facts,
         geometry=geometry,
         mapping=say_mapping(style.mapping),
-        rows_shown=rows_shown(style, course.display.engine.display),
-        lines=[_line(course, stimulus)],
+        rows_shown=rows_shown(style, runner.device.engine.display),
+        lines=[_line(runner, stimulus)],
     )
 
 
-def _line(course: Course, stimulus: Stimulus) -> LineShown:
+def _line(runner: Runner, stimulus: Stimulus) -> LineShown:
     """Line on which a stimulus is shown."""
-    assert course.display is not None
-    cells = course.protocol.line(stimulus.masks)
-    return cells_shown(course.display.line, cells, stimulus.text or "", under=True)
+    assert runner.device is not None
+    cells = runner.protocol.line(stimulus.masks)
+    return cells_shown(runner.device.line, cells, stimulus.text or "", under=True)
 
 
 def _asked(protocol: Protocol, trial: Trial, stimulus: Stimulus) -> str:
@@ -188,25 +188,25 @@ def _asked(protocol: Protocol, trial: Trial, stimulus: Stimulus) -> str:
     return say_cells(to_braille(stimulus.masks[slice(*trial.asked)]), protocol.keys)
 
 
-def _facts(course: Course) -> list[tuple[str, str]]:
+def _facts(runner: Runner) -> list[tuple[str, str]]:
     """How far the session has come; nothing here depends on stimuli or answers."""
-    protocol, progress, trial = course.protocol, course.progress, course.trial
+    protocol, progress, trial = runner.protocol, runner.progress, runner.trial
     facts: list[tuple[str, str]] = []
     if trial is not None:
         practice, number = trial.practice, trial.number
-        told = f"{number} of {len(course.plan.practice)}" if practice else progress.of_all(number)
+        told = f"{number} of {len(runner.plan.practice)}" if practice else progress.of_all(number)
         facts.append(("practice" if practice else "trial", told))
-        blocks = max((one.block for one in course.plan.trials), default=0)
+        blocks = max((one.block for one in runner.plan.trials), default=0)
         if not practice and blocks > 1:
             facts.append(("block", f"{trial.block} of {blocks}"))
-        if len(trial.stimuli) == 2 and course.phase is Phase.OPEN:
-            facts.append(("stimulus", "second of 2" if course.stimulus else "first of 2"))
+        if len(trial.stimuli) == 2 and runner.phase is Phase.OPEN:
+            facts.append(("stimulus", "second of 2" if runner.stimulus else "first of 2"))
         if (attempt := progress.told(trial).attempts) > 1:
             facts.append(("attempt", f"{attempt}"))
     facts.append(("answered", progress.of_all(progress.done)))
     if protocol.session.break_every is not None:
         facts.append(("since the last break", f"{progress.done - progress.broken} trials"))
-    facts.append(("time", _time(course.book.elapsed_s)))
+    facts.append(("time", _time(runner.elapsed_s)))
     if protocol.session.limit_s is not None:
         facts.append(("limit", _time(protocol.session.limit_s)))
     return facts
@@ -217,24 +217,24 @@ def _time(seconds: float) -> str:
     return f"{minutes} min {rest:02} s"
 
 
-def _place(course: Course) -> str:
+def _place(runner: Runner) -> str:
     """Sentence that says what the session waits for."""
-    if course.phase is Phase.OVER:
+    if runner.phase is Phase.OVER:
         return "the session is over"
-    correcting = course.progress.correcting
+    correcting = runner.progress.correcting
     if correcting is not None:
-        return f"{course.name(correcting)}: its answer was taken back, and is typed anew"
-    if course.phase is Phase.LAST:
+        return f"{runner.name(correcting)}: its answer was taken back, and is typed anew"
+    if runner.phase is Phase.LAST:
         return "all trials are done; Enter at the console ends the session"
-    if course.phase is Phase.BREAK:
+    if runner.phase is Phase.BREAK:
         return "a break; Enter at the console ends it"
-    assert course.trial is not None
-    name = course.name(course.trial)
-    if course.paused:
+    assert runner.trial is not None
+    name = runner.name(runner.trial)
+    if runner.paused:
         return f"{name}: a pause; Enter at the console ends it"
-    if course.phase is Phase.READY:
+    if runner.phase is Phase.READY:
         return f"{name}: waits until the array is at the left stop"
-    if course.read:
+    if runner.read:
         return f"{name}: was read; waits for the answer"
     return f"{name}: is read"
 
@@ -262,7 +262,7 @@ _NO_KNOBS: Final = (
 _log = logging.getLogger(__name__)
 
 
-class Onlookers:
+class SessionView:
     """Pages that watch a session; whatever goes wrong with them, the session goes on.
 
     Parameters
@@ -288,8 +288,8 @@ class Onlookers:
         self._monitor: Monitor | None = monitor
         self._simulated = simulated
         self._host = host
-        self._say: Callable[[str], None] = _nobody
-        self._heard = Heard(blind=blind)
+        self._say: Callable[[str], None] = _ignore
+        self._heard = SafeSentences(blind=blind)
         self._newest: ViewState | None = None
         self._number = 0
 
@@ -302,7 +302,7 @@ class Onlookers:
     def _share(self, descriptor: int, extent: Extent) -> None:
         self._try("was not given the memory", lambda monitor: monitor.share(descriptor, extent))
 
-    def beside(self, say: Callable[[str], None]) -> Callable[[str], None]:
+    def relay(self, say: Callable[[str], None]) -> Callable[[str], None]:
         """Give the function that says a sentence to the experimenter by ``say``, and to the pages.
 
         The pages are told it as far as they may hear it. What the live view itself has to say goes
@@ -316,13 +316,13 @@ class Onlookers:
 
         return tell
 
-    def told(self) -> LiveView:
+    def described(self) -> LiveView:
         """What the journal has about the live view of a run."""
         return LiveView(self._heard.blind, self._host, self._simulated)
 
-    def look(self, course: Course) -> None:
+    def look(self, runner: Runner) -> None:
         """Tell the pages what has changed, and refuse what they ask for."""
-        self._try("has failed", lambda monitor: self._look(monitor, course))
+        self._try("has failed", lambda monitor: self._look(monitor, runner))
 
     def close(self) -> None:
         """End the live view."""
@@ -341,12 +341,12 @@ class Onlookers:
             _log.info("the live view %s: %r", fails, fault)
             self._end(monitor)
 
-    def _look(self, monitor: Monitor, course: Course) -> None:
+    def _look(self, monitor: Monitor, runner: Runner) -> None:
         for note in monitor.notes():
             self._say(note)
         if monitor.take() and _NO_KNOBS not in self._heard.last[-1:]:
             self._heard.hear(_NO_KNOBS)
-        state = state_of(course, self._heard, simulated=self._simulated)
+        state = state_of(runner, self._heard, simulated=self._simulated)
         if state != self._newest:
             self._newest, self._number = state, self._number + 1
             monitor.tell(structs.replace(state, number=self._number))
@@ -357,7 +357,7 @@ class Onlookers:
         self._say(ENDED)
 
 
-def _nobody(_sentence: str) -> None:
+def _ignore(_sentence: str) -> None:
     """Ignore a sentence, before it is known who hears them."""
 
 

@@ -1,4 +1,4 @@
-"""A serial device that lends itself to compiled ticks, over a pair of descriptors, tick by tick.
+"""A serial device whose steady ticks are compiled, over a pair of descriptors, tick by tick.
 
 The compiled tick goes by the machine's clock, so that nobody can turn it. But it is due at once
 here, and does one tick at a time, between which the simulated controller goes on by a millisecond
@@ -235,7 +235,7 @@ class Rig:
             self.step()
             if self.compiled:
                 return
-        raise AssertionError("the device is never lent")
+        raise AssertionError("no tick was compiled")
 
     def hang_up(self):
         os.close(self.theirs)
@@ -334,7 +334,7 @@ def known(device):
         fields |= {(type(part), name): getattr(part, name) for name in type(part).__slots__}
     place = talk.place
     axes = [axis for axis in (place.x, place.y, place.turn) if axis is not None]
-    for part in (talk.trips, talk.panel, talk.delivery, place, talk.time, *axes):
+    for part in (talk.trips, talk.controls, talk.delivery, place, talk.time, *axes):
         numbers = {name: value for name, value in vars(part).items() if value not in axes}
         fields |= {(type(part), part is place.y, name): value for name, value in numbers.items()}
     fields["moved"] = talk.drive.last_ns, talk.drive.last.tolist()

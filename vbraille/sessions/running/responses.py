@@ -1,4 +1,4 @@
-"""Sources of answers: lines typed by an experimenter, or a file; `Simulated` is another one."""
+"""Responses: lines typed by an experimenter, or a file; `Simulated` is another source."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ _WAIT_S = 1.0
 
 
 @runtime_checkable
-class Answers(Protocol):
+class Responses(Protocol):
     """A source of lines for the console.
 
     Attributes
@@ -140,7 +140,7 @@ class Typed:
             self._key.tell(awaited and not self._partial)
 
     def lines(self, wait_s: float) -> list[str] | None:
-        """Lines typed since the last call; see `Answers`."""
+        """Lines typed since the last call; see `Responses`."""
         if self._waiting:
             lines, self._waiting = self._waiting, []
             return lines
@@ -179,7 +179,7 @@ class Typed:
         return None
 
 
-class AnswersAtTrials:
+class TrialResponses:
     """A source that answers a trial once it has been read, and says nothing else."""
 
     typed = False
@@ -191,7 +191,7 @@ class AnswersAtTrials:
         return []
 
 
-class ScriptedAnswers(AnswersAtTrials):
+class Scripted(TrialResponses):
     """Source of answers that takes the next line of a file whenever a trial has been read.
 
     Empty lines, and lines that begin with #, are left out.
