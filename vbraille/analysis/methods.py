@@ -297,8 +297,7 @@ def _factors(protocol: Protocol, rows: Rows) -> str | None:
         possible *= len(factor.levels)
         told.append(f"{factor.name} ({', '.join(levels)})")
     if len(told) == 1:
-        yield f"Within participants varied {told[0]}"
-        return None
+        return told[0]
     number = len({row["condition"] for row in rows})
     part = f"all {number}" if number == possible else f"{number} of the {possible}"
     return f"{' and '.join(told)}, {part} combinations of them"
