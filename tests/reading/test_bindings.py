@@ -9,9 +9,9 @@ from tests.reading.test_reader import TEXT, Bench
 from vbraille.config.options import OPTIONS
 from vbraille.config.settings import parse_settings
 from vbraille.errors import InputError
-from vbraille.reading.bindings import Bindings, Context
 from vbraille.reading.commands.table import KEY_SETS, bound_by, press_button, turn_knob
 from vbraille.reading.device import SETTLED_S, KnobTurns
+from vbraille.reading.keys import Bindings, Context
 from vbraille.reading.outputs import Echo
 from vbraille.translate import Book, BrailleTable
 from vbraille.translate.documents.html import HtmlBook

@@ -5,9 +5,9 @@ import pytest
 from tests.reading.test_reader import Bench
 from vbraille.conventional.brlapi import DisplayAway, DisplayStands, KeyPressed, KeyTyped
 from vbraille.errors import InputError
-from vbraille.reading.bindings import Bindings, Context
 from vbraille.reading.commands.table import bound_by
 from vbraille.reading.conventionalview import ConventionalView, Pane
+from vbraille.reading.keys import Bindings, Context
 from vbraille.simulation.hand import Sweep
 
 TEXT = "one two three four five six seven eight nine ten plus\n\nthe last\n"

@@ -9,9 +9,9 @@ from tests.reading.held import Held
 from tests.render.scene.lanes import lane_places
 from tests.render.scene.twin import deflections
 from tests.tiers import heavy
-from vbraille.feeling.bookfigures import BookFigures
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import choose_table
+from vbraille.reading.bookfigures import BookFigures
 from vbraille.reading.commands.table import press
 from vbraille.reading.device import OpenDevice
 from vbraille.render import STRESS2, STRESS2_8X8, model_of

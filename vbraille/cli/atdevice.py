@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
-from vbraille.cli.stoppable import POLL_S, STOPPED, StoppableKeyboard
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
@@ -18,10 +17,11 @@ from vbraille.devices.registry import opened_device
 from vbraille.devices.sentences import placing_sentence
 from vbraille.engine.host import OPEN_S, OPENING, HostDiedError, too_slow
 from vbraille.errors import InputError
-from vbraille.reading.bindings import Context, spoken
 from vbraille.reading.commands.table import press
 from vbraille.reading.cues import Cues, choose_cues
 from vbraille.reading.device import OpenDevice
+from vbraille.reading.keyboard import POLL_S, STOPPED, StoppableKeyboard
+from vbraille.reading.keys import Context, spoken
 from vbraille.reading.outputs import Echo, Outputs
 from vbraille.simulation.specs import has_hand
 
@@ -29,12 +29,12 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterable, Iterator
 
-    from vbraille.cli.live import LiveView
     from vbraille.devices.base import Device
     from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.reading.activity import Activity
     from vbraille.reading.keyboard import Keyboard
+    from vbraille.reading.liveview import LiveView
 
 
 @contextmanager
@@ -121,11 +121,14 @@ def surrounded(
         if (note := compiling_note()) is not None:
             print(note, file=sys.stderr, flush=True)
         live = None
+        pointer = arguments.pointer if has_hand(arguments.device) else None
         if arguments.monitor:
             # Only who has a live view waits for what it needs.
-            from vbraille.cli.live import LiveView
+            from vbraille.reading.liveview import LiveView
 
-            live = closing.enter_context(LiveView(arguments))
+            live = closing.enter_context(
+                LiveView(arguments.host, arguments.port, pointer, say_line)
+            )
         cues = Cues(choose_cues(arguments.cues, attended=keyboard.attached))
         say = say_line if live is None else live.say
         outputs = closing.enter_context(Outputs(say, cues, echo=echo))
@@ -140,7 +143,7 @@ def surrounded(
             say=outputs.say,
             attended=keyboard.attached,
             begun=arguments.begun,
-            pointer=arguments.pointer if has_hand(arguments.device) else None,
+            pointer=pointer,
             on_share=None if live is None else live.monitor.share,
         )
         try:

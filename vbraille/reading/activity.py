@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
-from vbraille.reading.bindings import Context, spoken
+from vbraille.reading.keys import Context, spoken
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.engine.engine import Engine
-    from vbraille.reading.bindings import Bound
     from vbraille.reading.cues import Cue
+    from vbraille.reading.keys import Bound
 
 LONGEST = 200  # characters
 _MOST_EARLIER = 50  # texts that are kept to be brought again

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from vbraille.conventional.brlapi import DisplayAway, DisplayStands, KeyPressed, KeyTyped
-from vbraille.reading.bindings import Context
 from vbraille.reading.commands.asking import say_cell
 from vbraille.reading.commands.table import BOUND, press, press_display_key
+from vbraille.reading.keys import Context
 
 if TYPE_CHECKING:
     from collections.abc import Callable

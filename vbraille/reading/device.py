@@ -19,10 +19,10 @@ from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
 from vbraille.pose import Pose
 from vbraille.reading.commands.table import press_button, turn_knob
 from vbraille.reading.frames import check_shown
+from vbraille.reading.lineviews import MOST_CELLS
 from vbraille.reading.outputs import Echo
 from vbraille.reading.reader import Reader
 from vbraille.reading.surface import MOST_LINES
-from vbraille.reading.textview import MOST_CELLS
 from vbraille.render.braille.models import STRESS2, Model, model_of
 from vbraille.simulation.hand import Still
 from vbraille.simulation.recorded import Recorded

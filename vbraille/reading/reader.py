@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.watchers import Upright
 from vbraille.reading.activity import Activity, Prompt
-from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
+from vbraille.reading.keys import Context
+from vbraille.reading.lineviews import TextView
 from vbraille.reading.outputs import Echo
-from vbraille.reading.search.queries import CountLines
+from vbraille.reading.search.questions import CountLines
 from vbraille.reading.search.seeker import Search
 from vbraille.reading.surface import LineRange, Surface, Window, around, turned
-from vbraille.reading.textview import TextView
 from vbraille.reading.whereabouts import (
     LINES_PER_PAGE,
     first_character,
@@ -34,11 +34,11 @@ if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
     from vbraille.engine.engine import Engine
     from vbraille.layout.pages import Layout, Line
-    from vbraille.reading.bindings import Bound
-    from vbraille.reading.figured import Figures
-    from vbraille.reading.places import Bookmark, KeptBook
-    from vbraille.reading.scrolling import Scroll
-    from vbraille.reading.search.queries import Counted, Query
+    from vbraille.reading.advancing import Scroll
+    from vbraille.reading.keys import Bound
+    from vbraille.reading.library import Bookmark, KeptBook
+    from vbraille.reading.lineviews import Figures
+    from vbraille.reading.search.questions import Counted, Query
     from vbraille.reading.search.seeker import Seeker
     from vbraille.render import BrailleStyle, Model
     from vbraille.simulation.steering import Steering

@@ -4,9 +4,8 @@ import pytest
 
 from tests.reading.test_reader import Bench
 from vbraille.reading import COMMANDS, Context
-from vbraille.reading.bindings import ANY
 from vbraille.reading.commands.table import BOUND, find, press
-from vbraille.reading.keys import PASTE, PASTE_REST
+from vbraille.reading.keys import ANY, PASTE, PASTE_REST
 
 
 @pytest.mark.parametrize("context", Context)

@@ -8,18 +8,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.cli.atdevice import AtDevice, say_summary, surrounded
-from vbraille.cli.options.reading import check_live_options
+from vbraille.cli.options.exploring import check_live_options
 from vbraille.cli.terminal import say_line
 from vbraille.devices.events import Button
 from vbraille.devices.registry import check_actuators, find_driver
 from vbraille.display import check_rate
 from vbraille.errors import InputError
-from vbraille.feeling.commands import BOUND
 from vbraille.feeling.composing import compose
-from vbraille.feeling.feeler import Feeler
 from vbraille.feeling.loading import FileWatch, check_fits, load_scene
+from vbraille.reading.commands.scene import BOUND
 from vbraille.reading.commands.table import press_button
 from vbraille.reading.keyboard import Keyboard
+from vbraille.reading.sceneview import SceneView
 from vbraille.render import MODELS, model_of
 from vbraille.simulation.hand import Still
 from vbraille.simulation.specs import (
@@ -36,14 +36,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from vbraille.cli.atdevice import Surroundings
-    from vbraille.cli.stoppable import StoppableKeyboard
     from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.engine.host import HostDiedError
     from vbraille.feeling.loading import LoadedScene
-    from vbraille.feeling.viewed import FeltView
     from vbraille.reading.device import OpenDevice
-    from vbraille.reading.viewed import Said
+    from vbraille.reading.keyboard import StoppableKeyboard
+    from vbraille.reading.liveview import FeltState, LastSentences
 
 _MODEL = "stress2-8x8"
 _LINE_MM = 10.0  # between the lines that a hand goes along which reads
@@ -81,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
             room = max(_SPARE * program.nbytes, _LEAST_ROOM)
             device.start(model, room)
             keys = around.keys()
-            feeler = Feeler(
+            feeler = SceneView(
                 loaded,
                 device,
                 rate_hz=rate_hz,
@@ -114,12 +113,14 @@ def _check(loaded: LoadedScene, display: Display, at_mm: float | None) -> None:
         raise InputError(f"--at is {at_mm:g} mm; it must be 0 to {height_mm:g} mm")
 
 
-def _view(device: OpenDevice, feeler: Feeler, said: Said, facts: list[tuple[str, str]]) -> FeltView:
+def _view(
+    device: OpenDevice, feeler: SceneView, said: LastSentences, facts: list[tuple[str, str]]
+) -> FeltState:
     """Describe what is felt, as the state of the live view."""
     # Only who has a live view waits for what it needs.
-    from vbraille.feeling.viewed import FeltView
+    from vbraille.reading.liveview import FeltState
 
-    return FeltView(device, feeler, said, facts)
+    return FeltState(device, feeler, said, facts)
 
 
 class _Feeling(AtDevice):
@@ -129,7 +130,7 @@ class _Feeling(AtDevice):
     """
 
     def __init__(
-        self, around: Surroundings, feeler: Feeler, keys: StoppableKeyboard, *, goes: bool
+        self, around: Surroundings, feeler: SceneView, keys: StoppableKeyboard, *, goes: bool
     ) -> None:
         super().__init__(around, feeler, keys)
         self._feeler = feeler

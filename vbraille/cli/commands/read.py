@@ -16,20 +16,20 @@ from vbraille.cli.build import (
     chosen_profile,
     lay_out,
     note_unseen_dots,
+    open_to_resume,
 )
-from vbraille.cli.options.reading import check_live_options
-from vbraille.cli.resuming import open_to_resume
+from vbraille.cli.options.exploring import check_live_options
 from vbraille.cli.terminal import say_line
 from vbraille.config.settings import settle, with_profile
 from vbraille.devices.registry import check_actuators, check_height, check_travel, find_driver
 from vbraille.display import USUAL_RATE_HZ, check_rate
 from vbraille.errors import InputError
+from vbraille.reading.advancing import Scroll
 from vbraille.reading.commands.table import bound_for
 from vbraille.reading.device import HAND
 from vbraille.reading.keyboard import Keyboard
+from vbraille.reading.library import KeptPlaces
 from vbraille.reading.outputs import Echo, language_of
-from vbraille.reading.places import KeptPlaces
-from vbraille.reading.scrolling import Scroll
 from vbraille.render import MODELS, model_of
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
 from vbraille.translate.documents.document import Document
@@ -41,13 +41,13 @@ if TYPE_CHECKING:
 
     from vbraille.cli.atdevice import Surroundings
     from vbraille.cli.build import Page
-    from vbraille.cli.stoppable import StoppableKeyboard
     from vbraille.devices.events import Event
     from vbraille.reading.activity import Activity
     from vbraille.reading.conventionalview import ConventionalView
     from vbraille.reading.device import OpenDevice
-    from vbraille.reading.figured import Figures
-    from vbraille.reading.viewed import ReadView, Said
+    from vbraille.reading.keyboard import StoppableKeyboard
+    from vbraille.reading.lineviews import Figures
+    from vbraille.reading.liveview import LastSentences, ReadState
     from vbraille.render import Model
 
 _FIGURE_ROOM = 1 << 21  # bytes of the largest page with figures, or of a figure
@@ -191,14 +191,14 @@ class _Reading(AtDevice):
             say_line(spelled(note), aside=True)
 
 
-def _view(device: OpenDevice, said: Said, facts: list[tuple[str, str]]) -> ReadView:
+def _view(device: OpenDevice, said: LastSentences, facts: list[tuple[str, str]]) -> ReadState:
     """Describe what is read, as the state of the live view."""
     # Only a reading that has a live view waits for what it needs.
-    from vbraille.reading.viewed import ReadView
+    from vbraille.reading.liveview import ReadState
 
     source, table = device.reader.layout.book.source, device.reader.layout.book.table
     tables = [] if table is None else [("table", table.name)]
-    return ReadView(device, source.title or PurePath(source.name).name, said, [*tables, *facts])
+    return ReadState(device, source.title or PurePath(source.name).name, said, [*tables, *facts])
 
 
 def _also(arguments: argparse.Namespace, around: Surroundings) -> ConventionalView | None:
@@ -215,7 +215,7 @@ def _also(arguments: argparse.Namespace, around: Surroundings) -> ConventionalVi
 
 def _figures(page: Page, folder: Path, device: OpenDevice, rate_hz: float) -> Figures:
     """Figures of the text; a text without any does not wait for what reads them."""
-    from vbraille.feeling.bookfigures import BookFigures
+    from vbraille.reading.bookfigures import BookFigures
 
     def note(sentence: str) -> None:
         say_line(f"note: {sentence}", aside=True)

@@ -16,9 +16,9 @@ from vbraille.files import read_text, write_file
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line, choose_table
 from vbraille.reading.activity import Activity
-from vbraille.reading.bindings import spoken
 from vbraille.reading.device import HAND
 from vbraille.reading.keyboard import Keyboard
+from vbraille.reading.keys import spoken
 from vbraille.reading.outputs import language_of
 from vbraille.reading.tuning_course import TuningCourse, from_json, practice_text, to_json
 from vbraille.render import MODELS, model_of
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.cli.atdevice import Surroundings
-    from vbraille.cli.stoppable import StoppableKeyboard
     from vbraille.devices.events import Event
+    from vbraille.reading.keyboard import StoppableKeyboard
     from vbraille.render import Model
 
 _KEYS = {

@@ -187,7 +187,7 @@ def _keys(program: str) -> str:
     if program == "vbraille read":
         from vbraille.reading.commands.table import COMMANDS as KEYS
     elif program == "vbraille feel":
-        from vbraille.feeling.commands import COMMANDS as KEYS
+        from vbraille.reading.commands.scene import COMMANDS as KEYS
     else:
         return ""
     width = max(len(command.spoken_keys) for command in KEYS)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.reading.bindings import Context, spoken
+from vbraille.reading.keys import Context, spoken
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -11,8 +11,17 @@ from typing import TYPE_CHECKING, Any, ParamSpec
 
 from vbraille.config.options import knobs
 from vbraille.reading.activity import LONGEST
-from vbraille.reading.bindings import ANY, Bindings, Bound, Command, Context, bind, spoken
-from vbraille.reading.keys import PASTE, pasted
+from vbraille.reading.keys import (
+    ANY,
+    PASTE,
+    Bindings,
+    Bound,
+    Command,
+    Context,
+    bind,
+    pasted,
+    spoken,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

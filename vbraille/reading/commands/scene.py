@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from operator import methodcaller
 
-from vbraille.reading.bindings import ANY, Bindings, Command, Context, bind
 from vbraille.reading.commands import control
 from vbraille.reading.commands.table import TYPING, say_keys
+from vbraille.reading.keys import ANY, Bindings, Command, Context, bind
 
 STEP_MM, FAR_MM = 1.0, 10.0
 # Buttons of the device, by their numbers.

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.feeling.felt import DISPLAY, SCENE, Felt
+from tests.reading.felt import DISPLAY, SCENE, Felt
 from vbraille.simulation.steering import GlideTo, Steering
 
 

@@ -10,8 +10,8 @@ from vbraille.feeling.composing import at_height, compose
 from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import check_fits, load_scene
 from vbraille.reading.activity import Activity, Prompt
-from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
+from vbraille.reading.keys import Context
 from vbraille.simulation.steering import GlideTo
 from vbraille.wording import spelled
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.feeling.index import NamedElement
     from vbraille.feeling.loading import LoadedScene
-    from vbraille.reading.bindings import Bound
     from vbraille.reading.device import OpenDevice
+    from vbraille.reading.keys import Bound
     from vbraille.render.program import Program
 
 _EVERY_S: Final = 1.0
@@ -79,8 +79,8 @@ _CONTRAST_STEP: Final = 0.1
 _MOVED_MM: Final = 0.2  # a hand that moved less is asked about no more
 
 
-class Feeler(Activity):
-    """Somebody who feels a scene on a device; `vbraille.feeling.commands` calls its methods.
+class SceneView(Activity):
+    """Somebody who feels a scene on a device; `vbraille.reading.commands.scene` calls its methods.
 
     Parameters
     ----------
