@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from vbraille.errors import DeviceError as DeviceError
     from vbraille.errors import InputError as InputError
     from vbraille.errors import VbrailleError as VbrailleError
+    from vbraille.feeling.composing import open_framed as open_scene
     from vbraille.pose import Pose as Pose
     from vbraille.reading.device import OpenDevice as OpenDevice
     from vbraille.reading.device import open_to_read as open  # noqa: A004
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
     from vbraille.render.braille.profiles import Tuning as Tuning
     from vbraille.render.braille.straying import Straying as Straying
     from vbraille.render.braille.style import BrailleStyle as BrailleStyle
-    from vbraille.scene.reading import open_scene as open_scene
     from vbraille.scene.scene import Canvas as Canvas
     from vbraille.scene.scene import Scene as Scene
     from vbraille.sessions.conditions import Conditions as Conditions
@@ -70,7 +70,7 @@ _PLACES = {
     "VbrailleError": "vbraille.errors",
     "analyse": "vbraille.analysis",
     "open": "vbraille.reading.device:open_to_read",
-    "open_scene": "vbraille.scene.reading",
+    "open_scene": "vbraille.feeling.composing:open_framed",
     "render_text": "vbraille.reading.frames",
 }
 __all__ = [

@@ -147,12 +147,14 @@ class _Feeling(AtDevice):
         self._set_out()
 
     def _set_out(self) -> None:
-        """Have a hand that goes by itself go over the whole picture."""
+        """Have a hand that goes by itself go over the whole picture, another to its middle."""
         steering = self._device.steering
         if self._goes and steering is not None:
             canvas = self._feeler.loaded.scene.canvas
             lines = max(1, round(canvas.height_mm / _LINE_MM))
             steering.give(ReadPage(lines, canvas.height_mm / lines, canvas.width_mm))
+        elif steering is not None:
+            self._feeler.go_to_middle()
 
     def _see(self, events: Iterable[Event]) -> None:
         device, feeler = self._device, self._feeler
