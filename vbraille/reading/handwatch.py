@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from vbraille.engine.engine import HOME_MM
 from vbraille.engine.record import Flag
-from vbraille.engine.watchers import HOME_MM
 from vbraille.wording import setting
 
 if TYPE_CHECKING:

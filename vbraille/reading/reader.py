@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from vbraille.engine.watchers import Upright
+from vbraille.engine.engine import Upright
 from vbraille.reading.activity import Activity, Prompt
 from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue

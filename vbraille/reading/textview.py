@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.engine.engine import EndOfLine
 from vbraille.engine.record import Flag
-from vbraille.engine.watchers import EndOfLine
 from vbraille.layout.texts import cells_per_line
 from vbraille.reading.figured import Figured
 from vbraille.reading.handwatch import Foot, LineWatch, too_fast_note

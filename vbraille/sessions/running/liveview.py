@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     import numpy as np
 
-    from vbraille.engine.shared import Extent
+    from vbraille.engine.mailbox import Extent
     from vbraille.live.messages import LineShown
     from vbraille.live.monitor import Monitor
     from vbraille.sessions.planning.protocol import Protocol
