@@ -38,6 +38,7 @@ tests: .venv/tests .venv/compiled
 # What is heavier than a change's every trial should be: more of each law, coverage by branch, and
 # the kernels as plain Python.
 test-all: .venv/tests
+	@rm -f .venv/typed
 	@$(MAKE) --no-print-directory -j2 lint all-tests
 
 all-tests: .venv/tests .venv/compiled
@@ -49,11 +50,23 @@ soak: .venv/tests .venv/compiled
 	TESTS=soak $(PYTEST) --durations=20
 	$(BIN)/python -m tests.benchmarks tick faults jumps sessions
 
+# Types of the files that have changed since types were last right; of all where files have come or
+# gone, and in `make test-all`.
+define TYPES
+set -e; touch .venv/typing; changed=; \
+if [ -e .venv/typed ] && [ pyproject.toml -ot .venv/typed ] \
+  && [ -z "$$(find vbraille -type d ! -name __pycache__ -newer .venv/typed)" ]; then \
+  changed=$$(find vbraille -name '*.py' -newer .venv/typed); \
+  [ -n "$$changed" ] || exit 0; \
+fi; \
+echo "pyright $${changed:-of all}"; $(BIN)/pyright --warnings $$changed; mv .venv/typing .venv/typed
+endef
+
 lint: .venv/tests
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/lint-imports --no-logo
-	$(BIN)/pyright --warnings
+	@$(TYPES)
 	@PATH="$$(echo $(CURDIR)/$(NODE)):$$PATH" $(TSC) -p tests/live/page/jsconfig.json
 
 bench: .venv/tests

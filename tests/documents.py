@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from vbraille.config.options import BOOK, FILE, PROFILE, held_in
-from vbraille.feeling.commands import COMMANDS as FEELING
+from vbraille.reading.commands.scene import COMMANDS as FEELING
 from vbraille.reading.commands.table import COMMANDS as READING
 
 DOCS = Path(__file__).parents[1] / "docs"

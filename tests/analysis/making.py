@@ -1,8 +1,10 @@
 """Trials in a few words, and all the tables that are made of them."""
 
+import pandas as pd
+
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.scoretable import of_trials
-from vbraille.analysis.input.sheets import from_rows
+from vbraille.analysis.input.sheets import Sheet
 from vbraille.analysis.input.trials import Places
 from vbraille.analysis.measures import (
     confusion,
@@ -15,6 +17,12 @@ from vbraille.analysis.measures import levels as compared
 from vbraille.analysis.schemas import Schema
 
 COLUMNS = "participant condition presented answered duration_s"
+
+
+def from_rows(name, rows):
+    """Sheet of rows, as text."""
+    table = [{column: str(value) for column, value in row.items()} for row in rows]
+    return Sheet(name, pd.DataFrame(table, range(1, len(table) + 1), dtype=object))
 
 
 def sheet(*lines, columns=COLUMNS, name="made"):

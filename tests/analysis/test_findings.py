@@ -6,12 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.analysis.making import COLUMNS, sheet
+from tests.analysis.making import COLUMNS, from_rows, sheet
 from vbraille.analysis.chapters import Options, analyse_study, compare_scores
 from vbraille.analysis.findings import findings, interval_words
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.scoretable import Scores
-from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.input.study import Study
 from vbraille.analysis.schemas import Kind, to_print
 

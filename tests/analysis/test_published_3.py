@@ -6,7 +6,7 @@ from itertools import permutations
 
 import pytest
 
-from tests.analysis.making import record
+from tests.analysis.making import from_rows, record
 from tests.analysis.published import (
     EXACT,
     EXACT_SPLIT,
@@ -17,7 +17,6 @@ from tests.analysis.published import (
     printed,
 )
 from vbraille.analysis.input.parsing import parse
-from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.input.trials import Places, chosen, name_cell
 from vbraille.analysis.measures import confusion
 from vbraille.analysis.measures import legibility as legibilities

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from tests.analysis.making import record
+from tests.analysis.making import from_rows, record
 from tests.analysis.published import EXACT, RECONSTRUCTED, TOLD, each
 from vbraille.analysis.input.scoretable import of_sheet
-from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.measures.levels import analyses, level_means, t_tests
 from vbraille.analysis.schemas import Kind, round_half_up, to_print
 from vbraille.sessions.planning.making import make_plan

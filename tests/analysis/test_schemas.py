@@ -8,10 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.analysis.making import all_tables, made, table_of
+from tests.analysis.making import all_tables, from_rows, made, table_of
 from tests.tiers import by_tier
 from vbraille.analysis.input.parsing import parse
-from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.input.trials import Places
 from vbraille.analysis.schemas import (
     NOTE_COLUMN,

@@ -21,10 +21,10 @@ from msgspec.structs import replace as replace_fields
 from tests.benchmarks.timing import Result
 from vbraille.engine.host import Host
 from vbraille.engine.record import Flag
-from vbraille.feeling.commands import BOUND
 from vbraille.feeling.composing import compose
-from vbraille.feeling.feeler import Feeler
 from vbraille.feeling.loading import FileWatch, load_scene
+from vbraille.reading.commands.scene import BOUND
+from vbraille.reading.sceneview import SceneView
 from vbraille.render import MODELS
 from vbraille.render.program import Program
 from vbraille.render.scene.compiling import compile_scene
@@ -229,7 +229,7 @@ def changes_of_a_file(shapes: int, bar_ms: float) -> Iterator[Result]:
         host, steering = hosted(3 * program.nbytes)
         waited_ms = []
         with host:
-            feeler = Feeler(
+            feeler = SceneView(
                 loaded,
                 SimpleNamespace(engine=host, pose=None, style=MODEL.style, steering=steering),
                 rate_hz=1000.0,

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from tests.benchmarks.big_texts import big_text
 from tests.benchmarks.timing import Result
-from vbraille.reading.places import KeptPlaces, book_options, resume
+from vbraille.reading.library import KeptPlaces, book_options, resume
 from vbraille.translate.formats import open_source
 
 if TYPE_CHECKING:

@@ -14,16 +14,15 @@ import msgspec
 
 from tests.benchmarks.big_texts import big_text
 from tests.benchmarks.timing import Result
-from vbraille.reading.places import KeptPlace, KeptPlaces
-from vbraille.reading.search.answering import answer
-from vbraille.reading.search.queries import BookOpening, FindShare, FindText, NotFound, Searched
-from vbraille.reading.search.seeker import Seeker
+from vbraille.reading.library import KeptPlace, KeptPlaces
+from vbraille.reading.search.questions import BookOpening, FindShare, FindText, NotFound, Searched
+from vbraille.reading.search.seeker import Seeker, answer
 from vbraille.translate import Document
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.reading.search.queries import Query
+    from vbraille.reading.search.questions import Query
 
 _SIZE = 50_000_000
 _COMMITS = 5_000

@@ -273,7 +273,7 @@ def test_places_where_nothing_can_be_written(call, tmp_path, text):
 
 def test_commands_that_are_none(call):
     assert "the following arguments are required: COMMAND" in refused(call())
-    assert "invalid choice: 'write'" in refused(call("write"))
+    assert "there is no command 'write'" in refused(call("write"))
     assert "the following arguments are required: FILE" in refused(call("page"))
     assert "the following arguments are required: --out" in refused(call("render", "x.txt"))
     assert "unrecognized arguments: --langu fr" in refused(call("tables", "--langu", "fr"))

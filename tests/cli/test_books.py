@@ -8,8 +8,8 @@ import pytest
 
 from tests.cli import program
 from vbraille.cli.commands.books import describe
-from vbraille.reading.places import KeptPlace, KeptPlaces, ListedBook
-from vbraille.reading.places.store import ENVIRONMENT
+from vbraille.reading.library import KeptPlace, KeptPlaces, ListedBook
+from vbraille.reading.store import ENVIRONMENT
 
 
 @pytest.fixture

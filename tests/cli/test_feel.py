@@ -10,7 +10,7 @@ import pytest
 from tests.cli import program
 from tests.cli.test_read_serial import host_of
 from tests.cli.watcher import ADDRESS, Watcher
-from tests.feeling.felt import SCENE
+from tests.reading.felt import SCENE
 from tests.tiers import heavy
 
 SUMMARY = r"summary: seconds [0-9.]+"

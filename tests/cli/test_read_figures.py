@@ -82,5 +82,5 @@ def test_a_text_without_figures_loads_nothing_of_them():
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
     names = loaded.stdout.split()
-    assert "vbraille.reading.figured" in names
+    assert "vbraille.reading.lineviews" in names
     assert not [n for n in names if n.startswith(("vbraille.feeling", "vbraille.scene", "numba"))]

@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 import pytest
 
-from tests.feeling.felt import DISPLAY, SCENE
+from tests.reading.felt import DISPLAY, SCENE
 from tests.render.scene.twin import deflections
 from vbraille.playback.rendered import Rendered
 from vbraille.recording import scene_of

@@ -3,10 +3,10 @@
 import pytest
 
 from tests.reading.test_reader import Bench
+from vbraille.cli.build import open_to_resume
 from vbraille.cli.parser import parse
-from vbraille.cli.resuming import open_to_resume
 from vbraille.config.settings import settle
-from vbraille.reading.places import KeptPlaces
+from vbraille.reading.library import KeptPlaces
 from vbraille.render import STRESS2
 
 TEXT = "The people of this country read braille.\n"

@@ -10,7 +10,7 @@ from tests.cli import program
 from tests.tiers import heavy
 from vbraille.cli.commands.simulate import LATERO_ONLY, SERIAL_ONLY
 from vbraille.cli.options.commandparser import CommandParser
-from vbraille.cli.options.reading import simulate
+from vbraille.cli.options.exploring import simulate
 
 
 class Simulated:

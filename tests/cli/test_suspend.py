@@ -12,7 +12,7 @@ import pytest
 
 from tests import drivers
 from tests.cli import program
-from tests.feeling.felt import SCENE
+from tests.reading.felt import SCENE
 from tests.sessions.sittings import MINI
 from tests.tiers import heavy
 

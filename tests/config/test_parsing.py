@@ -16,8 +16,8 @@ from vbraille.config.settings import (
 )
 from vbraille.errors import InputError
 from vbraille.files import settings_path
-from vbraille.reading.bindings import Bindings
 from vbraille.reading.commands.table import bound_by
+from vbraille.reading.keys import Bindings
 from vbraille.render import STRESS2, VBD
 
 FILE = Path("settings.toml")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.feeling.felt import DISPLAY, SCENE
+from tests.reading.felt import DISPLAY, SCENE
 from vbraille.feeling.composing import compose
 from vbraille.feeling.costs import (
     ACTUATOR_BUDGET_US,

@@ -8,9 +8,9 @@ import pytest
 
 from tests.reading.test_reader import Bench
 from tests.translate.documents.epubs import CONTAINER, opf, xhtml
-from vbraille.reading.places.place import place_in
-from vbraille.reading.search.answering import steps
-from vbraille.reading.search.queries import FindShare
+from vbraille.reading.library import place_in
+from vbraille.reading.search.questions import FindShare
+from vbraille.reading.search.seeker import steps
 from vbraille.translate import Book, BrailleTable
 from vbraille.translate.documents.epub import EpubBook
 from vbraille.translate.documents.html import HtmlBook

@@ -8,9 +8,8 @@ from hypothesis import strategies as st
 
 from tests.reading.chapters import linked
 from tests.tiers import examples
-from vbraille.reading.search.answering import steps
-from vbraille.reading.search.queries import CountLines, FindKind, FindPage, FindShare, FindText
-from vbraille.reading.search.seeker import look, look_everywhere
+from vbraille.reading.search.questions import CountLines, FindKind, FindPage, FindShare, FindText
+from vbraille.reading.search.seeker import look, look_everywhere, steps
 from vbraille.reading.search.structure import within
 from vbraille.translate import Document
 from vbraille.translate.documents.chapters import ChapterSource, Passage

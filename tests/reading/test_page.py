@@ -12,12 +12,12 @@ from vbraille.devices.events import Button
 from vbraille.engine.constants import IDLE_S
 from vbraille.engine.record import Flag
 from vbraille.layout.pages import Layout
-from vbraille.reading.bindings import Bindings
-from vbraille.reading.commands.table import bound_by, press
+from vbraille.reading.advancing import STAY_S
+from vbraille.reading.commands.table import bound_by
 from vbraille.reading.cues import Cue
-from vbraille.reading.handwatch import STAY_S
+from vbraille.reading.keys import Bindings
+from vbraille.reading.liveview import LastSentences, ReadState
 from vbraille.reading.outputs import Echo
-from vbraille.reading.viewed import ReadView, Said
 from vbraille.render import LATERO, STRESS2_8X8
 from vbraille.render.braille.straying import MOST_TILT_RAD
 from vbraille.translate import Book
@@ -32,7 +32,7 @@ class Bench(Held):
     """A reading of ten lines of so many cells, four on a page, under a hand that is held."""
 
     def __init__(self, model=STRESS2_8X8, rows=ROWS, lines=LINES, width=10, letters=3, **how):
-        self.said, self.cues = Said(), []
+        self.said, self.cues = LastSentences(), []
         super().__init__(model, rows, self.said.add, attended=how.pop("attended", True))
         self.x_mm = 10.0
         self.opened.start(replace(self.own, style=model.style))
@@ -57,7 +57,7 @@ class Bench(Held):
     def press(self, key):
         """Press a key; what is said of it."""
         before = self.said.count
-        press(self.reader, key)
+        self.reader.press(key)
         return self.said.last[len(self.said.last) - (self.said.count - before) :]
 
     def felt(self):
@@ -355,7 +355,7 @@ def test_lines_that_are_longer_than_the_surface_are_panned_together():
 
 def test_pages_of_the_live_view_see_all_lines_of_the_page():
     bench = Bench()
-    viewed = ReadView(bench.opened, "A title", bench.said)
+    viewed = ReadState(bench.opened, "A title", bench.said)
     bench.to_row(2)
     state = viewed.changed()
     assert [line.number for line in state.lines] == [1, 2, 3, 4]

@@ -2,7 +2,7 @@ from itertools import pairwise
 
 import pytest
 
-from vbraille.reading.scrolling import Scroll
+from vbraille.reading.advancing import Scroll
 
 
 def time_of(scroll, cells, turn=lambda _s: None, steps_s=0.02):

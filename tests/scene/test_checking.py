@@ -7,7 +7,7 @@ import pytest
 
 from vbraille.scene import checking
 from vbraille.scene.checking import check_scene
-from vbraille.scene.origins import OpenedScene, Origins
+from vbraille.scene.locations import Locations, OpenedScene
 from vbraille.scene.patterns import (
     Circle,
     Dots,
@@ -31,7 +31,7 @@ MID = Vibration(frequency_hz=25.0)
 def report(*elements, canvas=LATERO, operation="overwrite", **textures):
     written = Scene(canvas=canvas, operation=operation, elements=elements, textures=textures)
     return check_scene(
-        OpenedScene(Path("a.scene"), Path(), written, resolve(written), Origins()), {}
+        OpenedScene(Path("a.scene"), Path(), written, resolve(written), Locations()), {}
     )
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from tests.tiers import heavy
 from vbraille.errors import InputError
-from vbraille.scene import origins, traversal
+from vbraille.scene import locations, traversal
 from vbraille.scene.patterns import (
     AnyPattern,
     Circle,
@@ -212,7 +212,7 @@ def test_what_is_moved_too_far_is_refused():
     )
 
 
-@pytest.mark.parametrize("module", [origins, traversal], ids=lambda module: module.__name__)
+@pytest.mark.parametrize("module", [locations, traversal], ids=lambda module: module.__name__)
 def test_examples(module):
     tried = doctest.testmod(module)
     assert tried.attempted

@@ -9,7 +9,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from vbraille.errors import InputError
-from vbraille.reading.handwatch import STAY_S
+from vbraille.reading.advancing import STAY_S
 from vbraille.simulation.hand import CLEAR_MM, RETURN_MM_S
 from vbraille.simulation.paging import DRIFT_PITCHES, FOOT_S, TILT_RAD, Area, Drift
 from vbraille.simulation.specs import parse_hand

@@ -1,12 +1,14 @@
-"""What was done, in a paragraph: made of what sessions recorded, and of nothing else.
+"""Paragraph on what was done in sessions, made of a template and of what sessions recorded.
 
 Every number is counted in the sessions' records, or stands in them. What a session's protocol had
-planned is not told, if it was not done.
+planned is not told, if it was not done: a sentence of the template is left out where there is
+nothing to put in one of its places.
 """
 
 from __future__ import annotations
 
 from collections import Counter
+from string import Formatter
 from typing import TYPE_CHECKING, Any
 
 from vbraille.analysis.input.trials import natural
@@ -15,7 +17,7 @@ from vbraille.render.braille.models import MODELS
 from vbraille.sessions.planning.chance import balanced_orders
 from vbraille.sessions.planning.choosing import varied
 from vbraille.sessions.planning.factors import within
-from vbraille.sessions.planning.procedures import FixedProcedure, QuestProcedure, StaircaseProcedure
+from vbraille.sessions.planning.procedures import QuestProcedure, StaircaseProcedure
 from vbraille.sessions.planning.questions import of_all
 from vbraille.sessions.planning.stimuli import GAP, KNOBS
 from vbraille.version import __version__
@@ -24,10 +26,11 @@ from vbraille.wording import count
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from vbraille.adaptive.staircase import StopRule
+    Facts = dict[str, str | None]
+    Rows = Sequence[dict[str, Any]]
+
     from vbraille.analysis.input.sittings import SessionTrials
     from vbraille.analysis.input.study import Study
-    from vbraille.analysis.input.trials import LeftOut
     from vbraille.sessions.planning.protocol import Protocol
 
 _DISTANCES = {
@@ -35,6 +38,38 @@ _DISTANCES = {
     "dot_spacing_mm": "dot columns {} mm apart",
     "cell_gap_mm": "{} mm from a cell's last dot column to the next cell's first",
 }
+TEMPLATE = """
+{people} {did}, in {sessions} of the protocol {protocol}
+A simulated reader gave {simulated}
+{scripted} came from a program or a file
+A simulated hand moved the array in {moved}
+They were asked: “{ask}”
+{question}
+After {sure} they said how sure they were, from {scale}
+Beside these there were {catch}
+Strings were read on {paper}, and timed by key
+They were shown on {displays}{reference}
+Strings of the {elsewhere} stood on a conventional display instead, and were timed by key
+Their cells were made of texts in print by liblouis {liblouis}, with the {tables}
+Participants were in {groups}
+Within participants varied {factors}
+There were {conditions}
+All was of one condition: {condition}
+{order}; orders were drawn with {seeds}
+{rules}
+The {varied} of each trial was chosen by the answers before it, by {procedure}
+It was made harder after {right} running, and easier after {wrong}
+A condition was to end by {stops}
+Reading was ended by {keys}; response times are to there
+{practice}
+{breaks}
+{unanswered} had no answer
+{broken} did not come to the end
+In {faults} the device had a fault
+{repeated} had to be shown again
+{early} came before the stimulus was read to its end
+"""
+"""Sentences on the sessions of one protocol, a line each."""
 # Looks that follow from another one that two stimuli are compared by.
 _BY = {"dot_spacing_mm": (GAP,)}
 # What conditions and groups may differ in: columns of rows, and their words.
@@ -57,152 +92,188 @@ def methods(study: Study) -> str:
     of: dict[str, list[SessionTrials]] = {}
     for sitting in study.sittings:
         of.setdefault(sitting.protocol.text, []).append(sitting)
-    sentences = [sentence for sittings in of.values() for sentence in _told(sittings)]
-    if not sentences:
+    if not of:
         return ""
-    sentences += [*_left_out(study.left_out), *_versions(study.sittings)]
+    sentences = [line for sittings in of.values() for line in filled(TEMPLATE, facts_of(sittings))]
+    dropped = "; ".join(f"{left.what} ({left.reason})" for left in study.left_out)
+    versions = dict.fromkeys(each.versions.get("vbraille", "unknown") for each in study.sittings)
+    sentences += [
+        f"Left out of the analysis: {dropped}"
+        if dropped
+        else "Nothing was left out of the analysis",
+        f"Sessions were run with vbraille {', '.join(versions)}, and analysed with vbraille "
+        f"{__version__}",
+    ]
     return " ".join(f"{sentence}." for sentence in sentences)
 
 
-def _told(sittings: Sequence[SessionTrials]) -> Iterable[str]:
-    """Sentences on the sessions of one protocol."""
+def filled(template: str, facts: Facts) -> Iterable[str]:
+    r"""Sentences of a template, without those that have a place for which there is no fact.
+
+    >>> list(filled("{people} read\n{moved} moved", {"people": "2 people", "moved": None}))
+    ['2 people read']
+    """
+    for line in template.strip().splitlines():
+        names = [name for _, name, _, _ in Formatter().parse(line) if name]
+        if all(facts[name] is not None for name in names):
+            yield line.format(**facts)
+
+
+def facts_of(sittings: Sequence[SessionTrials]) -> Facts:
+    """Facts for `TEMPLATE` on the sessions of one protocol; None for one that there is not."""
     protocol = sittings[0].protocol
-    answered = [_answered(sitting) for sitting in sittings]
+    answered = [[row for row in each.rows if row["answered"] != ""] for each in sittings]
     rows = [row for part in answered for row in part]
     # Blank trials are what detection needs, and keep no watch there.
     watches = protocol.asks.name != "detect" and protocol.design.catch is not None
     tested = [[row for row in part if not (watches and row["catch"])] for part in answered]
     kept = [row for part in tested for row in part]
-    yield _who(sittings, tested)
-    yield from _by_whom(rows)
-    yield from asked(protocol, kept)
-    yield from caught([row for row in rows if watches and row["catch"]])
-    yield _display(sittings, rows)
-    yield from _elsewhere(rows)
-    yield from _texts(sittings, rows)
-    yield from _groups(sittings)
-    yield from _factors(protocol, rows)
-    yield from _conditions(tested)
-    yield from _order(sittings, answered)
-    yield from ended(rows)
-    practised = [sitting.counts["practice"] for sitting in sittings]
-    with_feedback = "" if protocol.practice.feedback else ", without feedback"
-    yield (
-        f"Before them came {_span(practised, 'trial')} of practice{with_feedback}"
+    practised = [each.counts["practice"] for each in sittings]
+    breaks = [each.counts["break"] for each in sittings]
+    silent = "" if protocol.practice.feedback else ", without feedback"
+    return {
+        **_people(sittings, tested, kept),
+        **_sources(rows),
+        **_question(protocol, kept),
+        "catch": _catch([row for row in rows if watches and row["catch"]]),
+        **_displays(sittings, rows),
+        "groups": _groups(sittings),
+        "factors": _factors(protocol, rows),
+        **_conditions(tested),
+        **_order(sittings, answered),
+        **_procedure(protocol),
+        "keys": _keys(rows),
+        "practice": f"Before them came {_span(practised, 'trial')} of practice{silent}"
         if any(practised)
-        else "There was no practice"
-    )
-    breaks = [sitting.counts["break"] for sitting in sittings]
-    yield f"A session had {_span(breaks, 'break')}" if any(breaks) else "There were no breaks"
-    yield from _troubles(sittings, rows)
+        else "There was no practice",
+        "breaks": f"A session had {_span(breaks, 'break')}"
+        if any(breaks)
+        else "There were no breaks",
+        **_troubles(sittings, rows),
+    }
 
 
-def _answered(sitting: SessionTrials) -> list[dict[str, Any]]:
-    return [row for row in sitting.rows if row["answered"] != ""]
-
-
-def _who(sittings: Sequence[SessionTrials], tested: Sequence[Sequence[dict]]) -> str:
-    """Who read how much of what."""
+def _people(sittings: Sequence[SessionTrials], tested: Sequence[Rows], rows: Rows) -> Facts:
+    """Facts on who read how much of what."""
     protocol = sittings[0].protocol
-    people = len({sitting.head["participant"] for sitting in sittings})
-    rows = [row for part in tested for row in part]
     numbers = [len(part) for part in tested]
     if not rows:
-        what = "answered no trial"
+        did = "answered no trial"
     elif protocol.parameter is not None:
         knob = KNOBS[protocol.parameter]
         values = {float(value) for row in rows for value in row["presented"].split()}
-        what = (
+        did = (
             f"compared {_span(numbers, 'pair')} of {len(values)} values of the {knob.words}, "
             f"{min(values):g} to {max(values):g}{knob.unit}"
         )
     else:
         cells = _span([len(row["presented"]) for row in rows], "cell")
-        each = " each" if max(numbers) > 1 else ""
         verb = "read" if protocol.asks.name == "identify" else "felt"
-        what = f"{verb} {_span(numbers, 'string')} of {cells}{each}"
-    often = f"in {count(len(sittings), 'session')}"
+        each = " each" if max(numbers) > 1 else ""
+        did = f"{verb} {_span(numbers, 'string')} of {cells}{each}"
     simulated = {row["answers_from"].partition(":")[0] for row in rows} == {"simulated"}
-    who = count(people, "simulated participant" if simulated else "participant")
-    told = f"{protocol.name} ({protocol.title}; {protocol.source})"
-    return f"{who} {what}, {often} of the protocol {told}"
+    people = len({sitting.head["participant"] for sitting in sittings})
+    return {
+        "people": count(people, "simulated participant" if simulated else "participant"),
+        "did": did,
+        "sessions": count(len(sittings), "session"),
+        "protocol": f"{protocol.name} ({protocol.title}; {protocol.source})",
+    }
 
 
-def _by_whom(rows: Sequence[dict]) -> Iterable[str]:
-    """Where the answers came from, and what moved the array, where that was no person."""
+def _sources(rows: Rows) -> Facts:
+    """Facts on what gave the answers and moved the array, where that was no person."""
     kinds = Counter(row["answers_from"].partition(":")[0] for row in rows)
-    if simulated := kinds.pop("simulated", 0):
-        yield f"A simulated reader gave {of_all(simulated, rows, 'answer', 'of the ')}"
-    kinds.pop("typed", None)
-    if other := sum(kinds.values()):
-        told = of_all(other, rows, "answer", "of the ")
-        yield f"{told[0].upper()}{told[1:]} came from a program or a file"
-    moved = sum(row["moved_by"].startswith("simulated") for row in rows)
-    if moved:
-        told = of_all(moved, rows, "trial", "of the ")
-        yield f"A simulated hand moved the array in {told}"
+    simulated, _ = kinds.pop("simulated", 0), kinds.pop("typed", 0)
+    scripted = _of_all(sum(kinds.values()), rows, "answer")
+    return {
+        "simulated": _of_all(simulated, rows, "answer"),
+        "scripted": scripted and scripted[0].upper() + scripted[1:],
+        "moved": _of_all(
+            sum(row["moved_by"].startswith("simulated") for row in rows), rows, "trial"
+        ),
+    }
 
 
-def _display(sittings: Sequence[SessionTrials], rows: Sequence[dict]) -> str:
-    """What was read on, with the distances of the record that were the same for all."""
-    protocol = sittings[0].protocol
-    if protocol.medium == "paper":
-        return "Strings were read on paper, and timed by key"
+def _question(protocol: Protocol, rows: Rows) -> Facts:
+    """Facts on the question, for trials that have an answer."""
+    question, scale = protocol.asks, protocol.asks.confidence
+    sure = sum(row["confidence"] != "" for row in rows)
+    return {
+        "ask": (rows and question.ask) or None,
+        "question": (rows and question.describe(rows, protocol.parameter)) or None,
+        "sure": of_all(sure, rows, "answer") if scale is not None and sure else None,
+        "scale": None if scale is None else f"{scale.least} to {scale.most}",
+    }
+
+
+def _catch(rows: Rows) -> str | None:
+    """Words for trials that kept watch over the participant."""
+    if not rows:
+        return None
+    kinds = Counter(row["catch"] for row in rows)
+    shown = {"blank": "no dots", "repeat": "what the trial before them had shown"}
+    told = " and ".join(
+        f"{count(number, 'catch trial')} that showed {shown[kind]}"
+        for kind, number in sorted(kinds.items())
+    )
+    right = sum(row["correct"] == 1 for row in rows)
+    part = f"all {right}" if right == len(rows) else f"{right} of {len(rows)}"
+    were = f"{part} were" if len(rows) > 1 else "it was" if right else "it was not"
+    scored = any(row["correct"] != "" for row in rows)
+    return f"{told}; {were} answered right" if scored else told
+
+
+def _displays(sittings: Sequence[SessionTrials], rows: Rows) -> Facts:
+    """Facts on the displays, with the distances of the record that were the same for all."""
+    protocol, told = sittings[0].protocol, dict[str, None]()
     parameter = protocol.parameter or ""
     varied = {parameter, *_differing(rows)}
     varied |= {name for name, by in _BY.items() if parameter in by}
-    told: list[str] = []
     for head in (sitting.head for sitting in sittings):
-        array, geometry = head["array"], head["geometry"]
-        lengths = [
-            form.format(f"{geometry[name]:g}")
+        array, model = head["array"], MODELS.get(head["model"])
+        simulated = head["device"].partition(":")[0] == "sim"
+        how = [f"at {head['rate_hz']:g} frames a second"]
+        how += [] if "mapping" in varied else [f"with the mapping {head['mapping']}"]
+        how += [
+            form.format(f"{head['geometry'][name]:g}")
             for name, form in _DISTANCES.items()
             if name not in varied
         ]
-        mapping = () if "mapping" in varied else (f"with the mapping {head['mapping']}",)
-        model = MODELS[head["model"]].title if head["model"] in MODELS else head["model"]
-        device = head["device"].partition(":")[0]
-        where = "a simulated device" if device == "sim" else "a device"
-        how = ", ".join([f"at {head['rate_hz']:g} frames a second", *mapping, *lengths])
-        size = f"{array['rows']} × {array['columns']} actuators"
-        told.append(f"the {model} ({size}, {where}) {how}")
-    shown = f"They were shown on {'; or on '.join(dict.fromkeys(told))}"
+        told[
+            f"the {head['model'] if model is None else model.title} ({array['rows']} × "
+            f"{array['columns']} actuators, {'a simulated device' if simulated else 'a device'}) "
+            f"{', '.join(how)}"
+        ] = None
     reference = protocol.conventional.reference
-    if reference and any(sitting.counts["stood"] for sitting in sittings):
-        shown += f"; {to_braille(reference)} stood on a conventional display, for comparison"
-    return shown
-
-
-def _elsewhere(rows: Sequence[dict]) -> Iterable[str]:
-    """Which conditions stood on a conventional display instead."""
+    beside = reference and any(sitting.counts["stood"] for sitting in sittings)
     there = {row["condition"] for row in rows if row["shown_on"] == "conventional"}
-    if there:
-        what = "the condition" if len(there) == 1 else "the conditions"
-        yield (
-            f"Strings of {what} {', '.join(sorted(there, key=natural))} stood on a conventional "
-            f"display instead, and were timed by key"
-        )
-
-
-def _texts(sittings: Sequence[SessionTrials], rows: Sequence[dict]) -> Iterable[str]:
-    """Which braille tables made the cells of texts."""
+    noun = "condition " if len(there) == 1 else "conditions "
     tables = sorted({row["table"] for row in rows if row.get("table")})
-    if tables:
-        versions = {sitting.head["versions"].get("liblouis", "unknown") for sitting in sittings}
-        yield (
-            f"Their cells were made of texts in print by liblouis {', '.join(sorted(versions))}, "
-            f"with the {'table' if len(tables) == 1 else 'tables'} {', '.join(tables)}"
-        )
+    versions = {sitting.head["versions"].get("liblouis", "unknown") for sitting in sittings}
+    paper = protocol.medium == "paper"
+    return {
+        "paper": "paper" if paper else None,
+        "displays": None if paper else "; or on ".join(told),
+        "reference": f"; {to_braille(reference)} stood on a conventional display, for comparison"
+        if beside
+        else "",
+        "elsewhere": noun + ", ".join(sorted(there, key=natural)) if there else None,
+        "liblouis": ", ".join(sorted(versions)),
+        "tables": f"{'table' if len(tables) == 1 else 'tables'} {', '.join(tables)}"
+        if tables
+        else None,
+    }
 
 
-def _groups(sittings: Sequence[SessionTrials]) -> Iterable[str]:
-    """Groups of participants, and how many were in each."""
+def _groups(sittings: Sequence[SessionTrials]) -> str | None:
+    """Words for groups of participants, and how many were in each."""
     people: dict[str, set[str]] = {}
     for sitting in sittings:
         if group := sitting.head.get("group", ""):
             people.setdefault(group, set()).add(sitting.head["participant"])
     if not people:
-        return
+        return None
     differing = _between(sittings)
     told = []
     for group in sorted(people, key=natural):
@@ -210,14 +281,14 @@ def _groups(sittings: Sequence[SessionTrials]) -> Iterable[str]:
         looks = [_look(name, own) for name in differing]
         told.append(f"{group} ({', '.join([count(len(people[group]), 'participant'), *looks])})")
     many = "1 group" if len(told) == 1 else f"{len(told)} groups"
-    yield f"Participants were in {many}: {', '.join(told)}"
+    return f"{many}: {', '.join(told)}"
 
 
-def _factors(protocol: Protocol, rows: Sequence[dict]) -> Iterable[str]:
-    """What was crossed within participants, as far as it was shown."""
+def _factors(protocol: Protocol, rows: Rows) -> str | None:
+    """Words for what was crossed within participants, as far as it was shown."""
     own = within(protocol.factors)
     if not own or not rows:
-        return
+        return None
     told = []
     possible = 1
     for factor in own:
@@ -226,15 +297,14 @@ def _factors(protocol: Protocol, rows: Sequence[dict]) -> Iterable[str]:
         possible *= len(factor.levels)
         told.append(f"{factor.name} ({', '.join(levels)})")
     if len(told) == 1:
-        yield f"Within participants varied {told[0]}"
-        return
+        return told[0]
     number = len({row["condition"] for row in rows})
     part = f"all {number}" if number == possible else f"{number} of the {possible}"
-    yield f"Within participants varied {' and '.join(told)}, {part} combinations of them"
+    return f"{' and '.join(told)}, {part} combinations of them"
 
 
-def _conditions(answered: Sequence[Sequence[dict]]) -> Iterable[str]:
-    """Conditions, with what they were shown with and how many trials each had."""
+def _conditions(answered: Sequence[Rows]) -> Facts:
+    """Facts on conditions: what they were shown with, and how many trials each had."""
     rows = [row for part in answered for row in part]
     names = list(dict.fromkeys(row["condition"] for row in rows))
     within_people = {name for part in answered for name in _differing(part)}
@@ -248,20 +318,20 @@ def _conditions(answered: Sequence[Sequence[dict]]) -> Iterable[str]:
         ]
         each = [sum(row["condition"] == name for row in part) for part in answered]
         told.append(f"{name} ({', '.join([*looks, _span(each, 'trial')])})")
-    if len(names) > 1:
-        yield f"There were {len(names)} conditions: {', '.join(told)}"
-    elif names:
-        yield f"All was of one condition: {told[0]}"
+    return {
+        "conditions": f"{len(names)} conditions: {', '.join(told)}" if len(names) > 1 else None,
+        "condition": told[0] if len(names) == 1 else None,
+    }
 
 
-def _values(name: str, rows: Sequence[dict]) -> list[Any]:
+def _values(name: str, rows: Rows) -> list[Any]:
     """Values that rows have of a look, in order; nothing of pairs that are compared by it."""
     compared = {row["parameter"] for row in rows} & {name, *_BY.get(name, ())}
     given = set() if compared else {row.get(name, "") for row in rows} - {""}
     return sorted({float(value) for value in given} if name in KNOBS else given)
 
 
-def _differing(rows: Sequence[dict]) -> list[str]:
+def _differing(rows: Rows) -> list[str]:
     """Looks of which rows have several values."""
     return [name for name in _LOOKS if len(_values(name, rows)) > 1]
 
@@ -273,7 +343,7 @@ def _between(sittings: Sequence[SessionTrials]) -> list[str]:
     return [name for name in whole if name not in own]
 
 
-def _look(name: str, rows: Sequence[dict]) -> str:
+def _look(name: str, rows: Rows) -> str:
     """Words for a look of some rows: "texture 0", "dot width 1 to 2 mm"."""
     values = _values(name, rows)
     if name not in KNOBS:
@@ -282,50 +352,110 @@ def _look(name: str, rows: Sequence[dict]) -> str:
     return f"{_LOOKS[name]} {ends}{KNOBS[name].unit}"
 
 
-def _order(sittings: Sequence[SessionTrials], answered: Sequence[Sequence[dict]]) -> Iterable[str]:
-    """In which order trials came, and by which procedure."""
+def _order(sittings: Sequence[SessionTrials], answered: Sequence[Rows]) -> Facts:
+    """Facts on the order in which trials came, and on the rules that it kept."""
     protocol = sittings[0].protocol
     blocks = _span([len({row["block"] for row in part}) for part in answered], "block")
-    seeds = sorted({sitting.head["seed"] for sitting in sittings})
-    drawn = f"orders were drawn with {'seed' if len(seeds) == 1 else 'seeds'} "
-    drawn += ", ".join(map(str, seeds))
     if len(protocol.conditions) < 2:
-        yield f"Trials came in {blocks}; {drawn}"
+        order = f"Trials came in {blocks}"
     elif protocol.design.blocks == "conditions":
-        how = ordered(protocol, [sitting.head for sitting in sittings])
-        yield f"Each condition had blocks of its own, {blocks} in a session, {how}; {drawn}"
+        how = _order_of_blocks(protocol, [sitting.head for sitting in sittings])
+        order = f"Each condition had blocks of its own, {blocks} in a session, {how}"
     else:
-        yield f"Conditions were mixed in {blocks}; {drawn}"
-    yield from ruled(protocol)
-    yield from chosen(protocol)
+        order = f"Conditions were mixed in {blocks}"
+    seeds = sorted({sitting.head["seed"] for sitting in sittings})
+    rules = protocol.rules
+    kept = ["no two neighbouring trials showed the same"] if rules.never_twice_running else []
+    kept += [
+        f"at most {count(most, 'neighbouring trial')} had the same {name}"
+        for name, most in rules.at_most_running.items()
+    ]
+    kept += ["each quarter had its share of each condition"] if rules.balanced_quarters else []
+    told = "" if protocol.adaptive else "; ".join(kept)
+    return {
+        "order": order,
+        "seeds": f"{'seed' if len(seeds) == 1 else 'seeds'} {', '.join(map(str, seeds))}",
+        "rules": told[:1].upper() + told[1:] or None,
+    }
 
 
-def _troubles(sittings: Sequence[SessionTrials], rows: Sequence[dict]) -> Iterable[str]:
-    """What did not go as planned."""
-    unanswered = sum(len(sitting.rows) for sitting in sittings) - len(rows)
-    if unanswered and not sittings[0].protocol.adaptive:
-        yield f"{count(unanswered, 'planned trial')} had no answer"
-    if broken := sum(sitting.state != "ended" for sitting in sittings):
-        yield f"{count(broken, 'session')} did not come to the end"
-    if faults := sum(row["faults"] != "" for row in rows):
-        yield f"In {count(faults, 'trial')} the device had a fault"
-    if again := sum(int(row["attempt"] or 0) > 1 for row in rows):
-        yield f"{count(again, 'trial')} had to be shown again"
-    if early := sum(row["early"] == 1 for row in rows):
-        yield f"{count(early, 'answer')} came before the stimulus was read to its end"
+def _order_of_blocks(protocol: Protocol, heads: Sequence[dict[str, Any]]) -> str:
+    """Clause on the order in which the blocks of conditions came."""
+    if protocol.order_rows:
+        return "in the order that a table gives each participant"
+    if protocol.balanced:
+        number = len(balanced_orders(len(protocol.conditions)))
+        used = ", ".join(map(str, sorted({head["order"] for head in heads})))
+        return f"balanced by Williams squares (of {count(number, 'order')}: {used})"
+    return "in random order" if protocol.block_order == "shuffled" else "always in the same order"
 
 
-def _left_out(left_out: Sequence[LeftOut]) -> Iterable[str]:
-    told = "; ".join(f"{left.what} ({left.reason})" for left in left_out)
-    yield f"Left out of the analysis: {told}" if told else "Nothing was left out of the analysis"
+def _procedure(protocol: Protocol) -> Facts:
+    """Facts on how the answers chose what was shown, and when that was to end."""
+    facts: Facts = dict.fromkeys(("varied", "procedure", "right", "wrong", "stops"))
+    table = protocol.procedure
+    if not isinstance(table, QuestProcedure | StaircaseProcedure):
+        return facts
+    knob = KNOBS[varied(protocol)]
+    unit, values, stop = knob.unit, table.values(protocol.design), table.stop
+    ends = f"{values[0]:g} to {values[-1]:g}{unit}"
+    after = f" (after {count(stop.at_least, 'trial')} or more)"
+    stops = [] if stop.trials is None else [count(stop.trials, "trial")]
+    if stop.sd is not None:
+        stops.append(f"a standard deviation of the estimate of {stop.sd:g}{unit}{after}")
+    if stop.width is not None:
+        stops.append(f"an interval of 95 % that was {stop.width:g}{unit} wide{after}")
+    if stop.seconds is not None:
+        stops.append(f"{stop.seconds:g} s of the session")
+    if isinstance(table, QuestProcedure):
+        facts["procedure"] = f"QUEST+ (Watson 2017) from {len(values)} values, {ends}"
+    else:
+        starts = ", ".join(f"{start:g}" for start in table.start)
+        steps = ", then ".join(f"{step:g}" for step in table.steps)
+        weighted = "" if table.target is None else f", weighted for {100 * table.target:g} %"
+        many = "interleaved staircases" if len(table.start) > 1 else "staircase"
+        facts["procedure"] = (
+            f"{len(table.start)} {many}{weighted}, which began at {starts}{unit} with steps of "
+            f"{steps}{unit}, within {ends}"
+        )
+        good, bad = ("“yes”", "“no”") if protocol.asks.name == "detect" else ("right", "wrong")
+        facts["right"] = count(table.right, f"{good} answer")
+        facts["wrong"] = count(table.wrong, f"{bad} answer")
+        if table.reversals is not None:
+            stops.append(f"{count(table.reversals, 'reversal')} of each staircase")
+    return facts | {"varied": knob.words, "stops": ", or by ".join(stops) or None}
 
 
-def _versions(sittings: Sequence[SessionTrials]) -> Iterable[str]:
-    versions = dict.fromkeys(sitting.versions.get("vbraille", "unknown") for sitting in sittings)
-    yield (
-        f"Sessions were run with vbraille {', '.join(versions)}, and analysed with vbraille "
-        f"{__version__}"
-    )
+def _keys(rows: Rows) -> str | None:
+    """Words for the participant's own key."""
+    keys = Counter(row["ended_by"] for row in rows if row["ended_by"])
+    answered = keys.pop("answer", 0)
+    told = [
+        f"{name.replace(':', ' ')} in {of_all(number, rows, 'trial')}"
+        for name, number in sorted(keys.items())
+    ]
+    told += [f"their answer in {of_all(answered, rows, 'trial')}"] if answered else []
+    return ", by ".join(told) or None
+
+
+def _troubles(sittings: Sequence[SessionTrials], rows: Rows) -> Facts:
+    """Facts on what did not go as planned."""
+    planned = sum(len(sitting.rows) for sitting in sittings)
+    numbers = {
+        "unanswered": (planned - len(rows), "planned trial"),
+        "broken": (sum(sitting.state != "ended" for sitting in sittings), "session"),
+        "faults": (sum(row["faults"] != "" for row in rows), "trial"),
+        "repeated": (sum(int(row["attempt"] or 0) > 1 for row in rows), "trial"),
+        "early": (sum(row["early"] == 1 for row in rows), "answer"),
+    }
+    if sittings[0].protocol.adaptive:
+        numbers["unanswered"] = (0, "planned trial")
+    return {name: count(*of) if of[0] else None for name, of in numbers.items()}
+
+
+def _of_all(number: int, rows: Rows, noun: str) -> str | None:
+    """Words for a number of things out of all; None for none."""
+    return of_all(number, rows, noun, "of the ") if number else None
 
 
 def _span(numbers: Sequence[int], noun: str) -> str:
@@ -336,134 +466,3 @@ def _span(numbers: Sequence[int], noun: str) -> str:
     """
     least, most = min(numbers), max(numbers)
     return count(most, noun) if least == most else f"{least} to {count(most, noun)}"
-
-
-def asked(protocol: Protocol, rows: Sequence[dict[str, Any]]) -> Iterable[str]:
-    """Sentences on the question, for trials that have an answer."""
-    if not rows:
-        return
-    question = protocol.asks
-    if question.ask:
-        yield f"They were asked: “{question.ask}”"
-    if told := question.describe(rows, protocol.parameter):
-        yield told
-    sure = sum(row["confidence"] != "" for row in rows)
-    if question.confidence is not None and sure:
-        scale = question.confidence
-        yield (
-            f"After {of_all(sure, rows, 'answer')} they said how sure they were, from "
-            f"{scale.least} to {scale.most}"
-        )
-
-
-def caught(rows: Sequence[dict[str, Any]]) -> Iterable[str]:
-    """Sentence on trials that kept watch over the participant."""
-    if not rows:
-        return
-    kinds = Counter(row["catch"] for row in rows)
-    shown = {"blank": "no dots", "repeat": "what the trial before them had shown"}
-    told = " and ".join(
-        f"{count(number, 'catch trial')} that showed {shown[kind]}"
-        for kind, number in sorted(kinds.items())
-    )
-    right = sum(row["correct"] == 1 for row in rows)
-    scored = any(row["correct"] != "" for row in rows)
-    part = f"all {right}" if right == len(rows) else f"{right} of {len(rows)}"
-    were = f"{part} were" if len(rows) > 1 else "it was" if right else "it was not"
-    how = f"; {were} answered right" if scored else ""
-    yield f"Beside these there were {told}{how}"
-
-
-def ended(rows: Sequence[dict[str, Any]]) -> Iterable[str]:
-    """Sentence on the participant's own key."""
-    keys = Counter(row["ended_by"] for row in rows if row["ended_by"])
-    if not keys:
-        return
-    answered = keys.pop("answer", 0)
-    told = [
-        f"{name.replace(':', ' ')} in {of_all(number, rows, 'trial')}"
-        for name, number in sorted(keys.items())
-    ]
-    told += [f"their answer in {of_all(answered, rows, 'trial')}"] if answered else []
-    yield f"Reading was ended by {', by '.join(told)}; response times are to there"
-
-
-def ordered(protocol: Protocol, heads: Sequence[dict[str, Any]]) -> str:
-    """Clause that says in which order the blocks of conditions came."""
-    if protocol.order_rows:
-        return "in the order that a table gives each participant"
-    if protocol.balanced:
-        number = len(balanced_orders(len(protocol.conditions)))
-        used = ", ".join(map(str, sorted({head["order"] for head in heads})))
-        return f"balanced by Williams squares (of {count(number, 'order')}: {used})"
-    return "in random order" if protocol.block_order == "shuffled" else "always in the same order"
-
-
-def ruled(protocol: Protocol) -> Iterable[str]:
-    """Sentence on the rules that the order of trials kept."""
-    rules, told = protocol.rules, []
-    if protocol.adaptive:
-        return
-    if rules.never_twice_running:
-        told.append("no two neighbouring trials showed the same")
-    for name, most in rules.at_most_running.items():
-        told.append(f"at most {count(most, 'neighbouring trial')} had the same {name}")
-    if rules.balanced_quarters:
-        told.append("each quarter had its share of each condition")
-    if told:
-        said = "; ".join(told)
-        yield said[0].upper() + said[1:]
-
-
-def chosen(protocol: Protocol) -> Iterable[str]:
-    """Sentences on how the answers chose what was shown."""
-    table = protocol.procedure
-    if not protocol.adaptive:
-        return
-    knob = KNOBS[varied(protocol)]
-    values = table.values(protocol.design)
-    ends = f"{values[0]:g} to {values[-1]:g}{knob.unit}"
-    if isinstance(table, QuestProcedure):
-        yield (
-            f"The {knob.words} of each trial was chosen by the answers before it, by QUEST+ "
-            f"(Watson 2017) from {len(values)} values, {ends}"
-        )
-    elif isinstance(table, StaircaseProcedure):
-        yield (
-            f"The {knob.words} of each trial was chosen by the answers before it, by "
-            f"{_staircases(table, knob.unit)}, within {ends}"
-        )
-        good, bad = ("“yes”", "“no”") if protocol.asks.name == "detect" else ("right", "wrong")
-        yield (
-            f"It was made harder after {count(table.right, f'{good} answer')} running, and easier "
-            f"after {count(table.wrong, f'{bad} answer')}"
-        )
-    stop = [] if isinstance(table, FixedProcedure) else [*_stops(table.stop, knob.unit)]
-    if isinstance(table, StaircaseProcedure) and table.reversals is not None:
-        stop.append(f"{count(table.reversals, 'reversal')} of each staircase")
-    if stop:
-        yield f"A condition was to end by {', or by '.join(stop)}"
-
-
-def _staircases(table: StaircaseProcedure, unit: str) -> str:
-    starts = ", ".join(f"{start:g}" for start in table.start)
-    steps = ", then ".join(f"{step:g}" for step in table.steps)
-    weighted = "" if table.target is None else f", weighted for {100 * table.target:g} %"
-    many = "interleaved staircases" if len(table.start) > 1 else "staircase"
-    return (
-        f"{len(table.start)} {many}{weighted}, which began at {starts}{unit} with steps of "
-        f"{steps}{unit}"
-    )
-
-
-def _stops(stop: StopRule, unit: str) -> Iterable[str]:
-    """What ended the questions of a condition."""
-    if stop.trials is not None:
-        yield count(stop.trials, "trial")
-    after = f" (after {count(stop.at_least, 'trial')} or more)"
-    if stop.sd is not None:
-        yield f"a standard deviation of the estimate of {stop.sd:g}{unit}{after}"
-    if stop.width is not None:
-        yield f"an interval of 95 % that was {stop.width:g}{unit} wide{after}"
-    if stop.seconds is not None:
-        yield f"{stop.seconds:g} s of the session"

@@ -1,8 +1,10 @@
-"""The commands and what their help says; `options` and `lab` have the options of each."""
+"""The commands and what their help says; `vbraille.cli.options` has the options of each."""
 
 from __future__ import annotations
 
-from vbraille.cli.options import forecast, lab, pictures, reading
+import sys
+
+from vbraille.cli.options import completion, exploring, lab
 from vbraille.cli.options.commandparser import CommandParser
 from vbraille.config.options import OPTIONS, PROFILE
 from vbraille.errors import InputError
@@ -19,82 +21,82 @@ if TYPE_CHECKING:
 COMMANDS: dict[str, tuple[str, Options, str]] = {
     "read": (
         "Read a text on a device, line after line.",
-        reading.read,
+        exploring.read,
         "vbraille read book.txt --device serial:/dev/ttyACM0",
     ),
     "feel": (
         "Feel a tactile picture on a device, or with a simulated hand.",
-        pictures.feel,
+        exploring.feel,
         "vbraille feel house.scene --device latero:192.168.1.10",
     ),
     "books": (
         "List the books that were read, or read on in one of them.",
-        reading.books,
+        exploring.books,
         "vbraille books 2",
     ),
     "keys": (
         "List the keys that are obeyed while reading.",
-        reading.keys,
+        exploring.keys,
         "vbraille keys",
     ),
     "settings": (
         "Print each setting of reading, and where it comes from.",
-        reading.settings,
+        exploring.settings,
         "vbraille settings --profile evening",
     ),
     "tune": (
         "Find out in five minutes how braille feels best, two ways at a time.",
-        reading.tune,
+        exploring.tune,
         "vbraille tune --profile evening --device serial:/dev/ttyACM0",
     ),
     "page": (
         "Print the page as it is laid out, or write it for an embosser.",
-        reading.page,
+        exploring.page,
         "vbraille page book.txt --cells 40 --format brf --out book.brf",
     ),
     "structure": (
         "Print a book's outline, and what it has.",
-        reading.structure,
+        exploring.structure,
         "vbraille structure book.epub",
     ),
     "render": (
         "Write every frame of a reading to an HDF5 file.",
-        reading.render,
+        exploring.render,
         "vbraille render book.txt --lines 1-3 --hand slow --out reading.h5",
     ),
     "profile": (
         "Say what a frame of a tactile picture costs, place by place.",
-        pictures.profile,
+        exploring.profile,
         "vbraille profile house.scene --path wide --out cost.csv",
     ),
     "monitor": (
         "Play back a recording or a session in a browser, until Ctrl-C.",
-        reading.monitor,
+        exploring.monitor,
         "vbraille monitor --play reading.h5",
     ),
     "plot": (
         "Draw a picture of what the display does, or print its numbers.",
-        reading.plot,
+        exploring.plot,
         "vbraille plot page book.txt --lines 1-4 --at 120 --out page.png",
     ),
     "map": (
         "Draw a tactile picture: its deflections, what it is made of, or raised lines for paper.",
-        pictures.scene_map,
+        exploring.scene_map,
         "vbraille map texts/scenes/gallery/layers.scene --array 22,16 --out layers.png",
     ),
     "simulate": (
         "Be a device, at a port that a program can read on, until Ctrl-C.",
-        reading.simulate,
+        exploring.simulate,
         "vbraille simulate --link ./vb0 --hand slow",
     ),
     "device": (
         "Say which devices there are, and try one.",
-        lambda parser: _add(parser, "action", "ACTION", DEVICE_ACTIONS),
+        lambda parser: _add(parser, "action", "ACTION", ACTIONS["device"]),
         "vbraille device check serial:/dev/ttyACM0",
     ),
     "session": (
         "Run legibility sessions, and keep every answer.",
-        lambda parser: _add(parser, "action", "ACTION", SESSION_ACTIONS),
+        lambda parser: _add(parser, "action", "ACTION", ACTIONS["session"]),
         "vbraille session run legibility --participant P07 --seed 42",
     ),
     "analyse": (
@@ -104,64 +106,69 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
     ),
     "power": (
         "Say how often a study of a protocol would find an effect, by simulation.",
-        forecast.power,
+        lab.power,
         "vbraille power letters --effect T0=0.5,T25=0.56,T100=0.64 --participants 4-40",
     ),
     "predict": (
         "Say what the simulated reader would read, over a grid of styles, texts and speeds.",
-        forecast.predict,
+        lab.predict,
         "vbraille predict grid.toml --out predicted --workers 2",
     ),
     "scene": (
         "Look through tactile pictures, and convert those of others.",
-        lambda parser: _add(parser, "action", "ACTION", SCENE_ACTIONS),
+        lambda parser: _add(parser, "action", "ACTION", ACTIONS["scene"]),
         "vbraille scene check texts/scenes/house.scene",
     ),
     "tables": (
         "List the braille tables that there are, and which a language takes.",
-        reading.tables,
+        exploring.tables,
         "vbraille tables --language fr",
+    ),
+    "completion": (
+        "Print what makes a shell complete commands, options and values.",
+        completion.completion,
+        "vbraille completion fish > ~/.config/fish/completions/vbraille.fish",
     ),
 }
 SCENE_ACTIONS: dict[str, tuple[str, Options, str]] = {
     "check": (
         "Say what a tactile picture holds, what is ignored of its file, what will vibrate against "
         "what, and what is hard to feel.",
-        pictures.check,
+        exploring.check,
         "vbraille scene check texts/scenes/house.scene",
     ),
     "convert": (
         "Make a scene file of a file of OpenLatero's or a drawing, and say what differs.",
-        pictures.convert,
+        exploring.convert,
         "vbraille scene convert umbrella.gen --out umbrella.scene",
     ),
     "schema": (
         "Print the form of scene files as a JSON Schema, for editors that complete and check.",
-        reading.nothing,
+        exploring.nothing,
         "vbraille scene schema > scene.schema.json",
     ),
 }
 DEVICE_ACTIONS: dict[str, tuple[str, Options, str]] = {
     "list": (
         "List the serial ports, with their names and ids.",
-        reading.nothing,
+        exploring.nothing,
         "vbraille device list",
     ),
     "info": (
         "Print what a device says of itself.",
-        reading.device_info,
+        exploring.device_info,
         "vbraille device info serial:/dev/ttyACM0",
     ),
     "check": (
         "Swing each actuator, hold the rate, measure the clock, the round trip and the watchdog, "
         "and judge whether a person can read on the device.",
-        reading.device_info,
+        exploring.device_info,
         "vbraille device check serial:/dev/ttyACM0 --model stress2",
     ),
     "calibrate": (
         "Feel or look at each actuator in turn, and keep which are dead, weak or inverted, and "
         "their gains; h says the keys.",
-        reading.device_calibrate,
+        exploring.device_calibrate,
         "vbraille device calibrate serial:/dev/ttyACM0",
     ),
 }
@@ -188,7 +195,7 @@ SESSION_ACTIONS: dict[str, tuple[str, Options, str]] = {
     ),
     "pilot": (
         "Conduct a whole study with the simulated reader, its report and all.",
-        forecast.session_pilot,
+        lab.session_pilot,
         "vbraille session pilot letters --participants 20 --workers 2",
     ),
     "export": (
@@ -209,6 +216,35 @@ SESSION_ACTIONS: dict[str, tuple[str, Options, str]] = {
 }
 
 
+# Actions of the commands that have any.
+ACTIONS = {"device": DEVICE_ACTIONS, "scene": SCENE_ACTIONS, "session": SESSION_ACTIONS}
+
+# Commands as the overview has them.
+GROUPS = {
+    "reading": ("read", "books", "keys", "settings", "tune", "structure", "tables"),
+    "pictures": ("feel", "map", "scene", "profile"),
+    "a page, its frames and drawings": ("page", "render", "plot", "monitor"),
+    "devices": ("device", "simulate"),
+    "for a lab": ("session", "analyse", "power", "predict"),
+    "for the shell": ("completion",),
+}
+
+
+class _Overview(CommandParser):
+    """The parser of all commands, whose help has them in groups."""
+
+    def format_help(self) -> str:
+        """Help on all commands, a line for each, under the name of its group."""
+        width = max(map(len, COMMANDS))
+        lines = [self.format_usage(), self.description or ""]
+        for title, names in GROUPS.items():
+            lines.append(f"\n{title}:")
+            lines += [f"    {name:{width}}  {COMMANDS[name][0]}" for name in names]
+        lines += ["\noptions:", "    -h, --help     Print this help."]
+        lines += ["    -V, --version  Print the version.", "", self.epilog or "", ""]
+        return "\n".join(lines)
+
+
 def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     """Read the command line.
 
@@ -217,19 +253,27 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     InputError
         If it cannot be understood.
     """
-    parser = CommandParser(
+    argv = sys.argv[1:] if argv is None else list(argv)
+    if argv[:1] == ["help"]:
+        argv = [*argv[1:], "--help"]
+    parser = _Overview(
         prog="vbraille",
         description="Read braille under one fingertip, on a page as large as you like.",
-        epilog="example:\n  vbraille read book.txt\n\nvbraille COMMAND --help says more of each.",
+        epilog="example:\n  vbraille read book.txt\n\nvbraille help COMMAND says more of each.",
     )
     parser.add_argument(
-        "--version", action="version", version=f"vbraille {__version__}", help="Print the version."
+        "-V",
+        "--version",
+        action="version",
+        version=f"vbraille {__version__}",
+        help="Print the version.",
     )
     _add(parser, "command", "COMMAND", COMMANDS)
     arguments = parser.parse_args(argv)
     for name, value in vars(arguments).items():
-        if (
-            isinstance(value, list) and name != "paths"
+        if isinstance(value, list) and name not in (
+            "paths",
+            "words",
         ):  # Python before 3.13 takes the value of --name=-- away
             parser.error(f"argument --{name.replace('_', '-')}: expected one argument")
     for name, value in vars(arguments).items():

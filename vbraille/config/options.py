@@ -591,7 +591,7 @@ OPTIONS = {
         ),
         Option(
             "port",
-            "Offer the page of the live view at this port.",
+            "Offer the page of the live view at this port, 0 for any that is free.",
             int,
             "N",
             usual="one that is free",

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.render.braille.style import BrailleStyle
-    from vbraille.scene.origins import OpenedScene
+    from vbraille.scene.locations import OpenedScene
     from vbraille.scene.scene import Scene
 
 _EDGE_MM = 0.05  # by so much a canvas may be larger than a carriage goes

@@ -20,7 +20,7 @@ from vbraille.forecast.workers import KeptResults, work_on
 from vbraille.render import MODELS
 from vbraille.sessions.planning.spellings import Masks, SpellingKeys, spelled
 from vbraille.sessions.simulated.observer import Observer
-from vbraille.sessions.simulated.skin import Exploration
+from vbraille.sessions.simulated.skin import FeltFrames
 from vbraille.tomlfile import Table, TomlFile, which
 
 if TYPE_CHECKING:
@@ -201,7 +201,7 @@ def predict_point(task: GridTask) -> list[int]:
         way_mm = style.geometry.extent_mm(len(masks)) + 2 * aside_mm
         time_s = np.arange(int(way_mm / point["speed_mm_s"] * _RATE_HZ) + 1) / _RATE_HZ
         x_mm = time_s * point["speed_mm_s"] - aside_mm
-        touch = observer.felt(Exploration(program.path(x_mm), x_mm, time_s), len(masks))
+        touch = observer.felt(FeltFrames(program.path(x_mm), x_mm, time_s), len(masks))
         shown = style.mapping.shown_dots()
         wanted = [mask & shown for mask in masks]
         for _ in range(grid.answers):

@@ -35,7 +35,7 @@ from vbraille.wording import count
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from vbraille.scene.origins import OpenedScene
+    from vbraille.scene.locations import OpenedScene
     from vbraille.scene.patterns import AnyPattern, Operation
     from vbraille.scene.scene import Canvas, Scene
     from vbraille.scene.strokes import Vibration

@@ -23,7 +23,7 @@ from vbraille.scene.traversal import with_children
 from vbraille.tomlfile import Table
 
 if TYPE_CHECKING:
-    from vbraille.scene.origins import FoundScene
+    from vbraille.scene.locations import FoundScene
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
     from vbraille.scene.traversal import Steps

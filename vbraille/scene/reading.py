@@ -11,18 +11,18 @@ from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.files import read_text
-from vbraille.scene.origins import ForeignOrigin, OpenedScene, Origins, TomlOrigin
+from vbraille.scene.locations import LocatedFile, Locations, OpenedScene
 from vbraille.scene.patterns import AnyPattern, Group, Image, ImageDots, Label, Operation
 from vbraille.scene.resolving import MOST_PATTERNS, resolve
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.svg.looks import ClassLook
+from vbraille.scene.svg.paint import ClassLook
 from vbraille.scene.traversal import with_children
 from vbraille.tomlfile import Table, TomlFile
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from vbraille.scene.origins import FoundScene, SceneOrigin
+    from vbraille.scene.locations import FoundScene
     from vbraille.scene.traversal import Steps
 
 
@@ -81,7 +81,7 @@ class Gathered:
         What the file itself says.
     elements, textures
         Elements and named textures of the file and of those that it includes.
-    origins
+    locations
         Where each of them is written.
     warnings
         What was ignored, or means something else here.
@@ -90,7 +90,7 @@ class Gathered:
     form: SceneFile
     elements: list[AnyPattern] = field(default_factory=list)
     textures: dict[str, AnyPattern] = field(default_factory=dict)
-    origins: Origins = field(default_factory=Origins)
+    locations: Locations = field(default_factory=Locations)
     warnings: list[str] = field(default_factory=list)
 
     def scene(self, path: Path) -> Scene:
@@ -121,7 +121,7 @@ class Gathered:
         self,
         elements: tuple[AnyPattern, ...] | list[AnyPattern],
         textures: dict[str, AnyPattern],
-        origins: Origins,
+        locations: Locations,
         operation: Operation,
     ) -> None:
         """Add elements and textures after those that are there.
@@ -129,19 +129,19 @@ class Gathered:
         Elements that are put together in another way than this file's become one group.
         """
         for name, texture in textures.items():
-            origin, there = origins.places["textures", name]
+            origin, there = locations.places["textures", name]
             if name in self.textures:
-                first = self.origins.place(("textures", name))
+                first = self.locations.place(("textures", name))
                 origin.fail(there, f"is called {name}, as is {first}; give it another name")
             self.textures[name] = texture
-            self.origins.places["textures", name] = (origin, there)
+            self.locations.places["textures", name] = (origin, there)
         start = len(self.elements)
         apart = bool(elements) and operation != self.form.operation
-        for steps, origin in origins.places.items():
+        for steps, origin in locations.places.items():
             if steps[0] == "elements":
                 number = int(steps[1])
                 above = (start, "parts", number) if apart else (start + number,)
-                self.origins.places["elements", *above, *steps[2:]] = origin
+                self.locations.places["elements", *above, *steps[2:]] = origin
         if apart:
             self.elements.append(Group(operation=operation, parts=tuple(elements)))
         else:
@@ -197,8 +197,8 @@ class _Gathering:
         for number, included in enumerate(gathered.form.include):
             self._include(gathered, file, number, included, name, (*way, real))
         elements = gathered.form.elements
-        origins = _all_from(TomlOrigin(file), elements, textures)
-        gathered.add(elements, textures, origins, gathered.form.operation)
+        locations = _all_from(LocatedFile(file.where, file.lines, file.fail), elements, textures)
+        gathered.add(elements, textures, locations, gathered.form.operation)
         return gathered
 
     def _include(
@@ -233,7 +233,7 @@ class _Gathering:
         into.add(
             [_seen_from(element, folder, language) for element in found.elements],
             {key: _seen_from(one, folder, language) for key, one in found.textures.items()},
-            found.origins,
+            found.locations,
             found.form.operation,
         )
         into.warnings.extend(found.warnings)
@@ -276,8 +276,10 @@ def _foreign(path: Path, form: str, classes: Mapping[str, ClassLook]) -> Gathere
             f"{path}{'' if one.startswith('line ') else ':'} {one}" for one in found.warnings
         ],
     )
-    origins = _all_from(ForeignOrigin(path, found), scene.elements, scene.textures)
-    gathered.add(scene.elements, scene.textures, origins, scene.operation)
+    locations = _all_from(
+        LocatedFile(str(path), lambda: found.lines), scene.elements, scene.textures
+    )
+    gathered.add(scene.elements, scene.textures, locations, scene.operation)
     return gathered
 
 
@@ -297,12 +299,12 @@ def _read_foreign(path: Path, form: str, classes: Mapping[str, ClassLook]) -> Fo
 
 
 def _all_from(
-    origin: SceneOrigin, elements: tuple[AnyPattern, ...], textures: dict[str, AnyPattern]
-) -> Origins:
+    file: LocatedFile, elements: tuple[AnyPattern, ...], textures: dict[str, AnyPattern]
+) -> Locations:
     """Places of elements and textures of a file, which are all its own."""
     steps: list[Steps] = [("textures", name) for name in textures]
     steps += [("elements", number) for number in range(len(elements))]
-    return Origins({one: (origin, one) for one in steps})
+    return Locations({one: (file, one) for one in steps})
 
 
 def _seen_from(pattern: AnyPattern, folder: Path, language: str) -> AnyPattern:
@@ -334,7 +336,7 @@ def open_scene(path: str | Path) -> OpenedScene:
         path=path,
         folder=path.parent,
         written=scene,
-        resolved=resolve(scene, path.parent, gathered.origins),
-        origins=gathered.origins,
+        resolved=resolve(scene, path.parent, gathered.locations),
+        locations=gathered.locations,
         warnings=tuple(gathered.warnings),
     )

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.scene.dotting import most_dots_of
-from vbraille.scene.origins import Origins
+from vbraille.scene.locations import Locations
 from vbraille.scene.patterns import Group, ImageDots, Use
 from vbraille.scene.stock import STOCK, stock_textures
 from vbraille.scene.traversal import LISTS, SEVERAL, each, moved, placed_children, with_children
@@ -29,7 +29,7 @@ MOST_DOTS = 200_000  # along shapes, which nobody has written down
 MOST_DEPTH = 32
 
 
-def resolve(scene: Scene, folder: Path | None = None, origins: Origins | None = None) -> Scene:
+def resolve(scene: Scene, folder: Path | None = None, locations: Locations | None = None) -> Scene:
     """Scene as it is shown, without names.
 
     Each `Use` is replaced by the pattern that it names, moved by value. Changes of its own stand
@@ -43,7 +43,7 @@ def resolve(scene: Scene, folder: Path | None = None, origins: Origins | None = 
         The scene.
     folder
         Folder that the names of image files are seen from; None for the present one.
-    origins
+    locations
         Where its elements are written, for messages; None if it comes from no file.
 
     Raises
@@ -53,7 +53,7 @@ def resolve(scene: Scene, folder: Path | None = None, origins: Origins | None = 
         more than 32 deep, there are more than 200,000 patterns, 4,000,000 points or 200,000 dots
         along shapes, something is moved too far, or an image of dots cannot be read.
     """
-    return _Resolving(scene, folder or Path(), origins or Origins()).scene()
+    return _Resolving(scene, folder or Path(), locations or Locations()).scene()
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +70,8 @@ class _Body:
 class _Resolving:
     """A scene that is being resolved, and how much it has become so far."""
 
-    def __init__(self, scene: Scene, folder: Path, origins: Origins) -> None:
-        self._written, self._folder, self._origins = scene, folder, origins
+    def __init__(self, scene: Scene, folder: Path, locations: Locations) -> None:
+        self._written, self._folder, self._locations = scene, folder, locations
         self._named: dict[str, tuple[Steps, AnyPattern]] = {}
         self._bodies: dict[str, _Body] = {}
         self._open: list[str] = []  # names whose uses are being replaced, outermost first
@@ -112,7 +112,7 @@ class _Resolving:
         if name.startswith(STOCK):
             self._fail(steps, f"is called {name}; only the program's own names begin with {STOCK}")
         if name in self._named and self._named[name][0] != steps:
-            first = self._origins.place(self._named[name][0])
+            first = self._locations.place(self._named[name][0])
             self._fail(steps, f"is called {name}, as is {first}; give it another name")
         self._named[name] = steps, pattern
 
@@ -196,7 +196,7 @@ class _Resolving:
         return body
 
     def _fail(self, steps: Steps, problem: str) -> NoReturn:
-        self._origins.fail(steps, problem)
+        self._locations.fail(steps, problem)
 
     def _fail_unknown(self, name: str, steps: Steps, names: Iterable[str]) -> NoReturn:
         self._fail(steps, f"name is {name!r}, which nothing here is called{nearest(name, names)}")

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tests.analysis.making import levels, sheet
+from tests.analysis.making import from_rows, levels, sheet
 from vbraille.analysis.input.parsing import parse
-from vbraille.analysis.input.sheets import Sheet, from_rows, parse_cells, read_csv
+from vbraille.analysis.input.sheets import Sheet, parse_cells, read_csv
 from vbraille.analysis.input.trials import TRIAL_COLUMNS, LeftOut
 from vbraille.errors import InputError
 

@@ -3,8 +3,9 @@
 import pandas as pd
 import pytest
 
-from vbraille.analysis.input.sheets import Sheet, from_rows, read_csv
+from vbraille.analysis.input.sheets import Sheet, read_csv
 from vbraille.errors import InputError
+from vbraille.sessions.record.export import frame_of
 
 COLUMNS = {"participant": ["P1", "P2"], "condition": ["é", "T0"], "answered": ["a", "b"]}
 
@@ -61,11 +62,15 @@ def test_the_comma_is_a_decimal_point_beside_semicolons_only():
         Sheet("t", pd.DataFrame()).number("4,5")
 
 
-def test_rows_of_a_session_keep_their_types():
-    sheet = from_rows("P01", [{"participant": "P1", "trial": 1}, {"participant": "P1", "trial": 2}])
-    assert sheet.frame.to_dict("list") == {"participant": ["P1", "P1"], "trial": [1, 2]}
+def test_rows_of_a_session_have_types_and_nothing_of_them_is_read_again():
+    rows = [{"participant": "P1", "block": 1, "trial": n, "duration_s": d, "paused_s": 0.0}
+            for n, d in ((1, 2.5), (2, ""))]  # fmt: skip
+    frame = frame_of(rows)
+    assert [str(kind) for kind in frame.dtypes[1:4]] == ["int64", "int64", "float64"]
+    assert frame["duration_s"].isna().tolist() == [False, True]
+    sheet = Sheet("P01", frame, typed=True)
     assert [sheet.place(row) for row in sheet.frame.index] == ["P01 row 1", "P01 row 2"]
-    assert len(from_rows("P01", [])) == 0
+    assert len(frame_of([])) == 0
 
 
 def test_missing_columns_are_named_with_the_nearest():

@@ -5,11 +5,11 @@ import math
 import pytest
 from scipy.stats import norm, t
 
-from tests.analysis.making import record, sheet
+from tests.analysis.making import from_rows, record, sheet
 from vbraille.analysis.chapters import Options, analyse_study
 from vbraille.analysis.figures import rises
 from vbraille.analysis.input.parsing import parse
-from vbraille.analysis.input.sheets import from_rows, read_csv
+from vbraille.analysis.input.sheets import read_csv
 from vbraille.analysis.input.study import Study
 from vbraille.analysis.measures import rated
 from vbraille.analysis.measures.discrimination import sensitivity, thresholds

@@ -7,10 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.analysis.making import record
+from tests.analysis.making import from_rows, record
 from tests.tiers import examples
 from vbraille.analysis.input.parsing import parse
-from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.measures.preferences import tuning
 from vbraille.analysis.statistics.bradleyterry import bradley_terry, position_bias
 

@@ -4,9 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tests.analysis.making import made, record
+from tests.analysis.making import from_rows, made, record
 from vbraille.analysis.input.parsing import parse
-from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.measures.trialsmodel import covariates, trials_model
 
 CONDITIONS = {"T0": 0.4, "T25": 0.6, "T100": 0.9}

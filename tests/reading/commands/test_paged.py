@@ -10,9 +10,9 @@ from tests.reading.commands.test_turning import bench
 from tests.tiers import examples
 from vbraille.config.knobs import KNOBS
 from vbraille.live.messages import PagePress, Turn
-from vbraille.reading.bindings import Context
-from vbraille.reading.commands.paged import obey
 from vbraille.reading.commands.table import COMMANDS
+from vbraille.reading.keys import Context
+from vbraille.reading.liveview import obey_page
 
 KEYS = {
     "texture": "tT", "contrast": "cC", "dot_width_mm": "dD", "dot_spacing_mm": "sS",
@@ -25,7 +25,7 @@ def asked(made, *requests):
     """What is said when a page asks."""
     before = len(made.said)
     for request in requests:
-        obey(made.reader, request)
+        obey_page(made.reader, request)
     return made.said[before:]
 
 

@@ -3,10 +3,10 @@
 import pytest
 
 from tests.reading.test_reader import Bench
-from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
+from vbraille.reading.keys import Context
 from vbraille.reading.outputs import Echo
-from vbraille.reading.search.queries import (
+from vbraille.reading.search.questions import (
     Counted,
     CountLines,
     Failed,

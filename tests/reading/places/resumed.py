@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from vbraille.reading.places import last_book, resume
+from vbraille.reading.library import last_book, resume
 from vbraille.translate import Document
 
 

@@ -2,7 +2,7 @@
 
 from itertools import count
 
-from vbraille.reading.places import KeptPlace, KeptPlaces
+from vbraille.reading.library import KeptPlace, KeptPlaces
 
 TEXT = "\n\n".join(f"Paragraph number {n} says {n * n} and no more." for n in range(200))
 

@@ -2,7 +2,7 @@
 
 from tests.reading.places.resumed import open_kept
 from vbraille.layout.pages import Layout
-from vbraille.reading.places import KeptPlaces, book_options
+from vbraille.reading.library import KeptPlaces, book_options
 from vbraille.reading.reader import Keeping
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.documents.chapters import ChapterSource, Passage

@@ -8,14 +8,14 @@ import pytest
 from tests.reading.places.resumed import open_kept
 from tests.reading.places.shelved import TEXT, keep, kept_place, opened
 from vbraille.errors import InputError
-from vbraille.reading.places import (
+from vbraille.reading.library import (
     Bookmark,
     KeptPlace,
     KeptPlaces,
     book_options,
     last_book,
+    place_in,
 )
-from vbraille.reading.places.place import place_in
 from vbraille.translate import Document
 
 

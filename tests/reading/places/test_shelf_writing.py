@@ -11,12 +11,12 @@ import pytest
 from tests.conftest import SEED
 from tests.reading.places.shelved import keep, kept_place, opened
 from tests.tiers import by_tier
-from vbraille.reading.places import (
+from vbraille.reading.library import (
     Bookmark,
     KeptPlace,
     KeptPlaces,
+    place_in,
 )
-from vbraille.reading.places.place import place_in
 from vbraille.translate import Document
 
 
@@ -86,7 +86,7 @@ class TestWriting:
 
     def test_two_readers_at_once(self, folder):
         script = (
-            "import sys\nfrom vbraille.reading.places import *\n"
+            "import sys\nfrom vbraille.reading.library import *\n"
             "from itertools import count\nclock = count()\n"
             "with KeptPlaces.open(sys.argv[1], now=lambda: float(next(clock))) as places:\n"
             "    kept = places.book(sys.argv[2])\n"
@@ -119,7 +119,7 @@ class TestWriting:
 _KEEPING = """
 import sys
 from itertools import count
-from vbraille.reading.places import KeptPlace, KeptPlaces
+from vbraille.reading.library import KeptPlace, KeptPlaces
 clock = count()
 places = KeptPlaces.open(sys.argv[1], now=lambda: float(next(clock)))
 kept = places.book(sys.argv[2])
@@ -154,7 +154,7 @@ def test_a_kill_at_any_moment_loses_nothing_that_was_kept(folder):
 _FULL = """
 import resource, sys
 from itertools import count
-from vbraille.reading.places import Bookmark, KeptPlace, KeptPlaces
+from vbraille.reading.library import Bookmark, KeptPlace, KeptPlaces
 clock = count()
 places = KeptPlaces.open(sys.argv[1], now=lambda: float(next(clock)))
 kept = places.book(sys.argv[2])
@@ -192,7 +192,7 @@ def test_a_full_disk_is_one_sentence_and_the_file_stays_good(folder, room):
 _FULL_AT_OPENING = """
 import resource, sqlite3, sys
 from itertools import count
-from vbraille.reading.places import Bookmark, KeptPlace, KeptPlaces
+from vbraille.reading.library import Bookmark, KeptPlace, KeptPlaces
 clock = count()
 unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
 resource.setrlimit(resource.RLIMIT_FSIZE, (100, resource.RLIM_INFINITY))

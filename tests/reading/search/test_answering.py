@@ -5,8 +5,7 @@ import io
 import pytest
 
 from vbraille.layout.pages import Layout
-from vbraille.reading.search.answering import Answering, answer
-from vbraille.reading.search.queries import (
+from vbraille.reading.search.questions import (
     Counted,
     CountLines,
     FindKind,
@@ -18,6 +17,7 @@ from vbraille.reading.search.queries import (
     NotFound,
     Searched,
 )
+from vbraille.reading.search.seeker import Answering, answer
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.documents.chapters import ChapterSource, Passage

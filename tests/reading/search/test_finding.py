@@ -9,10 +9,9 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tests.tiers import by_tier, examples
-from vbraille.reading.search.answering import answer, steps
-from vbraille.reading.search.folding import fold, needle_of, unfolded
-from vbraille.reading.search.queries import FindText, Found, NotFound, Searched
-from vbraille.reading.search.sieve import Sieve, ahead
+from vbraille.reading.search.questions import FindText, Found, NotFound, Searched
+from vbraille.reading.search.seeker import answer, steps
+from vbraille.reading.search.text import Sieve, ahead, fold, needle_of, unfolded
 from vbraille.translate import Document
 from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.documents.encodings import Encoding

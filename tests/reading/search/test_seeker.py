@@ -11,7 +11,7 @@ from itertools import pairwise
 import pytest
 
 from vbraille.layout.pages import Layout
-from vbraille.reading.search.queries import (
+from vbraille.reading.search.questions import (
     BookOpening,
     Counted,
     CountLines,
@@ -161,7 +161,7 @@ def test_a_process_that_is_killed_is_told_of_and_begun_again(book):
 
 _PARENT = """
 import sys
-from vbraille.reading.search.queries import BookOpening
+from vbraille.reading.search.questions import BookOpening
 from vbraille.reading.search.seeker import Seeker
 seeker = Seeker(BookOpening(sys.argv[1].encode()))
 seeker.start()
@@ -182,7 +182,7 @@ def test_it_is_gone_with_its_parent(book):
 
 
 def test_progress_is_told_at_most_twice_a_second():
-    from vbraille.reading.search.process import PROGRESS_S, BookSearch
+    from vbraille.reading.search.seeker import PROGRESS_S, BookSearch
 
     told, clock = [], iter(range(10**9))
     seconds = 0.0

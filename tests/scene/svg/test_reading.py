@@ -15,7 +15,7 @@ from vbraille.scene.patterns import PathShape as Lines
 from vbraille.scene.reading import SceneFile, open_scene
 from vbraille.scene.stock import stock_textures
 from vbraille.scene.strokes import Along, Stroke
-from vbraille.scene.svg.looks import BY_HUE, color_of, hue_of
+from vbraille.scene.svg.paint import BY_HUE, color_of, hue_of
 from vbraille.scene.svg.reading import read_svg
 from vbraille.scene.traversal import each
 from vbraille.tomlfile import TomlFile

@@ -249,9 +249,10 @@ def _check_counts(protocol, tested, wanted):
                     f"condition {condition.name} shows {_name(protocol, item)} "
                     f"{shown[item]} times, and must {times} times"
                 )
-        problem = protocol.rules.problem(trial.stimuli[0].masks for trial in trials)
-        if problem:
-            raise ValueError(f"in condition {condition.name} {problem}")
+        try:
+            protocol.rules.check_letters(trial.stimuli[0].masks for trial in trials)
+        except ValueError as problem:
+            raise ValueError(f"in condition {condition.name} {problem}") from None
 
 
 def _name(protocol, item):

@@ -57,7 +57,7 @@ def test_it_finds_what_is_liked_and_keeps_the_order_of_the_plan():
     procedure = made(WIDTHS + STEP + "furthest = 0.8\n")
     history = through(procedure, nearer_to(1.83))
     assert len(history) == 30
-    for planned, past in zip(procedure.deck, history, strict=True):
+    for planned, past in zip(procedure.plan.trials, history, strict=True):
         low_first = [t.stimuli[0].value < t.stimuli[1].value for t in (planned, past.trial)]
         assert low_first[0] == low_first[1]
         values = [stimulus.value for stimulus in past.trial.stimuli]
@@ -99,8 +99,9 @@ def test_conditions_have_their_own_answers_and_ends():
     found = [float(line.split()[3]) for line in (said[1], said[4])]
     assert found == pytest.approx([1.0, 2.5], abs=0.2)
     over = procedure.asked(history)["smooth"]
-    assert procedure.choosers["smooth"].next(over) is None
-    assert procedure.choosers["smooth"].next(over[:-1]) is not None
+    table = procedure.protocol.procedure
+    assert table.next(over, procedure.protocol.design) is None
+    assert table.next(over[:-1], procedure.protocol.design) is not None
 
 
 def test_strings_are_those_of_the_plan_with_the_chosen_contrast():
@@ -108,7 +109,7 @@ def test_strings_are_those_of_the_plan_with_the_chosen_contrast():
         procedure = made(PAIRS + "repeats = 4\n" + table)
         history = through(procedure, lambda trial: trial.presented)
         assert isinstance(procedure, ByAnswers)
-        assert [p.trial.presented for p in history] == [t.presented for t in procedure.deck]
+        assert [p.trial.presented for p in history] == [t.presented for t in procedure.plan.trials]
         contrasts = [past.trial.stimuli[0].tuning.contrast for past in history]
         assert len(set(contrasts)) > 2
         assert all(0.1 <= contrast <= 1.0 for contrast in contrasts)

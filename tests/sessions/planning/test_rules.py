@@ -173,7 +173,8 @@ class TestChecking:
         plan = make_plan(protocol, "P07", 1)
         check_rules(protocol, plan)
         says = "a is shown once; each_letter is 2"
-        assert Rules(each_letter=2).problem(t.stimuli[0].masks for t in plan.trials) == says
+        with pytest.raises(ValueError, match=says):
+            Rules(each_letter=2).check_letters(t.stimuli[0].masks for t in plan.trials)
         wrong = changed(plan, 1, stimuli=plan.trials[1].stimuli)
         self.refuse(protocol, wrong, "condition all shows ⠁⠃⠉.* times, and must 1 times|⠝⠕⠏")
 

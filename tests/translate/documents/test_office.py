@@ -2,11 +2,12 @@
 
 import hashlib
 import io
+import zipfile
 from pathlib import Path
 
 import pytest
 
-from tests.cli.books import ODT, WORD, docx, odt
+from tests.cli.books import ODT, WORD, archive, docx, odt
 from vbraille.errors import InputError
 from vbraille.translate.documents.office.htmltree import tag_of
 from vbraille.translate.documents.office.officebook import open_office
@@ -471,3 +472,534 @@ def test_structure_of_rtf():
 def test_groups_of_rtf_by_the_million_are_refused():
     with pytest.raises(InputError, match="thousands of groups"):
         opened(b"{\\rtf1" + b"{" * 1_000_000 + b"one", "rtf")
+
+
+def described(blocks):
+    return [(block.kind.value, block.level, str(block.text)) for block in blocks]
+
+
+def test_pages_ruby_breaks_and_fields_of_docx():
+    ruby = (
+        "<w:r><w:ruby><w:rubyPr/><w:rt>"
+        + run("kan")
+        + "</w:rt><w:rubyBase>"
+        + run("漢")
+        + "</w:rubyBase>"
+        "</w:ruby></w:r>"
+    )
+    simple = '<w:fldSimple w:instr=" HYPERLINK https://a.b ">' + run("there") + "</w:fldSimple>"
+    number = '<w:fldSimple w:instr=" PAGE ">' + run("7") + "</w:fldSimple>"
+    body = (
+        f"<w:p>{run('one')}<w:r><w:br/></w:r>{run('two')}</w:p>"
+        f"<w:p><w:pPr><w:pageBreakBefore/></w:pPr>{simple}{number}</w:p>"
+        f"<w:p>{ruby}</w:p>"
+        f'<w:bookmarkStart w:name="_GoBack"/><w:bookmarkStart w:name="end"/><w:p>{run("end")}</w:p>'
+    )
+    found = docx_blocks(body=body)
+    assert described(found) == [
+        ("paragraph", 0, "one"),
+        ("line", 0, "two"),
+        ("page", 0, ""),
+        ("paragraph", 0, "there7"),
+        ("paragraph", 0, "漢(kan)"),
+        ("paragraph", 0, "end"),
+    ]
+    assert marks(found[3]) == [(MarkKind.LINK, "there", "https://a.b")]
+    assert found[5].anchors == ("end",)
+
+
+def test_a_link_of_a_field_ends_with_its_paragraph():
+    """A field that is never ended does not draw the rest of the book into its paragraph."""
+    begin = '<w:r><w:fldChar w:fldCharType="begin"/><w:instrText>HYPERLINK "#a"</w:instrText>'
+    opening = begin + '<w:fldChar w:fldCharType="separate"/></w:r>'
+    first, second = docx_blocks(opening + run("linked"), run("not linked"))
+    assert (str(first.text), marks(first)) == ("linked", [(MarkKind.LINK, "linked", "#a")])
+    assert (str(second.text), marks(second)) == ("not linked", [])
+
+
+@pytest.mark.parametrize(
+    ("inner", "told"),
+    [
+        ("<w:object><x/></w:object>", "[embedded object]"),
+        (
+            '<w:drawing><y uri="u/diagram"/></w:drawing>'.replace("y", "graphicData"),
+            "[drawing: diagram]",
+        ),
+        ("<w:pict><imagedata/></w:pict>", "[picture]"),
+        ('<w:drawing><docPr descr=" a boat "/><pic/></w:drawing>', "a boat"),
+        ('<w:pict><shape alt="a rope"/></w:pict>', "a rope"),
+    ],
+)
+def test_what_stands_for_a_drawing_of_docx(inner, told):
+    assert docx_texts(f"<w:r>{inner}</w:r>") == [told]
+
+
+STYLES = (
+    '<w:styles xmlns:w="http://schemas.openxmlformats.org/wordprocessingml/2006/main">'
+    '<w:docDefaults><w:rPrDefault><w:rPr><w:lang w:val="nl-NL"/></w:rPr></w:rPrDefault>'
+    "</w:docDefaults>"
+    '<w:style w:styleId="T"><w:name w:val="Title"/></w:style>'
+    '<w:style w:styleId="H"><w:name w:val="heading 2"/><w:rPr><w:b/></w:rPr></w:style>'
+    '<w:style w:styleId="I"><w:name w:val="Chapter"/><w:basedOn w:val="H"/></w:style>'
+    '<w:style w:styleId="Q"><w:name w:val="Quote"/><w:rPr><w:i/></w:rPr></w:style>'
+    '<w:style w:styleId="C"><w:name w:val="Source Code"/></w:style>'
+    '<w:style w:styleId="O"><w:name w:val="Part"/><w:pPr><w:outlineLvl w:val="0"/>'
+    "</w:pPr></w:style>"
+    '<w:style w:styleId="B"><w:name w:val="Body"/><w:basedOn w:val="H"/><w:pPr>'
+    '<w:outlineLvl w:val="9"/>'
+    "</w:pPr></w:style>"
+    '<w:style w:styleId="S"><w:name w:val="Small"/><w:rPr>'
+    '<w:vertAlign w:val="superscript"/></w:rPr></w:style>'
+    '<w:style w:styleId="X"><w:basedOn w:val="Y"/></w:style>'
+    '<w:style w:styleId="Y"><w:basedOn w:val="X"/></w:style>'
+    "</w:styles>"
+)
+
+
+def styled(style, inner, more=""):
+    return f'<w:p><w:pPr><w:pStyle w:val="{style}"/>{more}</w:pPr>{inner}</w:p>'
+
+
+def test_styles_of_docx_say_what_a_paragraph_is():
+    level = '<w:outlineLvl w:val="2"/>'
+    body = (
+        styled("T", run("The Harbour"))
+        + styled("I", run("Boats"))
+        + styled("O", run("One"))
+        + styled("B", run("text"))
+        + styled("X", run("in a circle"))
+        + styled("Q", run("quoted") + run(" plain", 'i w:val="0"'))
+        + styled("Q", run("again"))
+        + styled("C", run("x = 1"))
+        + styled("S", run("2") + run("on", 'vertAlign w:val="baseline"'))
+        + styled("Q", run("three"), level)
+    )
+    source, found = opened(docx(WORD.format(body), {"word/styles.xml": STYLES}), "docx")
+    assert source.language == "nl-NL"
+    assert described(found) == [
+        ("heading", 1, "The Harbour"),
+        ("heading", 2, "Boats"),
+        ("heading", 1, "One"),
+        ("paragraph", 0, "text"),
+        ("paragraph", 0, "in a circle"),
+        ("quote", 1, "quoted plain"),
+        ("quote", 1, "again"),
+        ("line", 0, "x = 1"),
+        ("paragraph", 0, "²on"),
+        ("heading", 3, "three"),
+    ]
+    bold = {"Boats": [], "quoted plain": [(MarkKind.ITALIC, "quoted", "")], "again": []}
+    assert {str(b.text): marks(b) for b in found if str(b.text) in bold} == bold
+
+
+def test_numbered_headings_and_lists_that_go_on_in_docx():
+    members = numbered(
+        [(1, "decimal", "%1"), (1, "upperRoman", "%2.")], [(1, "none", ""), (5, "ordinal", "%2)")]
+    )
+    override = (
+        '<w:num w:numId="3"><w:abstractNumId w:val="2"/><w:lvlOverride w:ilvl="1"><w:startOverride '
+        'w:val="9"/></w:lvlOverride></w:num></w:numbering>'
+    )
+    numbering = members["word/numbering.xml"].replace("</w:numbering>", override)
+    place = '<w:numPr><w:ilvl w:val="0"/><w:numId w:val="1"/></w:numPr>'
+    body = (
+        styled("H", run("Boats"), place)
+        + item(2, 0, "in no item")
+        + item(2, 1, "five")
+        + item(2, 0, "of five")
+        + item(3, 1, "nine")
+        + item(1, 1, "deeper at once")
+        + item(9, 0, "no such list")
+    )
+    parts = {"word/numbering.xml": numbering, "word/styles.xml": STYLES}
+    assert described(opened(docx(WORD.format(body), parts), "docx")[1]) == [
+        ("heading", 2, "1 Boats"),
+        ("paragraph", 0, "in no item"),
+        ("item", 1, "5) five"),
+        ("paragraph", 0, "of five"),
+        ("item", 1, "9) nine"),
+        ("item", 1, "I. deeper at once"),
+        ("paragraph", 0, "no such list"),
+    ]
+
+
+def test_notes_of_docx_have_links_of_their_own():
+    relations = (
+        '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
+        '<Relationship Id="a" Target="https://{}"/></Relationships>'
+    )
+    link = '<w:hyperlink r:id="a" xmlns:r="r">' + run("there") + "</w:hyperlink>"
+    notes = (
+        '<w:footnotes xmlns:w="http://schemas.openxmlformats.org/wordprocessingml/2006/main">'
+        f'<w:footnote w:id="1"><w:p>{run("other")}</w:p></w:footnote>'
+        f'<w:footnote w:id="2"><w:p>{run("a note, ")}{link}</w:p></w:footnote></w:footnotes>'
+    )
+    parts = {
+        "word/footnotes.xml": notes,
+        "word/_rels/document.xml.rels": relations.format("text"),
+        "word/_rels/footnotes.xml.rels": relations.format("note"),
+    }
+    body = paragraphs(run("one") + '<w:r><w:footnoteReference w:id="2"/></w:r> ' + link)
+    text, note = opened(docx(body, parts), "docx")[1]
+    assert (str(text.text), str(note.text)) == ("one[1]there", "1. a note, there")
+    assert next(mark for mark in marks(text) if mark[0] is MarkKind.LINK)[2] == "https://text"
+    assert marks(note)[0][2] == "https://note"
+
+
+def formula_of(inner):
+    return docx_texts(f'<m:oMath xmlns:m="m">{inner}</m:oMath>')
+
+
+def of(name, *parts):
+    """Element of a formula, with parts of these names and texts."""
+    inner = "".join(f"<m:{part}><m:r><m:t>{text}</m:t></m:r></m:{part}>" for part, text in parts)
+    return f"<m:{name}>{inner}</m:{name}>"
+
+
+@pytest.mark.parametrize(
+    ("inner", "tex"),
+    [
+        (of("rad", ("deg", "3"), ("e", "x")), "\\sqrt[3]{x}"),
+        (of("rad", ("e", "x")), "\\sqrt{x}"),
+        (of("nary", ("sub", "0"), ("sup", "1"), ("e", "x")), "\\int_{0}^{1} x"),
+        (
+            '<m:nary><m:naryPr><m:chr m:val="∑"/></m:naryPr><m:e><m:t>x</m:t></m:e></m:nary>',
+            "\\sum x",
+        ),
+        (of("acc", ("e", "x")), "x\u0302"),
+        (of("sSubSup", ("e", "x"), ("sub", "i"), ("sup", "2")), "x_{i}^{2}"),
+        (of("func", ("fName", "sin"), ("e", "x")), "sin x"),
+        (of("eqArr", ("e", "a"), ("e", "b")), "a \\\\ b"),
+        (
+            '<m:d><m:dPr><m:begChr m:val="["/><m:endChr m:val=""/></m:dPr><m:e><m:t>a</m:t></m:e>'
+            "<m:e><m:t>b</m:t></m:e></m:d>",
+            "[a|b",
+        ),
+        (
+            "<m:m><m:mPr/><m:mr><m:e><m:t>1</m:t></m:e><m:e><m:t>2</m:t></m:e></m:mr></m:m>",
+            "\\begin{matrix} 1 & 2 \\end{matrix}",
+        ),
+        ("<m:box><m:e><m:t>y</m:t></m:e></m:box>", "y"),
+    ],
+)
+def test_formulas_of_docx_are_read_as_tex(inner, tex):
+    assert formula_of(inner) == [tex]
+
+
+def test_a_table_of_one_cell_is_a_box():
+    box = f"<w:tbl><w:tr><w:tc><w:p>{run('one')}</w:p><w:p>{run('two')}</w:p></w:tc></w:tr></w:tbl>"
+    assert described(docx_blocks(body=box)) == [("paragraph", 0, "one"), ("paragraph", 0, "two")]
+    lines = cell("A") + f"<w:tc><w:p>{run('B')}</w:p><w:p>{run('C')}</w:p></w:tc>"
+    assert docx_texts(body=f"<w:tbl><w:tr>{lines}</w:tr></w:tbl>") == ["A  B C"]
+
+
+def test_a_part_of_docx_without_relations_is_found_by_its_usual_name():
+    content = paragraphs(run("one"))
+    _, blocks = opened(docx(content, {"_rels/.rels": "<Relationships/>"}), "docx")
+    assert [str(block.text) for block in blocks] == ["one"]
+
+
+DRAWING = ' xmlns:draw="d" xmlns:svg="s" xmlns:xlink="http://www.w3.org/1999/xlink"'
+
+
+def frame(inner):
+    return f"<draw:frame{DRAWING}>{inner}</draw:frame>"
+
+
+MATH = '<math:math xmlns:math="http://www.w3.org/1998/Math/MathML">{}</math:math>'
+
+
+@pytest.mark.parametrize(
+    ("inner", "told"),
+    [
+        (frame("<draw:image/>"), "[picture]"),
+        (frame("<draw:object/>"), "[embedded object]"),
+        (frame("<svg:title>title</svg:title><svg:desc>a boat</svg:desc>"), "a boat"),
+        (frame("<draw:text-box><text:p>in a box</text:p></draw:text-box>"), "in a box"),
+        (f"<draw:rect{DRAWING}/>", "[drawing]"),
+        (f"<draw:g{DRAWING}><draw:rect><text:p>in it</text:p></draw:rect></draw:g>", "in it"),
+        (frame("<draw:object>" + MATH.format("<mi>x</mi><mo>+</mo>") + "</draw:object>"), "x+"),
+        (
+            frame(
+                "<draw:object>"
+                + MATH.format(
+                    "<semantics><mfrac/><annotation encoding='StarMath 5.0'>{1} over {2}"
+                    "</annotation>"
+                    "<annotation encoding='TeX'>\\frac12</annotation></semantics>"
+                )
+                + "</draw:object>"
+            ),
+            "\\frac12",
+        ),
+    ],
+)
+def test_what_stands_for_a_frame_of_odt(inner, told):
+    assert odt_texts(f"<text:p>{inner}</text:p>") == [told]
+    assert odt_texts(inner) == [told]
+
+
+def test_a_formula_of_odt_in_a_part_of_its_own():
+    inner = frame('<draw:object xlink:href="./Object 1"/>')
+    other = frame('<draw:object xlink:href="./Object 2"/>')
+    content = odt_of(f"<text:p>{inner} {other}</text:p>")
+    with zipfile.ZipFile(io.BytesIO(content)) as source:
+        members = {name: source.read(name) for name in source.namelist()}
+    members["Object 1/content.xml"] = MATH.format("<mi>x</mi>")
+    members["Object 2/content.xml"] = "<chart/>"
+    _, blocks = opened(archive(members, kind=""), "odt")
+    assert [str(block.text) for block in blocks] == ["x [embedded object]"]
+
+
+def test_forms_ruby_breaks_and_marks_of_odt():
+    form = ' xmlns:form="urn:oasis:names:tc:opendocument:xmlns:form:1.0"'
+    boxes = (
+        f'<office:forms{form}><form:checkbox form:id="a" form:current-state="checked"/>'
+        '<form:checkbox form:id="b"/></office:forms>'
+    )
+    control = f'<draw:control{DRAWING} draw:control="{{}}"/>'
+    body = (
+        boxes
+        + f"<text:p>{control.format('a')}{control.format('b')}{control.format('c')}</text:p>"
+        + "<text:p>one<text:line-break/>two</text:p>"
+        + '<text:p><text:bookmark text:name="here"/><text:ruby><text:ruby-base>漢</text:ruby-base>'
+        "<text:ruby-text>kan</text:ruby-text></text:ruby></text:p>"
+        '<text:p><text:a xlink:href="#here|outline" xmlns:xlink="http://www.w3.org/1999/xlink">'
+        "back</text:a><text:a>nowhere</text:a></text:p>"
+    )
+    _, found = opened(odt_of(body), "odt")
+    assert described(found) == [
+        ("paragraph", 0, "☑☐ [form field]"),
+        ("paragraph", 0, "one"),
+        ("line", 0, "two"),
+        ("paragraph", 0, "漢(kan)"),
+        ("paragraph", 0, "backnowhere"),
+    ]
+    assert found[3].anchors == ("here",)
+    assert marks(found[4]) == [(MarkKind.LINK, "back", "#here")]
+
+
+ODT_MORE = (
+    '<style:default-style style:family="paragraph"><style:text-properties fo:language="de" '
+    'fo:country="DE"/></style:default-style>'
+    '<style:style style:name="V"><style:text-properties text:display="none"/></style:style>'
+    '<style:style style:name="B"><style:text-properties fo:font-weight="700" '
+    'fo:font-style="italic" '
+    'style:text-underline-style="solid"/></style:style>'
+    '<style:style style:name="N" style:parent-style-name="B"><style:text-properties '
+    'fo:font-weight="normal" style:text-underline-style="none" text:display="true"/></style:style>'
+    '<style:style style:name="Quotations"/><style:style style:name="Q1" '
+    'style:parent-style-name="Quotations"/><style:style style:name="Preformatted_20_Text"/>'
+    '<style:style style:name="Table_20_Heading"/>'
+    '<style:style style:name="U"><style:text-properties style:text-position="33% 58%"/>'
+    "</style:style>"
+)
+
+
+def test_styles_of_odt():
+    def p(style, inner):
+        return f'<text:p text:style-name="{style}">{inner}</text:p>'
+
+    body = (
+        '<text:h text:outline-level="2">Boote</text:h>'
+        + p("V", "no")
+        + p("x", 'a<text:span text:style-name="V">no</text:span>b')
+        + p("B", 'all <text:span text:style-name="N">some</text:span>')
+        + p("Q1", "eins")
+        + p("Quotations", "zwei")
+        + p("Preformatted_20_Text", "x = 1")
+        + p("x", 'x<text:span text:style-name="U">2</text:span>')
+    )
+    source, found = opened(odt_of(body, ODT_MORE), "odt")
+    assert source.language == "de-DE"
+    assert described(found) == [
+        ("heading", 2, "Boote"),
+        ("paragraph", 0, "ab"),
+        ("paragraph", 0, "all some"),
+        ("quote", 1, "eins"),
+        ("quote", 1, "zwei"),
+        ("line", 0, "x = 1"),
+        ("paragraph", 0, "x²"),
+    ]
+    assert set(marks(found[2])) >= {
+        (MarkKind.BOLD, "all", ""),
+        (MarkKind.UNDERLINE, "all", ""),
+    }
+    assert [text for kind, text, _ in marks(found[2]) if kind is MarkKind.BOLD] == ["all"]
+
+
+def test_lists_of_odt_that_go_on_and_have_no_number():
+    levels = (
+        '<text:list-style style:name="L"><text:list-level-style-number text:level="1" '
+        'style:num-format="i" style:num-suffix="."/></text:list-style>'
+        '<text:list-style style:name="E"><text:list-level-style-number text:level="1" '
+        'style:num-format=""/></text:list-style><text:list-style style:name="C">'
+        '<text:list-level-style-bullet text:level="1" text:bullet-char="☐"/></text:list-style>'
+        '<style:style style:name="P1" style:list-style-name="L"/>'
+    )
+
+    def listed(style, *items, more=""):
+        inner = "".join(
+            f"<text:list-item{m}><text:p>{t}</text:p></text:list-item>" for m, t in items
+        )
+        return f'<text:list text:style-name="{style}"{more}>{inner}</text:list>'
+
+    again = ' text:continue-numbering="true"'
+    body = (
+        listed("L", ("", "one"), (' text:start-value="4"', "four"))
+        + listed("L", ("", "five"), more=again)
+        + listed("L", ("", "anew"))
+        + listed("E", ("", "plain"))
+        + listed("C", ("", "to do"))
+        + listed("none", ("", "dot"))
+        + "<text:list><text:list-header><text:p>head</text:p></text:list-header><text:list-item>"
+        '<text:p text:style-name="P1">two</text:p><table:table><table:table-row><table:table-cell>'
+        "<text:p>in a box</text:p></table:table-cell></table:table-row></table:table>"
+        "<text:soft-page-break/></text:list-item></text:list>"
+    )
+    _, found = opened(odt_of(body, levels), "odt")
+    assert [d for d in described(found) if d[0] != "page"] == [
+        ("item", 1, "i. one"),
+        ("item", 1, "iv. four"),
+        ("item", 1, "v. five"),
+        ("item", 1, "i. anew"),
+        ("item", 1, "plain"),
+        ("item", 1, "☐ to do"),
+        ("item", 1, "• dot"),
+        ("paragraph", 0, "head"),
+        ("item", 1, "• two"),
+        ("paragraph", 0, "in a box"),
+    ]
+
+
+def test_a_head_of_a_table_of_odt_that_only_its_style_tells():
+    def row(*texts, style=""):
+        cells = "".join(
+            f'<table:table-cell><text:p text:style-name="{style}">{text}</text:p>'
+            "</table:table-cell>"
+            for text in texts
+        )
+        return f"<table:table-row>{cells}</table:table-row>"
+
+    body = f"<table:table>{row('A', 'B', style='Table_20_Heading')}{row('1', '2')}</table:table>"
+    _, found = opened(odt_of(body, ODT_MORE), "odt")
+    assert [(str(b.text), b.headers) for b in found] == [("A  B", ()), ("1  2", ("A", "B"))]
+
+
+def test_an_odt_file_that_is_locked_is_refused():
+    locked = odt("<x/>", {"META-INF/manifest.xml": "<manifest:encryption-data/>"})
+    with pytest.raises(InputError, match="locked with a password"):
+        opened(locked, "odt")
+
+
+def test_what_nests_spans_and_lists_very_deep_in_odt_is_read():
+    for begin, end in (
+        ("text:span", "text:span"),
+        ("text:list><text:list-item", "text:list-item></text:list"),
+    ):
+        inner = "x" if "span" in begin else "<text:p>x</text:p>"
+        deep = f"<{begin}>" * 100 + inner + f"</{end}>" * 100
+        body = f"<text:p>{deep}</text:p>" if "span" in begin else deep
+        assert "".join(odt_texts(body)).strip("• ") == "x"
+
+
+def test_pages_breaks_and_pictures_of_rtf():
+    picture = r"{\pict{\*\picprop{\sp{\sn wzDescription}{\sv a boat}}}\pngblip 8950}"
+    known = (
+        r"{\*\shppict{\pict{\sp{\sn wzDescription}{\sv a boat}}\pngblip 8950}}"
+        r"{\nonshppict{\pict x}}"
+    )
+    text = r"\pard one\line two\page three\par\pard " + known + r"\par\pard " + picture + r"\par"
+    assert described(rtf_blocks(text)) == [
+        ("paragraph", 0, "one"),
+        ("line", 0, "two"),
+        ("page", 0, ""),
+        ("line", 0, "three"),
+        ("paragraph", 0, "a boat"),
+        ("paragraph", 0, "[picture]"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("header", "text", "expected"),
+    [
+        (r"\ansicpg1251", r"\'ec", "м"),
+        (r"\ansicpg65001", r"\'c3\'a9", "é"),
+        (r"\ansicpg99999", r"\'e9", "é"),
+        (r"\mac", r"\'8e", "é"),
+        (r"\pc", r"\'82", "é"),
+        (r"\pca", r"\'82", "é"),
+        ("", "é", "é"),
+        ("", r"\u61537?", "α"),
+        ("", r"\u57345?x", "\ue001x"),
+        ("", "a\\\nb", "a"),
+        (r"{\fonttbl{\f7 Wingdings;}}", r"{\f7\'fe}", "☑"),
+    ],
+)
+def test_bytes_of_rtf_in_many_alphabets(header, text, expected):
+    content = b"{\\rtf1\\ansi" + header.encode() + b"\\pard " + text.encode("cp1252") + b"\\par}"
+    assert str(opened(content, "rtf")[1][0].text) == expected
+
+
+def test_looks_and_languages_of_rtf():
+    text = (
+        r"\pard\lang1033 {\lang1036 un} and {\lang1024 no} {\lang99 odd} {\ul under\ulnone  not} "
+        r"{\b0 x}{\super 2\nosupersub  y}{\b bold\plain  plain}\par"
+    )
+    source, (block,) = opened(b"{\\rtf1\\deflang1033" + text.encode() + b"}", "rtf")
+    assert source.language == "en-US"
+    assert str(block.text) == "un and no odd under not x² ybold plain"
+    told = marks(block)
+    assert (MarkKind.LANGUAGE, "un", "fr-FR") in told
+    assert (MarkKind.UNDERLINE, "under", "") in told
+    assert (MarkKind.BOLD, "bold", "") in told
+
+
+def test_tables_of_rtf_whose_cells_are_merged_or_never_ended():
+    text = (
+        r"\trowd\clmgf\cellx1\clmrg\cellx2\cellx3\pard\intbl A\cell\cell C\cell\row"
+        r"\trowd\cellx1\cellx2\cellx3\pard\intbl 1\cell 2\cell 3\cell\row\pard after\par"
+        r"\trowd\clbrdrb\cellx1\cellx2\pard\intbl X\cell Y\cell\row"
+        r"\trowd\cellx1\cellx2\pard\intbl 4\cell 5\cell\row\pard\intbl in none\par\pard end\par"
+    )
+    assert [(str(b.text), b.headers) for b in rtf_blocks(text)] == [
+        ("A  C", ()),
+        ("1  2  3", ()),
+        ("after", ()),
+        ("X  Y", ()),
+        ("4  5", ("X", "Y")),
+        ("in none", ()),
+        ("end", ()),
+    ]
+    unended = r"\trowd\cellx1\cellx2\pard\intbl A\cell B\cell"
+    assert rtf_texts(unended) == ["A  B"]
+    bold = r"\trowd\cellx1\cellx2\pard\intbl {\b A}\cell {\b B}\cell\row"
+    rows = r"\trowd\cellx1\cellx2\pard\intbl 1\cell 2\cell\row"
+    assert [b.headers for b in rtf_blocks(bold + rows)] == [(), ("A", "B")]
+
+
+def test_styles_bookmarks_and_circles_of_rtf():
+    text = (
+        r"{\stylesheet{\s1\sbasedon2 One;}{\s2\sbasedon1 Two;}{\s3 heading 3;}{\s4 Source Code;}"
+        r"{\s6\outlinelevel1 Part;}{\*\cs5 Char;}}"
+        r"{\pard\s1 a\par}{\pard\s3 b\par}{\pard\s4 c\par}{\pard\outlinelevel1 d\par}"
+        r"{\pard\s6 g\par}"
+        r"\pard{\*\bkmkstart here}{\*\bkmkend here}e{\*\unknown no}\par"
+        r"\pard{\field{\*\fldinst PAGE}{\fldrslt 7}} f\par"
+    )
+    found = rtf_blocks(text)
+    assert described(found) == [
+        ("paragraph", 0, "a"),
+        ("heading", 3, "b"),
+        ("line", 0, "c"),
+        ("heading", 2, "d"),
+        ("heading", 2, "g"),
+        ("paragraph", 0, "e"),
+        ("paragraph", 0, "7 f"),
+    ]
+    assert found[5].anchors == ("here",)
+
+
+def test_long_paragraphs_of_many_pieces_stay_whole():
+    many = "".join(run(f"word {n} ", *(["b"] if n % 2 else [])) for n in range(2_000))
+    words = "".join(f"word {n} " for n in range(2_000)).strip()
+    assert "".join(docx_texts(many)) == words

@@ -210,10 +210,12 @@ def _each(
     if column not in rows:
         return pd.Series(absent, rows.index)
     given = rows[column]
+    if sheet.typed:
+        return given
     known = {}
     for value in given.unique():
         try:
-            known[value] = parse(value) if isinstance(value, str) else value
+            known[value] = parse(value)
         except ValueError as error:
             row = given.index[given == value][0]
             raise InputError(f"{sheet.place(row)}: {column} {error}") from None
@@ -222,7 +224,7 @@ def _each(
 
 def _seconds(sheet: Sheet, rows: pd.DataFrame, column: str, absent: float) -> pd.Series:
     parsed = _each(sheet, rows, column, partial(parse_seconds, value=sheet.value), absent)
-    return parsed.astype(np.float64)
+    return pd.to_numeric(parsed).astype(np.float64)
 
 
 def _scored_otherwise(sheet: Sheet, rows: pd.DataFrame, read: pd.DataFrame) -> Iterator[str]:

@@ -24,7 +24,7 @@ from vbraille.translate.documents.encodings import binary_kind, find_encoding
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
 _DELIMITERS = ",;\t"  # spreadsheets write semicolons where the comma is the decimal point
@@ -39,18 +39,22 @@ class Sheet:
     name
         Name of the file or the session, as it stands in messages.
     frame
-        Values: text from a file, numbers and text from a session; empty text where there is
-        nothing. The index is the number of each row's line or, from a session, of the row.
+        Values: text from a file, empty where there is nothing; from a session, as
+        `vbraille.sessions.record.export.frame_of` types them. The index is the number of each
+        row's line or, from a session, of the row.
     unit
         Word for what the index counts.
     decimal_comma
         Whether numbers in text may have a comma for a point.
+    typed
+        Whether columns have their types, so that nothing is left to read and check.
     """
 
     name: str
     frame: pd.DataFrame
     unit: str = "row"
     decimal_comma: bool = False
+    typed: bool = False
 
     def __len__(self) -> int:
         return len(self.frame)
@@ -126,11 +130,6 @@ def read_csv(path: Path) -> Sheet:
     except csv.Error as error:
         raise InputError(f"{path.name} line {reader.line_num} is no CSV: {error}") from None
     return Sheet(path.name, frame, "line", decimal_comma=delimiter == ";")
-
-
-def from_rows(name: str, rows: Sequence[Mapping[str, Any]]) -> Sheet:
-    """Sheet of a session's rows; values have the types that they have in an export."""
-    return Sheet(name, pd.DataFrame(rows, range(1, len(rows) + 1), dtype=object))
 
 
 def _miss(name: str, others: Sequence[str]) -> str:

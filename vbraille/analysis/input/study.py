@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.scoretable import of_sheet
-from vbraille.analysis.input.sheets import from_rows, read_csv
+from vbraille.analysis.input.sheets import Sheet, read_csv
 from vbraille.analysis.input.sittings import read_sitting
 from vbraille.analysis.input.trials import LeftOut, chosen, natural
 from vbraille.errors import InputError
+from vbraille.sessions.record.export import frame_of
 from vbraille.version import __version__
 from vbraille.wording import count
 
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from vbraille.analysis.input.scoretable import Scores
-    from vbraille.analysis.input.sheets import Sheet
     from vbraille.analysis.input.sittings import SessionTrials
 
 _TOLD_VERSIONS = ("numpy", "scipy", "matplotlib")  # numbers and bytes hang on them
@@ -90,7 +90,7 @@ def load_study(
     _check_paths(paths)
     sittings, files = _read(paths)
     sheets = list(files.values())
-    sources = [*(from_rows(sitting.name, sitting.rows) for sitting in sittings), *sheets]
+    sources = [*(Sheet(one.name, frame_of(one.rows), typed=True) for one in sittings), *sheets]
     apart = told_apart(sittings)
     parsed = parse(sources)
     left_out = [*parsed.left_out]

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli.terminal import say_line
 from vbraille.errors import VbrailleError
-from vbraille.reading.places.shelf import KeptPlaces, numbered_book
+from vbraille.reading.library import KeptPlaces, numbered_book
 
 if TYPE_CHECKING:
     import argparse
 
-    from vbraille.reading.places.place import ListedBook
+    from vbraille.reading.library import ListedBook
 
 _A_WEEK = 7  # days; what is older is told by its date
 

@@ -6,8 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
-from vbraille.cli.atdevice import opened_in_time
-from vbraille.cli.stoppable import STOPPED, StoppableKeyboard
+from vbraille.cli.exploring import opened_in_time
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
@@ -18,9 +17,9 @@ from vbraille.engine.checkup import ActuatorSwings
 from vbraille.engine.clock import RealClock
 from vbraille.errors import DeviceError, InputError
 from vbraille.files import settings_path
-from vbraille.reading.bindings import spoken
 from vbraille.reading.calibrating import Round
-from vbraille.reading.keyboard import Keyboard
+from vbraille.reading.keyboard import STOPPED, Keyboard, StoppableKeyboard
+from vbraille.reading.keys import spoken
 
 if TYPE_CHECKING:
     import argparse

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.cli.atdevice import opened_in_time
 from vbraille.cli.commands.calibrate import calibrate, say_calibration
+from vbraille.cli.exploring import opened_in_time
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.registry import find_driver

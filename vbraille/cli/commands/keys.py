@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli.terminal import print_json
 from vbraille.config.settings import load_settings
-from vbraille.reading.bindings import spoken
 from vbraille.reading.commands.table import bound_for
+from vbraille.reading.keys import spoken
 
 if TYPE_CHECKING:
     import argparse
 
-    from vbraille.reading.bindings import Bound
+    from vbraille.reading.keys import Bound
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -20,7 +20,7 @@ from vbraille.cli.build import (
     lay_out,
     note_unseen_dots,
 )
-from vbraille.cli.options.pictures import PATH_OPTIONS
+from vbraille.cli.options.exploring import PATH_OPTIONS
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import WorkProgress
 from vbraille.config.options import CHOICE_OF_TABLE
@@ -29,7 +29,7 @@ from vbraille.display import check_rate
 from vbraille.engine.engine import EndOfLine
 from vbraille.errors import InputError
 from vbraille.newfile import new_file
-from vbraille.reading.handwatch import too_fast_note
+from vbraille.reading.advancing import too_fast_note
 from vbraille.recording import Recorder
 from vbraille.render import MODELS
 from vbraille.simulation.motion import SLACK

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli.options.pictures import PATH_OPTIONS
+from vbraille.cli.options.exploring import PATH_OPTIONS
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import WorkProgress, say_line
 from vbraille.display import check_rate

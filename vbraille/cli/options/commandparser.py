@@ -7,6 +7,7 @@ import os
 
 from vbraille.config.options import COMMON, FILE, OPTIONS, held_in, number, whole
 from vbraille.errors import InputError
+from vbraille.wording import nearest
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class CommandParser(argparse.ArgumentParser):
         super().__init__(**settings, formatter_class=_Help, allow_abbrev=False)
         self._options = options
 
-    def parse_known_args(self, args=None, namespace=None):
+    def parse_known_args(self, args=None, namespace=None):  # pyright: ignore[reportIncompatibleMethodOverride]
         """Parse, as argparse does, with the options of this command added now."""
         if self._options is not None:
             options, self._options = self._options, None
@@ -76,7 +77,30 @@ class CommandParser(argparse.ArgumentParser):
             options(self)
             if self._subparsers is None:  # one without actions, which have options of their own
                 self.take(*COMMON)
-        return super().parse_known_args(args, namespace)
+        namespace, unknown = super().parse_known_args(args, namespace)
+        if unknown and self._subparsers is None:
+            self._refuse(unknown)
+        return namespace, unknown
+
+    def _refuse(self, unknown: list[str]) -> NoReturn:
+        """Refuse arguments; of an option that is gone say what there is, of others what is near."""
+        options = [argument.partition("=")[0] for argument in unknown if argument[:1] == "-"]
+        for option in options:
+            if instead := _GONE.get(option):
+                raise InputError(f"{option} is gone; {instead}")
+        near = nearest(options[0], self._option_string_actions) if options else ""
+        self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
+
+    def _check_value(self, action: argparse.Action, value: object) -> None:
+        """Refuse a value that is none of the choices, as argparse does, and name what is near."""
+        try:
+            super()._check_value(action, value)
+        except argparse.ArgumentError as error:
+            near = nearest(str(value), map(str, action.choices or ()))
+            if near and isinstance(action, argparse._SubParsersAction):
+                self.error(f"there is no {action.dest} {value!r}{near}")
+            error.message += near
+            raise
 
     def take(self, *names: str, unset: bool = False) -> None:
         """Add options of the schema, by their names.
@@ -148,17 +172,13 @@ class CommandParser(argparse.ArgumentParser):
         return super().format_help() + _keys(self.prog)
 
     def error(self, message: str) -> NoReturn:
-        """Refuse the command line in a sentence; of an option that is gone it says what there is.
+        """Refuse the command line in a sentence.
 
         Raises
         ------
         InputError
             In any case.
         """
-        what, _, arguments = message.partition(": ")
-        for option in arguments.split() if what == "unrecognized arguments" else ():
-            if instead := _GONE.get(option.partition("=")[0]):
-                raise InputError(f"{option} is gone; {instead}")
         raise InputError(f"{message} ({self.prog} --help says what there is)")
 
 
@@ -167,7 +187,7 @@ def _keys(program: str) -> str:
     if program == "vbraille read":
         from vbraille.reading.commands.table import COMMANDS as KEYS
     elif program == "vbraille feel":
-        from vbraille.feeling.commands import COMMANDS as KEYS
+        from vbraille.reading.commands.scene import COMMANDS as KEYS
     else:
         return ""
     width = max(len(command.spoken_keys) for command in KEYS)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
-from vbraille.reading.places.place import Bookmark, place_in
+from vbraille.reading.library import Bookmark, place_in
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
-from vbraille.reading.search.queries import FindShare
+from vbraille.reading.search.questions import FindShare
 
 if TYPE_CHECKING:
     from vbraille.reading.reader import Reader

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
-from vbraille.reading.search.queries import FindText
+from vbraille.reading.search.questions import FindText
 from vbraille.reading.whereabouts import first_character
 
 if TYPE_CHECKING:

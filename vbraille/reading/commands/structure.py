@@ -7,10 +7,10 @@ from bisect import bisect_right
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.reading.bindings import Context
 from vbraille.reading.cues import Cue
-from vbraille.reading.figured import figure_of_block
-from vbraille.reading.search.queries import FindKind, FindLine, FindPage, FindShare, ListHeadings
+from vbraille.reading.keys import Context
+from vbraille.reading.lineviews import figure_of_block
+from vbraille.reading.search.questions import FindKind, FindLine, FindPage, FindShare, ListHeadings
 from vbraille.reading.search.structure import (
     EACH_ITEM,
     IMAGE,
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from vbraille.layout.pages import Line
     from vbraille.reading.reader import Reader
-    from vbraille.reading.search.queries import ListedHeading
+    from vbraille.reading.search.questions import ListedHeading
     from vbraille.translate.source import Block, Mark, Source
 
     Numbered = dict[int, ListedHeading]

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.config.options import StyleKnob
+    from vbraille.reading.advancing import Scroll
     from vbraille.reading.reader import Reader
-    from vbraille.reading.scrolling import Scroll
     from vbraille.render.braille.straying import Straying
     from vbraille.render.braille.style import BrailleStyle
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import count
 from typing import TYPE_CHECKING
 
-from vbraille.reading.search.queries import ListedHeading
+from vbraille.reading.search.questions import ListedHeading
 from vbraille.translate.documents.document import Document
 from vbraille.translate.source import BlockKind, MarkKind
 from vbraille.translate.text import to_text
@@ -15,7 +15,7 @@ from vbraille.translate.text import to_text
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.reading.search.queries import FindKind
+    from vbraille.reading.search.questions import FindKind
     from vbraille.translate.source import Block, Mark, Source
 
 # Kinds that `FindKind` is asked for beside those of blocks.

@@ -113,7 +113,7 @@ class _Flattening:
         block = WordBlock()
         kept = node.say(block, node.parts)
         numbers, entries = block.finish(node.box)
-        row[g.BLOCK], row[g.PARTED], row[g.ALWAYS] = self._size, node.parts, node.box is None
+        row[g.BLOCK], row[g.HAS_PARTS], row[g.ALWAYS] = self._size, node.parts, node.box is None
         self.entries += [entry._replace(at=entry.at + self._size) for entry in entries]
         self._keep(numbers)
         if node.box is None or node.box.is_empty:

@@ -173,7 +173,7 @@ def _sum_up(odd, row, first, last):
     ONE,  # 1 if it is 1 everywhere
     CHANGES,  # place of a change's words, and how many these are
     CHANGE_COUNT,
-    PARTED,  # 1 if its words are told of parts
+    HAS_PARTS,  # 1 if its words are told of parts
 ) = range(11)
 NODE_COLUMNS = 11
 LEAF, ADD, MAXIMUM, MULTIPLY, BLEND, OVER, LAYER, CHANGE = map(int, NodeKind)
@@ -307,11 +307,11 @@ def _joins(kind):
 @compiled
 def _say_leaf(nodes, node, reach, listed, room, join, said, at):
     """Say the words by which a leaf is computed, with its parts in reach."""
-    parted = nodes[node, PARTED] != 0.0
-    call = w.CALL_PARTS if parted else w.CALL
+    has_parts = nodes[node, HAS_PARTS] != 0.0
+    call = w.CALL_PARTS if has_parts else w.CALL
     said[at] = call + w.OPERATIONS * (w.JOINS * nodes[node, BLOCK] + join)
     at += 1
-    if parted:
+    if has_parts:
         first, last = room[node, _FIRST], room[node, _LAST]
         said[at] = last - first
         at += 1

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.scene.filebytes import read_bytes
+from vbraille.scene.locations import FoundScene
 from vbraille.scene.openlatero.context import SURFACE_MM, GenContext
 from vbraille.scene.openlatero.elements import MOST_BYTES, Remarks, read_tree
 from vbraille.scene.openlatero.groups import (
@@ -19,7 +20,6 @@ from vbraille.scene.openlatero.groups import (
 from vbraille.scene.openlatero.images import read_image
 from vbraille.scene.openlatero.shapes import read_circle, read_dots, read_line, read_polygon
 from vbraille.scene.openlatero.textures import read_texture
-from vbraille.scene.origins import FoundScene
 from vbraille.scene.patterns import Group
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.traversal import placed_children

@@ -11,9 +11,9 @@ from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.scene.patterns import Group
-from vbraille.scene.svg.looks import drawn, share_of
 from vbraille.scene.svg.numbers import AffineMap, fit, length_px, numbers_of, transform_of
 from vbraille.scene.svg.outlines import MOST_POINTS, TOO_FAR
+from vbraille.scene.svg.paint import drawn, share_of
 from vbraille.scene.svg.shapes import SHAPES, circle_of, outline, patterns_of
 from vbraille.scene.svg.style import classes_of, styled
 from vbraille.scene.svg.tree import (
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import AnyPattern
-    from vbraille.scene.svg.looks import ClassLook
+    from vbraille.scene.svg.paint import ClassLook
     from vbraille.scene.svg.style import StyleSheet
     from vbraille.scene.svg.tree import Element
 
@@ -120,14 +120,14 @@ class SvgDrawing:
         Rules of its style sheets.
     ids
         The elements by their ids.
-    looks
+    class_looks
         What the scene says of classes.
     """
 
     name: str
     sheet: StyleSheet
     ids: Mapping[str, Element]
-    looks: Mapping[str, ClassLook]
+    class_looks: Mapping[str, ClassLook]
     _notes: dict[str, list[tuple[int, str]]] = field(default_factory=lambda: defaultdict(list))
     _named: set[str] = field(default_factory=set)
     _used: list[str] = field(default_factory=list)
@@ -154,7 +154,7 @@ class SvgDrawing:
             said.append(sentence)
         said += [
             f"nothing that is shown has the class, label or id {name}, which the scene speaks of"
-            for name in self.looks
+            for name in self.class_looks
             if name not in self._met
         ]
         return tuple(said)
@@ -347,12 +347,12 @@ class SvgDrawing:
 
     def _look(self, element: Element) -> ClassLook | None:
         """What the scene says of an element's class, label or id."""
-        if not self.looks:
+        if not self.class_looks:
             return None
         names = (*classes_of(element), element.get(f"{INKSCAPE}label"), element.get("id"))
-        known = [name for name in names if name and name in self.looks]
+        known = [name for name in names if name and name in self.class_looks]
         self._met.update(known)
-        return self.looks[known[0]] if known else None
+        return self.class_looks[known[0]] if known else None
 
     def _count(self, element: Element) -> None:
         self._elements += 1

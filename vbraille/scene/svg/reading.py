@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
-from vbraille.scene.origins import FoundScene
+from vbraille.scene.locations import FoundScene
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.svg.drawing import SvgDrawing, start, view_of
 from vbraille.scene.svg.numbers import PX_MM, AffineMap, fit, length_px
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.scene.svg.drawing import DrawnNode
-    from vbraille.scene.svg.looks import ClassLook
+    from vbraille.scene.svg.paint import ClassLook
     from vbraille.scene.svg.tree import Element
     from vbraille.scene.traversal import Steps
 
@@ -30,7 +30,7 @@ _XML_LANG = "{http://www.w3.org/XML/1998/namespace}lang"
 _BY_SCRIPT = "its script is never run"
 
 
-def read_svg(path: Path, looks: Mapping[str, ClassLook] | None = None) -> FoundScene:
+def read_svg(path: Path, class_looks: Mapping[str, ClassLook] | None = None) -> FoundScene:
     """Read a drawing as a scene.
 
     Paths, rectangles, circles, ellipses, lines, polylines and polygons become shapes, and texts
@@ -42,7 +42,7 @@ def read_svg(path: Path, looks: Mapping[str, ClassLook] | None = None) -> FoundS
     ----------
     path
         The file.
-    looks
+    class_looks
         What shapes become, by their class, by the label that Inkscape gives them, or by their id.
         A group's counts for all that stands in it.
 
@@ -59,7 +59,7 @@ def read_svg(path: Path, looks: Mapping[str, ClassLook] | None = None) -> FoundS
     """
     root = read_tree(path)
     sheet = StyleSheet()
-    drawing = SvgDrawing(str(path), sheet, _ids(root), looks or {})
+    drawing = SvgDrawing(str(path), sheet, _ids(root), class_looks or {})
     for element in root.iter():
         _look_through(element, sheet, drawing)
     width, height = size_px(root, str(path))

@@ -15,8 +15,8 @@ from vbraille.scene.svg.tree import name_of
 if TYPE_CHECKING:
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import AnyPattern
-    from vbraille.scene.svg.looks import ShapeLook
     from vbraille.scene.svg.numbers import AffineMap
+    from vbraille.scene.svg.paint import ShapeLook
     from vbraille.scene.svg.tree import Element
 
 SHAPES = frozenset(("path", "rect", "circle", "ellipse", "line", "polyline", "polygon"))

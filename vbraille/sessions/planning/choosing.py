@@ -7,18 +7,14 @@ A procedure takes the next trial of the deck and decides the values that it is s
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from msgspec import structs
 
 from vbraille.adaptive.staircase import Asked
-from vbraille.errors import VbrailleError
-from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.procedures import (
-    PREFERRED,
-    THRESHOLD,
     FixedProcedure,
     QuestProcedure,
     StaircaseProcedure,
@@ -28,8 +24,6 @@ from vbraille.sessions.planning.stimuli import KNOBS, Stimuli, Trial, value_at, 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from vbraille.adaptive.questplus import GridQuest
-    from vbraille.adaptive.staircase import Staircases, StopRule
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.questions import AnyQuestion
@@ -77,87 +71,6 @@ class FixedOrder:
 
 
 @dataclass(frozen=True, slots=True)
-class ByQuest:
-    """Choice of values by QUEST+.
-
-    Parameters
-    ----------
-    quest
-        Grid of stimuli and parameters.
-    name
-        Name of the parameter of the grid that is estimated.
-    stop
-        When enough was asked.
-    """
-
-    quest: GridQuest
-    name: str
-    stop: StopRule
-
-    def next(self, history: Sequence[Asked]) -> tuple[float, ...] | None:
-        """Value or pair of values that is asked next; None if enough was asked."""
-        if self.stop.out_of_limits(history):
-            return None
-        told = self._told(history)
-        if self.stop.by_precision and self.stop.precise(
-            len(told), self.quest.estimate(told, self.name)
-        ):
-            return None
-        return self.quest.next(told)
-
-    def found(self, history: Sequence[Asked], what: str, unit: str) -> tuple[str, ...]:
-        """Sentences on the parameter that is estimated."""
-        known = self.quest.estimate(self._told(history), self.name)
-        return (
-            f"{self.name} {what}: {known.mean:.3g}{unit}",
-            f"95 % interval: {known.low:.3g} to {known.high:.3g}{unit}",
-        )
-
-    def _told(self, history: Sequence[Asked]) -> list[tuple[tuple[float, ...], int]]:
-        for asked in history:
-            if asked.stimulus not in self.quest:
-                values = " and ".join(f"{value:g}" for value in asked.stimulus)
-                raise VbrailleError(
-                    f"the journal is damaged: it has shown {values}, which the protocol's "
-                    f"procedure never asks; nothing was changed"
-                )
-        return [(asked.stimulus, asked.outcome) for asked in history]
-
-
-@dataclass(frozen=True, slots=True)
-class ByStaircases:
-    """Choice of values by staircases.
-
-    Parameters
-    ----------
-    staircases
-        The staircases, interleaved.
-    stop
-        When enough was asked, beside their own end.
-    """
-
-    staircases: Staircases
-    stop: StopRule
-
-    def next(self, history: Sequence[Asked]) -> tuple[float, ...] | None:
-        """Value that is shown next; None if enough was asked."""
-        if self.stop.out_of_limits(history):
-            return None
-        level = self.staircases.next(history)
-        return None if level is None else (level,)
-
-    def found(self, history: Sequence[Asked], what: str, unit: str) -> tuple[str, ...]:
-        """Sentences on the level that the staircases came to."""
-        known = self.staircases.estimate(history)
-        if known is None:
-            return (f"{THRESHOLD} {what}: not known, no staircase turned round with its last step",)
-        return (
-            f"{THRESHOLD} {what}: {known.mean:.3g}{unit}",
-            f"reversals: {known.reversals}, standard deviation {known.sd:.2g}{unit}",
-        )
-
-
-@dataclass(frozen=True, slots=True)
 class ByAnswers:
     """Procedure that takes trials from a deck, and decides the values by the answers.
 
@@ -166,22 +79,17 @@ class ByAnswers:
 
     Parameters
     ----------
-    deck
-        Trials of the plan, in order.
-    choosers
-        Choice of values in each condition, by the condition's name.
-    protocol
-        Protocol of the session.
+    protocol, plan
+        Protocol of the session, and its plan, whose trials are the deck.
     """
 
-    deck: tuple[Trial, ...]
-    choosers: Mapping[str, ByQuest | ByStaircases]
     protocol: Protocol
+    plan: Plan
     _of: Mapping[str, tuple[Trial, ...]] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         of: dict[str, list[Trial]] = defaultdict(list)
-        for trial in self.deck:
+        for trial in self.plan.trials:
             of[trial.condition].append(trial)
         object.__setattr__(self, "_of", {name: tuple(trials) for name, trials in of.items()})
 
@@ -198,15 +106,25 @@ class ByAnswers:
     @property
     def most(self) -> int:
         """Largest number of trials that there may be."""
-        most = Counter(trial.condition for trial in self.deck)
-        limits = {name: chooser.stop.trials for name, chooser in self.choosers.items()}
-        return sum(min(most[name], limit or most[name]) for name, limit in limits.items())
+        limit = self._table.stop.trials
+        return sum(min(len(own), limit or len(own)) for own in self._of.values())
+
+    @property
+    def _table(self) -> QuestProcedure | StaircaseProcedure:
+        table = self.protocol.procedure
+        assert not isinstance(table, FixedProcedure), "a fixed order chooses nothing"
+        return table
+
+    def _seed(self, condition: str) -> str:
+        """Text that random choices in a condition follow from."""
+        return f"{self.plan.protocol} {self.plan.seed} {self.plan.participant} {condition}"
 
     def next(self, history: Sequence[Answered], /) -> Trial | None:
         """Trial that follows a history, with the values that the procedure chooses."""
         asked = self.asked(history)
         for place, condition in self._places(asked):
-            chosen = self.choosers[condition].next(asked[condition])
+            own, design = asked[condition], self.protocol.design
+            chosen = self._table.next(own, design, self._seed(condition))
             if chosen is not None:
                 trial = self._of[condition][place]
                 stimuli = _at(self.protocol, trial.stimuli, chosen)
@@ -219,15 +137,16 @@ class ByAnswers:
         what, unit = knob.words, knob.unit
         sentences: list[str] = []
         for name, own in self.asked(history).items():
-            if own and len(self.choosers) > 1:
+            if own and len(self._of) > 1:
                 sentences.append(f"condition: {name}")
             if own:
-                sentences += self.choosers[name].found(own, what, unit)
+                design, seed = self.protocol.design, self._seed(name)
+                sentences += self._table.found(own, design, what, unit, seed)
         return tuple(sentences)
 
     def asked(self, history: Sequence[Answered]) -> dict[str, list[Asked]]:
         """Questions and outcomes of each condition, as the choosers know them."""
-        asked: dict[str, list[Asked]] = {name: [] for name in self.choosers}
+        asked: dict[str, list[Asked]] = {name: [] for name in self._of}
         for answered in history:
             told = _asked(answered, self.parameter, self.protocol.asks)
             asked[answered.trial.condition].append(told)
@@ -247,21 +166,7 @@ Procedure = FixedOrder | ByAnswers
 
 def procedure_of(protocol: Protocol, plan: Plan) -> Procedure:
     """Procedure by which the trials of a session follow each other."""
-    table, design = protocol.procedure, protocol.design
-    names = tuple(dict.fromkeys(trial.condition for trial in plan.trials))
-    choosers: dict[str, ByQuest | ByStaircases] = {}
-    match table:
-        case QuestProcedure():
-            name = PREFERRED if isinstance(design, Choice) else THRESHOLD
-            for condition in names:
-                choosers[condition] = ByQuest(table.quest(design), name, table.stop)
-        case StaircaseProcedure():
-            for condition in names:
-                seed = f"{plan.protocol} {plan.seed} {plan.participant} {condition}"
-                choosers[condition] = ByStaircases(table.staircases(seed), table.stop)
-        case _:
-            return FixedOrder(plan.trials)
-    return ByAnswers(plan.trials, choosers, protocol)
+    return ByAnswers(protocol, plan) if protocol.adaptive else FixedOrder(plan.trials)
 
 
 def varied(protocol: Protocol) -> str:

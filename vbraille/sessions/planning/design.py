@@ -427,18 +427,25 @@ class Rules(Table, frozen=True):
         """Whether an order that keeps the rules must be searched for."""
         return bool(self.at_most_running) or self.balanced_quarters
 
-    def problem(self, lines: Iterable[tuple[int, ...]]) -> str:
-        """Sentence about a letter that is shown too often or too seldom; empty if all is right."""
+    def check_letters(self, lines: Iterable[tuple[int, ...]]) -> None:
+        """Check how often each letter is shown in a condition.
+
+        Raises
+        ------
+        ValueError
+            If one is shown too often or too seldom.
+        """
         shown = Counter(mask for masks in lines for mask in masks)
         for letter, mask in LETTERS.items():
-            if self.each_letter not in (None, shown[mask]):
-                return f"{letter} is shown {_times(shown[mask])}; each_letter is {self.each_letter}"
-            if shown[mask] < (self.each_letter_at_least or 0):
-                return (
-                    f"{letter} is shown {_times(shown[mask])}; "
-                    f"each_letter_at_least is {self.each_letter_at_least}"
-                )
-        return ""
+            least = self.each_letter_at_least or 0
+            if self.each_letter in (None, shown[mask]) and shown[mask] >= least:
+                continue
+            exactly = self.each_letter not in (None, shown[mask])
+            name = "each_letter" if exactly else "each_letter_at_least"
+            raise ValueError(
+                f"{letter} is shown {_times(shown[mask])}; {name} is {getattr(self, name)}; "
+                f"change the strings or the rule"
+            )
 
 
 def _times(number: int) -> str:
@@ -490,24 +497,32 @@ class Practice(Table, frozen=True):
         before, after = design.around
         return [(*before, *string, *after) for string in self.strings]
 
-    def problem(self, design: Design) -> str:
-        """Say why this practice does not go with a test of a design; empty if it does."""
+    def check(self, design: Design) -> None:
+        """Check that this practice goes with a test of a design, and gives nothing of it away.
+
+        Raises
+        ------
+        ValueError
+            If it does not.
+        """
         compares = isinstance(design, Choice)
         if self.strings if compares else self.values:
             given, wanted = ("strings", "values") if compares else ("values", "strings")
-            return f"{given} are not of this kind of design; give {wanted} instead"
+            raise ValueError(f"{given} are not of this kind of design; give {wanted} instead")
         if compares:
-            shared = set(self.values) & {*design.values, design.reference}
-            if shared:
+            if shared := set(self.values) & {*design.values, design.reference}:
                 unit = KNOBS[design.parameter].unit
-                return f"values have {min(shared):g}{unit}, which the test compares; give another"
-            return ""
+                raise ValueError(
+                    f"values have {min(shared):g}{unit}, which the test compares; give another"
+                )
+            return
         for string, line in zip(self.strings, self.lines(design), strict=True):
             if not any(line):
-                return "strings have one without dots, and nothing can be felt of it"
+                raise ValueError("strings have one without dots, and nothing can be felt of it")
             if _is_shown(design, string):
-                return f"strings have {name_item(string)}, which the test shows; give another"
-        return ""
+                raise ValueError(
+                    f"strings have {name_item(string)}, which the test shows; give another"
+                )
 
 
 def name_item(item: Item) -> str:

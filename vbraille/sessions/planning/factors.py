@@ -120,8 +120,8 @@ def condition(name: str, changes: dict[str, Any]) -> Condition:
     return structs.replace(Condition(name=name), **changes)
 
 
-def problem(factors: tuple[Factor, ...], cross: Cross, *, listed: bool) -> str:
-    """Say why factors do not go together; empty if they do.
+def check_factors(factors: tuple[Factor, ...], cross: Cross, *, listed: bool) -> None:
+    """Check that factors go together.
 
     Parameters
     ----------
@@ -129,11 +129,16 @@ def problem(factors: tuple[Factor, ...], cross: Cross, *, listed: bool) -> str:
         The factors, and which of their combinations are shown.
     listed
         Whether the file lists conditions as well.
+
+    Raises
+    ------
+    ValueError
+        If they do not.
     """
     if cross != "all" and not within(factors):
-        return "cross is of [[factors]] within participants; leave it out"
+        raise ValueError("cross is of [[factors]] within participants; leave it out")
     if listed and within(factors):
-        return (
+        raise ValueError(
             "[[conditions]] number 1 stands beside [[factors]], which make the conditions; leave "
             "one of the two out"
         )
@@ -142,54 +147,54 @@ def problem(factors: tuple[Factor, ...], cross: Cross, *, listed: bool) -> str:
     for number, factor in enumerate(factors, 1):
         about = f"[[factors]] number {number}"
         if factor.name in names:
-            return f"{about} name is {factor.name!r} again; give each its own"
+            raise ValueError(f"{about} name is {factor.name!r} again; give each its own")
         names.append(factor.name)
         for key in factor.changes:
             if key in whose:
-                return f"{about} levels give {key}, which {whose[key]} gives; leave it out of one"
+                raise ValueError(
+                    f"{about} levels give {key}, which {whose[key]} gives; leave it out of one"
+                )
             whose[key] = factor.name
     if cross != "all":
-        return _problem_of_cross(within(factors), cross)
+        _check_cross(within(factors), cross)
+        return
     combinations = [*_all(within(factors)), *_all(between(factors))]
     for name in map(JOINT.join, combinations):
         try:
             check_name("the name made from its levels", name)
         except ValueError as error:
-            return f"[[factors]] number 1 levels: {error}; give shorter names"
+            raise ValueError(f"[[factors]] number 1 levels: {error}; give shorter names") from None
     if len(crossed(factors, cross)) + len(groups(factors)) < len(combinations):
-        return "[[factors]] number 1 levels make two of one name; leave hyphens out"
-    return ""
+        raise ValueError("[[factors]] number 1 levels make two of one name; leave hyphens out")
 
 
-def _problem_of_cross(own: tuple[Factor, ...], cross: tuple[Levels, ...]) -> str:
-    """Say why a list of combinations cannot be used; empty if it can."""
+def _check_cross(own: tuple[Factor, ...], cross: tuple[Levels, ...]) -> None:
+    """Check a list of combinations."""
     for number, levels in enumerate(cross, 1):
         at = f"cross, number {number},"
         if len(levels) != len(own):
-            return (
+            raise ValueError(
                 f"{at} has {len(levels)} levels; give {len(own)}, one of each of "
                 f"{', '.join(factor.name for factor in own)}"
             )
         for factor, name in zip(own, levels, strict=True):
             known = [level.name for level in factor.levels]
             if name not in known:
-                return f"{at} has {name!r}, which {factor.name} has not{nearest(name, known)}"
+                raise ValueError(
+                    f"{at} has {name!r}, which {factor.name} has not{nearest(name, known)}"
+                )
         if levels in cross[: number - 1]:
-            return f"{at} is there before; leave one out"
-        try:
-            check_name(f"{at} as a name", JOINT.join(levels))
-        except ValueError as error:
-            return str(error)
+            raise ValueError(f"{at} is there before; leave one out")
+        check_name(f"{at} as a name", JOINT.join(levels))
     if len({JOINT.join(levels) for levels in cross}) < len(cross):
-        return "cross makes two conditions of one name; leave hyphens out of the levels"
+        raise ValueError("cross makes two conditions of one name; leave hyphens out of the levels")
     for place, factor in enumerate(own):
         shown = {levels[place] for levels in cross}
         if len(shown) < 2:
-            return (
+            raise ValueError(
                 f"cross has only {', '.join(shown) or 'no level'} of {factor.name}, and a factor "
                 f"with one level varies nothing; give two or more, or leave the factor out"
             )
-    return ""
 
 
 def _listed(changes: dict[str, Any]) -> str:

@@ -1,9 +1,12 @@
-"""The table ``[procedure]`` of a protocol: which trial comes next, and when enough was asked."""
+"""The table ``[procedure]`` of a protocol: which values come next, and when enough was asked.
+
+A class for each kind chooses by what was asked in one condition so far, and by nothing else.
+"""
 
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from vbraille.adaptive.questplus import (
     GridAxis,
@@ -13,11 +16,14 @@ from vbraille.adaptive.questplus import (
     ordered_pairs,
     steps,
 )
-from vbraille.adaptive.staircase import StaircaseRule, Staircases, StopRule
-from vbraille.errors import check_range
+from vbraille.adaptive.staircase import Asked, StaircaseRule, Staircases, StopRule
+from vbraille.errors import VbrailleError, check_range
 from vbraille.sessions.planning.design import MOST_TRIALS, Choice, Design
 from vbraille.sessions.planning.stimuli import KNOBS, KnobName
 from vbraille.tomlfile import Table
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 THRESHOLD, PREFERRED = "threshold", "preferred"
 _MOST_VALUES = 1000
@@ -26,9 +32,8 @@ _MOST_VALUES = 1000
 class FixedProcedure(Table, frozen=True, tag="fixed", tag_field="kind"):
     """A procedure that follows the plan, whatever is answered."""
 
-    def problem(self, _design: Design) -> str:
-        """Say why this procedure does not go with a design, which it always does: empty."""
-        return ""
+    def check(self, _design: Design) -> None:
+        """Accept any design."""
 
     def values(self, _design: Design) -> tuple[float, ...]:
         """Values that the procedure adds to those of the design: none."""
@@ -80,18 +85,17 @@ class _ByAnswersTable(Table, frozen=True, kw_only=True, tag_field="kind"):
             raise ValueError("least or most is missing; add it")
         return self.least, self.most
 
-    def _lacks(self) -> str:
-        """Say what a procedure with strings lacks; empty if nothing."""
+    def _check_bounds(self) -> None:
+        """Check that a procedure with strings has something to vary."""
         for name in ("parameter", "least", "most"):
             if getattr(self, name) is None:
-                return f"lacks {name}; add it"
+                raise ValueError(f"lacks {name}; add it")
         least, most = self.bounds
         if least >= most:
-            return (
+            raise ValueError(
                 f"least is {least:g} and most is {most:g}, and nothing can move between them; "
                 f"make most larger"
             )
-        return ""
 
 
 class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
@@ -151,24 +155,64 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
         """When enough was asked in a condition."""
         return StopRule(self.trials, self.sd, self.width, self.at_least, self.seconds)
 
-    def problem(self, design: Design) -> str:
-        """Say why this procedure does not go with a design; empty if it does."""
+    def check(self, design: Design) -> None:
+        """Check that this procedure goes with a design.
+
+        Raises
+        ------
+        ValueError
+            If it does not.
+        """
         if isinstance(design, Choice):
             if design.reference is not None:
-                return "chooses both values of a pair; leave reference out of [design]"
+                raise ValueError("chooses both values of a pair; leave reference out of [design]")
             if self.parameter is not None or self.least is not None or self.most is not None:
-                return "parameter, least and most are those of [design]; leave them out"
-        elif lacks := self._lacks():
-            return lacks
-        elif self.step is None:
-            return "lacks step; add it"
-        elif self.furthest is not None:
-            return "furthest is of kind = 'choice'; leave it out"
-        try:
-            self.quest(design)
-        except ValueError as error:
-            return str(error)
-        return ""
+                raise ValueError("parameter, least and most are those of [design]; leave them out")
+        else:
+            self._check_bounds()
+            if self.step is None:
+                raise ValueError("lacks step; add it")
+            if self.furthest is not None:
+                raise ValueError("furthest is of kind = 'choice'; leave it out")
+        self.quest(design)
+
+    def next(
+        self, asked: Sequence[Asked], design: Design, _seed: str = ""
+    ) -> tuple[float, ...] | None:
+        """Value or pair of values that is asked next in a condition; None if enough was asked."""
+        if self.stop.out_of_limits(asked):
+            return None
+        quest, history = self.quest(design), self._history(asked, design)
+        if self.stop.by_precision:
+            known = quest.estimate(history, quest.axes[0].name)
+            if self.stop.precise(len(history), known):
+                return None
+        return quest.next(history)
+
+    def found(
+        self, asked: Sequence[Asked], design: Design, what: str, unit: str, _seed: str = ""
+    ) -> tuple[str, ...]:
+        """Sentences on the threshold, or on the preferred value."""
+        quest = self.quest(design)
+        name = quest.axes[0].name
+        known = quest.estimate(self._history(asked, design), name)
+        return (
+            f"{name} {what}: {known.mean:.3g}{unit}",
+            f"95 % interval: {known.low:.3g} to {known.high:.3g}{unit}",
+        )
+
+    def _history(
+        self, asked: Sequence[Asked], design: Design
+    ) -> list[tuple[tuple[float, ...], int]]:
+        quest = self.quest(design)
+        for each in asked:
+            if each.stimulus not in quest:
+                values = " and ".join(f"{value:g}" for value in each.stimulus)
+                raise VbrailleError(
+                    f"the journal is damaged: it has shown {values}, which the protocol's "
+                    f"procedure never asks; nothing was changed"
+                )
+        return [(each.stimulus, each.outcome) for each in asked]
 
     def values(self, design: Design) -> tuple[float, ...]:
         """Values that may be asked, increasing.
@@ -184,7 +228,7 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
             low, high = min(design.values), max(design.values)
         else:
             low, high = self.bounds
-        assert self.step is not None, "problem() has seen to that"
+        assert self.step is not None, "check() has seen to that"
         if (high - low) / self.step > _MOST_VALUES:
             raise ValueError(f"step makes more than {_MOST_VALUES} values; make it larger")
         return steps(low, high, self.step)
@@ -267,23 +311,52 @@ class StaircaseProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="stairc
         """When enough was asked in a condition."""
         return StopRule(self.trials, seconds=self.seconds)
 
-    def problem(self, design: Design) -> str:
-        """Say why this procedure does not go with a design; empty if it does."""
+    def check(self, design: Design) -> None:
+        """Check that this procedure goes with a design, and that its staircases can move.
+
+        Raises
+        ------
+        ValueError
+            If one cannot.
+        """
         if isinstance(design, Choice):
-            return "kind is 'staircase', which needs right answers; for a choice give 'quest'"
-        if lacks := self._lacks():
-            return lacks
+            raise ValueError(
+                "kind is 'staircase', which needs right answers; for a choice give 'quest'"
+            )
+        self._check_bounds()
         trials = min(self.trials or MOST_TRIALS, design.trials)
         if trials < min(self.right, self.wrong):
-            return (
+            raise ValueError(
                 f"right is {self.right} and wrong is {self.wrong}, and a condition has {trials} "
                 f"trials: the staircase cannot move; give it more trials"
             )
-        try:
-            self.staircases("")
-        except ValueError as error:
-            return str(error)
-        return ""
+        self.staircases("")
+        if trials < min(self.right, self.wrong) * len(self.start):
+            raise ValueError(
+                f"start is of {len(self.start)} staircases, and a condition has {trials} trials: "
+                f"one of them cannot move; give it more trials"
+            )
+
+    def next(
+        self, asked: Sequence[Asked], _design: Design, seed: str = ""
+    ) -> tuple[float, ...] | None:
+        """Value that is shown next in a condition; None if enough was asked."""
+        if self.stop.out_of_limits(asked):
+            return None
+        level = self.staircases(seed).next(asked)
+        return None if level is None else (level,)
+
+    def found(
+        self, asked: Sequence[Asked], _design: Design, what: str, unit: str, seed: str = ""
+    ) -> tuple[str, ...]:
+        """Sentences on the level that the staircases came to."""
+        known = self.staircases(seed).estimate(asked)
+        if known is None:
+            return (f"{THRESHOLD} {what}: not known, no staircase turned round with its last step",)
+        return (
+            f"{THRESHOLD} {what}: {known.mean:.3g}{unit}",
+            f"reversals: {known.reversals}, standard deviation {known.sd:.2g}{unit}",
+        )
 
     def values(self, _design: Design) -> tuple[float, ...]:
         """Ends of the values that may be shown."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from importlib import resources
 from itertools import product
 from pathlib import Path
@@ -16,11 +17,10 @@ from vbraille.files import read_text
 from vbraille.render import Profile
 from vbraille.sessions.planning.appearance import CONVENTIONAL, LENGTHS, Condition
 from vbraille.sessions.planning.design import MOST_TRIALS, UNFELT, Choice, ItemList, StringList
-from vbraille.sessions.planning.factors import problem
+from vbraille.sessions.planning.factors import check_factors
 from vbraille.sessions.planning.items import read_items, read_orders, read_words
-from vbraille.sessions.planning.procedures import StaircaseProcedure
 from vbraille.sessions.planning.protocol import FORMAT, Protocol, ProtocolFile
-from vbraille.sessions.planning.sequencing import CONDITION, impossible, limited
+from vbraille.sessions.planning.sequencing import CONDITION, check_possible, limited
 from vbraille.sessions.planning.spellings import (
     SpellingKeys,
     cells_of,
@@ -32,7 +32,7 @@ from vbraille.sessions.planning.stimuli import GAP, KNOBS, with_value
 from vbraille.tomlfile import TomlFile, which
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
 
 _FOLDER = resources.files("vbraille.sessions.planning").joinpath("protocols")
@@ -205,19 +205,15 @@ def _resolved(
                     "[items] rule is 'strings', which draws cells, and table makes cells of texts; "
                     "give words or a list, or leave table out"
                 )
-            try:
+            with _naming("[items]"):
                 strings = items.draw(words)
-            except ValueError as error:
-                raise ValueError(f"[items] {error}") from None
         design = design.strings_of(strings)
     assert not isinstance(design, ItemList)
     if practice.file is not None:
         practised = read_items(files[practice.file], practice.file, keys, written=written)
         own = tuple(row.masks for row in practised)
         practice = msgspec.structs.replace(practice, file=None, strings=own)
-    said = problem(tables.factors, tables.cross, listed=bool(tables.listed))
-    if said:
-        raise ValueError(said)
+    check_factors(tables.factors, tables.cross, listed=bool(tables.listed))
     fields = msgspec.structs.asdict(tables) | {"design": design, "practice": practice}
     protocol = Protocol(**fields, text=text, files=files, item_rows=rows)
     if tables.order is not None and tables.order.file is not None:
@@ -271,9 +267,7 @@ def check_agreement(protocol: Protocol, *, planned: bool = False) -> None:
     ValueError
         If values contradict each other.
     """
-    said = problem(protocol.factors, protocol.cross, listed=bool(protocol.listed))
-    if said:
-        raise ValueError(said)
+    check_factors(protocol.factors, protocol.cross, listed=bool(protocol.listed))
     for table, named in (("conditions", protocol.conditions), ("fields", protocol.fields)):
         names = [value.name for value in named]
         for number, name in enumerate(names, 1):
@@ -286,9 +280,8 @@ def check_agreement(protocol: Protocol, *, planned: bool = False) -> None:
     _check_procedure(protocol)
     _check_conventional(protocol)
     _check_question(protocol)
-    said = protocol.practice.problem(protocol.design)
-    if said:
-        raise ValueError(f"[practice] {said}")
+    with _naming("[practice]"):
+        protocol.practice.check(protocol.design)
     _check_trials(protocol)
     _check_order(protocol)
     _check_tables(protocol, planned=planned)
@@ -300,6 +293,15 @@ def check_agreement(protocol: Protocol, *, planned: bool = False) -> None:
     _check_rules(protocol)
     if not protocol.group:
         _check_groups(protocol, planned=planned)
+
+
+@contextmanager
+def _naming(place: str) -> Iterator[None]:
+    """Begin the message of a ValueError with a place of the file."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(f"{place} {error}") from None
 
 
 def _check_names(protocol: Protocol) -> None:
@@ -352,10 +354,8 @@ def _check_groups(protocol: Protocol, *, planned: bool) -> None:
     """Check the protocol as each group has it."""
     for group in protocol.groups:
         number = 1 + next(n for n, factor in enumerate(protocol.factors) if factor.between)
-        try:
+        with _naming(f"[[factors]] number {number} group {group}:"):
             check_agreement(protocol.assigned(group), planned=planned)
-        except ValueError as error:
-            raise ValueError(f"[[factors]] number {number} group {group}: {error}") from None
 
 
 def _place(protocol: Protocol, condition: Condition) -> str:
@@ -369,14 +369,11 @@ def _place(protocol: Protocol, condition: Condition) -> str:
 
 
 def _check_styles(protocol: Protocol) -> None:
-    table = "[display]"
-    try:
+    with _naming("[display]"):
         protocol.style  # noqa: B018
-        for condition in protocol.conditions:
-            table = _place(protocol, condition)
+    for condition in protocol.conditions:
+        with _naming(_place(protocol, condition)):
             protocol.style_of(condition)
-    except ValueError as error:
-        raise ValueError(f"{table} {error}") from None
 
 
 def _check_varies(protocol: Protocol) -> None:
@@ -400,14 +397,6 @@ def _check_varies(protocol: Protocol) -> None:
                     f"[{table}] parameter is {name!r}, which the condition {condition.name} sets "
                     f"itself; leave it out there"
                 )
-    stairs = protocol.procedure
-    if isinstance(stairs, StaircaseProcedure):
-        trials = min(stairs.trials or MOST_TRIALS, protocol.design.trials)
-        if trials < min(stairs.right, stairs.wrong) * len(stairs.start):
-            raise ValueError(
-                f"[procedure] start is of {len(stairs.start)} staircases, and a condition has "
-                f"{trials} trials: one of them cannot move; give it more trials"
-            )
     order = protocol.order
     if order is not None and order.kind != "listed" and len(protocol.conditions) < 2:
         raise ValueError(
@@ -418,9 +407,8 @@ def _check_varies(protocol: Protocol) -> None:
 
 def _check_question(protocol: Protocol) -> None:
     stimuli = 2 if protocol.task == "choice" else 1
-    problem = protocol.asks.problem(stimuli, adaptive=protocol.adaptive)
-    if problem:
-        raise ValueError(f"[question] {problem}")
+    with _naming("[question]"):
+        protocol.asks.check(stimuli, adaptive=protocol.adaptive)
     same = isinstance(protocol.design, Choice) and protocol.design.same
     if same and (protocol.asks.name != "same-different" or protocol.adaptive):
         raise ValueError(
@@ -431,9 +419,8 @@ def _check_question(protocol: Protocol) -> None:
 
 
 def _check_procedure(protocol: Protocol) -> None:
-    said = protocol.procedure.problem(protocol.design)
-    if said:
-        raise ValueError(f"[procedure] {said}")
+    with _naming("[procedure]"):
+        protocol.procedure.check(protocol.design)
     if not protocol.adaptive:
         return
     if protocol.asks.name == "detect" and getattr(protocol.procedure, "guess", None) == (0.0,):
@@ -522,9 +509,8 @@ def _check_order(protocol: Protocol) -> None:
 def _check_letters(protocol: Protocol) -> None:
     rules = protocol.rules
     if isinstance(protocol.design, StringList):
-        said = rules.problem(protocol.design.items())
-        if said:
-            raise ValueError(f"[rules] {said}; change the strings or the rule")
+        with _naming("[rules]"):
+            rules.check_letters(protocol.design.items())
     elif (rules.each_letter, rules.each_letter_at_least) != (None, None):
         raise ValueError("[rules] count the letters of kind = 'list'; leave them out")
 
@@ -548,9 +534,8 @@ def _check_rules(protocol: Protocol) -> None:
             "[rules] balanced_quarters cannot be kept: each condition has a block of its own; "
             "give [design] blocks = 1, or leave the rule out"
         )
-    said = impossible(protocol)
-    if said:
-        raise ValueError(f"[rules] {said}")
+    with _naming("[rules]"):
+        check_possible(protocol)
 
 
 def check_cells(protocol: Protocol) -> None:
@@ -608,11 +593,9 @@ def check_lines(protocol: Protocol) -> None:
         at = "" if value is None else f" at a value of {value:g}{unit}"
         if condition.changes.keys() & set(LENGTHS):
             at += f" in the condition {condition.name}"
-        try:
+        with _naming(f"[design]{at}:"):
             shown = protocol.shown(condition, (0,), value)
             room = shown.geometry.cells_per_line(model.display.span_mm)
-        except ValueError as error:
-            raise ValueError(f"[design]{at}: {error}") from None
         cells = protocol.lead_cells + lengths[whose]
         if cells > room:
             raise ValueError(
@@ -644,10 +627,8 @@ def _cells(protocol: Protocol, condition: Condition) -> dict[str, tuple[frozense
         return {"[design]": (design.masks, design.cells), "[practice]": (masks, length)}
     found = {}
     for name, strings in (("[design]", design.strings), ("[practice]", practice.strings)):
-        try:
+        with _naming(f"{name} in the condition {condition.name}:"):
             lines = [cells_of(str(text), table) for text in strings]
-        except ValueError as error:
-            raise ValueError(f"{name} in the condition {condition.name}: {error}") from None
         masks = frozenset(mask for line in lines for mask in line)
         found[name] = (masks, max(map(len, lines), default=0))
     return found
@@ -661,10 +642,8 @@ def _check_varied(protocol: Protocol, longest: int) -> None:
     for condition, value in product(
         protocol.conditions, protocol.procedure.values(protocol.design)
     ):
-        try:
+        with _naming(f"[procedure] parameter at {value:g}:"):
             shown = with_value(protocol.shown(condition, (0,)), knob, value)
-        except ValueError as error:
-            raise ValueError(f"[procedure] parameter at {value:g}: {error}") from None
         room = shown.geometry.cells_per_line(protocol.model.display.span_mm)
         if protocol.lead_cells + longest > room:
             raise ValueError(

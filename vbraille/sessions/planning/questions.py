@@ -152,8 +152,8 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
         """Say what may be typed as an answer."""
         return self.typed
 
-    def problem(self, stimuli: int, *, adaptive: bool) -> str:
-        """Say why this question cannot be asked of trials; empty if it can.
+    def check(self, stimuli: int, *, adaptive: bool) -> None:
+        """Check that this question can be asked of trials.
 
         Parameters
         ----------
@@ -161,19 +161,23 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
             Number of stimuli in a trial, 1 or 2.
         adaptive
             Whether the answers choose what is shown.
+
+        Raises
+        ------
+        ValueError
+            If it cannot.
         """
         if stimuli not in self.stimuli:
             wanted, given = ("two stimuli", "one") if stimuli == 1 else ("one stimulus", "two")
-            return (
+            raise ValueError(
                 f"kind is {self.name!r}, which is asked of {wanted}, and each trial of [design] "
                 f"has {given}; choose another kind of question or of design"
             )
         if adaptive and not self.positive_known:
-            return (
+            raise ValueError(
                 f"kind is {self.name!r}, whose answers cannot choose what is shown next; leave "
                 f"[procedure] out, or ask something else"
             )
-        return ""
 
     def help(self, _keys: dict[str, int], _written: bool, /) -> str:
         """Say at the console what may be typed, where strings are written in print or in cells."""

@@ -43,8 +43,14 @@ def limited(protocol: Protocol) -> dict[str, Callable[[Shown], str]]:
     }
 
 
-def impossible(protocol: Protocol) -> str:
-    """Say which rule no order of trials can keep, and why; empty if counting finds none."""
+def check_possible(protocol: Protocol) -> None:
+    """Check by counting that some order of trials can keep each rule.
+
+    Raises
+    ------
+    ValueError
+        If none can.
+    """
     design, kinds = protocol.design, limited(protocol)
     items = design.items()
     blocks = [[(item, condition) for item in items] for condition in protocol.conditions]
@@ -57,12 +63,11 @@ def impossible(protocol: Protocol) -> str:
             others = len(block) - times
             if times > most * (others + 1):
                 where = "" if len(blocks) == 1 else f" of the block of {block[0][1].name}"
-                return (
+                raise ValueError(
                     f"at_most_running {name} = {most} cannot be kept: {level or 'an empty one'} "
                     f"is in {times} of {len(block)} trials{where}, and the other {others} part "
                     f"them into {others + 1} runs of {most} only; make it larger"
                 )
-    return ""
 
 
 @dataclass(slots=True)

@@ -25,6 +25,7 @@ from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
+    import pandas as pd
     from numpy.typing import NDArray
 
     from vbraille.braille.geometry import Geometry
@@ -172,6 +173,21 @@ def rows(record: Record, traces: Traces | None = None) -> list[dict[str, Any]]:
         need a missing part of a trace are left empty.
     """
     return [row for row, _ in walk(record, traces)]
+
+
+def frame_of(table: Sequence[dict[str, Any]]) -> pd.DataFrame:
+    """Make a data frame of the rows of sessions, whose columns have their types.
+
+    Numbers of trials and blocks are whole, and durations float64 with NaN for one that is not
+    known. Other columns are as they are exported. The index is the number of the row, from 1.
+    """
+    import pandas as pd  # takes a while to load, and an export does without
+
+    frame = pd.DataFrame(table, range(1, len(table) + 1), dtype=object)
+    if not table:
+        return frame
+    seconds = pd.to_numeric(frame["duration_s"]).astype(np.float64)
+    return frame.assign(duration_s=seconds).astype({"block": np.int64, "trial": np.int64})
 
 
 def walk(

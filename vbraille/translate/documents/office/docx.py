@@ -22,6 +22,7 @@ from vbraille.translate.documents.office.htmltree import (
     heading_level,
     put,
     put_page,
+    put_page_break,
     put_picture,
     put_ruby,
     put_text,
@@ -252,9 +253,9 @@ class _Reader:
                 if element.get("type") != "page":
                     put(into, "br")
                 elif not self._is_laid_out:
-                    put_page(into)
+                    put_page_break(into)
             case "ruby":
-                put_ruby(into, [_text_of(part) for part in element if part.tag != "rubyPr"])
+                put_ruby(into, _text_of(element.find("rubyBase")), _text_of(element.find("rt")))
             case "AlternateContent":
                 # What this program knows, or else what is there for older ones.
                 choice = element.find("Choice")
@@ -352,8 +353,8 @@ def _put_bookmark(mark: Element, into: Element) -> None:
         put(into, "a", id=name)
 
 
-def _text_of(element: Element) -> str:
-    return "".join(text.text or "" for text in element.iter("t"))
+def _text_of(element: Element | None) -> str:
+    return "" if element is None else "".join(text.text or "" for text in element.iter("t"))
 
 
 def _value(holder: Element, path: str, otherwise: str | None = None) -> str | None:

@@ -34,6 +34,13 @@ _WINGDINGS = {0x6F: "☐", 0x71: "☐", 0xA8: "☐", 0xFE: "☑", 0xFD: "☒", 0
 _WINGDINGS |= {0x4A: "☺", 0x4C: "☹", 0x9F: "•", 0xA7: "▪", 0xDF: "←", 0xE0: "→", 0xE8: "→"}
 _FONTS = {"symbol": _SYMBOL, "wingdings": _WINGDINGS}
 _LONGEST_TEXT = 4_096  # characters
+_UNSHOWN = {
+    "picture": "img",
+    "drawing": "canvas",
+    "symbol": "symbol",
+    "embedded object": "object",
+    "form field": "input",
+}
 HIDDEN = "hidden"  # among the elements of a look: text that is not shown
 
 
@@ -447,9 +454,8 @@ def put_page(parent: Element, number: str = "") -> None:
 
 def put_unshown(parent: Element, what: str) -> None:
     """Say that something stands here that cannot be shown."""
-    names = {"picture": "img", "drawing": "canvas", "symbol": "symbol"}
-    if what in names:
-        put(parent, names[what])
+    if what in _UNSHOWN:
+        put(parent, _UNSHOWN[what])
     else:
         put(parent, "canvas", aria_label=what)
 
@@ -462,9 +468,15 @@ def put_picture(parent: Element, described: str, what: str = "picture") -> None:
         put_unshown(parent, what)
 
 
-def put_ruby(parent: Element, parts: Sequence[str]) -> None:
+def put_ruby(parent: Element, base: str, above: str) -> None:
     """Put a text with small signs above it, which say how it is spoken."""
-    put(put(parent, "ruby", "".join(parts[:1])), "rt", "".join(parts[1:]))
+    put(put(parent, "ruby", base), "rt", above)
+
+
+def put_page_break(parent: Element) -> None:
+    """End a line, and say that a page begins after it."""
+    put(parent, "br")
+    put_page(parent)
 
 
 def within(

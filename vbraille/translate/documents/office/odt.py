@@ -39,8 +39,8 @@ if TYPE_CHECKING:
 
     from vbraille.translate.documents.markup.archive import Archive
 
-_BLOCKS = frozenset(("p", "h", "list", "table", "soft-page-break", "frame"))
 _DRAWN = frozenset(("custom-shape", "rect", "ellipse", "line", "path", "polygon", "g"))
+_BLOCKS = _DRAWN | {"p", "h", "list", "table", "soft-page-break", "frame"}
 # What is not read: comments, deleted text, what only programs need.
 _SKIPPED_NAMES = (
     "annotation annotation-end tracked-changes forms sequence-decls variable-decls "
@@ -146,12 +146,12 @@ class _Reader:
                     flow.add_table(self._table(element, around))
                 case "soft-page-break":
                     self._pending += 1
-                case "frame":
-                    block = etree.Element("p")
-                    self._frame(element, block, around)
-                    flow.add(block)
-                case _:
+                case "p" | "h":
                     self._paragraph(element, flow, around)
+                case _:
+                    block = etree.Element("p")
+                    self._piece(element, block, around)
+                    flow.add(block)
 
     def _paragraph(self, element: Element, flow: Flow, around: Look) -> None:
         style = element.get("style-name", "")
@@ -212,7 +212,8 @@ class _Reader:
             case "frame":
                 self._frame(element, into, look)
             case "ruby":
-                put_ruby(into, ["".join(map(str, part.itertext())) for part in element])
+                parts = ["".join(map(str, part.itertext())) for part in element]
+                put_ruby(into, "".join(parts[:1]), "".join(parts[1:]))
             case "control":
                 box = self._boxes.get(element.get("control", ""))
                 if box is None:

@@ -25,7 +25,7 @@ from vbraille.translate.documents.office.htmltree import (
     field_target,
     heading_level,
     put,
-    put_page,
+    put_page_break,
     put_picture,
     symbol,
 )
@@ -423,7 +423,7 @@ class _Reader:
             case "line":
                 put(place.inner(), "br")
             case "page":
-                put_page(place.inner())
+                put_page_break(place.inner())
             case "pard":
                 place.told = _Told(is_own=True)
             case "s" | "outlinelevel" | "ls" | "ilvl":
@@ -484,29 +484,33 @@ class _Reader:
         place = self._place
         if place.paragraph is not None:
             self._end_paragraph()
-        if place.cell is not None:  # said to be in a table, and in no cell of one
-            place.flow.into.extend(list(place.cell))
-            place.cell = None
+        stray, place.cell = place.cell, None  # said to be in a table, and in no cell of one
         self._end_row()
         rows, place.rows = place.rows, []
-        if not rows:
-            return
-        table = Table()
-        edges = sorted({edge for row in rows for edge in row.edges})
-        is_ruled = rows[0].is_ruled and not all(row.is_ruled for row in rows)
-        for number, row in enumerate(rows):
-            is_bold = all(map(_is_bold, row.cells)) and len(rows) > 1
-            table.row(is_head=row.is_head or (number == 0 and (is_ruled or is_bold)))
-            for index, cell in enumerate(row.cells):
-                merge = row.merges.get(index)
-                edge = row.edges[index] if index < len(row.edges) else None
-                after = edges.index(edge) + 1 if edge is not None else table.column + 1
-                span = max(after - table.column, 1)
-                if merge == "clmrg" and index:
-                    table.widen(span)
-                else:
-                    table.cell(span, goes_on=merge == "clvmrg", cell=cell)
-        place.flow.add_table(table)
+        if rows:
+            place.flow.add_table(_table_of(rows))
+        if stray is not None:
+            place.flow.into.extend(list(stray))
+
+
+def _table_of(rows: list[_Row]) -> Table:
+    """Table of rows, whose cells stand at the edges that any of them has."""
+    table = Table()
+    edges = sorted({edge for row in rows for edge in row.edges})
+    is_ruled = rows[0].is_ruled and not all(row.is_ruled for row in rows)
+    for number, row in enumerate(rows):
+        is_bold = all(map(_is_bold, row.cells)) and len(rows) > 1
+        table.row(is_head=row.is_head or (number == 0 and (is_ruled or is_bold)))
+        for index, cell in enumerate(row.cells):
+            merge = row.merges.get(index)
+            edge = row.edges[index] if index < len(row.edges) else None
+            after = edges.index(edge) + 1 if edge is not None else table.column + 1
+            span = max(after - table.column, 1)
+            if merge == "clmrg" and index:
+                table.widen(span)
+            else:
+                table.cell(span, goes_on=merge == "clvmrg", cell=cell)
+    return table
 
 
 def _is_bold(cell: Element) -> bool:

@@ -13,8 +13,8 @@ from urllib.parse import unquote
 import numpy as np
 
 from vbraille.errors import InputError
-from vbraille.feeling.commands import BOUND_FROM_TEXT
 from vbraille.feeling.loading import LoadedScene, check_fits, load_scene
+from vbraille.reading.commands.scene import BOUND_FROM_TEXT
 from vbraille.render.scene.figures import FigureAt, page_with_figures
 from vbraille.translate.documents.epub import EpubBook
 from vbraille.wording import count, printable, spelled
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.feeling.feeler import Feeler
     from vbraille.feeling.index import SceneIndex
     from vbraille.reading.cues import Cue
     from vbraille.reading.device import OpenDevice
+    from vbraille.reading.sceneview import SceneView
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
     from vbraille.translate.source import Source
@@ -175,11 +175,13 @@ class BookFigures:
         scene, assets = page_with_figures(lines, style, figures, start_mm=start_mm)
         return compile_scene(scene, self._device.display, assets, rate_hz=self._rate_hz)
 
-    def feel(self, address: str, say: Callable[[str], None], cue: Callable[[Cue], None]) -> Feeler:
+    def feel(
+        self, address: str, say: Callable[[str], None], cue: Callable[[Cue], None]
+    ) -> SceneView:
         """Put a figure alone under the hand, in place of the text; see `FiguresLike`."""
         # As above.
         from vbraille.feeling.composing import compose
-        from vbraille.feeling.feeler import Feeler
+        from vbraille.reading.sceneview import SceneView
 
         device = self._device
         figure = self.find(address)
@@ -190,7 +192,7 @@ class BookFigures:
         program = compose(loaded, device.display, rate_hz=self._rate_hz)
         if program.nbytes > self._room:
             raise InputError(f"{loaded.title} is too large; feel it by vbraille feel")
-        feeler = Feeler(
+        feeler = SceneView(
             loaded,
             device,
             rate_hz=self._rate_hz,

@@ -1,16 +1,20 @@
-"""Readings, and all that is explored, as pages of the live view are told of it."""
+"""The live view of a reading or of a picture: the state that pages are told, and their wishes."""
 
 from __future__ import annotations
 
+import base64
+import math
 from abc import ABC, abstractmethod
 from collections import deque
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Self
 
-from vbraille.config.knobs import say_mapping
+from vbraille.config.knobs import KNOBS, say_mapping
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Changed, Silent, Stalled, Stranger, Unplugged
 from vbraille.devices.sentences import say
-from vbraille.live.messages import LineShown, ViewState
+from vbraille.errors import InputError
+from vbraille.live.messages import LineShown, PagePress, SceneShown, Turn, ViewState
+from vbraille.live.monitor import Monitor
 from vbraille.live.states import (
     array_shown,
     geometry_shown,
@@ -18,18 +22,26 @@ from vbraille.live.states import (
     line_shown,
     rows_shown,
 )
-from vbraille.reading.commands.paged import obey
+from vbraille.reading.commands.table import COMMANDS
+from vbraille.reading.commands.turning import turn_to
+from vbraille.reading.keys import Context
+from vbraille.reading.outputs import Output
 from vbraille.reading.whereabouts import is_counted, line_name, percent
+from vbraille.wording import printable, spelled
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
     from vbraille.devices.events import Event
+    from vbraille.feeling.loading import LoadedScene
     from vbraille.layout.pages import Line
-    from vbraille.live.messages import PagePress, Turn
-    from vbraille.reading.activity import Activity
+    from vbraille.live.messages import Turn
     from vbraille.reading.device import OpenDevice
+    from vbraille.reading.reader import Reader
+    from vbraille.reading.sceneview import SceneView
     from vbraille.reading.surface import Window
+    from vbraille.reading.view import View
+    from vbraille.simulation.steering import Pointer
 
 MOST_SAID: Final = 20
 BEFORE, AFTER = 2, 3  # lines around the one under the hand
@@ -42,7 +54,7 @@ _GONE: Final = (Unplugged, Silent, Stalled, Stranger)
 _BACK: Final = (Back, Changed)
 
 
-class Said:
+class LastSentences:
     """The last sentences that a reader was told.
 
     Attributes
@@ -66,7 +78,7 @@ class Said:
         return list(self._last)
 
 
-class View(ABC):
+class ExploredState(ABC):
     """What is explored on a device, as the state of the live view.
 
     Parameters
@@ -89,8 +101,8 @@ class View(ABC):
     def __init__(
         self,
         device: OpenDevice,
-        activity: Activity,
-        said: Said,
+        activity: View,
+        said: LastSentences,
         facts: Iterable[tuple[str, str]] = (),
     ) -> None:
         self.standing = ""
@@ -168,7 +180,7 @@ class View(ABC):
         return _PLACES[placing]
 
 
-class ReadView(View):
+class ReadState(ExploredState):
     """A text that is read.
 
     Nothing is translated or laid out for it: of the lines around the one under the hand it shows
@@ -181,18 +193,22 @@ class ReadView(View):
     title
         Title of what is read.
     said, facts
-        As for a `View`.
+        As for a `ExploredState`.
     """
 
     def __init__(
-        self, device: OpenDevice, title: str, said: Said, facts: Iterable[tuple[str, str]] = ()
+        self,
+        device: OpenDevice,
+        title: str,
+        said: LastSentences,
+        facts: Iterable[tuple[str, str]] = (),
     ) -> None:
         super().__init__(device, device.reader, said, facts)
         self._title = title
 
     def obey(self, asked: PagePress | Turn) -> None:
         """Do what a page has asked for."""
-        obey(self._device.reader, asked)
+        obey_page(self._device.reader, asked)
 
     def _compared(self) -> tuple[object, ...]:
         reader = self._device.reader
@@ -253,3 +269,165 @@ def _part_shown(part: Window, *, under: bool, top_mm: float = 0.0) -> LineShown:
         number=part.line.number & _NUMBER,
         under=under,
     )
+
+
+class FeltState(ExploredState):
+    """A picture that is felt on a device.
+
+    Parameters
+    ----------
+    device
+        Device that the picture is felt on.
+    feeler
+        Who feels it.
+    said, facts
+        As for a `ExploredState`.
+    """
+
+    def __init__(
+        self,
+        device: OpenDevice,
+        feeler: SceneView,
+        said: LastSentences,
+        facts: Iterable[tuple[str, str]] = (),
+    ) -> None:
+        super().__init__(device, feeler, said, facts)
+        self._feeler = feeler
+        self._drawn: tuple[LoadedScene, SceneShown] | None = None
+
+    def obey(self, asked: PagePress | Turn) -> None:
+        """Pass over what a page asks for: it can be the hand, but nothing can be turned."""
+
+    def see(self, events: Iterable[Event]) -> None:
+        """Take note of events of the device, all of which are said."""
+
+    def _compared(self) -> tuple[object, ...]:
+        return self._feeler.loaded, self._feeler.under
+
+    def _parts(self) -> dict[str, Any]:
+        under, loaded = self._feeler.under, self._feeler.loaded
+        return {
+            "title": loaded.title,
+            "place": "" if under is None else f"here: {under.name}",
+            "scene": self._scene(loaded),
+        }
+
+    def _scene(self, loaded: LoadedScene) -> SceneShown:
+        """Picture from above, which is drawn once."""
+        if self._drawn is None or self._drawn[0] is not loaded:
+            # Only a live view waits for what draws it.
+            from vbraille.pictures.scenes import small_png
+
+            drawn = base64.b64encode(small_png(loaded.scene, loaded.assets)).decode()
+            self._drawn = loaded, scene_shown(loaded, f"data:image/png;base64,{drawn}")
+        return self._drawn[1]
+
+
+def scene_shown(loaded: LoadedScene, image: str) -> SceneShown:
+    """Words and size of a scene for a page, with the address of its image."""
+    scene = loaded.scene
+    return SceneShown(
+        loaded.title, scene.description, scene.canvas.width_mm, scene.canvas.height_mm, image
+    )
+
+
+_COMMANDS: Final = {command.name: command for command in COMMANDS if command.paged}
+_MOST_NAMED = 40  # characters of a name that nobody knows
+
+
+def obey_page(reader: Reader, asked: PagePress | Turn) -> None:
+    """Do what a page asks, as if the reader had pressed a key, or say why it cannot be done."""
+    if reader.context is not Context.READING:
+        reader.say("live view: not now; what the keys have begun comes first")
+        return
+    try:
+        if isinstance(asked, PagePress):
+            _press(reader, asked.command)
+        else:
+            _turn(reader, asked.knob, asked.value)
+    except InputError as error:  # reading goes on
+        reader.say(f"live view: {spelled(str(error))}")
+
+
+def _press(reader: Reader, name: str) -> None:
+    command = _COMMANDS.get(name)
+    if command is None:
+        raise InputError(f"{printable(name[:_MOST_NAMED])} is no command that a page may call")
+    command.handler(reader)
+
+
+def _turn(reader: Reader, name: str, value: float) -> None:
+    if name not in KNOBS:
+        raise InputError(f"{printable(name[:_MOST_NAMED])} is no knob")
+    if not math.isfinite(value):
+        raise InputError(f"{KNOBS[name].label} cannot be {value}; it must be a number")
+    turn_to(reader, name, value)
+
+
+class LiveView(Output):
+    """The live view of an exploration. A context manager; its pages are served while it is open.
+
+    Parameters
+    ----------
+    host, port
+        Address and port of its pages; None for what is usual.
+    pointer
+        Pointer by which pages may hold the hand of the device; None if a person moves that.
+    print_line
+        Function that prints what the live view has to say itself.
+
+    Attributes
+    ----------
+    monitor : Monitor
+        Process that serves the pages, and takes what they ask for.
+    """
+
+    def __init__(
+        self,
+        host: str | None,
+        port: int | None,
+        pointer: Pointer | None,
+        print_line: Callable[[str], None],
+    ) -> None:
+        self.monitor = Monitor(host=host, port=port, pointer=pointer)
+        self.said = LastSentences()
+        self._print = print_line
+        self._state: ExploredState | None = None
+
+    def show(self, state: ExploredState) -> None:
+        """Show something from now on."""
+        self._state = state
+        self.attend()
+
+    def say(self, sentence: str) -> None:
+        """Show a sentence on the pages."""
+        self.said.add(sentence)
+
+    def attend(self, events: Sequence[Event] = ()) -> None:
+        """Do what pages ask for, and tell them what has changed."""
+        for note in self.monitor.notes():
+            self._print(note)
+        asked = self.monitor.take()
+        state = self._state
+        if state is None:
+            return
+        if not state.standing:  # otherwise nobody can do it now
+            for one in asked:
+                state.obey(one)
+        state.see(events)
+        changed = state.changed()
+        if changed is not None:
+            self.monitor.tell(changed)
+
+    def stand(self, why: str) -> None:
+        """Tell the pages why nothing is explored."""
+        if self._state is not None:
+            self._state.standing = why
+        self.attend()
+
+    def __enter__(self) -> Self:
+        self.monitor.launch()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.monitor.close()

@@ -2,9 +2,9 @@
 
 import pytest
 
-from tests.feeling.felt import SCENE, Felt
-from vbraille.feeling.commands import BOUND, BUTTONS
-from vbraille.reading.bindings import Context
+from tests.reading.felt import SCENE, Felt
+from vbraille.reading.commands.scene import BOUND, BUTTONS
+from vbraille.reading.keys import Context
 
 
 @pytest.mark.parametrize("context", Context)

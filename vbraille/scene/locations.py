@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, NoReturn, Protocol
+from typing import TYPE_CHECKING, NoReturn
 
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
     from pathlib import Path
 
     from vbraille.scene.scene import Scene
     from vbraille.scene.traversal import Steps
-    from vbraille.tomlfile import TomlFile
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,25 +37,57 @@ class FoundScene:
     warnings: tuple[str, ...] = ()
 
 
-class SceneOrigin(Protocol):
-    """A file that elements of a scene come from."""
+class LocatedFile:
+    """A file that elements of a scene come from.
 
-    @property
-    def where(self) -> str:
-        """Name of the file."""
-        ...
+    Parameters
+    ----------
+    name
+        Name of the file.
+    lines
+        Function that gives the lines of places in the scene that the file holds, for which it may
+        have to be read once more.
+    refuse
+        Function that refuses the file for a problem at a place in it, in the words of its format;
+        None for formats without their own.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        lines: Callable[[], Mapping[Steps, int]],
+        refuse: Callable[[Steps, str], NoReturn] | None = None,
+    ) -> None:
+        self._name = name
+        self._find_lines = lines
+        self._refuse = refuse
+
+    @cached_property
+    def _lines(self) -> Mapping[Steps, int]:
+        return self._find_lines()
 
     def place(self, steps: Steps) -> str:
-        """Name of the file, and the line of a place in the scene that it holds."""
-        ...
+        """Name of the file, and the line of the nearest thing around a place that has one."""
+        for depth in range(len(steps), 0, -1):
+            if steps[:depth] in self._lines:
+                return f"{self._name} line {self._lines[steps[:depth]]}"
+        return self._name
 
     def fail(self, steps: Steps, problem: str) -> NoReturn:
-        """Refuse the file for a problem at a place in the scene that it holds."""
-        ...
+        """Refuse the file for a problem at a place in the scene that it holds.
+
+        Raises
+        ------
+        InputError
+            In any case.
+        """
+        if self._refuse is not None:
+            self._refuse(steps, problem)
+        raise InputError(f"{self.place(steps)}: {about(steps, problem)}")
 
 
 @dataclass(frozen=True, slots=True)
-class Origins:
+class Locations:
     """Where each element and named texture of a scene is written.
 
     Parameters
@@ -65,14 +96,14 @@ class Origins:
         Files, and places in them, by places of the scene.
     """
 
-    places: dict[Steps, tuple[SceneOrigin, Steps]] = field(default_factory=dict)
+    places: dict[Steps, tuple[LocatedFile, Steps]] = field(default_factory=dict)
 
-    def of(self, steps: Steps) -> tuple[SceneOrigin, Steps] | None:
+    def of(self, steps: Steps) -> tuple[LocatedFile, Steps] | None:
         """File that a place of the scene comes from, and the place in that file."""
         for depth in range(len(steps), 0, -1):
             if steps[:depth] in self.places:
-                origin, there = self.places[steps[:depth]]
-                return origin, (*there, *steps[depth:])
+                file, there = self.places[steps[:depth]]
+                return file, (*there, *steps[depth:])
         return None
 
     def place(self, steps: Steps) -> str:
@@ -91,8 +122,8 @@ class Origins:
         found = self.of(steps)
         if found is None:
             raise InputError(about(steps, problem))
-        origin, there = found
-        origin.fail(there, problem)
+        file, there = found
+        file.fail(there, problem)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +141,7 @@ class OpenedScene:
     resolved
         The same as it is shown; see `vbraille.scene.resolving`. It has the same elements in the
         same order.
-    origins
+    locations
         Where its elements are written.
     warnings
         What was ignored, or means something else here, each in one sentence.
@@ -120,7 +151,7 @@ class OpenedScene:
     folder: Path
     written: Scene
     resolved: Scene
-    origins: Origins
+    locations: Locations
     warnings: tuple[str, ...] = ()
 
     @property
@@ -132,8 +163,8 @@ class OpenedScene:
         """File and line of an element by its number from 0, such as "house.scene line 12"."""
         steps: Steps = ("elements", number)
         first: Steps = (*steps, "parts", 0)  # of a group of what another file has
-        made_here = self.origins.of(steps) is None and self.origins.of(first) is not None
-        return self.origins.place(first if made_here else steps)
+        made_here = self.locations.of(steps) is None and self.locations.of(first) is not None
+        return self.locations.place(first if made_here else steps)
 
 
 def said(steps: Steps) -> str:
@@ -153,76 +184,3 @@ def about(steps: Steps, problem: str) -> str:
     'elements, number 1 has no place'
     """
     return f"{said(steps)}{problem}" if problem.startswith(":") else f"{said(steps)} {problem}"
-
-
-class TomlOrigin:
-    """A scene file in TOML.
-
-    Parameters
-    ----------
-    file
-        The file.
-    """
-
-    def __init__(self, file: TomlFile) -> None:
-        self._file = file
-
-    @property
-    def where(self) -> str:
-        """Name of the file."""
-        return self._file.where
-
-    @cached_property
-    def _lines(self) -> dict[Steps, int]:
-        return self._file.lines()
-
-    def place(self, steps: Steps) -> str:
-        """Name of the file, and the line of a place in it."""
-        return _place(self.where, self._lines, steps)
-
-    def fail(self, steps: Steps, problem: str) -> NoReturn:
-        """Refuse the file for a problem at a place in it.
-
-        Raises
-        ------
-        InputError
-            In any case.
-        """
-        self._file.fail(steps, problem)
-
-
-class ForeignOrigin:
-    """A file of another format, which was read into a scene.
-
-    Parameters
-    ----------
-    path
-        The file.
-    found
-        What was read.
-    """
-
-    def __init__(self, path: Path, found: FoundScene) -> None:
-        self.where, self._found = str(path), found
-
-    def place(self, steps: Steps) -> str:
-        """Name of the file, and the line of a place if it is known."""
-        return _place(self.where, self._found.lines, steps)
-
-    def fail(self, steps: Steps, problem: str) -> NoReturn:
-        """Refuse the file for a problem at a place in the scene that it holds.
-
-        Raises
-        ------
-        InputError
-            In any case.
-        """
-        raise InputError(f"{self.place(steps)}: {about(steps, problem)}")
-
-
-def _place(where: str, lines: Mapping[Steps, int], steps: Steps) -> str:
-    """Name of a file, and the line of the nearest thing around a place that has one."""
-    for depth in range(len(steps), 0, -1):
-        if steps[:depth] in lines:
-            return f"{where} line {lines[steps[:depth]]}"
-    return where

@@ -11,7 +11,7 @@ from vbraille.devices.events import Back, Silent
 from vbraille.engine.clock import ManualClock
 from vbraille.layout.pages import Layout
 from vbraille.reading.device import OpenDevice
-from vbraille.reading.viewed import MOST_SAID, ReadView, Said
+from vbraille.reading.liveview import MOST_SAID, LastSentences, ReadState
 from vbraille.render import STRESS2, VBD
 from vbraille.simulation.steering import BeAt, Pointer
 from vbraille.testing import simulated_device
@@ -32,7 +32,7 @@ class Watch:
     def __init__(
         self, model=STRESS2, hand="still", book=None, width=None, attended=True, table=2, **how
     ):
-        self.clock, self.said = ManualClock(), Said()
+        self.clock, self.said = ManualClock(), LastSentences()
         device = simulated_device(model, hand=hand, clock=self.clock, pointer=Pointer())
         self.device = OpenDevice(
             device, model.display, clock=self.clock, say=self.said.add, attended=attended
@@ -41,7 +41,7 @@ class Watch:
         if book is None:
             book = Book(Document.from_text(TEXT), BrailleTable(f"en-ueb-g{table}.ctb"))
         self.device.show(Layout(book, width or 20), **how)
-        self.viewed = ReadView(self.device, "A title", self.said, [("hand", hand)])
+        self.viewed = ReadState(self.device, "A title", self.said, [("hand", hand)])
 
     @property
     def reader(self):
@@ -224,7 +224,7 @@ def test_a_person_s_device_has_no_hand_to_be():
     device = OpenDevice(simulated_device(clock=clock), STRESS2.display, clock=clock)
     device.start(STRESS2)
     device.show("one two")
-    state = ReadView(device, "", Said()).changed()
+    state = ReadState(device, "", LastSentences()).changed()
     assert not state.simulated
     assert not state.held
 

@@ -1,12 +1,11 @@
 """A picture that is felt on a device in memory, by the engine's own loop on a manual clock."""
 
 from tests.engine.planar import Bench
-from vbraille.feeling.commands import BOUND
 from vbraille.feeling.composing import compose
-from vbraille.feeling.feeler import Feeler
 from vbraille.feeling.loading import load_scene
 from vbraille.pose import Pose
-from vbraille.reading.commands.table import press
+from vbraille.reading.commands.scene import BOUND
+from vbraille.reading.sceneview import SceneView
 from vbraille.render import MODELS
 
 DISPLAY = MODELS["stress2-8x8"].display
@@ -43,10 +42,11 @@ class Felt:
         self.at = (10.0, 10.0)
         self.bench = Bench(lambda _: (*self.at, 0.0), display)
         self.said = []
+        self.held, self.attended = False, True
         self.engine, self.steering = self.bench.engine, steering
         self.style = MODELS["stress2-8x8"].style
         self.loaded = load_scene(path, self.style)
-        self.feeler = Feeler(
+        self.feeler = SceneView(
             self.loaded,
             self,
             rate_hz=rate_hz,
@@ -66,7 +66,7 @@ class Felt:
     def press(self, *keys):
         """Press keys; what was said."""
         for key in keys:
-            press(self.feeler, key)
+            self.feeler.press(key)
         said, self.said[:] = list(self.said), []
         return said
 

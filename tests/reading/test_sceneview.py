@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.feeling.felt import DISPLAY, SCENE, Felt
+from tests.reading.felt import DISPLAY, SCENE, Felt
+from vbraille.engine.record import tick_dtype
 from vbraille.simulation.steering import GlideTo, Steering
 
 
@@ -76,7 +77,8 @@ def test_a_simulated_hand_glides_within_the_carriage(scene):
     assert device.take() == GlideTo(91.0, 30.0, 60.0)
     felt.press(*["shift-up"] * 9)
     assert device.take() == GlideTo(91.0, 0.0, 60.0)
-    felt.feeler.forget_aim()
+    felt.held = True
+    felt.feeler.step(np.zeros(1, tick_dtype((8, 8))))
     felt.press("left")
     assert device.take() == GlideTo(89.0, 20.0, 60.0)
     assert felt.press("g", *"wall", "\n")[-1] == "going to: wall"
