@@ -8,7 +8,7 @@ import pytest
 
 from tests.engine.test_loop import Recording, biggest_step, run, straight
 from vbraille.engine.clock import ManualClock
-from vbraille.engine.local import LocalEngine
+from vbraille.engine.loop import LocalEngine
 from vbraille.layout.pages import Layout
 from vbraille.reading.commands.table import BOUND
 from vbraille.reading.outputs import Echo

@@ -60,7 +60,7 @@ def spawn(pass_fds: Sequence[int] = ()) -> Spawned:
     """
     descriptor = os.memfd_create("vbraille")
     process = subprocess.Popen(
-        [sys.executable, "-m", "vbraille.engine.hosted", str(descriptor), str(os.getpid())],
+        [sys.executable, "-m", "vbraille.engine.hostprocess", str(descriptor), str(os.getpid())],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         pass_fds=(descriptor, *pass_fds),

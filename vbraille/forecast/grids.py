@@ -216,7 +216,7 @@ def predict(
     workers: Workers,
     *,
     keep: Path | None = None,
-    told: Callable[[int, int], None] = lambda _done, _all: None,
+    report: Callable[[int, int], None] = lambda _done, _all: None,
 ) -> tuple[GridFile, list[Prediction], VbrailleError | None]:
     """Ask the simulated reader about each point of a grid.
 
@@ -228,8 +228,8 @@ def predict(
         Who works; the numbers do not depend on it.
     keep
         File that keeps what is done, so that work that was ended goes on; None for none.
-    told
-        Function that is told how many points are done, and how many there are.
+    report
+        Function that is called with how many points are done, and how many there are.
 
     Returns
     -------
@@ -246,7 +246,7 @@ def predict(
     points = grid.points()
     kept = KeptResults(keep, {"grid": text})
     tasks = [GridTask(grid, point, number) for number, point in enumerate(points)]
-    ended = work_on(workers, predict_point, tasks, kept, told)
+    ended = work_on(workers, predict_point, tasks, kept, report)
     found = [Prediction(points[number], *kept.found[number]) for number in sorted(kept.found)]
     if not found and ended is not None:
         raise ended

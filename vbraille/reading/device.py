@@ -43,8 +43,8 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
+    from vbraille.engine.mailbox import Extent
     from vbraille.engine.record import Tally
-    from vbraille.engine.shared import Extent
     from vbraille.engine.spawning import Spawned
     from vbraille.layout.pages import Layout, Line
     from vbraille.reading.view import View
@@ -184,7 +184,7 @@ class OpenDevice:
         if isinstance(device, Device):
             # Imported here, since it loads compiled code, which a host process loads by itself.
             from vbraille.engine.clock import RealClock
-            from vbraille.engine.local import LocalEngine
+            from vbraille.engine.loop import LocalEngine
             from vbraille.simulation.recorded import Recorded
             from vbraille.simulation.simulated import SimulatedDevice
 

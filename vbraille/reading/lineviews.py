@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
+from vbraille.engine.engine import EndOfLine
 from vbraille.engine.record import Flag
-from vbraille.engine.watchers import EndOfLine
 from vbraille.layout.texts import cells_per_line
 from vbraille.reading.advancing import Foot, LineWatch, too_fast_note
 from vbraille.reading.surface import Surface, below_pitches, rows_on

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from vbraille.engine.watchers import Upright
+from vbraille.engine.engine import Upright
 from vbraille.reading.cues import Cue
 from vbraille.reading.keys import Context
 from vbraille.reading.lineviews import TextView

@@ -13,8 +13,8 @@ from vbraille.devices.base import Placing
 from vbraille.devices.calibration import Calibration
 from vbraille.devices.calibrations import load, name_of, path_of, save
 from vbraille.devices.sentences import placing_sentence, told
+from vbraille.engine.checkup import ActuatorSwings
 from vbraille.engine.clock import RealClock
-from vbraille.engine.swinging import Swinging
 from vbraille.errors import DeviceError, InputError
 from vbraille.files import settings_path
 from vbraille.reading.calibrating import Round
@@ -128,7 +128,7 @@ class _Guided:
         self._left = False
         self._placing = Placing.DONE
         self._compares = False
-        self._swinging = Swinging(device, RealClock(), self._begun)
+        self._swinging = ActuatorSwings(device, RealClock(), self._begun)
 
     def run(self) -> None:
         """Lead through the actuators until all were tried, or somebody leaves."""

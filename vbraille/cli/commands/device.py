@@ -10,8 +10,7 @@ from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.registry import find_driver
 from vbraille.devices.sentences import say
-from vbraille.engine.checking import check
-from vbraille.engine.checkup import warm_up
+from vbraille.engine.checkup import check, warm_up
 from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time
 from vbraille.files import settings_path

@@ -14,9 +14,8 @@ import numpy as np
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Button, HandHeld
 from vbraille.devices.sentences import placing_sentence, told
-from vbraille.engine.engine import Engine, placing_of
+from vbraille.engine.engine import HOME_MM, EndOfLine, Engine, Upright, placing_of
 from vbraille.engine.record import Flag
-from vbraille.engine.watchers import HOME_MM, EndOfLine, Upright
 from vbraille.sessions.record import events
 from vbraille.sessions.record.traces import TraceWriter
 from vbraille.sessions.record.trajectory import first_edge_mm

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.appearance import CONVENTIONAL, Condition
 from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.questions import WhichQuestion
+from vbraille.sessions.planning.style import CONVENTIONAL, Condition
 from vbraille.sessions.record.trajectory import columns_of, edges_mm
 from vbraille.sessions.running.responses import TrialResponses
 from vbraille.sessions.simulated.feeling import CELL_GAP, LENGTHS, DotPair, FeltTrial
