@@ -10,7 +10,7 @@ from vbraille.analysis.measures import (
     confusion,
     legibility,
     movement,
-    overtime,
+    trends,
     trialsmodel,
 )
 from vbraille.analysis.measures import levels as compared
@@ -86,8 +86,8 @@ def all_tables(trials, places):
         *(confusion.to_table(*of, places) for of in matrices if of[1] is not None),
         confusion.transmitted(trials, places, seed=1),
         confusion.errors(places),
-        overtime.over_time(trials),
-        overtime.slopes(trials),
+        trends.over_time(trials),
+        trends.slopes(trials),
         seen,
         movement.patterns(seen),
         movement.correlations(trials),

@@ -122,7 +122,7 @@ def test_intervals_of_ratings_end_where_the_protocols_scale_does(tmp_path):
 def test_durations_are_those_of_the_export(sessions):
     study = load_study([sessions / "read-P2"])
     row = tables(analyse_study(study, Options()))["legibility"].records()[0]
-    (sitting,) = study.sittings
+    (sitting,) = study.sessions
     own = [r["duration_s"] for r in sitting.rows if r["condition"] == row["condition"]]
     assert row["duration_mean_s"] == pytest.approx(sum(own) / len(own))
 
@@ -221,7 +221,7 @@ def test_only_one_protocol(sessions):
     paths = [sessions / "read-P2", sessions / "compared"]
     study = load_study(paths, protocol="widths")
     assert study.trials is None
-    assert [sitting.head["protocol"] for sitting in study.sittings] == ["widths"]
+    assert [sitting.head["protocol"] for sitting in study.sessions] == ["widths"]
     results = analyse_study(study, Options())
     assert [chapter.title for chapter in results.chapters] == ["Which of two was chosen"]
     assert "protocols other than widths" in dict(results.about)["Excluded"]
@@ -258,7 +258,7 @@ def test_a_duration_with_a_pause_in_it_is_not_used(tmp_path):
     session = Session(tmp_path / "paused", MINI, "P1")
     session.sit(("cue: trial 1", "pause"), ("pause", ""), ("read:", "a"), ("cue: trial 2", "stop"))
     study = load_study([session.folder])
-    (told,) = [row for row in study.sittings[0].rows if row["answered"]]
+    (told,) = [row for row in study.sessions[0].rows if row["answered"]]
     assert told["paused_s"] > 0
     assert told["duration_s"] > 0
     assert [left.reason for left in study.left_out] == [
@@ -350,7 +350,7 @@ def test_a_duration_of_an_early_answer_is_not_used(tmp_path):
         ("read:", "c"), ("cue: trial 3", "stop"),
     )  # fmt: skip
     study = load_study([session.folder])
-    first, second = [row for row in study.sittings[0].rows if row["answered"]]
+    first, second = [row for row in study.sessions[0].rows if row["answered"]]
     assert (first["early"], second["early"]) == (1, 0)
     assert first["duration_s"] > 0
     assert [left.reason for left in study.left_out] == [

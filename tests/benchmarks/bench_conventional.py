@@ -20,7 +20,6 @@ from vbraille.conventional.brlapi import BrlapiDisplay, DisplayGoneError
 from vbraille.conventional.display import ConventionalDisplay
 from vbraille.engine.host import Host
 from vbraille.layout.pages import Layout
-from vbraille.reading.commands.table import press
 from vbraille.reading.conventionalview import ConventionalView
 from vbraille.reading.reader import Reader
 from vbraille.render import STRESS2
@@ -134,7 +133,7 @@ def _ours(brltty: Brltty) -> list[tuple[float, float]]:
         until(lambda: alongside.attend(reader) or display.standing)
         for _ in range(LINES):
             _go_on(host, reader, alongside, APART_S)
-            press(reader, "n")
+            reader.press("n")
             alongside.attend(reader)
             assert reader.line is not None
             came_ns = brltty.display.wait(reader.line.masks.tobytes()[: display.standing.columns])

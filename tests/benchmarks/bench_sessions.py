@@ -258,7 +258,7 @@ def _recorded(folder: Path) -> Result:
     session = folder / "session"
     arguments = [*_who(protocol, session), "--hand", "device", "--answers", "simulated"]
     subprocess.run(vbraille("session", "run", *arguments), check=True, stdout=subprocess.PIPE)
-    events = load(session).told.events
+    events = load(session).journal.events
     closed = events[-1]
     assert isinstance(closed, Closed)
     trace = read_trace(session / "trace-001.gz")

@@ -12,7 +12,7 @@ from scipy.special import expit
 from tests.benchmarks.coverage_people import Found
 from tests.conftest import SEED
 from vbraille.analysis.measures.movement import correlation
-from vbraille.analysis.measures.overtime import slope
+from vbraille.analysis.measures.trends import slope
 from vbraille.analysis.statistics.information import transmission, transmitted_bits
 from vbraille.analysis.statistics.intervals import Unanswerable
 from vbraille.braille.spelling import LETTERS

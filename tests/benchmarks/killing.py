@@ -209,7 +209,7 @@ class _Killed:
     def _compare(self) -> None:
         """What must hold at the end, beside the session that nobody disturbed."""
         tally, events = self._tally, self._events()
-        whole = [to_json(event) for event in load(self._whole).told.events]
+        whole = [to_json(event) for event in load(self._whole).journal.events]
         tally.acknowledged += len(acknowledged(self._said))
         if (self._folder / PLAN).read_bytes() != (self._whole / PLAN).read_bytes():
             self._add(self._others, "the plan is another one")

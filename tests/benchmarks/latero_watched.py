@@ -11,7 +11,7 @@ import time
 from collections import Counter
 
 from vbraille.engine.realtime import come_first
-from vbraille.simulation.laterosim import LateroSimulator, Tray
+from vbraille.simulation.laterosim import LateroCarriage, LateroSimulator
 from vbraille.simulation.specs import parse_hand
 
 _PRIORITY = 41
@@ -21,7 +21,9 @@ class Watched(LateroSimulator):
     """The simulated Latero, which notes who has sent what."""
 
     def __init__(self) -> None:
-        super().__init__(Tray(parse_hand("sweep:60"), 8.4), say=lambda _: None, port=0, wait_s=0.0)
+        super().__init__(
+            LateroCarriage(parse_hand("sweep:60"), 8.4), say=lambda _: None, port=0, wait_s=0.0
+        )
         self._felt: dict[tuple[str, int], int] = {}  # when each client last showed anything
         self._asked: Counter[tuple[str, int]] = Counter()
         self._rested_ns: int | None = None

@@ -143,7 +143,7 @@ def test_who_watches_is_blind(tmp_path):
     assert not any(one.startswith("answer") for state in page.states for one in state.said)
     record = load(tmp_path / "s")
     assert all(finding.good for finding in check(record))
-    (run,) = of(record.told.events, "run")
+    (run,) = of(record.journal.events, "run")
     assert run["monitor"] == {"blind": True, "host": "127.0.0.1", "pointer": True}
     assert [row["moved_by"] for row in rows(record)][:1] == ["simulated"]
 
@@ -178,7 +178,7 @@ def test_what_the_pointer_reads_is_marked(tmp_path, call):
         read_all(sitting)
     record = load(tmp_path / "s")
     for kind in ("hand_taken", "hand_given_back"):
-        assert [event["trial"] for event in of(record.told.events, kind)] == [1]
+        assert [event["trial"] for event in of(record.journal.events, kind)] == [1]
     moved = [row["moved_by"] for row in rows(record)]
     assert moved == ["simulated:pointer", *["simulated"] * 3]
     assert all(finding.good for finding in check(record))
@@ -202,7 +202,7 @@ def test_nothing_is_turned_or_pressed_at_the_page(tmp_path):
         assert not page.state.paused
         sitting.type("stop")
         sitting.until("^record:")
-    kinds = {event.kind for event in load(tmp_path / "s").told.events}
+    kinds = {event.kind for event in load(tmp_path / "s").journal.events}
     assert not kinds & {"tuning", "pause"}
 
 
@@ -216,7 +216,7 @@ def test_without_its_server_the_session_goes_on(tmp_path):
         read_all(sitting)
     record = load(tmp_path / "s")
     assert all(finding.good for finding in check(record))
-    assert [event["answer"] for event in of(record.told.events, "answer")] == ["⠉"] * 4
+    assert [event["answer"] for event in of(record.journal.events, "answer")] == ["⠉"] * 4
 
 
 def server_of(process):

@@ -84,7 +84,7 @@ def test_and_lines_put_there_instead_are_seen(folder):
         line, crc = encode(event, crc)
         kept += line
     (folder / "journal.jsonl").write_bytes(kept)
-    assert load(folder).told.damage is None
+    assert load(folder).journal.damage is None
     (found,) = faults(folder)
     assert found.startswith("trace-001.gz: it was written when event ")
     assert found.endswith("was another: events were taken off its end and replaced")
@@ -157,7 +157,7 @@ def test_the_sum_of_a_stop_holds_for_what_was_before_it_when_the_session_went_on
 def test_a_chunk_names_the_last_event_that_is_on_the_disk(tmp_path):
     session = Session(tmp_path / "s")
     session.sit()
-    told = load(session.folder).told
+    told = load(session.folder).journal
     trace = read_trace(session.folder / "trace-001.gz")
     assert trace.ties == tuple(dict.fromkeys(trace.ties))
     for number, crc in trace.ties:

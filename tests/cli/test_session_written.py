@@ -18,7 +18,7 @@ from vbraille.sessions.record.progress import Progress
 
 def progress_of(folder):
     record = load(folder)
-    return Progress(record.plan, record.told.events, record.procedure)
+    return Progress(record.plan, record.journal.events, record.procedure)
 
 
 def rows(text):
@@ -26,12 +26,12 @@ def rows(text):
 
 
 def test_there_is_of_every_kind():
-    happened = {event.kind for name in SESSIONS for event in load(written(name)).told.events}
+    happened = {event.kind for name in SESSIONS for event in load(written(name)).journal.events}
     assert happened >= {
         "answer", "undo", "repeat", "fault", "pause", "go", "note", "stop", "end", "tuning",
         "break", "closed",
     }  # fmt: skip
-    assert [name for name in SESSIONS if load(written(name)).told.torn] == ["torn"]
+    assert [name for name in SESSIONS if load(written(name)).journal.torn] == ["torn"]
     assert {progress_of(written(name)).ended for name in SESSIONS} == {True, False}
 
 

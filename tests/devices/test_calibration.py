@@ -9,7 +9,7 @@ from tests.tiers import examples
 from vbraille.devices import calibrations
 from vbraille.devices.base import Device, Particulars
 from vbraille.devices.calibration import Calibration, Correction, Tried, correction_for
-from vbraille.devices.calibrationfile import parse
+from vbraille.devices.calibrations import parse
 from vbraille.display import Display
 from vbraille.errors import DeviceError, InputError
 from vbraille.simulation.simulated import SimulatedDevice

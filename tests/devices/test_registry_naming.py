@@ -9,7 +9,7 @@ from tests.engine.test_loop import info
 from vbraille.devices import opened_device
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import Loop
-from vbraille.engine.shared import Extent, attach
+from vbraille.engine.mailbox import Extent, attach
 from vbraille.errors import DeviceError, InputError
 
 HEAD = """

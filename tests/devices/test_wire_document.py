@@ -47,7 +47,7 @@ from vbraille.devices.serial.wire import (
     fields_of,
     line_bytes,
 )
-from vbraille.engine.checking import _PLACE_SLACK_MM
+from vbraille.engine.checkup import _PLACE_SLACK_MM
 from vbraille.engine.constants import CATCH_UP, GAP_PERIODS
 
 PAGE = (Path(__file__).parents[2] / "docs/wire-protocol.md").read_text()

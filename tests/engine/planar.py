@@ -5,7 +5,7 @@ import numpy as np
 from vbraille.devices.base import Device
 from vbraille.display import Display
 from vbraille.engine.clock import ManualClock
-from vbraille.engine.local import LocalEngine
+from vbraille.engine.loop import LocalEngine
 from vbraille.pose import Pose
 from vbraille.render import STRESS2
 

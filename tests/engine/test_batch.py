@@ -11,7 +11,7 @@ from tests.shown import rendered
 from vbraille.display import Display
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.clock import ManualClock
-from vbraille.engine.local import LocalEngine
+from vbraille.engine.loop import LocalEngine
 from vbraille.engine.record import Flag, tick_dtype
 from vbraille.errors import DeviceError, InputError
 from vbraille.render import MAPPINGS, STRESS2, VBD, Tuning

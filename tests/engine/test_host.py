@@ -15,8 +15,8 @@ import pytest
 from tests import drivers
 from tests.engine.test_loop import info, picture
 from vbraille.devices.events import HandHeld, Notice
-from vbraille.engine import shared
 from vbraille.engine.host import Host, HostDiedError
+from vbraille.engine.mailbox import watch
 from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError, InputError
 from vbraille.render import STRESS2, VBD
@@ -176,16 +176,16 @@ def test_a_device_is_opened_before_anybody_knows_how_long_lines_are():
 def test_a_simulated_hand_is_steered_and_held_past_the_engine_and_watched_at_each_start():
     steering, pointer, watching = Steering(), Pointer(), []
 
-    def watch(descriptor, extent):
+    def attend(descriptor, extent):
         memory = mmap.mmap(descriptor, extent.total_bytes, prot=mmap.PROT_READ)
-        watching.append(shared.watch(memoryview(memory), extent)[1])
+        watching.append(watch(memoryview(memory), extent)[1])
 
     def at(x_mm):
         return lambda new: new.size and abs(new["x_mm"][-1] - x_mm) < 0.01
 
     spec = f"sim:?hand=sweep:1000&steering={steering.descriptor}&pointer={pointer.descriptor}"
     host = Host(spec, info(), 26, pass_fds=[steering.descriptor, pointer.descriptor])
-    host.on_share = watch
+    host.on_share = attend
     with host:
         (home_mm,) = set(until(host, lasting(100))["x_mm"])
         steering.give(ReadLine(50.0))

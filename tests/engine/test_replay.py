@@ -9,7 +9,7 @@ from tests.engine.planar import PLANE, STYLE, Bench
 from tests.engine.test_batch import HANDS, assert_equal_records, batch, device, run
 from tests.engine.test_planar import wandering
 from vbraille.engine.clock import ManualClock
-from vbraille.engine.local import LocalEngine
+from vbraille.engine.loop import LocalEngine
 from vbraille.engine.record import Flag
 from vbraille.render import STRESS2
 from vbraille.render.program import vibration

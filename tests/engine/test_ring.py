@@ -9,7 +9,7 @@ import threading
 import numpy as np
 import pytest
 
-from vbraille.engine import shared
+from vbraille.engine.mailbox import Extent, attach, divide, watch
 from vbraille.engine.record import FLOATS, INTS, Flag
 from vbraille.engine.ring import Ring, RingReader
 
@@ -17,10 +17,10 @@ SHAPE = (2, 3)
 # A reader in another process: it drains as soon as so many ticks are new, up to the last tick.
 APART = """
 import json, sys
-from vbraille.engine import shared
+from vbraille.engine.mailbox import Extent, attach, divide, watch
 descriptor, last, slow = map(int, sys.argv[1:])
-extent = shared.Extent(2, 3, 1, 64)
-_, reader = shared.watch(shared.attach(descriptor, extent).toreadonly(), extent)
+extent = Extent(2, 3, 1, 64)
+_, reader = watch(attach(descriptor, extent).toreadonly(), extent)
 print("joined", flush=True)
 told = {"ticks": 0, "wrong": 0, "before": -1}
 while told["before"] < last:
@@ -197,10 +197,10 @@ def test_a_reader_that_joins_late_begins_with_the_newest_record():
 @pytest.mark.no_cover
 def test_readers_in_other_processes_see_whole_records_or_count_them():
     count = 30_000
-    extent = shared.Extent(*SHAPE, 1, 64)
+    extent = Extent(*SHAPE, 1, 64)
     descriptor = os.memfd_create("vbraille")
-    memory = shared.attach(descriptor, extent)
-    (_, writer), (_, here) = shared.divide(memory, extent), shared.watch(memory, extent)
+    memory = attach(descriptor, extent)
+    (_, writer), (_, here) = divide(memory, extent), watch(memory, extent)
     command = [sys.executable, "-c", APART, str(descriptor), str(count - 1)]
     pipe = {"stdout": subprocess.PIPE, "text": True, "pass_fds": (descriptor,)}
     with (

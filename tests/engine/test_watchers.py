@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vbraille.engine.watchers import EndOfLine
+from vbraille.engine.engine import EndOfLine
 from vbraille.simulation.hand import DEVICE, FLUENT, HumanHand, Sweep
 
 SPAN_MM, END_MM = 10.8, 100.0

@@ -123,7 +123,7 @@ def test_a_pilot_that_was_ended_goes_on_and_is_the_same(tmp_path):
 
     whole = answers(piloted(tmp_path / "whole"))
     with pytest.raises(KeyboardInterrupt):
-        piloted(tmp_path / "ended", told=stop)
+        piloted(tmp_path / "ended", report=stop)
     assert answers(piloted(tmp_path / "ended")) == whole
 
 

@@ -88,12 +88,12 @@ def test_work_that_was_ended_goes_on(tmp_path):
     assert len(lines) == 1 + 3
     (tmp_path / "kept").write_text("\n".join([lines[0], lines[2], "1", lines[3][:9]]))
     done = []
-    again = power(QUESTION, ONE, keep=tmp_path / "kept", told=lambda *now: done.append(now))
+    again = power(QUESTION, ONE, keep=tmp_path / "kept", report=lambda *now: done.append(now))
     assert done == [(2, 3), (3, 3)]
     assert again == whole
     done.clear()
     kept = tmp_path / "kept"
-    assert power(QUESTION, ONE, keep=kept, told=lambda *now: done.append(now)) == whole
+    assert power(QUESTION, ONE, keep=kept, report=lambda *now: done.append(now)) == whole
     assert done == []
     with pytest.raises(InputError, match="other work; give a new name"):
         power(replace(QUESTION, seed=2), ONE, keep=tmp_path / "kept")

@@ -7,10 +7,10 @@ import weakref
 
 import numpy as np
 
-from vbraille.engine import shared
+from vbraille.engine.mailbox import Extent, attach, divide
 from vbraille.live.watching import TickViews
 
-EXTENT = shared.Extent(2, 3, 200_000, 500)
+EXTENT = Extent(2, 3, 200_000, 500)
 PERIOD_NS = 1_000_000
 
 
@@ -27,11 +27,11 @@ class TestRing:
 
     __test__ = False
 
-    def __init__(self, extent: shared.Extent = EXTENT) -> None:
+    def __init__(self, extent: Extent = EXTENT) -> None:
         self.descriptor = os.memfd_create("ring of a test")
         weakref.finalize(self, os.close, self.descriptor)
         self.extent = extent
-        self.mailbox, self._ring = shared.divide(shared.attach(self.descriptor, extent), extent)
+        self.mailbox, self._ring = divide(attach(self.descriptor, extent), extent)
         self.ticks = 0
 
     def append(self, count: int = 1) -> None:

@@ -18,7 +18,7 @@ from tests.live.canned import canned_state
 from tests.live.pages import get, page, parts_of
 from tests.live.rings import TestRing, frame_of
 from tests.tiers import by_tier
-from vbraille.engine.shared import Extent
+from vbraille.engine.mailbox import Extent
 from vbraille.live.channel import MOST_MESSAGE_BYTES, Shares, Tells, encode, open_line, to_server
 from vbraille.live.messages import PagePress, Turn
 from vbraille.live.monitor import Monitor, has_desktop

@@ -14,8 +14,8 @@ from tests.live.canned import canned_state
 from tests.live.pages import read_frame
 from tests.live.rings import EXTENT, PERIOD_NS, TestRing, frame_of
 from tests.tiers import examples
+from vbraille.engine.mailbox import Extent
 from vbraille.engine.record import FLOATS, INTS, tick_dtype
-from vbraille.engine.shared import Extent
 from vbraille.errors import InputError
 from vbraille.live.messages import MOST_SAMPLES, LetGo, Map, Next, PagePress, Point, Turn
 from vbraille.live.watching import _NUMBERS, TickViews, Watching

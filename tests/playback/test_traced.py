@@ -63,9 +63,9 @@ def test_moments_are_the_journals_on_the_clock_of_the_traces(name):
         "cue": ("cue", "warning"), "answer": ("answer", "undo"), "tuning": ("tuning",),
     }  # fmt: skip
     for kind, events in counted.items():
-        told = [event for event in record.told.events if event.kind in events]
+        told = [event for event in record.journal.events if event.kind in events]
         assert len([m for m in source.moments if m.kind == kind]) == len(told)
-    ticked = [e for e in record.told.events if getattr(e, "time_ns", None) is not None]
+    ticked = [e for e in record.journal.events if getattr(e, "time_ns", None) is not None]
     assert ticked
     came = [e for e in ticked if e.kind == "contact"]
     said = [m for m in source.moments if "came to the first dot" in m.text]
@@ -84,8 +84,8 @@ def test_a_state_tells_the_trial_its_condition_and_its_answer():
     source = open_recording(RESUMED)
     viewer = source.viewer()
     begun = [m for m in source.moments if m.kind == "trial"]
-    told = [event for event in record.told.events if event.kind == "presented"]
-    answers = {e.trial: e.answer for e in record.told.events if e.kind == "answer"}
+    told = [event for event in record.journal.events if event.kind == "presented"]
+    answers = {e.trial: e.answer for e in record.journal.events if e.kind == "answer"}
     trials = {trial.number: trial for trial in record.plan.trials}
     for moment, event in zip(begun, told, strict=True):
         state = json.loads(viewer.state(Next(at_s=moment.at_s + 0.3))[1])

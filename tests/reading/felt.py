@@ -5,7 +5,6 @@ from vbraille.feeling.composing import compose
 from vbraille.feeling.loading import load_scene
 from vbraille.pose import Pose
 from vbraille.reading.commands.scene import BOUND
-from vbraille.reading.commands.table import press
 from vbraille.reading.sceneview import SceneView
 from vbraille.render import MODELS
 
@@ -43,6 +42,7 @@ class Felt:
         self.at = (10.0, 10.0)
         self.bench = Bench(lambda _: (*self.at, 0.0), display)
         self.said = []
+        self.held, self.attended = False, True
         self.engine, self.steering = self.bench.engine, steering
         self.style = MODELS["stress2-8x8"].style
         self.loaded = load_scene(path, self.style)
@@ -66,7 +66,7 @@ class Felt:
     def press(self, *keys):
         """Press keys; what was said."""
         for key in keys:
-            press(self.feeler, key)
+            self.feeler.press(key)
         said, self.said[:] = list(self.said), []
         return said
 

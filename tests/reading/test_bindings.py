@@ -9,7 +9,7 @@ from tests.reading.test_reader import TEXT, Bench
 from vbraille.config.options import OPTIONS
 from vbraille.config.settings import parse_settings
 from vbraille.errors import InputError
-from vbraille.reading.commands.table import KEY_SETS, bound_by, press_button, turn_knob
+from vbraille.reading.commands.table import KEY_SETS, bound_by
 from vbraille.reading.device import SETTLED_S, KnobTurns
 from vbraille.reading.keys import Bindings, Context
 from vbraille.reading.outputs import Echo
@@ -188,20 +188,22 @@ def test_keys_of_somebody_s_own_come_before_a_ready_set():
 
 def test_a_button_does_what_its_command_does():
     bench = bench_with(buttons={"1": "LNDN", "button 2": "NXSEARCH"})
-    press_button(bench.reader, 1)
+    bench.reader.press_button(1)
     assert bench.said == ["line: 2"]
-    press_button(bench.reader, 2)
-    press_button(bench.reader, 1)
+    bench.reader.press_button(2)
+    bench.reader.press_button(1)
     assert bench.said[1:] == ["search: type the text, Enter", "button 1: not now; answer first"]
     bench.press(["escape"])
-    press_button(bench.reader, 3)
+    bench.reader.press_button(3)
     assert bench.said[-1] == "button 3: no command; the settings file can give it one"
 
 
 def test_a_knob_gives_its_value_once():
-    bench = bench_with(buttons={"knob 2": "CONTRAST"})
-    told = [turn_knob(bench.reader, *turn) for turn in ((2, 0.504), (2, 0.501), (1, 0.3))]
-    assert told == ["contrast: 0.5", "", ""]
+    bench, turns = bench_with(buttons={"knob 2": "CONTRAST"}), KnobTurns()
+    for number, share in ((2, 0.504), (2, 0.501), (1, 0.3)):
+        turns.turn(bench.reader, number, share, 0.0)
+        turns.settle(bench.reader, SETTLED_S)
+    assert bench.said == ["contrast: 0.5"]
     assert bench.reader.style.tuning.contrast == 0.5
 
 
@@ -226,7 +228,7 @@ def test_learning_a_key_says_what_it_does_and_does_nothing():
             "space: rest the array at once, or go on",
             "é: no command",
         ]
-        press_button(bench.reader, 1)
+        bench.reader.press_button(1)
         assert bench.said[-1] == "button 1: previous line"
         assert bench.reader.line_number == 1
         assert not bench.engine.paused

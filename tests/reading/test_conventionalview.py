@@ -50,12 +50,12 @@ class Beside1:
         bound = bound_by(Bindings({}, buttons or {}))
         self.bench = Bench(TEXT, hand=hand, width=60, bound=bound)
         self.pins = Pins(columns)
-        self.alongside = ConventionalView(self.pins, self.bench.said.append)
+        self.view = ConventionalView(self.pins, lambda: self.bench.reader, self.bench.said.append)
         self.attend()
 
     def attend(self):
         before = len(self.bench.said)
-        self.alongside.attend(self.bench.reader)
+        self.view.attend()
         return self.bench.said[before:]
 
     def press(self, name, argument=0):
@@ -156,7 +156,7 @@ def test_a_display_that_goes_and_comes_with_another_width_is_said_and_filled():
     beside.pins.tell(DisplayStands("Made", "longer", 30))
     assert beside.attend() == ["display: Made longer, 30 cells"]
     assert beside.standing == beside.line[:30]
-    beside.alongside.rest()
+    beside.view.rest()
     assert beside.pins.rested == 1
     beside.attend()
     assert beside.standing == beside.line[:30]

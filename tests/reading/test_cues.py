@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from vbraille.reading.cueing import MELODIES, give
-from vbraille.reading.cues import Cue, CueKind, Cues, choose_cues
+from vbraille.reading.cues import Cue, CueKind, choose_cues
+from vbraille.reading.outputs import Cues
 from vbraille.sounds import melody
 from vbraille.workers import Incoming, Outgoing
 
@@ -108,25 +109,25 @@ def test_bells_come_from_a_process_of_its_own_ten_a_second_at_most():
     now_s = iter((0.0, 0.05, 0.0999, 5.0)).__next__
     with terminal() as bells, Cues(CueKind.BELL, now_s) as cues:
         for _ in range(3):
-            cues.give(Cue.LINE_END)
+            cues.cue(Cue.LINE_END)
         assert bells(1) == b"\a"
-        cues.give(Cue.PAGE_END)  # neither of the two that came too soon was kept
+        cues.cue(Cue.PAGE_END)  # neither of the two that came too soon was kept
         assert bells(2) == b"\a\a"
 
 
 def test_no_cues_start_no_process():
     with Cues(CueKind.NONE) as cues:
-        cues.give(Cue.LIMIT)
+        cues.cue(Cue.LIMIT)
         assert cues._worker is None
 
 
 def test_a_process_that_ends_is_no_fault():
     with Cues(CueKind.BELL, iter(range(100)).__next__) as cues:
-        cues.give(Cue.LIMIT)
+        cues.cue(Cue.LIMIT)
         cues._worker.process.kill()
         cues._worker.process.wait(30.0)
         for _ in range(3):
-            cues.give(Cue.LIMIT)
+            cues.cue(Cue.LIMIT)
 
 
 def test_who_is_at_no_terminal_hears_none_and_who_is_far_away_the_bell(monkeypatch):

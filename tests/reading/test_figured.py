@@ -12,7 +12,6 @@ from tests.tiers import heavy
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import choose_table
 from vbraille.reading.bookfigures import BookFigures
-from vbraille.reading.commands.table import press
 from vbraille.reading.device import OpenDevice
 from vbraille.render import STRESS2, STRESS2_8X8, model_of
 from vbraille.render.braille.straying import Straying
@@ -88,8 +87,8 @@ class Bench(Held):
 
     def press(self, key):
         before = len(self.said)
-        press(self.under.alone or self.reader, key)
-        self.reader.leave_figure()
+        self.reader.listener().press(key)
+        self.reader.listener()
         return self.said[before:]
 
     def resolved(self):

@@ -4,8 +4,9 @@ import pytest
 
 from tests.reading.ssipserver import SsipServer
 from vbraille.layout.pages import Layout
-from vbraille.reading.cues import Cue, CueKind, Cues
-from vbraille.reading.outputs import Echo, Outputs, language_of
+from vbraille.reading.cues import Cue, CueKind
+from vbraille.reading.outputs import ConsoleOutput, Cues, Echo, Outputs, SpeechOutput, language_of
+from vbraille.reading.speech import Speech
 from vbraille.translate import Book, BrailleTable, Document
 
 TABLE = BrailleTable("en-ueb-g2.ctb")
@@ -28,33 +29,34 @@ def test_sentences_and_lines_are_spoken_each_once(tmp_path, monkeypatch, echo, s
     monkeypatch.setenv("SPEECHD_ADDRESS", f"unix_socket:{tmp_path / 'sock'}")
     layout, printed = layout_of(tmp_path), []
     with SsipServer(tmp_path / "sock") as server:
-        with Outputs(printed.append, Cues(CueKind.NONE), echo=echo) as hearing:
-            hearing.speak("fr")
+        under = [None]
+        spoken_too = SpeechOutput(Speech("fr"), lambda: under[0], echo=echo)
+        with Outputs(ConsoleOutput(printed.append), Cues(CueKind.NONE), spoken_too) as outputs:
 
             def so_far(number):
                 """Wait, as the next sentence takes the place of what was not said yet."""
                 server.until(lambda it: it.said == spoken[:number])
 
-            hearing.say("line: 1")
+            outputs.say("line: 1")
             so_far(1)
-            hearing.say("cells: ⠕⠝⠑")
+            outputs.say("cells: ⠕⠝⠑")
             for number, known in ((1, 2), (1, 2), (2, 3)):
-                hearing.see(layout.line(number))
-                hearing.see(None)
+                for under[0] in (layout.line(number), None):
+                    outputs.attend()
                 if echo is Echo.NONE:
                     so_far(known)
-            hearing.say("texture: 0.4")
+            outputs.say("texture: 0.4")
         assert server.said == spoken
         assert ("SET SELF LANGUAGE fr", "") in server.done
     assert printed == ["line: 1", "cells: ⠕⠝⠑", "texture: 0.4"]
 
 
-def test_without_speech_it_prints(tmp_path):
+def test_without_speech_it_prints():
     printed = []
-    with Outputs(printed.append, Cues(CueKind.NONE)) as hearing:
-        hearing.say("line: 1")
-        hearing.see(layout_of(tmp_path).line(1))
-        hearing.cue(Cue.LIMIT)
+    with Outputs(ConsoleOutput(printed.append), Cues(CueKind.NONE)) as outputs:
+        outputs.say("line: 1")
+        outputs.attend()
+        outputs.cue(Cue.LIMIT)
     assert printed == ["line: 1"]
 
 

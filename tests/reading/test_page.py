@@ -13,7 +13,7 @@ from vbraille.engine.constants import IDLE_S
 from vbraille.engine.record import Flag
 from vbraille.layout.pages import Layout
 from vbraille.reading.advancing import STAY_S
-from vbraille.reading.commands.table import bound_by, press
+from vbraille.reading.commands.table import bound_by
 from vbraille.reading.cues import Cue
 from vbraille.reading.keys import Bindings
 from vbraille.reading.liveview import LastSentences, ReadState
@@ -57,7 +57,7 @@ class Bench(Held):
     def press(self, key):
         """Press a key; what is said of it."""
         before = self.said.count
-        press(self.reader, key)
+        self.reader.press(key)
         return self.said.last[len(self.said.last) - (self.said.count - before) :]
 
     def felt(self):

@@ -8,9 +8,9 @@ import pytest
 
 from tests.engine.test_loop import Recording, biggest_step, run, straight
 from vbraille.engine.clock import ManualClock
-from vbraille.engine.local import LocalEngine
+from vbraille.engine.loop import LocalEngine
 from vbraille.layout.pages import Layout
-from vbraille.reading.commands.table import press
+from vbraille.reading.commands.table import BOUND
 from vbraille.reading.outputs import Echo
 from vbraille.reading.reader import Reader
 from vbraille.render import STRESS2, Tuning
@@ -62,7 +62,7 @@ class Bench:
             model=replace(STRESS2, style=replace(STRESS2.style, tuning=tuning)),
             say=self.said.append,
             steering=self.device.steering,
-            **options,
+            **{"bound": BOUND, **options},
         )
         self.reader.start()
 
@@ -75,7 +75,7 @@ class Bench:
     def press(self, keys):
         before = len(self.said)
         for key in keys:
-            press(self.reader, key)
+            self.reader.press(key)
         return self.said[before:]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.reading.felt import DISPLAY, SCENE, Felt
+from vbraille.engine.record import tick_dtype
 from vbraille.simulation.steering import GlideTo, Steering
 
 
@@ -82,7 +83,8 @@ def test_a_simulated_hand_glides_within_the_carriage(scene):
     assert device.take() == GlideTo(91.0, 30.0, 60.0)
     felt.press(*["shift-up"] * 9)
     assert device.take() == GlideTo(91.0, 0.0, 60.0)
-    felt.feeler.forget_aim()
+    felt.held = True
+    felt.feeler.step(np.zeros(1, tick_dtype((8, 8))))
     felt.press("left")
     assert device.take() == GlideTo(89.0, 20.0, 60.0)
     assert felt.press("g", *"wall", "\n")[-1] == "going to: wall"

@@ -125,8 +125,8 @@ class Session:
         answers = person if script else f"simulated:{noise:g}"
         session.run(answers, say=said.append, sound=played, view=view)
         record = session.record
-        progress = Progress(self.plan, record.told.events, record.procedure)
-        return Sat(said, record.told.events, played.tones, record, progress, session.progress)
+        progress = Progress(self.plan, record.journal.events, record.procedure)
+        return Sat(said, record.journal.events, played.tones, record, progress, session.progress)
 
 
 def crash(folder, size):

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from vbraille.render.braille.models import STRESS2
-from vbraille.simulation.carriage import APPROACH_MM_S, Carriage, area_of
+from vbraille.simulation.carriage import Carriage, area_of
 from vbraille.simulation.hand import FLUENT, HumanHand, Sweep
+from vbraille.simulation.motion import APPROACH_MM_S
 from vbraille.simulation.recorded import Recorded
 
 SPAN_MM = 10.8

@@ -14,7 +14,13 @@ from vbraille.devices.latero.wire import parse_answer
 from vbraille.errors import InputError
 from vbraille.simulation.controls import Press, parse_script
 from vbraille.simulation.lateroboard import LateroBoard
-from vbraille.simulation.laterosim import OFFSETS, LateroFaults, LateroSimulator, Network, Tray
+from vbraille.simulation.laterosim import (
+    OFFSETS,
+    LateroCarriage,
+    LateroFaults,
+    LateroSimulator,
+    Network,
+)
 from vbraille.simulation.specs import parse_hand
 
 PATIENCE_S = 20.0
@@ -81,8 +87,8 @@ def test_what_the_authors_client_starts_with_is_answered(latero, client):
 
 
 def test_the_authors_reset_finds_the_same_offsets():
-    tray = Tray(parse_hand("sweep:60"), 8.4)
-    for found, offset in zip(arms.offsets_at(tray.encoders(0)), OFFSETS, strict=True):
+    carriage = LateroCarriage(parse_hand("sweep:60"), 8.4)
+    for found, offset in zip(arms.offsets_at(carriage.encoders(0)), OFFSETS, strict=True):
         assert (found - offset + 1) % 2**32 <= 2
 
 
@@ -172,19 +178,19 @@ def test_an_interface_that_is_away_says_0():
 
 
 def test_the_hand_reads_along_each_line_and_then_down():
-    tray = Tray(parse_hand("sweep:200"), 8.4, lines=3)
-    assert tray.pose(0) == pytest.approx((0, 217.5, 0))
-    assert tray.pose(5_000_000) == pytest.approx((0, 217.5, 0))  # it has not set out
-    tray.set_out(5_000_000)
-    poses = np.array([tray.pose(us) for us in range(5_000_000, 17_000_000, 10_000)])
+    carriage = LateroCarriage(parse_hand("sweep:200"), 8.4, lines=3)
+    assert carriage.at(0) == pytest.approx((0, 217.5, 0))
+    assert carriage.at(5_000_000) == pytest.approx((0, 217.5, 0))  # it has not set out
+    carriage.set_out()
+    poses = np.array([carriage.at(us) for us in range(5_000_000, 17_000_000, 10_000)])
     x_mm, y_mm, _ = poses.T
     assert x_mm.min() == 0
     assert x_mm.max() == pytest.approx(281, abs=2)
     reading = y_mm[(x_mm > 100) & (x_mm < 200)]
     assert set(np.round(reading)) == {5, 15, 25}
     assert np.abs(np.diff(x_mm)).max() < 3
-    tray.go_back(17_000_000)
-    assert tray.pose(19_000_000) == pytest.approx((0, 217.5, 0))
+    carriage.go_back(17_000_000)
+    assert carriage.at(19_000_000) == pytest.approx((0, 217.5, 0))
 
 
 def test_a_network_does_what_it_says_and_counts_it():
@@ -206,7 +212,7 @@ def test_a_network_does_what_it_says_and_counts_it():
 def test_a_port_that_is_taken_is_said_in_a_sentence(latero):
     port = latero._socket.getsockname()[1]
     with pytest.raises(InputError, match="choose another port"):
-        LateroSimulator(Tray(parse_hand("slow"), 8.4), say=print, port=port)
+        LateroSimulator(LateroCarriage(parse_hand("slow"), 8.4), say=print, port=port)
 
 
 @pytest.mark.parametrize("name", ["drop", "late", "double", "foreign"])

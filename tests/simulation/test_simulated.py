@@ -4,9 +4,9 @@ import pytest
 from tests.engine.test_loop import info, straight
 from vbraille.engine.clock import ManualClock
 from vbraille.simulation.hand import Sweep
-from vbraille.simulation.motion import Motion
+from vbraille.simulation.motion import APPROACH_MM_S, TURN_RAD_S, Motion
 from vbraille.simulation.recorded import Recorded
-from vbraille.simulation.simulated import APPROACH_MM_S, HELD_MM_S, TURN_RAD_S, SimulatedDevice
+from vbraille.simulation.simulated import HELD_MM_S, SimulatedDevice
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.steering import BeAt, ReadLine, ReadPage, Steering
 

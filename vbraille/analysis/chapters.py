@@ -15,9 +15,9 @@ from vbraille.analysis.measures import (
     legibility,
     levels,
     movement,
-    overtime,
     preferences,
     rated,
+    trends,
     trialsmodel,
 )
 from vbraille.analysis.methods import methods
@@ -71,7 +71,7 @@ class Options:
         if self.correction not in METHODS:
             raise ValueError(f"correction is {self.correction!r}; it must be one of {METHODS}")
 
-    def told(self) -> list[tuple[str, str]]:
+    def described(self) -> list[tuple[str, str]]:
         """What was chosen, as pairs of a word and a sentence, for the report's head."""
         return [
             ("Correction of t-tests", METHODS[self.correction]),
@@ -102,8 +102,8 @@ def analyse_study(study: Study, options: Options) -> Results:
         chapters.append(_of_comparisons(study, study.comparisons, options))
     if study.judgements is not None:
         chapters += _of_judgements(study, study.judgements)
-    if any(sitting.notes for sitting in study.sittings):
-        table = rated.notes(study.sittings)
+    if any(session.notes for session in study.sessions):
+        table = rated.notes(study.sessions)
         chapters.append(Chapter("Notes", "What the experimenter wrote down.", (table,)))
     told = methods(study)
     return _told(
@@ -112,7 +112,7 @@ def analyse_study(study: Study, options: Options) -> Results:
             *([("Methods", told)] if told else ()),
             *study.about,
             *_excluded(left_out),
-            *options.told(),
+            *options.described(),
         ),
         study.warnings,
         chapters,
@@ -131,7 +131,7 @@ def compare_scores(scores: Scores, about: Sequence[tuple[str, str]], options: Op
     """
     left_out: list[LeftOut] = []
     chapter = _compared([scores], options, left_out)
-    told = [pair for pair in options.told() if pair[0] != "Compared by"]
+    told = [pair for pair in options.described() if pair[0] != "Compared by"]
     compared = ("Compared by", ", ".join(scores.factors))
     head = (*about, *_excluded(left_out), compared, *told)
     return _told("Scores", head, (), [chapter])
@@ -170,9 +170,9 @@ def _of_trials(
     averages = legibility.averages(own)
     by_dots, dots_own = legibility.dots(places), legibility.dots_of_participants(places)
     errors, errors_own = confusion.errors(places), confusion.errors_of_participants(places)
-    runs, slopes = overtime.over_time(trials), overtime.slopes(trials)
-    ways = movement.trajectories(study.sittings, trials)
-    drawn = figures.examples(study.sittings)
+    runs, slopes = trends.over_time(trials), trends.slopes(trials)
+    ways = movement.trajectories(study.sessions, trials)
+    drawn = figures.examples(study.sessions)
     tables, ways_drawn = ((), ()) if drawn is None else ((drawn[0],), (drawn[1],))
     return [
         Chapter(
@@ -256,7 +256,7 @@ def _compared(scores: Sequence[Scores], options: Options, left_out: list[LeftOut
 def _of_comparisons(study: Study, comparisons: pd.DataFrame, options: Options) -> Chapter:
     table, preferred = preferences.tuning(comparisons, seed=options.seed)
     own = preferences.choices_of_participants(comparisons)
-    each = preferences.liked(comparisons, [sitting.protocol for sitting in study.sittings])
+    each = preferences.own_values(comparisons, [session.protocol for session in study.sessions])
     return Chapter(
         "Which of two was chosen",
         "What participants took for closer to the reference.",
@@ -269,7 +269,7 @@ def _of_judgements(study: Study, judgements: pd.DataFrame) -> list[Chapter]:
     """Chapters of the questions that were asked, beside which cells and which of two."""
     scales: dict[str, tuple[float, float]] = {}
     sure: dict[str, tuple[float, float]] = {}
-    for protocol in (sitting.protocol for sitting in study.sittings):
+    for protocol in (session.protocol for session in study.sessions):
         question = protocol.asks
         if isinstance(question, RatingQuestion):
             scales[protocol.name] = question.least, question.most

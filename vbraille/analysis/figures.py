@@ -27,7 +27,7 @@ from vbraille.wording import count
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from vbraille.analysis.input.sittings import Example, SessionTrials
+    from vbraille.analysis.input.sessions import Example, SessionTrials
     from vbraille.analysis.schemas import ResultTable, Row
     from vbraille.pictures.charts import Chart, Numbers
 
@@ -352,9 +352,9 @@ def over_time(table: ResultTable, slopes: ResultTable) -> Iterator[ReportFigure]
     yield from _pages("over_time", "Legibility over time", text, table, runs, MOST_RUNS, Runs)
 
 
-def examples(sittings: Sequence[SessionTrials]) -> tuple[ResultTable, ReportFigure] | None:
+def examples(sessions: Sequence[SessionTrials]) -> tuple[ResultTable, ReportFigure] | None:
     """Trajectories, one for each pattern (Lévesque 2009, fig. 3.15); None if there are none."""
-    chosen = list(_chosen(sittings))
+    chosen = list(_chosen(sessions))
     if not chosen:
         return None
     rows = [
@@ -401,9 +401,9 @@ def examples(sittings: Sequence[SessionTrials]) -> tuple[ResultTable, ReportFigu
     )
 
 
-def _chosen(sittings: Sequence[SessionTrials]) -> Iterator[tuple[str, Example]]:
+def _chosen(sessions: Sequence[SessionTrials]) -> Iterator[tuple[str, Example]]:
     """One example of each pattern: the one whose duration is in the middle."""
-    found = [(sitting.name, example) for sitting in sittings for example in sitting.examples]
+    found = [(session.name, example) for session in sessions for example in session.examples]
     for pattern in dict.fromkeys(sorted(example.pattern for _, example in found)):
         of = [pair for pair in found if pair[1].pattern == pattern]
         of.sort(key=lambda pair: (pair[1].end_s - pair[1].start_s, pair[0], pair[1].trial))

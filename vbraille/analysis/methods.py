@@ -15,8 +15,8 @@ from vbraille.analysis.input.trials import natural
 from vbraille.braille.spelling import to_braille
 from vbraille.render.braille.models import MODELS
 from vbraille.sessions.planning.chance import balanced_orders
-from vbraille.sessions.planning.choosing import varied
 from vbraille.sessions.planning.factors import within
+from vbraille.sessions.planning.nexttrial import varied
 from vbraille.sessions.planning.procedures import QuestProcedure, StaircaseProcedure
 from vbraille.sessions.planning.questions import of_all
 from vbraille.sessions.planning.stimuli import GAP, KNOBS
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Facts = dict[str, str | None]
     Rows = Sequence[dict[str, Any]]
 
-    from vbraille.analysis.input.sittings import SessionTrials
+    from vbraille.analysis.input.sessions import SessionTrials
     from vbraille.analysis.input.study import Study
     from vbraille.sessions.planning.protocol import Protocol
 
@@ -90,13 +90,13 @@ def methods(study: Study) -> str:
     protocol letters (Identification of letters; Lévesque 2009, 4.3)."
     """
     of: dict[str, list[SessionTrials]] = {}
-    for sitting in study.sittings:
-        of.setdefault(sitting.protocol.text, []).append(sitting)
+    for session in study.sessions:
+        of.setdefault(session.protocol.text, []).append(session)
     if not of:
         return ""
-    sentences = [line for sittings in of.values() for line in filled(TEMPLATE, facts_of(sittings))]
+    sentences = [line for sessions in of.values() for line in filled(TEMPLATE, facts_of(sessions))]
     dropped = "; ".join(f"{left.what} ({left.reason})" for left in study.left_out)
-    versions = dict.fromkeys(each.versions.get("vbraille", "unknown") for each in study.sittings)
+    versions = dict.fromkeys(each.versions.get("vbraille", "unknown") for each in study.sessions)
     sentences += [
         f"Left out of the analysis: {dropped}"
         if dropped
@@ -119,28 +119,28 @@ def filled(template: str, facts: Facts) -> Iterable[str]:
             yield line.format(**facts)
 
 
-def facts_of(sittings: Sequence[SessionTrials]) -> Facts:
+def facts_of(sessions: Sequence[SessionTrials]) -> Facts:
     """Facts for `TEMPLATE` on the sessions of one protocol; None for one that there is not."""
-    protocol = sittings[0].protocol
-    answered = [[row for row in each.rows if row["answered"] != ""] for each in sittings]
+    protocol = sessions[0].protocol
+    answered = [[row for row in each.rows if row["answered"] != ""] for each in sessions]
     rows = [row for part in answered for row in part]
     # Blank trials are what detection needs, and keep no watch there.
     watches = protocol.asks.name != "detect" and protocol.design.catch is not None
     tested = [[row for row in part if not (watches and row["catch"])] for part in answered]
     kept = [row for part in tested for row in part]
-    practised = [each.counts["practice"] for each in sittings]
-    breaks = [each.counts["break"] for each in sittings]
+    practised = [each.counts["practice"] for each in sessions]
+    breaks = [each.counts["break"] for each in sessions]
     silent = "" if protocol.practice.feedback else ", without feedback"
     return {
-        **_people(sittings, tested, kept),
+        **_people(sessions, tested, kept),
         **_sources(rows),
         **_question(protocol, kept),
         "catch": _catch([row for row in rows if watches and row["catch"]]),
-        **_displays(sittings, rows),
-        "groups": _groups(sittings),
+        **_displays(sessions, rows),
+        "groups": _groups(sessions),
         "factors": _factors(protocol, rows),
         **_conditions(tested),
-        **_order(sittings, answered),
+        **_order(sessions, answered),
         **_procedure(protocol),
         "keys": _keys(rows),
         "practice": f"Before them came {_span(practised, 'trial')} of practice{silent}"
@@ -149,13 +149,13 @@ def facts_of(sittings: Sequence[SessionTrials]) -> Facts:
         "breaks": f"A session had {_span(breaks, 'break')}"
         if any(breaks)
         else "There were no breaks",
-        **_troubles(sittings, rows),
+        **_troubles(sessions, rows),
     }
 
 
-def _people(sittings: Sequence[SessionTrials], tested: Sequence[Rows], rows: Rows) -> Facts:
+def _people(sessions: Sequence[SessionTrials], tested: Sequence[Rows], rows: Rows) -> Facts:
     """Facts on who read how much of what."""
-    protocol = sittings[0].protocol
+    protocol = sessions[0].protocol
     numbers = [len(part) for part in tested]
     if not rows:
         did = "answered no trial"
@@ -172,11 +172,11 @@ def _people(sittings: Sequence[SessionTrials], tested: Sequence[Rows], rows: Row
         each = " each" if max(numbers) > 1 else ""
         did = f"{verb} {_span(numbers, 'string')} of {cells}{each}"
     simulated = {row["answers_from"].partition(":")[0] for row in rows} == {"simulated"}
-    people = len({sitting.head["participant"] for sitting in sittings})
+    people = len({session.head["participant"] for session in sessions})
     return {
         "people": count(people, "simulated participant" if simulated else "participant"),
         "did": did,
-        "sessions": count(len(sittings), "session"),
+        "sessions": count(len(sessions), "session"),
         "protocol": f"{protocol.name} ({protocol.title}; {protocol.source})",
     }
 
@@ -200,8 +200,8 @@ def _question(protocol: Protocol, rows: Rows) -> Facts:
     question, scale = protocol.asks, protocol.asks.confidence
     sure = sum(row["confidence"] != "" for row in rows)
     return {
-        "ask": (rows and question.ask) or None,
-        "question": (rows and question.describe(rows, protocol.parameter)) or None,
+        "ask": question.ask if rows and question.ask else None,
+        "question": (question.describe(rows, protocol.parameter) or None) if rows else None,
         "sure": of_all(sure, rows, "answer") if scale is not None and sure else None,
         "scale": None if scale is None else f"{scale.least} to {scale.most}",
     }
@@ -224,13 +224,13 @@ def _catch(rows: Rows) -> str | None:
     return f"{told}; {were} answered right" if scored else told
 
 
-def _displays(sittings: Sequence[SessionTrials], rows: Rows) -> Facts:
+def _displays(sessions: Sequence[SessionTrials], rows: Rows) -> Facts:
     """Facts on the displays, with the distances of the record that were the same for all."""
-    protocol, told = sittings[0].protocol, dict[str, None]()
+    protocol, told = sessions[0].protocol, dict[str, None]()
     parameter = protocol.parameter or ""
     varied = {parameter, *_differing(rows)}
     varied |= {name for name, by in _BY.items() if parameter in by}
-    for head in (sitting.head for sitting in sittings):
+    for head in (session.head for session in sessions):
         array, model = head["array"], MODELS.get(head["model"])
         simulated = head["device"].partition(":")[0] == "sim"
         how = [f"at {head['rate_hz']:g} frames a second"]
@@ -246,11 +246,11 @@ def _displays(sittings: Sequence[SessionTrials], rows: Rows) -> Facts:
             f"{', '.join(how)}"
         ] = None
     reference = protocol.conventional.reference
-    beside = reference and any(sitting.counts["stood"] for sitting in sittings)
+    beside = reference and any(session.counts["stood"] for session in sessions)
     there = {row["condition"] for row in rows if row["shown_on"] == "conventional"}
     noun = "condition " if len(there) == 1 else "conditions "
     tables = sorted({row["table"] for row in rows if row.get("table")})
-    versions = {sitting.head["versions"].get("liblouis", "unknown") for sitting in sittings}
+    versions = {session.head["versions"].get("liblouis", "unknown") for session in sessions}
     paper = protocol.medium == "paper"
     return {
         "paper": "paper" if paper else None,
@@ -266,18 +266,18 @@ def _displays(sittings: Sequence[SessionTrials], rows: Rows) -> Facts:
     }
 
 
-def _groups(sittings: Sequence[SessionTrials]) -> str | None:
+def _groups(sessions: Sequence[SessionTrials]) -> str | None:
     """Words for groups of participants, and how many were in each."""
     people: dict[str, set[str]] = {}
-    for sitting in sittings:
-        if group := sitting.head.get("group", ""):
-            people.setdefault(group, set()).add(sitting.head["participant"])
+    for session in sessions:
+        if group := session.head.get("group", ""):
+            people.setdefault(group, set()).add(session.head["participant"])
     if not people:
         return None
-    differing = _between(sittings)
+    differing = _between(sessions)
     told = []
     for group in sorted(people, key=natural):
-        own = [row for s in sittings if s.head.get("group") == group for row in s.rows]
+        own = [row for s in sessions if s.head.get("group") == group for row in s.rows]
         looks = [_look(name, own) for name in differing]
         told.append(f"{group} ({', '.join([count(len(people[group]), 'participant'), *looks])})")
     many = "1 group" if len(told) == 1 else f"{len(told)} groups"
@@ -336,10 +336,10 @@ def _differing(rows: Rows) -> list[str]:
     return [name for name in _LOOKS if len(_values(name, rows)) > 1]
 
 
-def _between(sittings: Sequence[SessionTrials]) -> list[str]:
+def _between(sessions: Sequence[SessionTrials]) -> list[str]:
     """Looks that are the same in each session, and differ between sessions."""
-    whole = _differing([row for sitting in sittings for row in sitting.rows])
-    own = {name for sitting in sittings for name in _differing(sitting.rows)}
+    whole = _differing([row for session in sessions for row in session.rows])
+    own = {name for session in sessions for name in _differing(session.rows)}
     return [name for name in whole if name not in own]
 
 
@@ -352,18 +352,18 @@ def _look(name: str, rows: Rows) -> str:
     return f"{_LOOKS[name]} {ends}{KNOBS[name].unit}"
 
 
-def _order(sittings: Sequence[SessionTrials], answered: Sequence[Rows]) -> Facts:
+def _order(sessions: Sequence[SessionTrials], answered: Sequence[Rows]) -> Facts:
     """Facts on the order in which trials came, and on the rules that it kept."""
-    protocol = sittings[0].protocol
+    protocol = sessions[0].protocol
     blocks = _span([len({row["block"] for row in part}) for part in answered], "block")
     if len(protocol.conditions) < 2:
         order = f"Trials came in {blocks}"
     elif protocol.design.blocks == "conditions":
-        how = _order_of_blocks(protocol, [sitting.head for sitting in sittings])
+        how = _order_of_blocks(protocol, [session.head for session in sessions])
         order = f"Each condition had blocks of its own, {blocks} in a session, {how}"
     else:
         order = f"Conditions were mixed in {blocks}"
-    seeds = sorted({sitting.head["seed"] for sitting in sittings})
+    seeds = sorted({session.head["seed"] for session in sessions})
     rules = protocol.rules
     kept = ["no two neighbouring trials showed the same"] if rules.never_twice_running else []
     kept += [
@@ -438,17 +438,17 @@ def _keys(rows: Rows) -> str | None:
     return ", by ".join(told) or None
 
 
-def _troubles(sittings: Sequence[SessionTrials], rows: Rows) -> Facts:
+def _troubles(sessions: Sequence[SessionTrials], rows: Rows) -> Facts:
     """Facts on what did not go as planned."""
-    planned = sum(len(sitting.rows) for sitting in sittings)
+    planned = sum(len(session.rows) for session in sessions)
     numbers = {
         "unanswered": (planned - len(rows), "planned trial"),
-        "broken": (sum(sitting.state != "ended" for sitting in sittings), "session"),
+        "broken": (sum(session.state != "ended" for session in sessions), "session"),
         "faults": (sum(row["faults"] != "" for row in rows), "trial"),
         "repeated": (sum(int(row["attempt"] or 0) > 1 for row in rows), "trial"),
         "early": (sum(row["early"] == 1 for row in rows), "answer"),
     }
-    if sittings[0].protocol.adaptive:
+    if sessions[0].protocol.adaptive:
         numbers["unanswered"] = (0, "planned trial")
     return {name: count(*of) if of[0] else None for name, of in numbers.items()}
 

@@ -49,7 +49,7 @@ def export(arguments: argparse.Namespace, say: Callable[[str], None]) -> int:
         faults = _to_dataset(given, arguments, say)
     else:
         faults = _to_table(given, arguments, say)
-    notes = sum(len(read_notes(one.told.events)) for one in given)
+    notes = sum(len(read_notes(one.journal.events)) for one in given)
     if arguments.anonymous and notes:
         told = f"left out: {count(notes, 'note')}, since nobody knows what is in them"
         print(told, file=sys.stderr)
@@ -86,7 +86,7 @@ def _load(arguments: argparse.Namespace) -> list[Record]:
 
 
 def _begun(record: Record) -> str:
-    return record.told.events[0].wall
+    return record.journal.events[0].wall
 
 
 def _to_dataset(
@@ -160,7 +160,7 @@ def _to_table(
 
 def _bad(one: Record) -> list[str]:
     """What is damaged in a session's journal."""
-    told = one.told
+    told = one.journal
     if told.bad:
         single = len(told.bad) == 1
         lines = f"{'line' if single else 'lines'} {spans(told.bad)}"

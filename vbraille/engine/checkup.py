@@ -1,24 +1,31 @@
-"""Measurements of a device for its builder: actuators, rate, clock, place, round trip, watchdog."""
+"""The checkup of a device for its builder: measurements, limits, and whether it may be read on.
+
+Actuators swing, and rate, clock, place, round trip and watchdog are measured.
+"""
 
 from __future__ import annotations
 
 import math
 import resource
+from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from vbraille.devices.serial.wire import WATCHDOG_MS
+from vbraille.devices.events import Placing, WatchdogTripped
+from vbraille.devices.sentences import shown_place, told
+from vbraille.devices.serial.wire import RAMP_MS, WATCHDOG_MS
 from vbraille.engine.clock import ManualClock
-from vbraille.engine.constants import JUMP_MM_S
-from vbraille.engine.local import LocalEngine
+from vbraille.engine.constants import FADE_S, JUMP_MM_S, NS_PER_S
+from vbraille.engine.loop import LocalEngine
+from vbraille.errors import DeviceError
 from vbraille.pose import Pose
 from vbraille.render.program import vibration
 from vbraille.simulation.simulated import SimulatedDevice
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
@@ -26,8 +33,24 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
 
-NS_PER_S = 1_000_000_000
-SWING_S = 0.25  # time of one actuator's swing, out and back
+_RATE_S = 3.0
+_ROUND_TRIPS = 500
+# A longer round trip is felt: a hand at 70 mm/s goes a tenth of a dot in 4 ms.
+_MOST_ROUND_TRIP_MS = 4.0
+_MOST_LATE = 0.01  # as a share of all ticks
+_MOST_FAULTS = 50  # of each kind: 1 % of some 5000 ticks
+_MARK_S = 60.0
+# What the clocks of simple controllers may be off by; more is heard in a speed.
+_MOST_CLOCK = 0.02
+# A carriage pressed against its stop may be so far beyond it.
+_PLACE_SLACK_MM = 2.0
+_TRIPS = 3
+# Too early, the watchdog trips while nothing is wrong; a report takes as long as a round trip.
+_EARLIEST_TRIP_MS = 0.9 * WATCHDOG_MS
+_REPORT_MS = 5.0
+
+
+_SWING_S = 0.25  # time of one actuator's swing, out and back
 _MOST_SWINGS = 8  # as long as so many swings for one actuator, if the device keeps going to rest
 _PATIENCE_S = 0.25  # time until a frame counts as never acknowledged
 _LOOK_NS = 50_000
@@ -179,44 +202,6 @@ def _waits() -> int:
     return resource.getrusage(resource.RUSAGE_THREAD).ru_nvcsw
 
 
-def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
-    """Swing one actuator after the other, out and back without a jump.
-
-    The row and column of each actuator, from 0, are yielded before it swings, so that they can be
-    said.
-    Actuators that the device reports as disabled are left out.
-
-    Raises
-    ------
-    DeviceError
-        If the device is gone.
-    """
-    info = device.display
-    steps = round(SWING_S * info.rate_hz)
-    frame = np.zeros((info.rows, info.columns))
-    told = device.particulars
-    for row, column in np.ndindex(frame.shape):
-        if told is not None and (row, column) in told.disabled:
-            continue
-        yield row, column
-        due_ns = clock.now_ns()
-        taking, step = device.taking, 0
-        for _ in range(_MOST_SWINGS * steps):
-            step += 1
-            frame[row, column] = math.sin(math.pi * step / steps) ** 2 if step < steps else 0.0
-            due_ns += round(NS_PER_S / info.rate_hz)
-            clock.sleep_until_ns(due_ns)
-            device.read()
-            if device.taking != taking:
-                # It has gone to rest, or leaves it: begin again from rest, so that nothing jumps.
-                taking, step = device.taking, 0
-                frame[row, column] = 0.0
-            device.write(frame)
-            if step == steps:
-                break
-        frame[row, column] = 0.0
-
-
 def warm_up(display: Display) -> None:
     """Compile and load what `hold_rate` calls, before a device's watchdog could trip meanwhile."""
     clock = ManualClock()
@@ -360,3 +345,336 @@ def _begin(device: Device, clock: Clock, frame: NDArray[np.float64]) -> None:
         device.write(frame)
         clock.sleep_until_ns(clock.now_ns() + round(NS_PER_S / device.display.rate_hz))
         device.read()
+
+
+SWING_S = 1.0  # time of a swing, out and back
+SWINGS = 4  # how often an actuator swings before it rests again
+
+
+class ActuatorSwings:
+    """Actuators of a device that swing one after the other.
+
+    Whoever has one calls `tick` again and again; each call waits for its time.
+
+    Parameters
+    ----------
+    device
+        Open device, whose correction is that of whoever opened it.
+    clock
+        Clock by which ticks are due.
+    begun
+        Function that is told the row and column, from 0, of each actuator as it begins to swing.
+    swing_s
+        Time of a swing, out and back, in seconds.
+    swings
+        How often an actuator swings before it rests again.
+    """
+
+    def __init__(
+        self,
+        device: Device,
+        clock: Clock,
+        begun: Callable[[tuple[int, int]], None] = lambda _: None,
+        swing_s: float = SWING_S,
+        swings: int = SWINGS,
+    ) -> None:
+        rate_hz = device.display.rate_hz
+        self._device, self._clock, self._say_begun = device, clock, begun
+        self._period_ns = round(NS_PER_S / rate_hz)
+        self._steps, self._swings = round(swing_s * rate_hz), swings
+        self._fade = 1 / max(FADE_S * rate_hz, 1.0)  # of a deflection, a frame
+        self._frame = np.zeros(device.display.shape)
+        self._next: deque[tuple[int, int]] = deque()
+        self._at: tuple[int, int] | None = None
+        self._step = 0
+        self._ending = False
+        self._due_ns = clock.now_ns()
+        self._was = device.rested, device.taking
+
+    @property
+    def resting(self) -> bool:
+        """Whether every actuator is at rest, and none is to swing."""
+        return self._at is None and not self._next
+
+    def swing(self, *places: tuple[int, int]) -> None:
+        """Have actuators swing one after the other, once the present one has faded to rest."""
+        self._next.clear()
+        self._next.extend(places)
+        self._ending = True
+
+    def stop(self) -> None:
+        """Have the actuator that swings fade to rest."""
+        self.swing()
+
+    def tick(self) -> None:
+        """Wait for the next frame's time, read the device, and send the frame.
+
+        Raises
+        ------
+        DeviceError
+            If the device is gone for good.
+        """
+        self._due_ns = max(self._due_ns + self._period_ns, self._clock.now_ns() - self._period_ns)
+        self._clock.sleep_until_ns(self._due_ns)
+        device = self._device
+        device.read()
+        now = device.rested, device.taking
+        if now != self._was:
+            # It has gone to rest by itself, or leaves it: begin again from there.
+            self._was, self._step = now, 0
+            if self._at is not None:
+                self._frame[self._at] = 0.0
+        self._move()
+        device.write(self._frame)
+
+    def rest(self) -> None:
+        """Fade to rest, and have inverted actuators go to where the device itself rests.
+
+        Raises
+        ------
+        DeviceError
+            If the device is gone for good.
+        """
+        self.stop()
+        while not self.resting or self._device.uncorrect():
+            self.tick()
+
+    def _move(self) -> None:
+        """Move the actuator that swings by a step, or go to the next."""
+        if self._at is None:
+            self._ending = False
+            if self._next:
+                self._at, self._step = self._next.popleft(), 0
+                self._say_begun(self._at)
+            return
+        if self._ending:
+            level = max(self._frame[self._at] - self._fade, 0.0)
+        else:
+            self._step += 1
+            level = math.sin(math.pi * self._step / self._steps) ** 2
+            if self._step == self._steps * self._swings:
+                level, self._ending = 0.0, True
+        self._frame[self._at] = level
+        if self._ending and level == 0.0:
+            self._at = None
+
+
+def check(device: Device, clock: Clock, say: Callable[[str], None]) -> int:
+    """Measure a device; say what was measured, one thing a line, and last the verdict.
+
+    Returns
+    -------
+    int
+        Exit code: 0 if the device is fit to be read on, 1 if it is not.
+
+    Raises
+    ------
+    DeviceError
+        If the device is gone, or gives no place within a minute.
+    """
+    with Watch(device, clock) as watch:
+        return _Check(device, clock, say, watch).run()
+
+
+class _Check:
+    """One check; each of its parts says what it measured and gives what is wrong."""
+
+    def __init__(
+        self, device: Device, clock: Clock, say: Callable[[str], None], watch: Watch
+    ) -> None:
+        self._device = device
+        self._clock = clock
+        self._say = say
+        self._watch = watch
+        self._shown = False  # whether its place was chosen here, and says nothing
+
+    def run(self) -> int:
+        device = self._device
+        self._wait_for_place()
+        self._swing_each()
+        missed = device.counts().get("states missed", 0)
+        rate = hold_rate(device, self._clock, _RATE_S)
+        missed = device.counts().get("states missed", 0) - missed
+        wrong = [
+            *self._actuators(),
+            *self._rate(rate, missed),
+            *self._time(rate),
+            *self._place(rate),
+            *self._round_trips(),
+            *self._faults(),
+        ]
+        self._say_notes()
+        wrong += self._watchdog()
+        self._say_notes(tripped=True)
+        wrong += [*self._watch.faults(), *self._end()]
+        if wrong:
+            self._say(f"verdict: not fit to be read on: {'; '.join(wrong)}")
+            return 1
+        self._say(f"verdict: fit to be read on{self._but()}")
+        return 0
+
+    def _swing_each(self) -> None:
+        """Swing one actuator after the other, but for those that the device reports as disabled."""
+        told, shape = self._device.particulars, self._device.display.shape
+        off = () if told is None else told.disabled
+        places = [place for place in np.ndindex(*shape) if place not in off]
+        swings = ActuatorSwings(self._device, self._clock, self._say_actuator, _SWING_S, 1)
+        swings.swing(*places)
+        # A device that keeps going to rest is given up at last.
+        most = _MOST_SWINGS * _SWING_S * self._device.display.rate_hz * len(places)
+        for _ in range(round(most)):
+            if swings.resting:
+                break
+            swings.tick()
+
+    def _say_actuator(self, place: tuple[int, int]) -> None:
+        self._say(f"actuator: row {place[0] + 1}, column {place[1] + 1}")
+
+    def _say_notes(self, *, tripped: bool = False) -> None:
+        """Say what the device has told, but for trips of its watchdog that were asked for."""
+        events = self._device.take_events()
+        asked = WatchdogTripped if tripped else ()
+        for sentence in told(event for event in events if not isinstance(event, asked)):
+            self._say(sentence)
+
+    def _end(self) -> list[str]:
+        """Let the device go, which its driver may fail at."""
+        try:
+            self._device.close()
+        except Exception as fault:
+            return [f"its driver cannot let it go ({type(fault).__name__}: {fault})"]
+        return []
+
+    def _but(self) -> str:
+        """Remarks that go with a verdict that is good."""
+        untold = []
+        if not self._device.acknowledges:
+            untold.append("what it has taken")
+        if self._device.watchdog_trips is None:
+            untold.append("its watchdog")
+        but = f", but {' and '.join(untold)} could not be tested" if untold else ""
+        off = len(self._device.particulars.disabled) if self._device.particulars else 0
+        return but + (f", without {off} of its actuators, which are disabled" if off else "")
+
+    def _actuators(self) -> list[str]:
+        told, info = self._device.particulars, self._device.display
+        all_off = told is not None and len(told.disabled) == info.rows * info.columns
+        return ["every one of its actuators is disabled"] if all_off else []
+
+    def _wait_for_place(self) -> None:
+        """Wait for any place, or a wrong one: frames are not taken without one."""
+        device, clock = self._device, self._clock
+        begun_ns, minutes = clock.now_ns(), 0
+        while device.read() is None and not self._watch.found:
+            passed_s = (clock.now_ns() - begun_ns) / NS_PER_S
+            if device.placing is Placing.STOP:
+                device.set_zero()
+                self._shown = True
+            elif device.placing is Placing.MARK and passed_s > 0.5 + minutes * _MARK_S:
+                self._say("place: move the carriage over its mark")
+                minutes += 1
+            if passed_s > (1 + minutes) * _MARK_S:
+                raise DeviceError(f"{device.display.name} gives no place; look at its encoder")
+            clock.sleep_until_ns(clock.now_ns() + 1_000_000)
+
+    def _rate(self, rate: Rate, missed: int) -> list[str]:
+        due = rate.ticks + rate.late
+        share = rate.late / due
+        self._say(f"rate: {self._device.display.rate_hz:g} Hz, {rate.late} of {due} ticks late")
+        self._say(f"work: median {rate.work_us[0]:.0f} µs, 99 % under {rate.work_us[1]:.0f} µs")
+        part = f"the device, or a line that lost {missed} places," if missed else "the line"
+        self._say(
+            f"late: this computer by {rate.host_ms:.1f} ms at most, {part} by "
+            f"{max(rate.place_ms - 1000 / self._device.display.rate_hz, 0.0):.1f} ms"
+        )
+        return (
+            [f"{share:.1%} of the ticks come late on this computer"] if share > _MOST_LATE else []
+        )
+
+    def _time(self, rate: Rate) -> list[str]:
+        self._say(
+            f"clock: {rate.clock_s:.3f} s pass on it in a second, {1 - _MOST_CLOCK:g} to "
+            f"{1 + _MOST_CLOCK:g} s are allowed"
+        )
+        if abs(rate.clock_s - 1) <= _MOST_CLOCK:
+            return []
+        if math.isnan(rate.clock_s):
+            return ["it told neither its time nor its place"]
+        return [
+            f"its clock goes {rate.clock_s:.2f} times as fast as it should; see to its time_us, or "
+            f"to time_ns of its driver's poses"
+        ]
+
+    def _place(self, rate: Rate) -> list[str]:
+        info = self._device.display
+        if self._shown:
+            self._say(f"place: not tested, since its reader must show it {shown_place(info)}")
+            return []
+        if math.isnan(rate.x_mm[0]):
+            self._say("place: none was told")
+            return []
+        edge = "left edge" if info.height_mm else "left stop"
+        low_mm, high_mm = (round(x_mm + info.span_mm / 2, 1) + 0.0 for x_mm in rate.x_mm)
+        self._say(
+            f"place: {low_mm:.1f} to {high_mm:.1f} mm from the {edge}, of "
+            f"{info.travel_mm:g} mm; {_PLACE_SLACK_MM:g} mm beyond either end are allowed"
+        )
+        if low_mm >= -_PLACE_SLACK_MM and high_mm <= info.travel_mm + _PLACE_SLACK_MM:
+            return []
+        off_mm = low_mm if low_mm < -_PLACE_SLACK_MM else high_mm
+        return [
+            f"its carriage is at {off_mm:.1f} mm from the {edge}, where it cannot be; see to "
+            f"{shown_place(info)}, its counts and their sign"
+        ]
+
+    def _round_trips(self) -> list[str]:
+        taken = round_trips_ms(self._device, self._clock, _ROUND_TRIPS)
+        if not self._device.acknowledges:
+            self._say("round trip: not tested, since this device does not say what it has taken")
+            return []
+        if not taken.size:
+            self._say("round trip: none, for no frame was acknowledged")
+            return [
+                "it acknowledges none of the frames that it is sent; see to its frame_sequence, "
+                "or to acknowledged_ns of its driver"
+            ]
+        low, median, high = np.percentile(taken, (1, 50, 99))
+        self._say(f"round trip: median {median:.2f} ms, 98 % within {low:.2f} to {high:.2f} ms")
+        if taken.size < _ROUND_TRIPS:
+            return [f"only {taken.size} frames were acknowledged before one was not"]
+        if median <= _MOST_ROUND_TRIP_MS:
+            return []
+        return [f"a round trip takes {median:.1f} ms; have the port's latency set to 1 ms"]
+
+    def _watchdog(self) -> list[str]:
+        """Leave the device without frames several times, and see how long it takes to say so."""
+        if self._device.watchdog_trips is None:
+            self._say("watchdog: not tested, since this device does not tell of one")
+            return []
+        self._say("watchdog: the device is sent nothing now, so that it trips")
+        taken = [trip_ms(self._device, self._clock) for _ in range(_TRIPS)]
+        tripped = [ms for ms in taken if ms is not None]
+        if not tripped:
+            self._say("watchdog: no trip was reported")
+            return ["its watchdog does not trip in time when no frame comes; nobody may read on it"]
+        median = float(np.median(tripped))
+        promised_ms = WATCHDOG_MS + RAMP_MS + 1000 / self._device.display.rate_hz
+        self._say(
+            f"watchdog: tripped {len(tripped)} of {_TRIPS} times, median {median:.1f} ms after "
+            f"the last frame, and so at rest after {median + RAMP_MS:.1f} ms with a ramp of "
+            f"{RAMP_MS} ms; {promised_ms:g} ms are promised, and {_REPORT_MS:g} ms allowed for "
+            f"its report"
+        )
+        if len(tripped) < _TRIPS:
+            return [f"its watchdog trips {len(tripped)} of {_TRIPS} times that no frame comes"]
+        early = median < _EARLIEST_TRIP_MS
+        if not early and median + RAMP_MS <= promised_ms + _REPORT_MS:
+            return []
+        how = "early" if early else "late"
+        return [f"its watchdog trips after {median:.0f} ms, too {how}; {WATCHDOG_MS} ms are right"]
+
+    def _faults(self) -> list[str]:
+        counts = self._device.counts()
+        for name, count in counts.items():
+            self._say(f"{name}: {count}")
+        return [f"{name}: {count}" for name, count in counts.items() if count > _MOST_FAULTS]

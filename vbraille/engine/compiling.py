@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from vbraille.engine import shared, ticks
-from vbraille.engine.hosted import warm_up
+from vbraille.engine import ticks
+from vbraille.engine.hostprocess import warm_up
+from vbraille.engine.mailbox import Extent
 from vbraille.engine.record import FLOATS, INTS
 from vbraille.render import MODELS
 from vbraille.render.program import scratch_for
@@ -24,7 +25,7 @@ def main() -> None:
     SceneMap(scene).deflections(np.zeros(1), np.zeros(1))
     for model in MODELS.values():
         display, style = model.display, model.style
-        warm_up(display, shared.Extent(display.rows, display.columns, 0, 2))
+        warm_up(display, Extent(display.rows, display.columns, 0, 2))
         line = style.render(np.zeros(1, np.uint8), display)
         line.path(np.zeros(1))
         line.poses(np.zeros(1), np.zeros(1))

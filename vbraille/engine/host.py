@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, Self
 
 from vbraille.devices.events import Back, Stalled, from_json
 from vbraille.display import Display
-from vbraille.engine import shared
 from vbraille.engine.engine import place_of
+from vbraille.engine.mailbox import RING_S, Extent, attach, watch
 from vbraille.engine.record import Tally
 from vbraille.engine.ring import RingReader
 from vbraille.engine.spawning import spawn
@@ -113,7 +113,7 @@ class Host:
         self.counts: dict[str, int] = {}
         self.lost = 0
         self.calibration: dict[str, Any] | None = None
-        self.on_share: Callable[[int, shared.Extent], None] | None = None
+        self.on_share: Callable[[int, Extent], None] | None = None
         self._device = device
         self._wanted = wanted
         self._room = room
@@ -215,13 +215,13 @@ class Host:
         assert self._descriptor is not None
         assert self._room is not None
         wanted = self._wanted
-        ticks = round(shared.RING_S * wanted.rate_hz)
-        extent = shared.Extent(wanted.rows, wanted.columns, self._room, ticks)
-        memory = shared.attach(self._descriptor, extent)
+        ticks = round(RING_S * wanted.rate_hz)
+        extent = Extent(wanted.rows, wanted.columns, self._room, ticks)
+        memory = attach(self._descriptor, extent)
         if self.on_share is not None:
             self.on_share(self._descriptor, extent)
         self._forget_memory()
-        self._mailbox, self._ring = shared.watch(memory, extent)
+        self._mailbox, self._ring = watch(memory, extent)
         self._tell(**asdict(extent))
 
     def _tell(self, **what: object) -> None:

@@ -5,6 +5,12 @@ it and fills the record, with the same functions that `Loop.tick` and `SerialDev
 `vbraille.devices.serial.kernels` and `vbraille.engine.ticks`. Anything else ends it: an order
 in the mailbox, a signal, bytes that are no STATE, a rest, a fault. Python then gets what had been
 received, and does that tick.
+
+The system calls of a tick are functions of the C library, which the process has loaded anyway:
+each name is looked up when compiled code is loaded, so that the code can be kept on disk. Only what
+numba compiles without Python's lock (``nogil``) calls them. A call that fails returns the negative
+number of its error (``-errno.EAGAIN``), as calls of the system do. An interrupted call is not begun
+again (``-errno.EINTR``): Python has to run the signal's handler first.
 """
 
 from __future__ import annotations
@@ -12,13 +18,111 @@ from __future__ import annotations
 import errno
 
 import numpy as np
-from numba import njit
+from numba import njit, types
+from numba.np.numpy_support import carray
 
 from vbraille.caching import keep_compiled
 from vbraille.devices.serial import kernels
-from vbraille.engine import libc
 from vbraille.engine.record import LATE, LATENESS, OVERRUNS, WORK
 from vbraille.engine.ticks import POSE_THETA, POSE_X, POSE_Y, POSED, advance
+
+# Numbers of Linux, where pointers, sizes and seconds have 64 bits.
+CLOCK_MONOTONIC = 1
+POLLIN = 0x0001
+_TIMER_ABSTIME = 1
+_INVALID = -errno.EINVAL
+_NS_PER_S = 1_000_000_000
+
+_int, _long, _address = types.int32, types.int64, types.uintp
+_read = types.ExternalFunction("read", _long(_int, _address, _long))
+_write = types.ExternalFunction("write", _long(_int, _address, _long))
+_ppoll = types.ExternalFunction("ppoll", _int(_address, _long, _address, _address))
+_gettime = types.ExternalFunction("clock_gettime", _int(_int, _address))
+_nanosleep = types.ExternalFunction("clock_nanosleep", _int(_int, _int, _address, _address))
+_errno = types.ExternalFunction("__errno_location", types.CPointer(_int)())
+_compiled = njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+
+
+@_compiled
+def _or_error(result):
+    """Take the result of a call, or -errno if it failed; int64."""
+    # Each thread has its errno, and no call comes between: it is that of this call.
+    return np.int64(result) if result >= 0 else -np.int64(carray(_errno(), 1)[0])
+
+
+@_compiled
+def clock_ns(clock):
+    """Tell the time by a clock, int64, ns; its number is an int32, such as CLOCK_MONOTONIC."""
+    time = np.empty(2, np.int64)
+    _gettime(clock, time.ctypes.data)
+    return time[0] * _NS_PER_S + time[1]
+
+
+@_compiled
+def read(descriptor, out, start):
+    """Read what has come into ``out[start:]``.
+
+    Parameters
+    ----------
+    descriptor : int64
+        The descriptor of an open file that does not block.
+    out : uint8[bytes]
+        Memory for the bytes, contiguous.
+    start : int64
+        Index in ``out`` at which to begin.
+
+    Returns
+    -------
+    int64
+        Number of bytes read, 0 at the end of the file; -errno if reading fails, -EINVAL if
+        ``start`` is outside ``out``.
+    """
+    if start < 0 or start > out.size:
+        return _INVALID
+    return _or_error(_read(descriptor, out.ctypes.data + start, out.size - start))
+
+
+@_compiled
+def write(descriptor, source, start, end):
+    """Write ``source[start:end]``, contiguous; return how many bytes were taken, or -errno."""
+    if start < 0 or start > end or end > source.size:
+        return _INVALID
+    return _or_error(_write(descriptor, source.ctypes.data + start, end - start))
+
+
+@_compiled
+def sleep_until_ns(deadline_ns):
+    """Wait until a time of the monotonic clock; return 0, or -errno: -EINTR after a signal."""
+    time = np.empty(2, np.int64)
+    time[0], time[1] = divmod(max(deadline_ns, 0), _NS_PER_S)
+    # Unlike the others, this call returns its error itself.
+    return -np.int64(_nanosleep(CLOCK_MONOTONIC, _TIMER_ABSTIME, time.ctypes.data, 0))
+
+
+@_compiled
+def poll(descriptor, events, wait_ns):
+    """Wait for an event on a descriptor, for so long at most.
+
+    Parameters
+    ----------
+    descriptor : int64
+        The descriptor of an open file.
+    events : int64
+        1 (POLLIN) to wait for bytes; errors and the line's end are waited for in any case.
+    wait_ns : int64
+        How long to wait at most, in ns; 0 or less looks and does not wait.
+
+    Returns
+    -------
+    int64
+        What has happened, as bits; 0 if nothing has; -errno if that fails: -EINTR after a signal.
+    """
+    room = np.empty(3, np.int64)  # struct timespec, and struct pollfd: descriptor, events, result
+    room[0], room[1] = divmod(max(wait_ns, 0), _NS_PER_S)
+    room[2] = (descriptor & 0xFFFF_FFFF) | events << 32
+    count = _ppoll(room.ctypes.data + 16, 1, room.ctypes.data, 0)
+    return (room[2] >> 48) & 0xFFFF if count > 0 else _or_error(count)
+
 
 # Reasons why it ended, apart from DONE.
 DONE, ORDERS, UNSTEADY, NOWHERE, UNMADE, TORN, GONE = range(7)
@@ -58,7 +162,7 @@ def _changed(orders, known):
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def _receive(told, received, now, talk, work):
     """Read what has come and take its STATEs; return their number, and a reason to stop, if any."""
-    size = libc.read(told[DESCRIPTOR], received, told[HELD])
+    size = read(told[DESCRIPTOR], received, told[HELD])
     if size in (_EAGAIN, _EINTR):
         return 0, DONE
     if size <= 0:
@@ -83,22 +187,22 @@ def _wait(told, received, talk, work):
     earliest, last = told[DEADLINE] - told[GUARD], told[DEADLINE] + told[GUARD]
     states = 0
     if told[GUARD] == 0:
-        if libc.sleep_until_ns(earliest) == _EINTR:
+        if sleep_until_ns(earliest) == _EINTR:
             return 0, 0, ORDERS
-        now = libc.clock_ns(libc.CLOCK_MONOTONIC)
+        now = clock_ns(CLOCK_MONOTONIC)
         states, why = _receive(told, received, now, talk, work)
         return now, states, why
     while True:
-        now = libc.clock_ns(libc.CLOCK_MONOTONIC)
+        now = clock_ns(CLOCK_MONOTONIC)
         if now >= last:
             return now, states, DONE
-        happened = libc.poll(told[DESCRIPTOR], libc.POLLIN, last - now)
+        happened = poll(told[DESCRIPTOR], POLLIN, last - now)
         if happened == _EINTR:
             return 0, states, ORDERS
         if happened == 0:
             continue
-        now = libc.clock_ns(libc.CLOCK_MONOTONIC)
-        if happened & libc.POLLIN == 0:
+        now = clock_ns(CLOCK_MONOTONIC)
+        if happened & POLLIN == 0:
             return now, states, GONE
         more, why = _receive(told, received, now, talk, work)
         states += more
@@ -107,7 +211,7 @@ def _wait(told, received, talk, work):
         if states > 0:
             if now >= earliest:
                 return now, states, DONE
-            if libc.sleep_until_ns(earliest) == _EINTR:
+            if sleep_until_ns(earliest) == _EINTR:
                 return 0, states, ORDERS
 
 
@@ -217,7 +321,7 @@ def run(
         ends = kernels.make(output, now, talk, actuators, out)
         if ends == kernels.SOMETHING_ELSE:
             return UNMADE
-        written = libc.write(told[DESCRIPTOR], out, 0, ends)
+        written = write(told[DESCRIPTOR], out, 0, ends)
         if written > 0:
             kernels.sent(now, talk, actuators)
         elif written == _EAGAIN:
@@ -227,7 +331,7 @@ def run(
             return UNMADE  # Python writes it, and sees what is wrong with the line
         # The next STATE is a period from this one; without one, ticks keep to their deadlines.
         told[DEADLINE] = (now if states > 0 and told[GUARD] > 0 else deadline) + told[PERIOD]
-        after = libc.clock_ns(libc.CLOCK_MONOTONIC)
+        after = clock_ns(CLOCK_MONOTONIC)
         state[0]["done_ns"] = after
         behind = after - told[DEADLINE]
         if behind >= told[PERIOD]:

@@ -20,7 +20,7 @@ from vbraille.forecast.workers import KeptResults, work_on
 from vbraille.render import MODELS
 from vbraille.sessions.planning.spellings import Masks, SpellingKeys, spelled
 from vbraille.sessions.simulated.observer import Observer
-from vbraille.sessions.simulated.skin import Exploration
+from vbraille.sessions.simulated.skin import FeltFrames
 from vbraille.tomlfile import Table, TomlFile, which
 
 if TYPE_CHECKING:
@@ -201,7 +201,7 @@ def predict_point(task: GridTask) -> list[int]:
         way_mm = style.geometry.extent_mm(len(masks)) + 2 * aside_mm
         time_s = np.arange(int(way_mm / point["speed_mm_s"] * _RATE_HZ) + 1) / _RATE_HZ
         x_mm = time_s * point["speed_mm_s"] - aside_mm
-        touch = observer.felt(Exploration(program.path(x_mm), x_mm, time_s), len(masks))
+        touch = observer.felt(FeltFrames(program.path(x_mm), x_mm, time_s), len(masks))
         shown = style.mapping.shown_dots()
         wanted = [mask & shown for mask in masks]
         for _ in range(grid.answers):
@@ -216,7 +216,7 @@ def predict(
     workers: Workers,
     *,
     keep: Path | None = None,
-    told: Callable[[int, int], None] = lambda _done, _all: None,
+    report: Callable[[int, int], None] = lambda _done, _all: None,
 ) -> tuple[GridFile, list[Prediction], VbrailleError | None]:
     """Ask the simulated reader about each point of a grid.
 
@@ -228,8 +228,8 @@ def predict(
         Who works; the numbers do not depend on it.
     keep
         File that keeps what is done, so that work that was ended goes on; None for none.
-    told
-        Function that is told how many points are done, and how many there are.
+    report
+        Function that is called with how many points are done, and how many there are.
 
     Returns
     -------
@@ -246,7 +246,7 @@ def predict(
     points = grid.points()
     kept = KeptResults(keep, {"grid": text})
     tasks = [GridTask(grid, point, number) for number, point in enumerate(points)]
-    ended = work_on(workers, predict_point, tasks, kept, told)
+    ended = work_on(workers, predict_point, tasks, kept, report)
     found = [Prediction(points[number], *kept.found[number]) for number in sorted(kept.found)]
     if not found and ended is not None:
         raise ended

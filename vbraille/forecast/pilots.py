@@ -99,7 +99,7 @@ def pilot(
     *,
     noise: float,
     seed: int,
-    told: Callable[[int, int], None] = lambda _done, _all: None,
+    report: Callable[[int, int], None] = lambda _done, _all: None,
 ) -> Path:
     """Conduct the sessions of a pilot, write its report, and give the report's directory.
 
@@ -117,8 +117,8 @@ def pilot(
         Noise of the simulated reader.
     seed
         What plans, hands and noise are drawn by.
-    told
-        Function that is told how many sessions are done, and how many there are.
+    report
+        Function that is called with how many sessions are done, and how many there are.
 
     Raises
     ------
@@ -149,7 +149,7 @@ def pilot(
              "answers": answers}  # fmt: skip
     about |= {"files": protocol.files} if protocol.files else {}
     _begin(folder, about, tasks[0])
-    ended = work_on(workers, conduct, tasks, KeptResults(None, {}), told)
+    ended = work_on(workers, conduct, tasks, KeptResults(None, {}), report)
     if ended is not None:
         raise VbrailleError(f"{ended}; the same command goes on with {folder}")
     from vbraille.analysis import analyse

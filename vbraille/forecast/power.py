@@ -226,7 +226,7 @@ def power(
     workers: Workers,
     *,
     keep: Path | None = None,
-    told: Callable[[int, int], None] = lambda _done, _all: None,
+    report: Callable[[int, int], None] = lambda _done, _all: None,
 ) -> PowerTable:
     """Simulate studies, and count those that find a difference.
 
@@ -238,8 +238,8 @@ def power(
         Who works; the numbers do not depend on it.
     keep
         File that keeps what is done, so that a simulation that was ended goes on; None for none.
-    told
-        Function that is told how many portions of the work are done, and how many there are.
+    report
+        Function that is called with how many portions of the work are done, and how many there are.
 
     Raises
     ------
@@ -254,7 +254,7 @@ def power(
     ]
     kept = KeptResults(keep, {"plan": asdict(plan), "seed": question.seed, "all": question.studies})
     try:
-        ended = work_on(workers, count_found, tasks, kept, told)
+        ended = work_on(workers, count_found, tasks, kept, report)
     except Unanswerable as reason:
         raise InputError(f"this design cannot be tested: {reason}") from None
     finished = sum(tasks[number].studies for number in kept.found)

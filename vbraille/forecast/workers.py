@@ -185,7 +185,7 @@ def work_on(
     function: Callable[[Task], Found],
     tasks: Sequence[Task],
     kept: KeptResults,
-    told: Callable[[int, int], None],
+    report: Callable[[int, int], None],
 ) -> VbrailleError | None:
     """Do the tasks that are not kept yet, and give what ended the work early, if anything did.
 
@@ -199,14 +199,14 @@ def work_on(
         All tasks of the work.
     kept
         Results that are there, to which new ones are added.
-    told
-        Function that is told how many tasks are done, and how many there are.
+    report
+        Function that is called with how many tasks are done, and how many there are.
     """
     left = [number for number in range(len(tasks)) if number not in kept.found]
 
     def done(place: int, found: Found) -> None:
         kept.add(left[place], found)
-        told(len(kept.found), len(tasks))
+        report(len(kept.found), len(tasks))
 
     try:
         workers.work(function, [tasks[number] for number in left], done)

@@ -11,7 +11,7 @@ from typing import Final
 
 import msgspec
 
-from vbraille.engine.shared import Extent
+from vbraille.engine.mailbox import Extent
 from vbraille.live.messages import PagePress, Turn, ViewState
 
 # Room that is asked for on the line; the system gives less if its bounds are lower.

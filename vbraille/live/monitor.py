@@ -22,7 +22,7 @@ from vbraille.logs import kept, tracebacks_wanted
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.engine.shared import Extent
+    from vbraille.engine.mailbox import Extent
     from vbraille.live.messages import PagePress, Turn
     from vbraille.simulation.steering import Pointer
 

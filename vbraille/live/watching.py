@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Final
 import msgspec
 import numpy as np
 
+from vbraille.engine.mailbox import Extent, watch
 from vbraille.engine.record import FLOATS, INTS, tick_dtype
 from vbraille.engine.ring import Ring
-from vbraille.engine.shared import Extent, watch
 from vbraille.errors import InputError
 from vbraille.live.framing import FrameHeader, frame_bytes, joined, thinned
 from vbraille.live.messages import MOST_SAMPLES, LetGo, PagePress, Point, Turn, ViewState

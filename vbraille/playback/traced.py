@@ -101,9 +101,9 @@ class Traced(Recording):
         self._pictures = StimulusPrograms(record, self._progress)
         self._picture = lru_cache(64)(self._make_picture)
         self.moments: list[PlayedEvent] = []
-        if record.told.damage is not None:
+        if record.journal.damage is not None:
             self.notes.append(
-                f"{journal.NAME} is damaged: {record.told.damage}; the rest is played"
+                f"{journal.NAME} is damaged: {record.journal.damage}; the rest is played"
             )
         if not self._progress.ended:
             self.notes.append(
@@ -163,7 +163,7 @@ class Traced(Recording):
         if scene not in self._pictures.shown:
             return plain
         trial, showing = self._pictures.shown[scene]
-        told = self._progress.told(trial)
+        told = self._progress.record_of(trial)
         stimulus = stimulus_of(showing)
         mapping = protocol.mapping_of(stimulus)
         style = replace(protocol.model.style, mapping=mapping, geometry=stimulus.geometry)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from vbraille.engine.engine import HOME_MM
 from vbraille.engine.record import Flag
-from vbraille.engine.watchers import HOME_MM
 from vbraille.errors import check_range
 from vbraille.wording import setting
 

@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING, Final
 
 from vbraille.conventional.brlapi import DisplayAway, DisplayStands, KeyPressed, KeyTyped
 from vbraille.reading.commands.asking import say_cell
-from vbraille.reading.commands.table import BOUND, press, press_display_key
 from vbraille.reading.keys import Context
+from vbraille.reading.outputs import Output
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from vbraille.conventional.display import ConventionalDisplay
+    from vbraille.devices.events import Event
     from vbraille.layout.pages import Line
     from vbraille.reading.reader import Reader
 
@@ -106,25 +107,34 @@ def _same(line: Line, other: Line | None) -> bool:
     )
 
 
-class ConventionalView:
+class ConventionalView(Output):
     """A conventional display on which the line under the hand stands, and whose keys are obeyed.
 
     Parameters
     ----------
     display
         The display. Nothing here waits for it.
+    reader
+        Function that gives the reader whose line it is.
     say
         Function that is called with each sentence about it.
     """
 
-    def __init__(self, display: ConventionalDisplay, say: Callable[[str], None]) -> None:
+    def __init__(
+        self,
+        display: ConventionalDisplay,
+        reader: Callable[[], Reader],
+        say: Callable[[str], None],
+    ) -> None:
         self._display = display
+        self._reader = reader
         self._say = say
         self._pane = Pane()
         self._shown: bytes | None = None
 
-    def attend(self, reader: Reader) -> None:
+    def attend(self, events: Sequence[Event] = ()) -> None:  # noqa: ARG002 - which are said
         """Show what is under the hand, if it is another than before, and do what keys say."""
+        reader = self._reader()
         for message in self._display.poll():
             if isinstance(message, DisplayStands):
                 self._say(f"display: {message.title}, {message.columns} cells")
@@ -133,13 +143,17 @@ class ConventionalView:
             elif isinstance(message, KeyPressed):
                 self._press(reader, message)
             elif isinstance(message, KeyTyped):
-                press(reader, message.key)
+                reader.press(message.key)
         self._show(reader)
 
     def rest(self) -> None:
         """Give the display back for a while, until `attend` is called."""
         self._shown = None
         self._display.rest()
+
+    def close(self) -> None:
+        """Give the display back."""
+        self._display.close()
 
     def _show(self, reader: Reader) -> None:
         standing, window = self._display.standing, reader.window
@@ -158,12 +172,12 @@ class ConventionalView:
         if key.name == _ROUTE and reader.context is Context.LEARNING:
             self._say("display ROUTE: say what is here, and go there")
             return
-        command = (reader.bound or BOUND).display_keys.get(key.name)
+        command = reader.bound.display_keys.get(key.name)
         step = 0 if command is None else _ALONG.get(command.name, 0)
         if step and reading and self._pan(reader, step):
             return
         window, line = reader.window, reader.line
-        press_display_key(reader, key.name)
+        reader.call(f"display {key.name}", command)
         if step < 0 and reader.line is not None and reader.line is not line:
             self._pane.end(reader.line, reader.cell)
         elif reader.window is not window:

@@ -17,16 +17,14 @@ from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError, InputError
 from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
 from vbraille.pose import Pose
-from vbraille.reading.commands.table import press_button, turn_knob
-from vbraille.reading.frames import check_shown
+from vbraille.reading.commands.table import BOUND
+from vbraille.reading.keys import TURNED, Context
 from vbraille.reading.lineviews import MOST_CELLS
 from vbraille.reading.outputs import Echo
 from vbraille.reading.reader import Reader
 from vbraille.reading.surface import MOST_LINES
-from vbraille.render.braille.models import STRESS2, Model, model_of
+from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.simulation.hand import Still
-from vbraille.simulation.recorded import Recorded
-from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.specs import (
     device_spec,
     has_hand,
@@ -45,10 +43,11 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
+    from vbraille.engine.mailbox import Extent
     from vbraille.engine.record import Tally
-    from vbraille.engine.shared import Extent
     from vbraille.engine.spawning import Spawned
     from vbraille.layout.pages import Layout, Line
+    from vbraille.reading.view import View
     from vbraille.render.braille.style import BrailleStyle, StyleChanges
     from vbraille.simulation.steering import Pointer, Steering
 
@@ -83,7 +82,16 @@ class KnobTurns:
         now_s
             Time by a clock that does not go back.
         """
-        if said := turn_knob(reader, number, share):
+        name = reader.bound.knobs.get(number)
+        said = ""
+        if reader.context is Context.LEARNING:
+            said = f"knob {number}: {'no value' if name is None else TURNED[name]}"
+        elif name is not None:
+            field, value = TURNED[name], round(share, 2)
+            if getattr(reader.style.tuning, field) != value:
+                reader.tune(**{field: value})
+                said = f"{field}: {value:g}"
+        if said:
             self._unsaid[number] = now_s + SETTLED_S, said
 
     def settle(self, reader: Reader, now_s: float) -> None:
@@ -129,6 +137,8 @@ class OpenDevice:
 
     Attributes
     ----------
+    attended : bool
+        Whether somebody is at a keyboard.
     engine : Host or LocalEngine
         Engine that drives the device, for whoever shows pictures that are no lines.
     placing : Placing
@@ -157,26 +167,31 @@ class OpenDevice:
         self.placing = Placing.DONE
         self._wanted = wanted
         self._say = say
-        self._attended = attended
+        self.attended = attended
         self._knobs = KnobTurns()
         self._device = device if isinstance(device, Device) else None
         self._closed = False
         self._simulated = isinstance(device, str) and is_simulated(device)
         moved = parse_hand(hand, seed, pointed=pointer is not None)
+        once = hand.startswith("recorded:")
         self.steering: Steering | None = None
         self.pointer: Pointer | None = None
         self._reader: Reader | None = None
+        self._view: View | None = None  # the reader, or something else that is explored
         self._model: Model | None = None
         self._newest: np.void | None = None
         self._held_ns: int | None = None  # when somebody held the simulated hand last
         if isinstance(device, Device):
             # Imported here, since it loads compiled code, which a host process loads by itself.
             from vbraille.engine.clock import RealClock
-            from vbraille.engine.local import LocalEngine
+            from vbraille.engine.loop import LocalEngine
+            from vbraille.simulation.recorded import Recorded
+            from vbraille.simulation.simulated import SimulatedDevice
 
             rate_hz = min(wanted.rate_hz, device.display.rate_hz)
             if isinstance(device, SimulatedDevice):
                 moved, self.steering, self.pointer = device.hand, device.steering, device.pointer
+                once = isinstance(moved, Recorded)
             self.engine: Host | LocalEngine = LocalEngine(
                 device,
                 RealClock() if clock is None else clock,
@@ -200,8 +215,8 @@ class OpenDevice:
             if self._simulated:
                 self.engine.launch()  # it loads while the text is laid out
         moved = moved if self.steering is not None else None
+        self._once = once and moved is not None  # it reads no more than it has recorded
         self._still = isinstance(moved, Still)
-        self._once = isinstance(moved, Recorded)  # it reads no more than it has recorded
 
     @property
     def held(self) -> bool:
@@ -322,8 +337,8 @@ class OpenDevice:
         self.placing = Placing.DONE
         self._closed = False
         self.engine.start()
-        if self._reader is not None:
-            self._reader.under.steer()
+        if self._view is not None:
+            self._view.steer()
 
     def show(
         self,
@@ -378,7 +393,8 @@ class OpenDevice:
             text = lay_out_text(text, width, chosen, keep_lines=keep_lines)
         if at is None:
             _check_lines(text, first, last)
-        self._reader = Reader(
+        services.setdefault("bound", BOUND)
+        self._view = self._reader = Reader(
             text,
             self.engine,
             model=model,
@@ -387,12 +403,16 @@ class OpenDevice:
             last=last,
             at=at,
             advance=advance,
-            stay=self._attended,
+            stay=self.attended,
             echo=echo,
             steering=self.steering,
             **services,
         )
         self._reader.start()
+
+    def explore(self, view: View) -> None:
+        """Have a view under the hand that is no text; what keys and buttons mean is the view's."""
+        self._view, self._reader = view, None
 
     def read(self, text: str | Layout, **how: Any) -> Iterator[Line]:
         """Show a text, and give each line as it comes under the hand, until all are read.
@@ -436,16 +456,18 @@ class OpenDevice:
             self.placing = placing_of(ticks[-1])
             if self._reader is not None:
                 self._step(self._reader, ticks)
+            elif self._view is not None:
+                self._view.step(ticks)
         self._take(events)
         return events
 
     def _take(self, events: list[Event]) -> None:
         """Have buttons and knobs of the device do what keys do."""
-        for event in () if self._reader is None else events:
+        for event in () if self._view is None else events:
             if isinstance(event, Button) and event.pressed and self.placing is not Placing.STOP:
-                press_button(self.reader.under.alone or self.reader, event.number)
-            elif isinstance(event, Knob):
-                self._knobs.turn(self.reader, event.number, event.value, time.monotonic())
+                self._view.listener().press_button(event.number)
+            elif isinstance(event, Knob) and self._reader is not None:
+                self._knobs.turn(self._reader, event.number, event.value, time.monotonic())
         if self._reader is not None:
             self._knobs.settle(self.reader, time.monotonic())
 
@@ -454,7 +476,7 @@ class OpenDevice:
         shown = reader.under.shown
         reader.under.patient = self._is_patient(int(ticks["time_ns"][-1]))
         reader.step(ticks)
-        if self._attended:
+        if self.attended:
             return
         felt = not int(ticks["flags"][-1]) & _HELD
         done = felt and reader.under.steered_till(ticks[-1])

@@ -233,6 +233,9 @@ class Keys:
 
 
 ANY = "any key"
+LONGEST = 200  # characters that are typed as one answer
+# Values of the tuning that a knob of the device may turn.
+TURNED = {"TEXTURE": "texture", "CONTRAST": "contrast"}
 # Signs by their names, as speech may pass over the signs themselves.
 _SIGNS = {
     ".": "full stop",

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
+from vbraille.engine.engine import EndOfLine
 from vbraille.engine.record import Flag
-from vbraille.engine.watchers import EndOfLine
 from vbraille.layout.texts import cells_per_line
 from vbraille.reading.advancing import Foot, LineWatch, too_fast_note
 from vbraille.reading.surface import Surface, below_pitches, rows_on
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.engine.engine import Engine
     from vbraille.layout.pages import Line
-    from vbraille.reading.activity import Activity
     from vbraille.reading.cues import Cue
     from vbraille.reading.surface import Surface, Window
+    from vbraille.reading.view import View
     from vbraille.render import BrailleStyle, Model
     from vbraille.render.program import Program
     from vbraille.simulation.steering import Steering
@@ -71,7 +71,7 @@ class TextView:
         Number of times that something else was put under the hand.
     figured : Figured
         The figures of the text, and those of the page under the hand.
-    alone : Activity or None
+    alone : View or None
         Figure that is felt in place of the text; None if the text is under the hand.
     patient : bool
         Whether the hand may do as it likes, since somebody moves it in the live view.
@@ -97,7 +97,7 @@ class TextView:
         self.width = self.width_in(model.style)
         self.rows = rows_on(model.display, model.style)
         self.figured = Figured(figures, model.display)
-        self.alone: Activity | None = None
+        self.alone: View | None = None
         self._awaited = False  # whether the page's figures are still to be compiled
         self._row = 0  # of the line that the finger is on, or was on last
         self._y_mm: float | None = None  # where the finger is, and the part of what is shown there
@@ -341,7 +341,8 @@ class TextView:
         """Show a page together with its figures; False if that cannot be."""
         picture = self.figured.page(surface, self.style)
         if picture is not None:
-            self._show(picture, surface)
+            self.alone = None
+            self._engine.show(picture, surface.number)
         return picture is not None
 
     def _render(self, surface: Surface) -> None:
@@ -354,9 +355,6 @@ class TextView:
         start_mm = surface.window.start_mm
         if start_mm:
             program = program.with_anchor(self._display.span_mm / 2 + start_mm)
-        self._show(program, surface)
-
-    def _show(self, program: Program, surface: Surface) -> None:
         self.alone = None
         self._engine.show(program, surface.number)
 
@@ -396,9 +394,7 @@ class Figures(Protocol):
         """Whether a page can be made at once."""
         ...
 
-    def feel(
-        self, address: str, say: Callable[[str], None], cue: Callable[[Cue], None]
-    ) -> Activity:
+    def feel(self, address: str, say: Callable[[str], None], cue: Callable[[Cue], None]) -> View:
         """Put a figure alone under the hand, in place of the text.
 
         Raises

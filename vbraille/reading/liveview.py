@@ -25,21 +25,22 @@ from vbraille.live.states import (
 from vbraille.reading.commands.table import COMMANDS
 from vbraille.reading.commands.turning import turn_to
 from vbraille.reading.keys import Context
+from vbraille.reading.outputs import Output
 from vbraille.reading.whereabouts import is_counted, line_name, percent
 from vbraille.wording import printable, spelled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
     from vbraille.devices.events import Event
     from vbraille.feeling.loading import LoadedScene
     from vbraille.layout.pages import Line
     from vbraille.live.messages import Turn
-    from vbraille.reading.activity import Activity
     from vbraille.reading.device import OpenDevice
     from vbraille.reading.reader import Reader
     from vbraille.reading.sceneview import SceneView
     from vbraille.reading.surface import Window
+    from vbraille.reading.view import View
     from vbraille.simulation.steering import Pointer
 
 MOST_SAID: Final = 20
@@ -100,7 +101,7 @@ class ExploredState(ABC):
     def __init__(
         self,
         device: OpenDevice,
-        activity: Activity,
+        activity: View,
         said: LastSentences,
         facts: Iterable[tuple[str, str]] = (),
     ) -> None:
@@ -363,17 +364,17 @@ def _turn(reader: Reader, name: str, value: float) -> None:
     turn_to(reader, name, value)
 
 
-class LiveView:
-    """The live view of a reading. A context manager; its pages are served while it is open.
+class LiveView(Output):
+    """The live view of an exploration. A context manager; its pages are served while it is open.
 
     Parameters
     ----------
     host, port
         Address and port of its pages; None for what is usual.
     pointer
-        Where pages may hold the hand of the device; None if a person moves that.
-    say
-        Function that prints a sentence.
+        Pointer by which pages may hold the hand of the device; None if a person moves that.
+    print_line
+        Function that prints what the live view has to say itself.
 
     Attributes
     ----------
@@ -386,60 +387,43 @@ class LiveView:
         host: str | None,
         port: int | None,
         pointer: Pointer | None,
-        say: Callable[[str], None],
+        print_line: Callable[[str], None],
     ) -> None:
         self.monitor = Monitor(host=host, port=port, pointer=pointer)
-        self._steered = pointer is not None
-        self._say = say
-        self._said = LastSentences()
-        self._view: ExploredState | None = None
+        self.said = LastSentences()
+        self._print = print_line
+        self._state: ExploredState | None = None
+
+    def show(self, state: ExploredState) -> None:
+        """Show something from now on."""
+        self._state = state
+        self.attend()
 
     def say(self, sentence: str) -> None:
-        """Print a sentence, and show it on the pages."""
-        self._say(sentence)
-        self._said.add(sentence)
+        """Show a sentence on the pages."""
+        self.said.add(sentence)
 
-    def show(
-        self, view: Callable[[LastSentences, list[tuple[str, str]]], ExploredState], hand: str
-    ) -> None:
-        """Show something from now on.
-
-        Parameters
-        ----------
-        view
-            Function that makes the view of what was said and of facts.
-        hand
-            Hand of a simulated device.
-        """
-        self._view = view(self._said, [("hand", hand)] if self._steered else [])
-        self.tell()
-
-    def tell(self, events: Iterable[Event] = (), standing: str | None = None) -> None:
-        """Tell the pages what has changed, and print what the live view has to say itself.
-
-        Parameters
-        ----------
-        events
-            What the device has told since the last call.
-        standing
-            Sentence on why nothing is read; empty if it is again, None if that is as it was.
-        """
+    def attend(self, events: Sequence[Event] = ()) -> None:
+        """Do what pages ask for, and tell them what has changed."""
         for note in self.monitor.notes():
-            self._say(note)
-        view = self._view
-        if view is None:
+            self._print(note)
+        asked = self.monitor.take()
+        state = self._state
+        if state is None:
             return
-        if standing is not None:
-            view.standing = standing
-        view.see(events)
-        state = view.changed()
-        if state is not None:
-            self.monitor.tell(state)
+        if not state.standing:  # otherwise nobody can do it now
+            for one in asked:
+                state.obey(one)
+        state.see(events)
+        changed = state.changed()
+        if changed is not None:
+            self.monitor.tell(changed)
 
-    def obey(self, asked: PagePress | Turn) -> None:
-        """Do what a page has asked for."""
-        if self._view is not None:
-            self._view.obey(asked)
+    def stand(self, why: str) -> None:
+        """Tell the pages why nothing is explored."""
+        if self._state is not None:
+            self._state.standing = why
+        self.attend()
 
     def __enter__(self) -> Self:
         self.monitor.launch()

@@ -1,18 +1,21 @@
-"""All that a reader hears beside the braille: sentences, speech and cues, in one place."""
+"""Outputs of an exploration: observers of one interface, by which it is heard and seen."""
 
 from __future__ import annotations
 
+import time
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final, Self
 
-from vbraille.reading.speech import Speech
+from vbraille.reading.cues import Cue, CueKind
 from vbraille.reading.whereabouts import place_sentence
+from vbraille.workers import Worker
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
+    from vbraille.devices.events import Event
     from vbraille.layout.pages import Layout, Line
-    from vbraille.reading.cues import Cue, Cues
+    from vbraille.reading.speech import Speech
     from vbraille.translate import Book
 
 
@@ -25,14 +28,14 @@ class Echo(StrEnum):
     BOTH = "both"
 
     def sentences(self, line: Line, layout: Layout) -> Iterator[str]:
-        """Sentences that are said of a line of a layout, in order."""
+        """Give the sentences that are said of a line of a layout, in order."""
         if self is Echo.NONE:
             return
         yield place_sentence(layout, line)
         yield from self.words(line)
 
     def words(self, line: Line) -> Iterator[str]:
-        """Sentences on what is printed of a line."""
+        """Give the sentences on what is printed of a line."""
         if self in (Echo.CELLS, Echo.BOTH):
             yield f"cells: {line.printed.to_unicode()}"
         if self in (Echo.TEXT, Echo.BOTH):
@@ -40,16 +43,18 @@ class Echo(StrEnum):
 
 
 _USUAL_LANGUAGE: Final = "en"
-_CELLS: Final = "cells: "  # what a sentence of braille signs begins with, which nobody can say
+_CELLS: Final = "cells: "  # begins a sentence of braille signs, which nobody can say
+_APART_S: Final = 0.1  # from one cue to the next
+_CUEING: Final = "vbraille.reading.cueing"
 
 
 def language_of(book: Book, asked: str | None = None) -> str:
-    """Language in which a book is spoken, as a tag: what was asked for, or the book or table says.
+    """Choose the language in which a book is spoken, as a tag.
 
     Parameters
     ----------
     book
-        The book.
+        The book, whose language, or whose table's, is spoken unless another was asked for.
     asked
         Language that was asked for; None if none was.
     """
@@ -58,61 +63,174 @@ def language_of(book: Book, asked: str | None = None) -> str:
     return asked or book.source.language or table or _USUAL_LANGUAGE
 
 
-class Outputs:
-    """What a reader hears. A context manager.
+class Output:
+    """An observer of an exploration; what it leaves alone does nothing."""
+
+    def say(self, sentence: str) -> None:
+        """Take a sentence that is said."""
+
+    def cue(self, cue: Cue) -> None:
+        """Take a short signal, beside the sentence that says the same."""
+
+    def attend(self, events: Sequence[Event] = ()) -> None:
+        """Look at what is under the hand, and at events of the device; called all the time."""
+
+    def stand(self, why: str) -> None:
+        """Take note that nothing is explored, by a sentence; empty if it is again."""
+
+    def rest(self) -> None:
+        """Show nothing until `attend` is called, since the program is stopped."""
+
+    def close(self) -> None:
+        """End; further calls do nothing."""
+
+
+class Outputs(Output):
+    """All outputs of an exploration. A context manager.
+
+    Parameters
+    ----------
+    outputs
+        The first of them; others may be added.
+    """
+
+    def __init__(self, *outputs: Output) -> None:
+        self._outputs = list(outputs)
+
+    def add(self, output: Output) -> None:
+        """Have another output from now on."""
+        self._outputs.append(output)
+
+    def say(self, sentence: str) -> None:
+        """Have a sentence said by each."""
+        for output in self._outputs:
+            output.say(sentence)
+
+    def cue(self, cue: Cue) -> None:
+        """Have a signal given by each."""
+        for output in self._outputs:
+            output.cue(cue)
+
+    def attend(self, events: Sequence[Event] = ()) -> None:
+        """Have each look at what is under the hand."""
+        for output in self._outputs:
+            output.attend(events)
+
+    def stand(self, why: str) -> None:
+        """Tell each why nothing is explored."""
+        for output in self._outputs:
+            output.stand(why)
+
+    def rest(self) -> None:
+        """Have each show nothing for a while."""
+        for output in self._outputs:
+            output.rest()
+
+    def close(self) -> None:
+        """End each of them."""
+        for output in self._outputs:
+            output.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+class ConsoleOutput(Output):
+    """Sentences on lines of their own.
 
     Parameters
     ----------
     print_line
-        Function that prints a sentence.
-    cues
-        Cues that are given.
-    echo
-        How much is printed of each line, and spoken with it.
+        Function that prints a line.
+    """
 
-    Attributes
+    def __init__(self, print_line: Callable[[str], None]) -> None:
+        self.say = print_line
+
+
+class SpeechOutput(Output):
+    """Sentences as speech, and the text of each line that comes under the hand.
+
+    Parameters
     ----------
-    speech : Speech or None
-        Speech, once `speak` was called.
+    speech
+        Speech, which this ends.
+    line
+        Function that gives the line under the hand; None for none.
+    echo
+        How much is said of each line, which is then not spoken again.
     """
 
     def __init__(
-        self, print_line: Callable[[str], None], cues: Cues, *, echo: Echo = Echo.NONE
+        self,
+        speech: Speech,
+        line: Callable[[], Line | None] = lambda: None,
+        *,
+        echo: Echo = Echo.NONE,
     ) -> None:
-        self.speech: Speech | None = None
-        self._print = print_line
-        self._cues = cues
+        self.speech = speech
+        self._line = line
         self._speaks_lines = echo in (Echo.NONE, Echo.CELLS)
         self._seen = (0, "")  # number and text of the line that was spoken last
 
-    def speak(self, language: str) -> None:
-        """Speak from now on, in a language given by its tag."""
-        self.speech = Speech(language)
-
     def say(self, sentence: str) -> None:
-        """Print a sentence, and speak it."""
-        self._print(sentence)
-        if self.speech is not None and not sentence.startswith(_CELLS):
+        """Speak a sentence."""
+        if not sentence.startswith(_CELLS):
             self.speech.say(sentence)
 
-    def see(self, line: Line | None) -> None:
+    def attend(self, events: Sequence[Event] = ()) -> None:  # noqa: ARG002 - which are said
         """Speak the text of the line that is under the hand, if it is another than before."""
-        if self.speech is None or line is None or not self._speaks_lines:
-            return
-        seen = line.number, line.text.strip()
+        line = self._line() if self._speaks_lines else None
+        seen = self._seen if line is None else (line.number, line.text.strip())
         if seen != self._seen:
             self._seen = seen
             self.speech.say(seen[1] or "blank")
 
+    def close(self) -> None:
+        """End speech."""
+        self.speech.close()
+
+
+class Cues(Output):
+    """Cues that are heard, at most ten a second. A context manager.
+
+    A process of its own gives them, so that reading never waits for a sound. Where there is no
+    audio output the terminal's bell rings.
+
+    Parameters
+    ----------
+    kind
+        Kind of signal.
+    now_s
+        Clock in seconds that does not go back.
+    """
+
+    def __init__(self, kind: CueKind, now_s: Callable[[], float] = time.monotonic) -> None:
+        self._now_s = now_s
+        self._given_s = float("-inf")
+        self._kind = kind
+        self._worker: Worker | None = None  # started with the first cue
+
     def cue(self, cue: Cue) -> None:
-        """Give a cue."""
-        self._cues.give(cue)
+        """Give a cue, in place of one that is still heard; one that comes too soon is left out."""
+        now_s = self._now_s()
+        if self._kind is CueKind.NONE or now_s - self._given_s < _APART_S:
+            return
+        self._given_s = now_s
+        if self._worker is None:
+            self._worker = Worker(_CUEING, self._kind.value)
+        if not self._worker.send(cue, alone=True):
+            self.close()  # whatever ended it, the sentences beside the cues are still said
 
     def close(self) -> None:
-        """End speech and cues; further calls do nothing."""
-        if self.speech is not None:
-            self.speech.close()
-        self._cues.close()
+        """Give no more cues; further calls do nothing."""
+        self._kind = CueKind.NONE
+        worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.close()
 
     def __enter__(self) -> Self:
         return self

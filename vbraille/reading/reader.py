@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from vbraille.engine.watchers import Upright
-from vbraille.reading.activity import Activity, Prompt
+from vbraille.engine.engine import Upright
 from vbraille.reading.cues import Cue
 from vbraille.reading.keys import Context
 from vbraille.reading.lineviews import TextView
@@ -14,6 +13,7 @@ from vbraille.reading.outputs import Echo
 from vbraille.reading.search.questions import CountLines
 from vbraille.reading.search.seeker import Search
 from vbraille.reading.surface import LineRange, Surface, Window, around, turned
+from vbraille.reading.view import Prompt, View
 from vbraille.reading.whereabouts import (
     LINES_PER_PAGE,
     first_character,
@@ -126,7 +126,7 @@ class Keeping:
         self.kept.keep_at(source, character, width=layout.width, table=name, **told)
 
 
-class Reader(Activity):
+class Reader(View):
     """Somebody who reads one line after the other, each alone or on a page of several.
 
     The line under the hand is the one that the finger is on: on a page it changes as the finger
@@ -156,7 +156,7 @@ class Reader(Activity):
     say
         Function that is called with each thing to be said.
     bound
-        Keys and buttons of commands; None for the usual ones.
+        Keys and buttons of commands.
     seeker
         Process that looks through the whole book; None to do so here.
     kept
@@ -209,7 +209,7 @@ class Reader(Activity):
         stay: bool = False,
         echo: Echo = Echo.NONE,
         steering: Steering | None = None,
-        bound: Bound | None = None,
+        bound: Bound,
         seeker: Seeker | None = None,
         kept: KeptBook | None = None,
         scroll: Scroll | None = None,
@@ -315,6 +315,15 @@ class Reader(Activity):
             return None
         return hit if int(line.cells.starts[0]) <= hit < line.cells.end else None
 
+    def listener(self) -> View:
+        """Give the figure that is felt alone, or this reader."""
+        self.leave_figure()
+        return self.under.alone or self
+
+    def steer(self) -> None:
+        """Have a simulated hand read what is under it."""
+        self.under.steer()
+
     def start(self) -> None:
         """Put the first line under the hand, or the one at which to begin."""
         if self._at is None or not self.jump(self._at, back=False):
@@ -330,7 +339,7 @@ class Reader(Activity):
             return
         now_s = float(ticks["time_ns"][-1]) / _NS_PER_S
         if self.under.alone is not None:
-            self.under.alone.attend(now_s)
+            self.under.alone.step(ticks)
             self.leave_figure()
             return
         for sentence in self._upright.watch(ticks[-1]):

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from vbraille.errors import InputError
 from vbraille.feeling.composing import at_height, compose
 from vbraille.feeling.index import SceneIndex
-from vbraille.feeling.loading import check_fits, load_scene
-from vbraille.reading.activity import Activity, Prompt
+from vbraille.feeling.loading import FileWatch, check_fits, load_scene
 from vbraille.reading.cues import Cue
 from vbraille.reading.keys import Context
+from vbraille.reading.view import Prompt, View
 from vbraille.scene.checking import kind_of
 from vbraille.scene.traversal import each
-from vbraille.simulation.steering import GlideTo
+from vbraille.simulation.steering import GlideTo, ReadPage
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
 
     from vbraille.display import Display
     from vbraille.feeling.index import NamedElement, Spot
@@ -29,6 +33,8 @@ if TYPE_CHECKING:
     from vbraille.scene.bounds import Box
 
 _EVERY_S: Final = 1.0
+_NS_PER_S: Final = 1_000_000_000
+_LINE_MM: Final = 10.0  # between the lines that a hand goes along which goes by itself
 _THERE_MM: Final = 3.0
 
 
@@ -106,7 +112,7 @@ _CONTRAST_STEP: Final = 0.1
 _MOVED_MM: Final = 0.2  # a hand that moved less is asked about no more
 
 
-class SceneView(Activity):
+class SceneView(View):
     """Somebody who feels a scene on a device; `vbraille.reading.commands.scene` calls its methods.
 
     Parameters
@@ -129,6 +135,11 @@ class SceneView(Activity):
         Height at which an array is that moves along x alone; None for the middle of the canvas.
     entering
         Whether each element is said when the finger comes to it.
+    watched
+        Whether the picture is read again when its file has changed.
+    goes
+        Whether a simulated hand goes over the picture by itself; without anybody at a keyboard
+        that is all.
 
     Attributes
     ----------
@@ -152,6 +163,8 @@ class SceneView(Activity):
         cue: Callable[[Cue], None] = lambda _: None,
         at_mm: float | None = None,
         entering: bool = False,
+        watched: bool = False,
+        goes: bool = False,
     ) -> None:
         super().__init__(device.engine, say, bound, cue)
         self.loaded = loaded
@@ -169,6 +182,8 @@ class SceneView(Activity):
         self._spot: Spot | None = None  # what the finger was on when that was last looked for
         self._element = -1  # number of the element that was gone to last
         self._index = self._index_of(loaded)
+        self._watch = FileWatch(Path(loaded.opened.path)) if watched else None
+        self._goes = goes and device.steering is not None
 
     @property
     def display(self) -> Display:
@@ -184,6 +199,7 @@ class SceneView(Activity):
     def start(self, program: Program) -> None:
         """Put the scene under the hand, and say what it is."""
         self._show(program)
+        self.steer()
         self.say_scene()
         if not self.display.height_mm:
             self.say(
@@ -191,6 +207,28 @@ class SceneView(Activity):
                 f"picture is felt at a time, now at {self._at_mm:.0f} mm from the top; "
                 f"{self.key('DOWN', 'down')} and {self.key('UP', 'up')} choose another"
             )
+
+    def steer(self) -> None:
+        """Have a hand that goes by itself go over the whole picture, another to its middle."""
+        steering = self._device.steering
+        if self._goes and steering is not None:
+            canvas = self.loaded.scene.canvas
+            lines = max(1, round(canvas.height_mm / _LINE_MM))
+            steering.give(ReadPage(lines, canvas.height_mm / lines, canvas.width_mm))
+        elif self._watch is not None:
+            canvas = self.loaded.scene.canvas
+            self._glide((canvas.width_mm / 2, canvas.height_mm / 2), LED_MM_S)
+
+    def step(self, ticks: NDArray[np.void]) -> None:
+        """Look where the hand is, and whether the file has changed or the hand is done."""
+        if self._device.held:  # keys move the hand from where somebody else has left it
+            self._aim = None
+        self.attend(float(ticks["time_ns"][-1]) / _NS_PER_S)
+        if self._watch is not None and self._watch.changed():
+            self.reload()
+        steering = self._device.steering
+        if self._goes and steering is not None and not self._device.attended:
+            self.done = self.done or steering.done_at(int(ticks["device_ns"][-1]))
 
     def attend(self, now_s: float) -> None:
         """Do what is done by time: say what the finger comes to, and the way to what is sought."""
@@ -335,10 +373,6 @@ class SceneView(Activity):
         """Go to the middle of the canvas."""
         canvas = self.loaded.scene.canvas
         self._lead("middle", (canvas.width_mm / 2, canvas.height_mm / 2))
-
-    def forget_aim(self) -> None:
-        """Have keys move the hand from where it is: somebody else has moved it."""
-        self._aim = None
 
     def turn_contrast(self, step: int) -> None:
         """Show the picture with more or less of the actuators' swing."""

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
 
+_DOUBLE = np.dtype(np.float64)
 _BLOCK = 64  # number of places whose swings stay in the processor's nearest cache
 # No picture moves by itself for longer, since vibration tires the skin (Lévesque 2009, 8.6).
 EXPOSURE_S = 60.0
@@ -111,8 +112,7 @@ class Program:
             Place of the array's centre. A place that is not on the picture gives the idle frame,
             and so does NaN.
         out : float[rows, columns]
-            Deflections, 0 … 1. The array need not be contiguous, but for the first array of each
-            new type and layout kernels are compiled, which takes some seconds.
+            Deflections, 0 … 1.
         y_mm
             Place of the array's centre down the page, which matters where each actuator shows
             what lies under it; None for that of a carriage that measures no y.
@@ -135,7 +135,12 @@ class Program:
         at = self._at
         at[work.X], at[work.THETA], at[work.TIME] = x_mm, theta_rad, time_s
         at[work.Y] = self.own_y_mm if y_mm is None else y_mm
-        self._fill(self.numbers, self.table, self._scratch, part, at, out)
+        # Kernels are compiled for float64 in one piece alone.
+        fits = out.dtype is _DOUBLE and out.flags.c_contiguous
+        made = out if fits else np.empty(out.shape)
+        self._fill(self.numbers, self.table, self._scratch, part, at, made)
+        if not fits:
+            out[:] = made
 
     def path(
         self, x_mm: NDArray[np.float64], out: NDArray[np.float32] | None = None

@@ -14,12 +14,12 @@ from vbraille.engine.host import Host
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import check_free
 from vbraille.sessions.conditions import USUAL, Conditions
-from vbraille.sessions.planning.appearance import CONVENTIONAL
-from vbraille.sessions.planning.choosing import procedure_of
 from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.nexttrial import procedure_of
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.protocolfiles import load_protocol
 from vbraille.sessions.planning.spellings import made_by
+from vbraille.sessions.planning.style import CONVENTIONAL
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.folder import FORMAT, Record, create, load, versions
 from vbraille.sessions.record.progress import Progress
@@ -315,10 +315,10 @@ class Session:
             If the session's record is damaged.
         """
         record = load(Path(folder))
-        if record.told.damage is not None:
+        if record.journal.damage is not None:
             raise VbrailleError(
-                f"{record.folder} is damaged: of {journal.NAME} {record.told.damage}; the "
-                f"{len(record.told.events)} events before it are whole, and nothing was changed"
+                f"{record.folder} is damaged: of {journal.NAME} {record.journal.damage}; the "
+                f"{len(record.journal.events)} events before it are whole, and nothing was changed"
             )
         progress = record.progress()
         if progress.ended:
@@ -542,7 +542,7 @@ def usual_conventional(
         Whether answers come from what is felt: a simulated reader compares nothing with what
         stands there.
     """
-    if conditions.fast or felt or not protocol.stands_beside:
+    if conditions.fast or felt or not protocol.needs_conventional:
         return None
     from vbraille.conventional.display import ConventionalDisplay
     from vbraille.sessions.running.conventional import OnConventional
@@ -568,7 +568,7 @@ def check_conventional(protocol: Protocol, conditions: Conditions) -> None:
     InputError
         If they do not.
     """
-    if conditions.also is not None and not protocol.stands_beside:
+    if conditions.also is not None and not protocol.needs_conventional:
         raise InputError(
             f"{protocol.name} shows nothing on a conventional display; leave out {setting('also')}"
         )

@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-import numpy as np
-
-from vbraille.simulation.motion import Way
+from vbraille.simulation.motion import APPROACH_MM_S, Course, Way
 from vbraille.simulation.paging import Area, area_on
 from vbraille.simulation.recorded import Recorded
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from vbraille.display import Display
     from vbraille.simulation.hand import Hand
-    from vbraille.simulation.motion import Motion
 
-# Speed of a hand that moves without reading.
-APPROACH_MM_S: Final = 250.0
-TURN_RAD_S: Final = 2 * math.pi
 PAST_MARK_MM: Final = 1.0
+_NS_PER_US: Final = 1000
 # What a page keeps free below its last line, in line pitches, for a finger that goes on from there.
 BELOW_PITCHES: Final = 0.225
 
@@ -61,6 +51,9 @@ class Carriage:
         Whether the carriage measures how far the array is turned.
     area
         Lines of a page, on a carriage of two axes; None where single lines are read.
+    home_y_mm
+        Where the carriage stands across the lines before the hand reads: at its far stop, or
+        further down.
     """
 
     def __init__(
@@ -72,31 +65,25 @@ class Carriage:
         height_mm: float = 0.0,
         turns: bool = False,
         area: Area | None = None,
+        home_y_mm: float = 0.0,
     ) -> None:
         self._hand = hand
         self._left_mm, self._travel_mm = -span_mm, travel_mm
-        self._height_mm, self._turns, self._area = height_mm, turns, area
-        # Places at these times: x as in `Motion`, y and θ; None while nothing is under way.
-        self._t_s: NDArray[np.float64] = np.zeros(1)
-        self._ways: list[NDArray[np.float64]] | None = None
-        self._begun_us = 0
-        self._at: tuple[float, ...] = (self._left_mm, 0.0, 0.0)
+        self._height_mm, self._area = height_mm, area
+        self._home = self._left_mm, home_y_mm, 0.0
+        self._course = Course(*self._home, free_y=height_mm > 0, turns=turns)
         self._waits, self._reads = True, False
 
     def at(self, now_us: int) -> CarriageAt:
         """Place of the carriage, on the axes that it has; time must not go back."""
-        if self._ways is not None:
-            time_s = (now_us - self._begun_us) / 1e6
-            self._at = self._place(time_s)
-            if time_s >= self._t_s[-1]:
-                self._ways = None
-        if self._ways is None and self._reads:
-            self._read(now_us)
-        x_mm, y_mm, theta_rad = self._at
+        now_ns = now_us * _NS_PER_US
+        if self._reads and self._course.is_over(now_ns):
+            self._read(now_ns)
+        x_mm, y_mm, theta_rad = self._course.at(now_ns)
         return CarriageAt(
             min(max(x_mm - self._left_mm, 0.0), self._travel_mm),
             min(max(y_mm, 0.0), self._height_mm),
-            theta_rad if self._turns else 0.0,
+            theta_rad,
         )
 
     def set_out(self) -> None:
@@ -106,55 +93,25 @@ class Carriage:
 
     def cross(self, mark_mm: float, now_us: int) -> None:
         """Move over the encoder's mark and back to the stop."""
-        if self._ways is None:
-            way = Way(self._at[0])
+        now_ns = now_us * _NS_PER_US
+        if self._course.is_over(now_ns):
+            way = Way(self._course.at(now_ns)[0])
             way.move(self._left_mm + mark_mm + PAST_MARK_MM, APPROACH_MM_S)
             way.move(self._left_mm, APPROACH_MM_S)
-            self._move(way.motion(), now_us)
+            self._course.follow(way.motion(), now_ns)
 
     def go_back(self, now_us: int) -> None:
-        """Move to the stops, straighten the array, and wait there for the next order."""
-        self.at(now_us)
-        self._ways = None
-        home = self._left_mm, 0.0, 0.0
-        needed_s = self._needed_s(home)
-        if needed_s > 0:
-            self._t_s, self._begun_us = np.array([0.0, needed_s]), now_us
-            self._ways = [np.array(ends) for ends in zip(self._at, home, strict=True)]
+        """Move to where it stood at first, straighten the array, and wait for the next order."""
+        self._course.go_to(self._home, now_us * _NS_PER_US)
         self._waits, self._reads = True, False
 
-    def _read(self, now_us: int) -> None:
+    def _read(self, now_ns: int) -> None:
         """Have the hand read once more; a recorded one reads once."""
         if isinstance(self._hand, Recorded):
             self._reads = False
-            self._move(self._hand.motion(), now_us)
+            motion = self._hand.motion()
         elif self._area is not None:
-            self._move(self._hand.read_page(self._area), now_us)
+            motion = self._hand.read_page(self._area)
         else:
-            line = self._hand.read_line(self._left_mm, self._left_mm + self._travel_mm)
-            self._move(line, now_us)
-
-    def _move(self, motion: Motion, now_us: int) -> None:
-        """Move along a motion from now on, and first to where it begins."""
-        ways = [
-            np.full(motion.t_s.size, here) if way is None else way
-            for here, way in zip(
-                self._at, (motion.x_mm, motion.y_mm, motion.theta_rad), strict=True
-            )
-        ]
-        needed_s = self._needed_s([float(way[0]) for way in ways])
-        t_s = motion.t_s
-        if needed_s > 0:
-            t_s = np.concatenate(([0.0], t_s + needed_s))
-            ways = [np.concatenate(([here], way)) for here, way in zip(self._at, ways, strict=True)]
-        self._t_s, self._ways, self._begun_us = t_s, ways, now_us
-
-    def _needed_s(self, to: Sequence[float]) -> float:
-        """Time that the straight way to a place takes; 0 if the carriage is there."""
-        x_mm, y_mm, theta_rad = (abs(end - here) for here, end in zip(self._at, to, strict=True))
-        way_mm = math.hypot(x_mm, y_mm if self._height_mm else 0.0)
-        return max(way_mm / APPROACH_MM_S, theta_rad / TURN_RAD_S if self._turns else 0.0)
-
-    def _place(self, time_s: float) -> tuple[float, ...]:
-        assert self._ways is not None
-        return tuple(float(np.interp(time_s, self._t_s, way)) for way in self._ways)
+            motion = self._hand.read_line(self._left_mm, self._left_mm + self._travel_mm)
+        self._course.follow(motion, now_ns)

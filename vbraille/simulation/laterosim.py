@@ -1,18 +1,17 @@
 """A Latero made of software, at a UDP port: its boards, a hand, and what goes wrong on the way.
 
-simulator = LateroSimulator(Tray(parse_hand("slow"), 8.4), say=print)
+simulator = LateroSimulator(LateroCarriage(parse_hand("slow"), 8.4), say=print)
 simulator.run(stopped=lambda: False)
 """
 
 from __future__ import annotations
 
 import heapq
-import math
 import random
 import select
 import socket
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -20,6 +19,7 @@ import numpy as np
 from vbraille.carriers import latero
 from vbraille.devices.latero.wire import FULLR0, PORT, VERSION, Answer, pack_answer
 from vbraille.errors import InputError, check_range
+from vbraille.simulation.carriage import Carriage
 from vbraille.simulation.controls import Controls
 from vbraille.simulation.lateroboard import LateroBoard
 from vbraille.simulation.paging import area_on
@@ -30,15 +30,12 @@ if TYPE_CHECKING:
 
     from vbraille.simulation.controls import ControlEvent, Press
     from vbraille.simulation.hand import Hand
-    from vbraille.simulation.motion import Motion
 
-# Speed of a hand that moves without reading.
-_APPROACH_MM_S: Final = 250.0
 # Counts of encoders 0, 1 and 2 at angle 0: any, and none of them 0, for clients must mind them.
 OFFSETS: Final = (4452, 4_294_960_000, 120_034)
 
 
-class Tray:
+class LateroCarriage(Carriage):
     """An array at the lower left, with the third arm straight up, and a hand.
 
     Parameters
@@ -54,74 +51,22 @@ class Tray:
     def __init__(
         self, hand: Hand | Recorded, span_mm: float, lines: int = 1, pitch_mm: float = 10.0
     ) -> None:
-        self._hand = hand
-        self._span_mm = span_mm
-        self._area = area_on(latero.HEIGHT_MM, lines, pitch_mm, -span_mm, latero.WIDTH_MM - span_mm)
-        self._t_s = np.zeros(1)
-        self._way = tuple(np.full(1, place) for place in (-span_mm, *latero.RESET[1:]))
-        self._begun_us = 0
-        self._reads = False
-
-    @property
-    def reads(self) -> bool:
-        """Whether the hand has set out."""
-        return self._reads
-
-    def pose(self, now_us: int) -> tuple[float, float, float]:
-        """Place of the array's centre on the tray, in mm, and its angle; time must not go back."""
-        if self._reads and (now_us - self._begun_us) / 1e6 >= self._t_s[-1]:
-            self._go(self._read(), now_us)
-        t_s = (now_us - self._begun_us) / 1e6
-        x_mm, y_mm, theta_rad = (float(np.interp(t_s, self._t_s, way)) for way in self._way)
-        x_mm = min(max(x_mm + self._span_mm, 0.0), latero.WIDTH_MM)
-        return x_mm, min(max(y_mm, 0.0), latero.HEIGHT_MM), theta_rad
+        area = area_on(latero.HEIGHT_MM, lines, pitch_mm, -span_mm, latero.WIDTH_MM - span_mm)
+        if isinstance(hand, Recorded) and hand.y_mm is None:  # it reads the first line
+            hand = replace(hand, y_mm=np.full(hand.t_s.size, area.middle_mm(0)))
+        super().__init__(
+            hand,
+            span_mm,
+            latero.WIDTH_MM,
+            height_mm=latero.HEIGHT_MM,
+            turns=True,
+            area=area,
+            home_y_mm=latero.HEIGHT_MM,
+        )
 
     def encoders(self, now_us: int) -> tuple[int, int, int, int]:
         """Counts of the four encoders; the last stands still."""
-        joints = latero.joints_at(*self.pose(now_us))
-        return *latero.encoders_of(joints, OFFSETS), 0
-
-    def set_out(self, now_us: int) -> None:
-        """Have the hand read; it may be reading already."""
-        if not self._reads:
-            self._reads = True
-            self._go(self._read(), now_us)
-
-    def go_back(self, now_us: int) -> None:
-        """Move to the lower left, and wait there."""
-        self._reads = False
-        home = np.full(1, -self._span_mm), np.full(1, latero.HEIGHT_MM), np.zeros(1)
-        self._approach(np.zeros(1), home, now_us)
-
-    def _read(self) -> Motion:
-        if isinstance(self._hand, Recorded):
-            return self._hand.motion()
-        return self._hand.read_page(self._area)
-
-    def _go(self, motion: Motion, now_us: int) -> None:
-        y_mm, theta_rad = motion.y_mm, motion.theta_rad
-        if y_mm is None:
-            y_mm = np.full(motion.t_s.size, self._area.middle_mm(0))
-        if theta_rad is None:
-            theta_rad = np.zeros(motion.t_s.size)
-        self._approach(motion.t_s, (motion.x_mm, y_mm, theta_rad), now_us)
-
-    def _approach(self, t_s: np.ndarray, way: Sequence[np.ndarray], now_us: int) -> None:
-        """Move along a way, after the way to its beginning."""
-        x_mm, y_mm, theta_rad = self._now(now_us)
-        far_mm = math.hypot(float(way[0][0]) - x_mm, float(way[1][0]) - y_mm)
-        approach_s = max(far_mm / _APPROACH_MM_S, 0.001)
-        here = (x_mm, y_mm, theta_rad)
-        self._t_s = np.concatenate(([0.0], t_s + approach_s))
-        self._way = tuple(
-            np.concatenate(([begun], places)) for begun, places in zip(here, way, strict=True)
-        )
-        self._begun_us = now_us
-
-    def _now(self, now_us: int) -> tuple[float, float, float]:
-        t_s = (now_us - self._begun_us) / 1e6
-        x_mm, y_mm, theta_rad = (float(np.interp(t_s, self._t_s, way)) for way in self._way)
-        return x_mm, y_mm, theta_rad
+        return *latero.encoders_of(latero.joints_at(*self.at(now_us)), OFFSETS), 0
 
 
 _ROOM_BYTES: Final = 2048
@@ -269,7 +214,7 @@ class LateroSimulator:
 
     Parameters
     ----------
-    tray
+    carriage
         What the hand moves.
     say
         Function that is told what happens, a sentence at a time.
@@ -301,7 +246,7 @@ class LateroSimulator:
 
     def __init__(
         self,
-        tray: Tray,
+        carriage: LateroCarriage,
         *,
         say: Callable[[str], None],
         host: str = "127.0.0.1",
@@ -314,7 +259,7 @@ class LateroSimulator:
     ) -> None:
         self.board = LateroBoard()
         self.network = Network(faults or LateroFaults())
-        self.tray = tray
+        self.carriage = carriage
         self._say = say
         self._controls, self._keys = Controls(script, presses), keys
         self._wait_s = wait_s
@@ -368,7 +313,7 @@ class LateroSimulator:
             return
         for _ in range(self.network.carry_request()):
             now_us = self.now_us
-            self.board.encoders = self.tray.encoders(now_us)
+            self.board.encoders = self.carriage.encoders(now_us)
             answer = self.board.receive(datagram)
             if answer is None:
                 continue
@@ -396,7 +341,7 @@ class LateroSimulator:
             self._first_us = now_us
         self._asked_us = now_us
         if now_us - self._first_us >= self._wait_s * 1e6:
-            self.tray.set_out(now_us)
+            self.carriage.set_out()
         if self.board.at_rest != self._was_at_rest:
             self._was_at_rest = self.board.at_rest
             if self._was_at_rest and not self.board.powered:
@@ -417,7 +362,7 @@ class LateroSimulator:
             self.board.buttons = self._controls.buttons & _FITTED
         if self._asked_us is not None and now_us - self._asked_us > GONE_S * 1e6:
             self._asked_us = self._first_us = None
-            self.tray.go_back(now_us)
+            self.carriage.go_back(now_us)
             if not self.board.at_rest:
                 self._say("nobody asks, and blades are not at rest")
 

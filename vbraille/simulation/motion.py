@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
 LEAST_KNOT_S = 1e-6  # a shorter time is made as long, so that time always increases
@@ -17,6 +19,10 @@ SLACK = 1e-9
 SPEED_BOUNDS_MM_S = (0.1, 1000.0)
 # Ours: a hand on its way back does not read, and crosses a carriage of 300 mm in little over 1 s.
 RETURN_MM_S = 250.0
+# Speeds at which a hand goes, and turns, to where its next motion begins.
+APPROACH_MM_S = 250.0
+TURN_RAD_S = 2 * math.pi
+_NS_PER_S = 1_000_000_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,3 +150,94 @@ class Way:
         """Give the motion made so far."""
         t_s, x_mm = np.array(self._knots).T
         return Motion(t_s, x_mm)
+
+
+class Course:
+    """Where a hand is that goes from motion to motion, in the time of a clock.
+
+    Parameters
+    ----------
+    x_mm, y_mm, theta_rad
+        Place where it stands at first, as in `Motion`.
+    free_y, turns
+        Whether it goes along y, and turns; a hand that does not has 0 there.
+    now_ns
+        Time at which it stands there.
+
+    Attributes
+    ----------
+    t_s : float64[n]
+        Times of the knots of what is under way, or was last, from 0.
+    ways : tuple of float64[n]
+        Places x and y and angles at these times.
+    begun_ns : int
+        When it began.
+    """
+
+    def __init__(
+        self,
+        x_mm: float,
+        y_mm: float = 0.0,
+        theta_rad: float = 0.0,
+        *,
+        free_y: bool,
+        turns: bool,
+        now_ns: int = 0,
+    ) -> None:
+        self._free_y, self._turns = free_y, turns
+        self.begun_ns = now_ns
+        self.t_s: NDArray[np.float64] = np.zeros(1)
+        self.ways = tuple(np.full(1, place) for place in (x_mm, y_mm, theta_rad))
+
+    def is_over(self, now_ns: int) -> bool:
+        """Whether the hand has come to the end of its motion."""
+        return (now_ns - self.begun_ns) / _NS_PER_S >= self.t_s[-1]
+
+    def at(self, now_ns: int) -> tuple[float, float, float]:
+        """Place x and y, and the angle, on the axes that there are."""
+        t_s = (now_ns - self.begun_ns) / _NS_PER_S
+        x_mm, y_mm, theta_rad = self.ways
+        return (
+            float(np.interp(t_s, self.t_s, x_mm)),
+            float(np.interp(t_s, self.t_s, y_mm)) if self._free_y else 0.0,
+            float(np.interp(t_s, self.t_s, theta_rad)) if self._turns else 0.0,
+        )
+
+    def rest(self, now_ns: int) -> Motion | None:
+        """Motion that is left of the present one; None if it is over."""
+        t_s = (now_ns - self.begun_ns) / _NS_PER_S
+        later = self.t_s > t_s
+        if not later.any():
+            return None
+        here = zip(self.at(now_ns), self.ways, strict=True)
+        ways = (np.concatenate(([now], way[later])) for now, way in here)
+        return Motion(np.concatenate(([0.0], self.t_s[later] - t_s)), *ways)
+
+    def go_to(
+        self,
+        to: Sequence[float],
+        now_ns: int,
+        speed_mm_s: float = APPROACH_MM_S,
+        least_s: float = 0.0,
+    ) -> None:
+        """Go straight to a place; that takes no time if the hand is there, unless it must."""
+        here = self.at(now_ns)
+        x_mm, y_mm, theta_rad = (abs(there - begun) for begun, there in zip(here, to, strict=True))
+        far_mm = math.hypot(x_mm, y_mm if self._free_y else 0.0)
+        turn_s = theta_rad / TURN_RAD_S if self._turns else 0.0
+        self.begun_ns = now_ns
+        self.t_s = np.array([0.0, max(far_mm / speed_mm_s, turn_s, least_s)])
+        self.ways = tuple(np.array(ends) for ends in zip(here, to, strict=True))
+
+    def follow(self, motion: Motion, now_ns: int) -> None:
+        """Go along a motion, and first to where it begins; y and θ stay if it has none."""
+        given = zip(self.at(now_ns), (motion.x_mm, motion.y_mm, motion.theta_rad), strict=True)
+        ways = [np.full(motion.t_s.size, here) if way is None else way for here, way in given]
+        self.go_to([float(way[0]) for way in ways], now_ns)
+        approach_s = float(self.t_s[-1])
+        if approach_s > 0:
+            self.t_s = np.concatenate(([0.0], motion.t_s + approach_s))
+            begun = zip(self.ways, ways, strict=True)
+            self.ways = tuple(np.concatenate((here[:1], way)) for here, way in begun)
+        else:
+            self.t_s, self.ways = motion.t_s, tuple(ways)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import parse_qsl
@@ -15,7 +14,7 @@ from vbraille.errors import InputError, check_range
 from vbraille.pose import Pose
 from vbraille.simulation.controls import MOST_BUTTONS, held, parse_presses
 from vbraille.simulation.hand import STILL_S, Still
-from vbraille.simulation.motion import Motion
+from vbraille.simulation.motion import Course
 from vbraille.simulation.paging import Area
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
@@ -31,15 +30,13 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.simulation.controls import Press
     from vbraille.simulation.hand import Hand
+    from vbraille.simulation.motion import Motion
     from vbraille.simulation.steering import HandOrder
 
 _Channel = TypeVar("_Channel", Steering, Pointer)
 
 NS_PER_S = 1_000_000_000
-# Speeds at which a hand goes, and turns, to where its next motion begins or where it is put.
-APPROACH_MM_S = 250.0
-HELD_MM_S = 1000.0
-TURN_RAD_S = 2 * math.pi
+HELD_MM_S = 1000.0  # speed at which a hand goes to where it is put
 # Somebody who holds the hand tells its place some 60 times a second: the hand glides from one place
 # to the next for so long, rather than jump there and stand still.
 GLIDE_S = 0.012
@@ -104,10 +101,9 @@ class SimulatedDevice(Device):
         self._now_ns = now_ns
         self.levels = np.zeros((info.rows, info.columns), np.int64)
         self.frames = 0
-        self._begun_ns = now_ns()
-        self._t_s: NDArray[np.float64] = np.zeros(1)
-        # Places at these times: x as in `Motion`, y and θ; each float64[n].
-        self._way = tuple(np.full(1, place) for place in (-info.span_mm, 0.0, 0.0))
+        self._course = Course(
+            -info.span_mm, free_y=info.height_mm > 0, turns=info.turns, now_ns=now_ns()
+        )
 
     @property
     def display(self) -> Display:
@@ -122,7 +118,7 @@ class SimulatedDevice(Device):
     def go_by(self, now_ns: Callable[[], int]) -> None:
         """Use another clock from now on; a motion goes on from where it has come to."""
         gone_ns = now_ns() - self._now_ns()
-        self._begun_ns += gone_ns
+        self._course.begun_ns += gone_ns
         self._opened_ns += gone_ns
         self._now_ns = now_ns
 
@@ -158,7 +154,7 @@ class SimulatedDevice(Device):
     @property
     def moving(self) -> bool:
         """Whether the hand is still on its way."""
-        return (self._now_ns() - self._begun_ns) / NS_PER_S < self._t_s[-1]
+        return not self._course.is_over(self._now_ns())
 
     @property
     def steering(self) -> Steering | None:
@@ -200,7 +196,7 @@ class SimulatedDevice(Device):
             self._pressed.append(HandHeld(at is not None))
         now_ns = self._now_ns()
         if self._at is None:
-            self._left = self._rest(now_ns)
+            self._left = self._course.rest(now_ns)
         self._at = at
         if at is None:
             return False
@@ -212,30 +208,17 @@ class SimulatedDevice(Device):
             at.theta_rad if info.turns else 0.0,
         )
         since_s, self._held_ns = (now_ns - self._held_ns) / NS_PER_S, now_ns
-        self._set_out(to, HELD_MM_S, least_s=min(since_s, GLIDE_S))
+        self._course.go_to(to, now_ns, HELD_MM_S, min(since_s, GLIDE_S))
         return True
-
-    def _rest(self, now_ns: int) -> Motion | None:
-        """Motion that is left of the present one; None if it is over."""
-        t_s = (now_ns - self._begun_ns) / NS_PER_S
-        later = self._t_s > t_s
-        if not later.any():
-            return None
-        here = self._hand_at(now_ns)
-        ways = (
-            np.concatenate(([now], way[later])) for now, way in zip(here, self._way, strict=True)
-        )
-        return Motion(np.concatenate(([0.0], self._t_s[later] - t_s)), *ways)
 
     def until_done(self, times_ns: NDArray[np.int64]) -> int:
         """Number of given times that come until the hand has done its order.
 
         The time at which it is done counts too. All times count if there is no order or it takes
         longer.
-
-        The one at which it has is counted. All do if nothing is under way, or it takes longer.
         """
-        done = (times_ns - self._begun_ns) / NS_PER_S >= self._t_s[-1]
+        course = self._course
+        done = (times_ns - course.begun_ns) / NS_PER_S >= course.t_s[-1]
         if not self._ordered or not done.any():
             return times_ns.size
         return int(done.argmax()) + 1
@@ -243,15 +226,16 @@ class SimulatedDevice(Device):
     def _do(self, order: HandOrder) -> None:
         """Have the hand follow an order; a recorded hand sets out with the first and goes on."""
         hand, home_mm = self._hand, -self._info.span_mm
+        course, now_ns = self._course, self._now_ns()
         if isinstance(order, BeAt):
             x_mm = order.x_mm - self._info.span_mm / 2
-            self._set_out([x_mm, order.y_mm, order.theta_rad], HELD_MM_S)
+            course.go_to([x_mm, order.y_mm, order.theta_rad], now_ns, HELD_MM_S)
         elif isinstance(order, GlideTo):
-            *_, theta_rad = self._hand_at(self._now_ns())
+            *_, theta_rad = course.at(now_ns)
             x_mm = order.x_mm - self._info.span_mm / 2
-            self._set_out([x_mm, order.y_mm, theta_rad], order.speed_mm_s)
+            course.go_to([x_mm, order.y_mm, theta_rad], now_ns, order.speed_mm_s)
         elif isinstance(hand, Still):
-            self._set_out(self._hand_at(self._now_ns()), HELD_MM_S, least_s=STILL_S)
+            course.go_to(course.at(now_ns), now_ns, HELD_MM_S, STILL_S)
         elif isinstance(hand, Recorded):
             if not self._has_set_out:
                 self.move(hand.motion())
@@ -264,41 +248,14 @@ class SimulatedDevice(Device):
 
     def move(self, motion: Motion) -> None:
         """Move the hand along a motion from now on; it first goes to where the motion begins."""
-        _, y_mm, theta_rad = self._hand_at(self._now_ns())
-        count = motion.t_s.size
-        way = (
-            motion.x_mm,
-            np.full(count, y_mm) if motion.y_mm is None else motion.y_mm,
-            np.full(count, theta_rad) if motion.theta_rad is None else motion.theta_rad,
-        )
-        self._set_out([float(places[0]) for places in way], APPROACH_MM_S)
-        approach_s = float(self._t_s[-1])
-        if approach_s > 0:
-            self._t_s = np.concatenate(([0.0], motion.t_s + approach_s))
-            begun = zip(self._way, way, strict=True)
-            self._way = tuple(np.concatenate((here[:1], places)) for here, places in begun)
-        else:
-            self._t_s, self._way = motion.t_s, way
-
-    def _set_out(self, to: Sequence[float], speed_mm_s: float, least_s: float = 0.0) -> None:
-        """Move the hand straight to a place; that takes no time if it is there, unless it must."""
-        here = self._hand_at(self._now_ns())
-        x_mm, y_mm, theta_rad = (abs(there - begun) for begun, there in zip(here, to, strict=True))
-        if not self._info.height_mm:
-            y_mm = 0.0
-        if not self._info.turns:
-            theta_rad = 0.0
-        needed_s = max(math.hypot(x_mm, y_mm) / speed_mm_s, theta_rad / TURN_RAD_S, least_s)
-        self._begun_ns = self._now_ns()
-        self._t_s = np.array([0.0, needed_s])
-        self._way = tuple(np.array(ends) for ends in zip(here, to, strict=True))
+        self._course.follow(motion, self._now_ns())
 
     def read(self) -> Pose | None:
         """Pose of the carriage now, to the nearest count of its encoders."""
         self.obey()
         now_ns = self._now_ns()
         info = self._info
-        hand_mm, y_mm, theta_rad = self._hand_at(now_ns)
+        hand_mm, y_mm, theta_rad = self._course.at(now_ns)
         way = min(max(hand_mm + info.span_mm, 0.0), info.travel_mm)
         counts = round(way * info.counts_per_mm)
         x_mm = counts / info.counts_per_mm - info.span_mm / 2
@@ -310,8 +267,8 @@ class SimulatedDevice(Device):
     def places_mm(self, times_ns: NDArray[np.int64]) -> NDArray[np.float64]:
         """Places of the centre that `read` would find at these times, undisturbed; float64[n]."""
         # The same as in `read`, where arrays for a single place would take several times as long.
-        info = self._info
-        hand_mm = np.interp((times_ns - self._begun_ns) / NS_PER_S, self._t_s, self._way[0])
+        info, course = self._info, self._course
+        hand_mm = np.interp((times_ns - course.begun_ns) / NS_PER_S, course.t_s, course.ways[0])
         way = np.clip(hand_mm + info.span_mm, 0.0, info.travel_mm)
         return np.rint(way * info.counts_per_mm) / info.counts_per_mm - info.span_mm / 2
 
@@ -323,25 +280,16 @@ class SimulatedDevice(Device):
         float64[3, n]
             x and y in mm, and θ in radians, as of `Pose`.
         """
-        info, t_s = self._info, (times_ns - self._begun_ns) / NS_PER_S
+        info, course = self._info, self._course
+        t_s = (times_ns - course.begun_ns) / NS_PER_S
         poses = np.zeros((3, times_ns.size))
         poses[0] = self.places_mm(times_ns)
         if info.height_mm:
-            way = np.clip(np.interp(t_s, self._t_s, self._way[1]), 0.0, info.height_mm)
+            way = np.clip(np.interp(t_s, course.t_s, course.ways[1]), 0.0, info.height_mm)
             poses[1] = np.rint(way * info.counts_per_mm) / info.counts_per_mm
         if info.turns:
-            poses[2] = np.interp(t_s, self._t_s, self._way[2])
+            poses[2] = np.interp(t_s, course.t_s, course.ways[2])
         return poses
-
-    def _hand_at(self, now_ns: int) -> tuple[float, float, float]:
-        """Place of the hand along x and y and its angle, on the axes that the device has."""
-        t_s = (now_ns - self._begun_ns) / NS_PER_S
-        knots_s, (x_mm, y_mm, theta_rad) = self._t_s, self._way
-        return (
-            float(np.interp(t_s, knots_s, x_mm)),
-            float(np.interp(t_s, knots_s, y_mm)) if self._info.height_mm else 0.0,
-            float(np.interp(t_s, knots_s, theta_rad)) if self._info.turns else 0.0,
-        )
 
     def _send(self, frame: NDArray[np.float64]) -> None:
         np.rint(frame * (self._info.levels - 1), out=self.levels, casting="unsafe")

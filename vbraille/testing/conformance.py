@@ -23,7 +23,7 @@ from vbraille.devices.events import Placing, is_known
 from vbraille.display import Display
 from vbraille.engine.checkup import NS_PER_S, Watch
 from vbraille.engine.clock import RealClock
-from vbraille.engine.watchers import HOME_MM
+from vbraille.engine.engine import HOME_MM
 from vbraille.errors import DeviceError, InputError
 
 if TYPE_CHECKING:

@@ -100,7 +100,7 @@ def test_sessions_of_one_folder_name_are_told_apart(sites):
     study = load_study(sites)
     assert levels(study.trials.session) == ("x/P01-orders", "y/P01-orders")
     assert len(study.trials) == 24
-    assert [sitting.name for sitting in study.sittings] == ["x/P01-orders", "y/P01-orders"]
+    assert [sitting.name for sitting in study.sessions] == ["x/P01-orders", "y/P01-orders"]
     assert {word for word, _ in study.about} >= {"Session x/P01-orders", "Session y/P01-orders"}
     (warning,) = [w for w in study.warnings if "told apart" in w]
     assert "x/P01-orders and y/P01-orders" in warning

@@ -8,13 +8,13 @@ from scipy import stats
 
 from tests.analysis.making import made, record
 from tests.sessions.sittings import Session
-from vbraille.analysis.input.sittings import (
+from vbraille.analysis.input.sessions import (
     IN_PART,
     ONE_PASS,
     RESCAN,
     Reading,
     SessionTrials,
-    read_sitting,
+    read_session,
 )
 from vbraille.analysis.measures.movement import correlations, patterns, trajectories
 from vbraille.analysis.statistics.intervals import correlation_interval
@@ -100,7 +100,7 @@ def test_without_readings_there_are_no_patterns(sittings):
 def test_a_session_that_was_sat(tmp_path):
     session = Session(tmp_path / "s", hand="sweep:60")
     session.sit()
-    sat = read_sitting(session.folder)
+    sat = read_session(session.folder)
     table = trajectories([sat])
     assert table.frame["trial"].tolist() == [1, 2, 3, 4]
     assert sorted(table.frame["presented"].tolist()) == ["a", "blank", "c", "dot 4"]

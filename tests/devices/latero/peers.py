@@ -6,7 +6,7 @@ import threading
 import time
 from contextlib import contextmanager
 
-from vbraille.simulation.laterosim import LateroSimulator, Tray
+from vbraille.simulation.laterosim import LateroCarriage, LateroSimulator
 from vbraille.simulation.specs import parse_hand
 
 PATIENCE_S = 20.0
@@ -16,7 +16,7 @@ PATIENCE_S = 20.0
 def simulated(hand="sweep:60", span_mm=8.4, **options):
     """A Latero that answers until the end; `spec` tells where."""
     options = {"port": 0, "wait_s": 0.0, "say": lambda _: None, **options}
-    latero = LateroSimulator(Tray(parse_hand(hand), span_mm), **options)
+    latero = LateroSimulator(LateroCarriage(parse_hand(hand), span_mm), **options)
     ended = threading.Event()
     thread = threading.Thread(target=latero.run, args=(ended.is_set,))
     thread.start()

@@ -4,7 +4,7 @@ import pytest
 
 from tests.reading.test_reader import Bench
 from vbraille.reading import COMMANDS, Context
-from vbraille.reading.commands.table import BOUND, find, press
+from vbraille.reading.commands.table import BOUND
 from vbraille.reading.keys import ANY, PASTE, PASTE_REST
 
 
@@ -13,7 +13,7 @@ def test_a_key_has_one_meaning_in_a_context(context):
     commands = tuple(BOUND.of(context))
     keys = [key for command in commands for key in command.keys]
     assert len(set(keys)) == len(keys) > 0
-    assert [find(key, context) for command in commands for key in command.keys] == [
+    assert [BOUND.find(key, context) for command in commands for key in command.keys] == [
         command for command in commands for _ in command.keys
     ]
 
@@ -69,5 +69,5 @@ def test_while_the_left_stop_is_asked_for_any_key_is_the_answer():
     assert bench.press([PASTE]) == ["paste: text that is pasted is passed over; type the keys"]
     assert bench.device.zeroed == 4
     assert bench.reader.line_number == 1
-    press(bench.reader, "q")
+    bench.reader.press("q")
     assert bench.reader.done

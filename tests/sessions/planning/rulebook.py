@@ -3,11 +3,11 @@
 from collections import Counter
 from itertools import groupby, pairwise, permutations, product
 
-from vbraille.sessions.planning.appearance import TUNED
 from vbraille.sessions.planning.chance import balanced_orders
 from vbraille.sessions.planning.design import Choice, Combinations, name_item
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.stimuli import KNOBS
+from vbraille.sessions.planning.style import TUNED
 
 
 def broken_rules(protocol, participant, seed):
@@ -171,7 +171,7 @@ def _check_tuning(protocol, plan):
         (tuning,) = tunings[condition.name]
         planned = protocol.style_of(condition).tuning
         for name, value in zip(names, tuning, strict=True):
-            if name in (*condition.given, "cycles") and value != getattr(planned, name):
+            if name in (*condition.changes, "cycles") and value != getattr(planned, name):
                 raise ValueError(f"condition {condition.name} has another {name}")
 
 
@@ -330,7 +330,7 @@ def _level(protocol, trial, name):
     levels = protocol.levels(trial.condition)
     if name in levels:
         return levels[name]
-    return protocol.told(trial.item)[name]
+    return protocol.columns_of(trial.item)[name]
 
 
 def _check_quarters(tested):

@@ -184,7 +184,7 @@ class TestOrders:
         )
         protocol = parse(text, i_csv=ITEMS)
         plan = make_plan(protocol, "P01", 1)
-        kinds = [protocol.told(t.stimuli[0].masks)["kind"] for t in plan.trials]
+        kinds = [protocol.columns_of(t.stimuli[0].masks)["kind"] for t in plan.trials]
         assert longest_run(kinds) == 1
 
     def test_a_changed_order_is_found(self):
@@ -277,7 +277,7 @@ class TestChoices:
             '[procedure]\nkind = "quest"\nparameter = "dot_width_mm"\nleast = 0.5\nmost = 2.0\n'
             "step = 0.5\nspread = [0.2]\n"
         )
-        from vbraille.sessions.planning.choosing import procedure_of
+        from vbraille.sessions.planning.nexttrial import procedure_of
 
         protocol = parse(text)
         procedure = procedure_of(protocol, make_plan(protocol, "P01", 1))

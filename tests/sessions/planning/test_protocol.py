@@ -14,8 +14,8 @@ from vbraille.braille.spelling import spell
 from vbraille.errors import InputError
 from vbraille.render import MAPPINGS, Tuning
 from vbraille.sessions import planning
-from vbraille.sessions.planning.conduct import Question, Tone
 from vbraille.sessions.planning.design import Practice
+from vbraille.sessions.planning.pace import ParticipantField, Tone
 from vbraille.sessions.planning.protocolfiles import (
     builtin_names,
     builtin_text,
@@ -154,7 +154,7 @@ class TestParsing:
         assert not protocol.rules.never_twice_running
         assert (protocol.design.blocks, protocol.design.repeats) == ("conditions", 1)
         assert (protocol.design.order, protocol.balanced) == (None, False)
-        assert [(c.name, protocol.style_of(c).tuning, c.given) for c in protocol.conditions] == [
+        assert [(c.name, protocol.style_of(c).tuning, c.changes) for c in protocol.conditions] == [
             ("all", Tuning(), {})
         ]
         assert (protocol.trial.gap_s, protocol.trial.warning_s) == (0.5, None)
@@ -209,7 +209,7 @@ class TestParsing:
         assert (protocol.geometry.dot_width_mm, protocol.geometry.travel_mm) == (3.0, 200.0)
         assert (protocol.mapping.name, protocol.medium) == ("paired", "paper")
         assert protocol.design.strings == ((3, 1, 8),)
-        assert [(c.name, protocol.style_of(c).tuning, c.given) for c in protocol.conditions] == [
+        assert [(c.name, protocol.style_of(c).tuning, c.changes) for c in protocol.conditions] == [
             ("weak", Tuning(0.5, 0.25, 5), {"contrast": 0.25}),
             ("fine", Tuning(1.0, 0.75, 9), {"texture": 1.0, "cycles": 9}),
         ]
@@ -219,7 +219,7 @@ class TestParsing:
         assert (protocol.session.limit_s, protocol.session.break_every) == (60.0, 5)
         assert not protocol.faults.repeat
         assert protocol.sound.cue == Tone(1000, 100)
-        assert protocol.fields == (Question("finger", "Which?"),)
+        assert protocol.fields == (ParticipantField("finger", "Which?"),)
 
     @pytest.mark.parametrize(
         ("value", "width_mm", "spacing_mm"), [(None, 2.0, 4.0), (1.5, 2.0, 3.5), (0.0, 2.0, 2.0)]

@@ -62,7 +62,7 @@ def test_each_condition_has_the_cells_of_its_table():
     again = Plan.from_json(plan.to_json())
     assert again == plan
     check_plan(protocol, again)
-    assert [protocol.told(t.item)["kind"] for t in plan.trials if t.catch] == ["", ""]
+    assert [protocol.columns_of(t.item)["kind"] for t in plan.trials if t.catch] == ["", ""]
 
 
 def test_a_plan_with_the_table_of_another_condition_is_refused():

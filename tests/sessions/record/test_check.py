@@ -174,7 +174,7 @@ def test_cut_at_every_byte_of_its_last_4_kb_a_journal_is_a_state_to_go_on_from(f
     cuts = {*range(least, len(whole), by_tier(6, 1, 1)), *ends}
     for cut in sorted(cut for cut in cuts if least <= cut < len(whole)):
         told = decode(whole[:cut])
-        assert told.events == record.told.events[: sum(end <= cut for end in ends)], cut
+        assert told.events == record.journal.events[: sum(end <= cut for end in ends)], cut
         assert told.damage is None
         progress = Progress(record.plan, told.events)
         answers = sum(e.kind == "answer" for e in told.events)
@@ -189,7 +189,7 @@ def test_cut_at_every_byte_of_its_last_4_kb_a_journal_is_a_state_to_go_on_from(f
         assert good, (cut, text)
         assert ("its last line was cut short" in text) == bool(told.torn), cut
         assert f"answers: {answers} of 4" in text
-        table = rows(replace(record, told=told), traces)
+        table = rows(replace(record, journal=told), traces)
         assert sum(row["answered"] != "" for row in table) == answers
 
 
@@ -201,7 +201,7 @@ def test_and_whatever_the_cut_it_goes_on_to_the_end(tmp_path, rng):
     for cut in sorted(rng.integers(1, 4096, 8).tolist()):
         whole = path.read_bytes()
         crash(session.folder, max(len(whole) - cut, whole.index(b"\n") + 1))
-        before = load(session.folder).told.events
+        before = load(session.folder).journal.events
         sat = session.sit()
         assert sat.events[: len(before)] == before
         assert sat.progress.done == 4

@@ -35,8 +35,8 @@ def people(folder):
 
 def named(record, participant):
     """The session as if it were another's."""
-    told = replace(record.told, crcs=[hash(participant) & 0xFFFFFFFF])
-    return replace(record, plan=structs.replace(record.plan, participant=participant), told=told)
+    told = replace(record.journal, crcs=[hash(participant) & 0xFFFFFFFF])
+    return replace(record, plan=structs.replace(record.plan, participant=participant), journal=told)
 
 
 def test_a_dataset_takes_several_participants_and_several_sessions_of_each(records, tmp_path):
@@ -112,7 +112,7 @@ def test_a_dataset_that_cannot_be_finished_is_not_begun(record, tmp_path, monkey
 
 def test_without_times_no_file_tells_when_or_where(record, tmp_path):
     bids.write(record, tmp_path / "set", without_times=True)
-    year = record.told.events[0].wall[:4]
+    year = record.journal.events[0].wall[:4]
     for path in (tmp_path / "set").rglob("*"):
         if path.suffix in (".tsv", ".json") or path.name == "README":
             text = path.read_text()

@@ -74,8 +74,8 @@ def test_the_hand_that_goes_back_after_the_answer_is_of_no_trial(sat):
 def test_what_is_not_answered_is_a_row_with_nothing_in_it(sat):
     for name, done in (("presented", 1), ("answer", 2)):
         second = [n for n, event in enumerate(sat.events) if event.kind == name][1]
-        told = replace(sat.record.told, events=sat.events[: second + 1])
-        table = rows(replace(sat.record, told=told))
+        told = replace(sat.record.journal, events=sat.events[: second + 1])
+        table = rows(replace(sat.record, journal=told))
         assert len(table) == 4
         assert [row["answered"] != "" for row in table] == [n < done for n in range(4)]
         for row in table[done:]:

@@ -32,7 +32,7 @@ def test_what_was_put_comes_back(tmp_path, put):
     assert record.protocol == parse_protocol(MINI, "test")
     assert record.plan == make_plan(record.protocol, "P1", 1)
     assert record.head == {"fields": {"café": "\udcff"}}
-    assert [event.kind for event in record.told.events] == ["session"]
+    assert [event.kind for event in record.journal.events] == ["session"]
     assert (tmp_path / "s" / "protocol.toml").read_text() == MINI
 
 
@@ -63,7 +63,7 @@ def test_it_is_whole_or_nothing_wherever_it_is_stopped(tmp_path, put, monkeypatc
     left = 5  # its name may not be on the disk yet, but it is there
     with pytest.raises(KeyboardInterrupt):
         put(folder)
-    assert load(folder).told.damage is None
+    assert load(folder).journal.damage is None
 
 
 def test_what_a_killed_birth_left_is_removed_by_the_next(tmp_path, put):
@@ -109,7 +109,7 @@ def test_a_file_that_is_gone_or_another_is_said(tmp_path, put, name):
 
 def test_a_trace_is_held_against_what_the_journal_tells_of_it(tmp_path):
     session = Session(tmp_path / "s")
-    ended = session.sit().record.told
+    ended = session.sit().record.journal
     told = replace(ended, events=ended.events[:-1])  # before the trace was closed
     path = tmp_path / "s" / "trace-001.gz"
     whole = path.read_bytes()

@@ -81,7 +81,7 @@ def test_a_torn_tail_is_set_aside_and_the_journal_goes_on(folder):
     whole = fill(folder)
     (folder / journal.NAME).write_bytes(whole[:-9])
     with Journal(folder) as book:
-        assert len(book.told.events) == 5
+        assert len(book.contents.events) == 5
         length = book.set_torn_aside()
         book.append(Note(text="after", t_s=9.0))
     torn = whole[:-9].rpartition(b"\n")[2]

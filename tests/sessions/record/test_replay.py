@@ -5,7 +5,7 @@ import numpy as np
 from tests.engine.test_batch import device
 from tests.shown import array_of, full
 from vbraille.engine.clock import ManualClock
-from vbraille.engine.local import LocalEngine
+from vbraille.engine.loop import LocalEngine
 from vbraille.engine.record import Flag
 from vbraille.render import STRESS2
 from vbraille.sessions.record.journal import Tie

@@ -109,7 +109,7 @@ def test_check_sees_a_trial_that_the_procedure_would_not_have_shown(whole):
     last = sat.record.procedure.next([])  # the first trial's is not what is asked in the third
     events = list(sat.events)
     events[at] = structs.replace(events[at], shown=stimulus_to_json(last.stimuli[0]))
-    record = replace(sat.record, told=replace(sat.record.told, events=events))
+    record = replace(sat.record, journal=replace(sat.record.journal, events=events))
     bad = [finding.text for finding in check(record) if not finding.good]
     what = "was shown with other values than the answers before it ask for"
     assert f"procedure: trial 3 {what}" in bad

@@ -159,7 +159,7 @@ def test_killed_between_any_two_events_no_answer_is_lost(tmp_path):
         session = door.Session.resume(folder)
         before = [told.confidence for told in session.progress.trials.values() if told.answer]
         session.run()
-        answers = of(session.record.told.events, "answer")
+        answers = of(session.record.journal.events, "answer")
         assert [e["confidence"] for e in answers] == [3] * 4, count
         assert len(before) == sum(b'"answer","' in line for line in written[:count])
         assert [e["trial"] for e in answers] == [1, 2, 3, 4]

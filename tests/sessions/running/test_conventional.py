@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import pytest
 
 from tests.conventional.handytech import Brltty, needs_brltty
-from tests.sessions.planning.test_standing import BOTH, HEAD, STRINGS, WIDTHS
+from tests.sessions.planning.test_conventional import BOTH, HEAD, STRINGS, WIDTHS
 from tests.sessions.sittings import Person, Played
 from tests.tiers import heavy
 from vbraille.analysis.input.study import load_study
@@ -63,7 +63,7 @@ def sit(folder, toml, brltty, *script, **how):
 
 
 def told(session, kind):
-    return [event for event in session.record.told.events if isinstance(event, kind)]
+    return [event for event in session.record.journal.events if isinstance(event, kind)]
 
 
 def test_strings_stand_there_and_the_journal_says_what_when_and_on_which_display(tmp_path):

@@ -6,7 +6,7 @@ import pytest
 from tests.sessions.sittings import COMPARED, MINI, Session, of
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.clock import ManualClock
-from vbraille.engine.local import LocalEngine
+from vbraille.engine.loop import LocalEngine
 from vbraille.engine.record import Flag
 from vbraille.simulation.simulated import SimulatedDevice
 

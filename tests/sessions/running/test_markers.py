@@ -66,7 +66,7 @@ def sit(folder, markers, toml=MINI):
     )
     said = []
     session.run("simulated", say=said.append)
-    told = session.record.told.events[1:]  # the first is older than the run
+    told = session.record.journal.events[1:]  # the first is older than the run
     with (folder / "markers-001.csv").open() as file:
         return told, [line for line in said if line.startswith("markers")], [*csv.DictReader(file)]
 

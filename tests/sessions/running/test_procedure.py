@@ -10,7 +10,7 @@ from msgspec import structs
 from tests.sessions.sittings import MINI, Person, Played, Session, crash, of
 from vbraille.devices import open_device
 from vbraille.engine.batch import BatchEngine
-from vbraille.sessions.planning.choosing import Answered, FixedOrder
+from vbraille.sessions.planning.nexttrial import Answered, FixedOrder
 from vbraille.sessions.planning.plan import stimulus_to_json
 from vbraille.sessions.planning.stimuli import Stimuli, Trial
 from vbraille.sessions.record.export import rows
@@ -76,7 +76,7 @@ class Sat:
 
     @property
     def events(self):
-        return self.record.told.events
+        return self.record.journal.events
 
     def progress(self, count=None):
         """How far it is after some of its events."""

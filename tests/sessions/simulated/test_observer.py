@@ -18,7 +18,7 @@ from vbraille.render import (
 )
 from vbraille.sessions.simulated.feeling import felt_mm, nearer, nominal_mm
 from vbraille.sessions.simulated.observer import Observer, Touch
-from vbraille.sessions.simulated.skin import Exploration, reference_per_mm2, smoothing_mm
+from vbraille.sessions.simulated.skin import FeltFrames, reference_per_mm2, smoothing_mm
 from vbraille.simulation.specs import parse_hand
 
 MARGIN_MM = 2.0
@@ -59,7 +59,7 @@ def explored(model, mapping, masks, time_s, x_mm, *, count_mm=None, levels=None,
     frames = renderer.path(x_mm)
     if levels:
         frames = (np.round(frames * (levels - 1)) / (levels - 1)).astype(np.float32)
-    return Exploration(frames, x_mm, time_s)
+    return FeltFrames(frames, x_mm, time_s)
 
 
 def faded_in(exploration, fade_s=0.1):
@@ -120,7 +120,7 @@ def test_it_reads_the_frames_and_nothing_else(rng):
     ]
     observer = of(STRESS2, STRESS2.style.mapping)
     assert [observer.read(one, 4, rng) for one in given] == strings
-    swapped = Exploration(given[1].frames, given[0].x_mm, given[0].time_s)
+    swapped = FeltFrames(given[1].frames, given[0].x_mm, given[0].time_s)
     assert observer.read(swapped, 4, rng) == strings[1]
     assert strings[0] != strings[1]
 
@@ -238,7 +238,7 @@ def test_nothing_felt_is_no_answer(rng):
     without = explored(VBD, VBD.style.mapping, [9, 9, 9], *path, contrast=0.0)
     assert blind.read(without, 3, rng) == [None] * 3
     assert blind.felt(without, 3).nothing
-    never = Exploration(without.frames, np.full(without.x_mm.shape, np.nan), without.time_s)
+    never = FeltFrames(without.frames, np.full(without.x_mm.shape, np.nan), without.time_s)
     assert np.isnan(blind.felt(never, 3).evidence).all()
     assert blind.read(never, 3, rng) == [None] * 3
 
@@ -331,11 +331,11 @@ def test_what_makes_no_observer_or_exploration():
         of(VBD, VBD.style.mapping, noise=-1.0)
     frames, ramp = np.zeros((3, 1, 12), np.float32), np.arange(3.0)
     with pytest.raises(ValueError, match="must be \\[n, rows, columns\\]"):
-        Exploration(frames, ramp[:2], ramp)
+        FeltFrames(frames, ramp[:2], ramp)
     with pytest.raises(ValueError, match="time goes back"):
-        Exploration(frames, ramp, ramp[::-1])
+        FeltFrames(frames, ramp, ramp[::-1])
     with pytest.raises(ValueError, match="must be \\(6, 10\\)"):
-        of(STRESS2, STRESS2.style.mapping).felt(Exploration(frames, ramp, ramp), 1)
+        of(STRESS2, STRESS2.style.mapping).felt(FeltFrames(frames, ramp, ramp), 1)
     with pytest.raises(ValueError, match="must be \\[places, 8\\]"):
         Touch(np.zeros((2, 6)))
     with pytest.raises(ValueError, match="must be 0 or more"):

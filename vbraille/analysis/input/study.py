@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.scoretable import of_sheet
+from vbraille.analysis.input.sessions import read_session
 from vbraille.analysis.input.sheets import Sheet, read_csv
-from vbraille.analysis.input.sittings import read_sitting
 from vbraille.analysis.input.trials import LeftOut, chosen, natural
 from vbraille.errors import InputError
 from vbraille.sessions.record.export import frame_of
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from vbraille.analysis.input.scoretable import Scores
-    from vbraille.analysis.input.sittings import SessionTrials
+    from vbraille.analysis.input.sessions import SessionTrials
 
 _TOLD_VERSIONS = ("numpy", "scipy", "matplotlib")  # numbers and bytes hang on them
 
@@ -39,7 +39,7 @@ class Study:
     ----------
     trials, comparisons
         Data frames as in `vbraille.analysis.input.trials`; None if there are none.
-    sittings
+    sessions
         Sessions that were read, in the order of participants.
     left_out
         What was left out of the analysis.
@@ -55,7 +55,7 @@ class Study:
 
     trials: pd.DataFrame | None
     comparisons: pd.DataFrame | None
-    sittings: tuple[SessionTrials, ...]
+    sessions: tuple[SessionTrials, ...]
     left_out: tuple[LeftOut, ...]
     about: tuple[tuple[str, str], ...]
     warnings: tuple[str, ...]
@@ -88,18 +88,18 @@ def load_study(
         If a session has lost what it began with.
     """
     _check_paths(paths)
-    sittings, files = _read(paths)
+    sessions, files = _read(paths)
     sheets = list(files.values())
-    sources = [*(Sheet(one.name, frame_of(one.rows), typed=True) for one in sittings), *sheets]
-    apart = told_apart(sittings)
+    sources = [*(Sheet(one.name, frame_of(one.rows), typed=True) for one in sessions), *sheets]
+    apart = told_apart(sessions)
     parsed = parse(sources)
     left_out = [*parsed.left_out]
     parts = [parsed.trials, parsed.comparisons, parsed.judgements]
     for who, reason in (exclude or {}).items():
-        parts, sittings = _kept(parts, sittings, "participant", who, keeps=False)
+        parts, sessions = _kept(parts, sessions, "participant", who, keeps=False)
         left_out.append(LeftOut(f"participant {who}", reason))
     if protocol is not None:
-        parts, sittings = _kept(parts, sittings, "protocol", protocol, keeps=True)
+        parts, sessions = _kept(parts, sessions, "protocol", protocol, keeps=True)
         left_out.append(LeftOut(f"trials of protocols other than {protocol}", "as asked for"))
     trials, comparisons, judgements = parts
     if all(part is None for part in parts):
@@ -111,20 +111,20 @@ def load_study(
         (f"File {sheet.name}", f"{count(len(sheet), 'row')}, SHA-256 {_sum(path)}")
         for path, sheet in files.items()
     ]
-    about += [(f"Session {sitting.name}", _describe_sitting(sitting)) for sitting in sittings]
-    about += _versions(sittings)
-    faults = tuple(f"{sitting.name}: {what}" for sitting in sittings for what in sitting.faults)
+    about += [(f"Session {session.name}", _describe_session(session)) for session in sessions]
+    about += _versions(sessions)
+    faults = tuple(f"{session.name}: {what}" for session in sessions for what in session.faults)
     warnings = (
         *parsed.warnings,
         *apart,
         *_sources(sources),
-        *_warnings(trials, sittings),
+        *_warnings(trials, sessions),
         *(f"Damaged, and analysed as far as it is whole: {fault}." for fault in faults),
     )
     return Study(
         trials,
         comparisons,
-        tuple(sittings),
+        tuple(sessions),
         tuple(left_out),
         tuple(about),
         warnings,
@@ -153,7 +153,7 @@ def load_scores(path: Path) -> tuple[Scores, list[tuple[str, str]]]:
 
 def _kept(
     parts: Sequence[pd.DataFrame | None],
-    sittings: Sequence[SessionTrials],
+    sessions: Sequence[SessionTrials],
     name: str,
     level: str,
     *,
@@ -178,7 +178,7 @@ def _kept(
             rows = (part[name] == level) == keeps
             part = chosen(part, rows) if rows.any() else None
         left.append(part)
-    return left, [one for one in sittings if (one.head[name] == level) == keeps]
+    return left, [one for one in sessions if (one.head[name] == level) == keeps]
 
 
 def _check_paths(paths: Sequence[Path]) -> None:
@@ -197,18 +197,18 @@ def _check_paths(paths: Sequence[Path]) -> None:
 def _read(paths: Sequence[Path]) -> tuple[list[SessionTrials], dict[Path, Sheet]]:
     """Read sessions and tables, each under a name that no other has."""
     names = dict(zip(paths, distinct_names([path.resolve() for path in paths]), strict=True))
-    sittings = [
-        replace(sitting, name=name, rows=[row | {"session": name} for row in sitting.rows])
-        for sitting, name in ((read_sitting(path), names[path]) for path in paths if path.is_dir())
+    sessions = [
+        replace(session, name=name, rows=[row | {"session": name} for row in session.rows])
+        for session, name in ((read_session(path), names[path]) for path in paths if path.is_dir())
     ]
-    sittings.sort(key=lambda sitting: (natural(sitting.head["participant"]), natural(sitting.name)))
-    check_copies(sittings)
+    sessions.sort(key=lambda session: (natural(session.head["participant"]), natural(session.name)))
+    check_copies(sessions)
     files = {
         path: replace(read_csv(path), name=names[path])
         for path in sorted(names, key=lambda path: names[path])
         if not path.is_dir()
     }
-    return sittings, files
+    return sessions, files
 
 
 def _describe(parts: Sequence[pd.DataFrame | None]) -> str:
@@ -227,23 +227,23 @@ def _describe(parts: Sequence[pd.DataFrame | None]) -> str:
     return "; ".join(told)
 
 
-def _describe_sitting(sitting: SessionTrials) -> str:
-    head = sitting.head
-    answered = sum(row["answered"] != "" for row in sitting.rows)
+def _describe_session(session: SessionTrials) -> str:
+    head = session.head
+    answered = sum(row["answered"] != "" for row in session.rows)
     return (
         f"participant {head['participant']}, protocol {head['protocol']}, seed {head['seed']}, "
         f"model {head['model']}, device {head['device']}, answers {head['answers']}, "
-        f"{answered} of {len(sitting.rows)} trials answered, {sitting.state}"
+        f"{answered} of {len(session.rows)} trials answered, {session.state}"
     )
 
 
-def _versions(sittings: Sequence[SessionTrials]) -> list[tuple[str, str]]:
+def _versions(sessions: Sequence[SessionTrials]) -> list[tuple[str, str]]:
     """Versions of the programs that analyse, and of those that ran the sessions."""
     ours = {"vbraille": __version__, "python": platform.python_version()}
     ours |= {name: version(name) for name in _TOLD_VERSIONS}
     of: dict[str, list[str]] = {}
-    for sitting in sittings:
-        of.setdefault(_listed(sitting.versions), []).append(sitting.name)
+    for session in sessions:
+        of.setdefault(_listed(session.versions), []).append(session.name)
     run = [(f"Versions of {', '.join(names)}", versions) for versions, names in of.items()]
     return [("Versions of this analysis", _listed(ours)), *run]
 
@@ -279,11 +279,11 @@ def _sources(sheets: Sequence[Sheet]) -> list[str]:
     return told
 
 
-def _warnings(trials: pd.DataFrame | None, sittings: Sequence[SessionTrials]) -> list[str]:
+def _warnings(trials: pd.DataFrame | None, sessions: Sequence[SessionTrials]) -> list[str]:
     told = [
-        f"Session {sitting.name} is not whole: {sitting.state}."
-        for sitting in sittings
-        if sitting.state != "ended"
+        f"Session {session.name} is not whole: {session.state}."
+        for session in sessions
+        if session.state != "ended"
     ]
     protocols = () if trials is None else trials["protocol"].cat.categories
     if len(protocols) > 1:
@@ -318,34 +318,34 @@ def distinct_names(paths: Sequence[Path]) -> list[str]:
     return names
 
 
-def check_copies(sittings: Iterable[SessionTrials]) -> None:
+def check_copies(sessions: Iterable[SessionTrials]) -> None:
     """Raise InputError if two directories hold the same session.
 
     They do if they began alike and an answer was given at the same moment: one may be an earlier
     copy of the other, or a damaged one.
     """
     moments: dict[tuple, SessionTrials] = {}
-    for sitting in sittings:
-        for row in sitting.rows:
+    for session in sessions:
+        for row in session.rows:
             if not row["answer_time"]:
                 continue
             told = ("seed", "protocol", "device", "answers")
             key = (row["trial"], row["cue_time"], row["answer_time"], row["answered"])
-            key += tuple(str(sitting.head.get(name)) for name in told)
-            other = moments.setdefault(key, sitting)
-            if other is not sitting:
+            key += tuple(str(session.head.get(name)) for name in told)
+            other = moments.setdefault(key, session)
+            if other is not session:
                 raise InputError(
-                    f"{other.folder} and {sitting.folder} are the same session; give it once"
+                    f"{other.folder} and {session.folder} are the same session; give it once"
                 )
 
 
-def told_apart(sittings: Iterable[SessionTrials]) -> list[str]:
+def told_apart(sessions: Iterable[SessionTrials]) -> list[str]:
     """Sentences that tell which sessions have the same folder name."""
     of: defaultdict[tuple[str, str], list[SessionTrials]] = defaultdict(list)
-    for sitting in sittings:
-        of[sitting.folder.resolve().name, sitting.head["participant"]].append(sitting)
+    for session in sessions:
+        of[session.folder.resolve().name, session.head["participant"]].append(session)
     return [
-        f"Sessions {' and '.join(sitting.name for sitting in alike)} are told apart by where they "
+        f"Sessions {' and '.join(session.name for session in alike)} are told apart by where they "
         f"are; their participant {who} is taken for one person."
         for (_, who), alike in of.items()
         if len(alike) > 1

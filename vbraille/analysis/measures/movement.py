@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy import stats
 
-from vbraille.analysis.input.sittings import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
+from vbraille.analysis.input.sessions import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
 from vbraille.analysis.input.trials import chosen, codes, factor, groups, name_string
 from vbraille.analysis.schemas import (
     CONDITION,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-    from vbraille.analysis.input.sittings import SessionTrials
+    from vbraille.analysis.input.sessions import SessionTrials
     from vbraille.analysis.schemas import ResultTable, Row
 
 _WHOSE = (
@@ -99,13 +99,13 @@ CORRELATIONS = Schema(
 
 
 def trajectories(
-    sittings: Iterable[SessionTrials], trials: pd.DataFrame | None = None
+    sessions: Iterable[SessionTrials], trials: pd.DataFrame | None = None
 ) -> ResultTable:
     """Table with a row for each trial of a string on a device, by participant, session and trial.
 
     Parameters
     ----------
-    sittings
+    sessions
         Sessions that were read.
     trials
         Trials with the names of conditions, which differ where two protocols share a name.
@@ -114,9 +114,9 @@ def trajectories(
     if trials is not None:
         named = trials.set_index(["session", "trial"])["condition"].to_dict()
     rows: list[Row] = []
-    for sitting in sittings:
-        of = {row["trial"]: row for row in sitting.rows}
-        for number, seen in sitting.readings.items():
+    for session in sessions:
+        of = {row["trial"]: row for row in session.rows}
+        for number, seen in session.readings.items():
             told = of[number]
             row: Row = {
                 "participant": told["participant"],

@@ -175,7 +175,7 @@ LIKED = Schema(
 _STEPS, _SPREADS, _LAPSES = 50, 9, 0.03
 
 
-def liked(comparisons: pd.DataFrame, protocols: Iterable[Protocol]) -> ResultTable:
+def own_values(comparisons: pd.DataFrame, protocols: Iterable[Protocol]) -> ResultTable:
     """Preferred value of each participant: a row for each parameter and participant.
 
     Parameters

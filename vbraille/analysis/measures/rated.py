@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     Scale = tuple[float, float]
     from collections.abc import Iterable
 
-    from vbraille.analysis.input.sittings import SessionTrials
+    from vbraille.analysis.input.sessions import SessionTrials
 
 RATINGS = Schema(
     "ratings",
@@ -272,19 +272,19 @@ NOTES = Schema(
 )
 
 
-def notes(sittings: Iterable[SessionTrials]) -> ResultTable:
+def notes(sessions: Iterable[SessionTrials]) -> ResultTable:
     """Notes of all sessions, in their order."""
     rows: list[Row] = [
         {
-            "participant": sitting.head["participant"],
-            "session": sitting.name,
+            "participant": session.head["participant"],
+            "session": session.name,
             "text": note.text,
             "trial_before": _number(note.before),
             "trial": _number(note.trial),
             "trial_after": _number(note.after),
         }
-        for sitting in sittings
-        for note in sitting.notes
+        for session in sessions
+        for note in session.notes
     ]
     return NOTES.fill(rows)
 

@@ -6,19 +6,19 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
-from vbraille.cli.atdevice import opened_in_time
+from vbraille.cli.exploring import opened_in_time
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.calibration import Calibration
 from vbraille.devices.calibrations import load, name_of, path_of, save
 from vbraille.devices.sentences import placing_sentence, told
+from vbraille.engine.checkup import ActuatorSwings
 from vbraille.engine.clock import RealClock
-from vbraille.engine.swinging import Swinging
 from vbraille.errors import DeviceError, InputError
 from vbraille.files import settings_path
 from vbraille.reading.calibrating import Round
-from vbraille.reading.keyboard import STOPPED, Keyboard, StoppableKeyboard
+from vbraille.reading.keyboard import STOPPED, Keyboard
 from vbraille.reading.keys import spoken
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ class _Guided:
         self._left = False
         self._placing = Placing.DONE
         self._compares = False
-        self._swinging = Swinging(device, RealClock(), self._begun)
+        self._swinging = ActuatorSwings(device, RealClock(), self._begun)
 
     def run(self) -> None:
         """Lead through the actuators until all were tried, or somebody leaves."""
@@ -137,7 +137,7 @@ class _Guided:
         found = self._round.found
         if found.tried:
             say_line(f"going on: tried {len(found.tried)} of {found.rows * found.columns}")
-        with StoppableKeyboard(self._keyboard) as keys:
+        with self._keyboard.taken() as keys:
             try:
                 self._device.correct(self._round.shown)
                 self._ask()
@@ -162,7 +162,7 @@ class _Guided:
             self._placing = self._device.placing
             say_line(placing_sentence(self._placing, self._device.display))
 
-    def _suspend(self, keys: StoppableKeyboard) -> None:
+    def _suspend(self, keys: Keyboard) -> None:
         """Stop, with the array at rest, until the shell says to go on."""
         self._swinging.stop()
         while not self._swinging.resting:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.cli.atdevice import opened_in_time
 from vbraille.cli.commands.calibrate import calibrate, say_calibration
+from vbraille.cli.exploring import opened_in_time
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.registry import find_driver
 from vbraille.devices.sentences import say
-from vbraille.engine.checking import check
-from vbraille.engine.checkup import warm_up
+from vbraille.engine.checkup import check, warm_up
 from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time
 from vbraille.files import settings_path

@@ -27,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
     workers = Workers(arguments.workers)
     keep = None if arguments.keep is None else Path(arguments.keep)
     with WorkProgress() as progress:
-        grid, found, ended = predict(arguments.grid, workers, keep=keep, told=progress.of)
+        grid, found, ended = predict(arguments.grid, workers, keep=keep, report=progress.of)
     if out is not None:
         write_folder(out, {"predictions.csv": _csv(found).encode()})
     if arguments.json:

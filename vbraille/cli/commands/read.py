@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
-from vbraille.cli.atdevice import AtDevice, say_summary, surrounded
 from vbraille.cli.build import (
     build_lengths,
     build_page,
@@ -18,6 +17,7 @@ from vbraille.cli.build import (
     note_unseen_dots,
     open_to_resume,
 )
+from vbraille.cli.exploring import around_device, say_summary
 from vbraille.cli.options.exploring import check_live_options
 from vbraille.cli.terminal import say_line
 from vbraille.config.settings import settle, with_profile
@@ -27,9 +27,10 @@ from vbraille.errors import InputError
 from vbraille.reading.advancing import Scroll
 from vbraille.reading.commands.table import bound_for
 from vbraille.reading.device import HAND
+from vbraille.reading.exploration import Exploration
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.library import KeptPlaces
-from vbraille.reading.outputs import Echo, language_of
+from vbraille.reading.outputs import Echo, Output, language_of
 from vbraille.render import MODELS, model_of
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
 from vbraille.translate.documents.document import Document
@@ -37,17 +38,14 @@ from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Iterable
+    from collections.abc import Sequence
 
-    from vbraille.cli.atdevice import Surroundings
     from vbraille.cli.build import Page
+    from vbraille.cli.exploring import Around
     from vbraille.devices.events import Event
-    from vbraille.reading.activity import Activity
-    from vbraille.reading.conventionalview import ConventionalView
     from vbraille.reading.device import OpenDevice
-    from vbraille.reading.keyboard import StoppableKeyboard
     from vbraille.reading.lineviews import Figures
-    from vbraille.reading.liveview import LastSentences, ReadState
+    from vbraille.reading.liveview import LiveView
     from vbraille.render import Model
 
 _FIGURE_ROOM = 1 << 21  # bytes of the largest page with figures, or of a figure
@@ -79,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
         places = closing.enter_context(KeptPlaces.open())
         opened = open_to_resume(arguments, places)
         closing.callback(opened.book.source.close)
-        with surrounded(
+        with around_device(
             arguments,
             keyboard,
             wanted,
@@ -89,7 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
             often=arguments.rate is not None,
         ) as around:
             device, outputs = around.device, around.outputs
-            also = _also(arguments, around)
+            _show_also(arguments, around)
             display = device.find()
             rate_hz = min(rate_hz, display.rate_hz)
             if arguments.model is not None:
@@ -126,11 +124,13 @@ def run(arguments: argparse.Namespace) -> int:
             if opened.place is not None:
                 outputs.say(f"book: {opened.book.source.title or opened.book.source.name}")
                 device.reader.announce()
+            outputs.add(_Notes(page, device))
             if around.live is not None:
-                around.live.show(lambda said, facts: _view(device, said, facts), hand)
+                _show_live(around.live, device, hand)
             try:
-                _Reading(page, around, keys, also).run()
+                Exploration(device.reader, device, keys, outputs).run()
             finally:
+                device.reader.leave()
                 opened.leave(device.reader, model, page.model.style)
     page.say_unknown()
     speed = f"mean scanning speed {device.tally.scanning_mm_s:.1f} mm/s"
@@ -138,79 +138,43 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-class _Reading(AtDevice):
-    """One reading, to the end of the text."""
+class _Notes(Output):
+    """Notes on the text and its table, and a count of the characters that could not be written."""
 
-    def __init__(
-        self,
-        page: Page,
-        around: Surroundings,
-        keys: StoppableKeyboard,
-        also: ConventionalView | None,
-    ) -> None:
-        super().__init__(around, around.device.reader, keys)
-        self._page = page
-        self._also = also
+    def __init__(self, page: Page, device: OpenDevice) -> None:
+        self._page, self._device = page, device
 
-    def run(self) -> None:
-        """Read to the end; see `AtDevice.run`."""
-        try:
-            self._say_notes()
-            super().run()
-        finally:
-            self._device.reader.leave()
-
-    def _see(self, events: Iterable[Event]) -> None:  # noqa: ARG002 - the device obeys them
-        device = self._device
-        self._outputs.see(device.line)
-        if device.reader.layout is self._page.layout:
-            self._page.see(device.reader.line_number)
-        self._say_notes()
-
-    @property
-    def _keyed(self) -> Activity:
-        """Whoever feels a figure alone, or the reader."""
-        return self._device.reader.under.alone or self._device.reader
-
-    def _press(self, key: str) -> None:
-        super()._press(key)
-        self._device.reader.leave_figure()
-
-    def _show(self) -> None:
-        """Have what is under the hand stand on the conventional display, and obey its keys."""
-        if self._also is not None:
-            self._also.attend(self._device.reader)
-
-    def _rest(self) -> None:
-        if self._also is not None:
-            self._also.rest()
-
-    def _say_notes(self) -> None:
-        """Say what is to be said of the text and of its table, which may have changed."""
-        for note in self._device.reader.layout.book.notes():
+    def attend(self, events: Sequence[Event] = ()) -> None:  # noqa: ARG002 - which are said
+        """Count what is on the line under the hand, and say what is to be said of the text."""
+        reader = self._device.reader
+        if reader.layout is self._page.layout:
+            self._page.see(reader.line_number)
+        for note in reader.layout.book.notes():
             say_line(spelled(note), aside=True)
 
 
-def _view(device: OpenDevice, said: LastSentences, facts: list[tuple[str, str]]) -> ReadState:
-    """Describe what is read, as the state of the live view."""
+def _show_live(live: LiveView, device: OpenDevice, hand: str) -> None:
+    """Show what is read on the pages of the live view."""
     # Only a reading that has a live view waits for what it needs.
     from vbraille.reading.liveview import ReadState
 
-    source, table = device.reader.layout.book.source, device.reader.layout.book.table
-    tables = [] if table is None else [("table", table.name)]
-    return ReadState(device, source.title or PurePath(source.name).name, said, [*tables, *facts])
+    book = device.reader.layout.book
+    facts = [] if book.table is None else [("table", book.table.name)]
+    facts += [] if device.pointer is None else [("hand", hand)]
+    title = book.source.title or PurePath(book.source.name).name
+    live.show(ReadState(device, title, live.said, facts))
 
 
-def _also(arguments: argparse.Namespace, around: Surroundings) -> ConventionalView | None:
-    """Conventional display that was asked for, which comes while the text is laid out."""
+def _show_also(arguments: argparse.Namespace, around: Around) -> None:
+    """Have the conventional display that was asked for come while the text is laid out."""
     if arguments.also is None:
-        return None
+        return
     # Only a reading that has such a display needs what drives it.
     from vbraille.conventional.display import ConventionalDisplay
     from vbraille.reading.conventionalview import ConventionalView
 
-    display = around.closing.enter_context(ConventionalDisplay(arguments.also))
-    return ConventionalView(display, around.outputs.say)
+    display = ConventionalDisplay(arguments.also)
+    around.outputs.add(ConventionalView(display, lambda: around.device.reader, around.outputs.say))
 
 
 def _figures(page: Page, folder: Path, device: OpenDevice, rate_hz: float) -> Figures:

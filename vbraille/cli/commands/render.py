@@ -26,7 +26,7 @@ from vbraille.cli.terminal import WorkProgress
 from vbraille.config.options import CHOICE_OF_TABLE
 from vbraille.config.settings import settle
 from vbraille.display import check_rate
-from vbraille.engine.watchers import EndOfLine
+from vbraille.engine.engine import EndOfLine
 from vbraille.errors import InputError
 from vbraille.newfile import new_file
 from vbraille.reading.advancing import too_fast_note

@@ -22,7 +22,7 @@ from vbraille.wording import spelled
 if TYPE_CHECKING:
     import argparse
 
-    from vbraille.sessions.planning.conduct import Question
+    from vbraille.sessions.planning.pace import ParticipantField
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.running.responses import Responses
@@ -64,7 +64,7 @@ def _plan(arguments: argparse.Namespace) -> int:
     if plan.group:
         _say(f"group: {plan.group}")
     if protocol.adaptive:
-        from vbraille.sessions.planning.choosing import describe
+        from vbraille.sessions.planning.nexttrial import describe
 
         _say(f"procedure: {describe(protocol)}")
     block = None
@@ -173,7 +173,7 @@ def _pilot(arguments: argparse.Namespace) -> int:
             workers,
             noise=arguments.noise,
             seed=arguments.seed,
-            told=progress.of,
+            report=progress.of,
         )
     _say(f"pilot: {arguments.participants} sessions of {protocol.name}; {MARK}")
     _say(f"written: {report / 'report.html'}")
@@ -248,7 +248,7 @@ def _ask_fields(protocol: Protocol, given: dict[str, str], typed: Typed) -> dict
     }
 
 
-def _ask(field: Question, typed: Typed) -> str:
+def _ask(field: ParticipantField, typed: Typed) -> str:
     choices = f" ({' or '.join(field.choices)})" if field.choices else ""
     while True:
         _say(f"{field.ask}{choices}:")

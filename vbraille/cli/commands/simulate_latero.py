@@ -13,7 +13,7 @@ from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
 from vbraille.render.braille.models import LATERO
 from vbraille.simulation.controls import load_script, parse_presses
-from vbraille.simulation.laterosim import WAIT_S, LateroFaults, LateroSimulator, Tray
+from vbraille.simulation.laterosim import WAIT_S, LateroCarriage, LateroFaults, LateroSimulator
 from vbraille.simulation.specs import parse_hand
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace, priority: int) -> int:
         raise InputError(str(error)) from None
     with EAR.deferred(), ControlKeys() as keys:
         simulator = LateroSimulator(
-            Tray(hand, DISPLAY.span_mm, lines, pitch_mm),
+            LateroCarriage(hand, DISPLAY.span_mm, lines, pitch_mm),
             say=say_line,
             port=port,
             faults=faults,

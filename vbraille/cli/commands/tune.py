@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
-from vbraille.cli.atdevice import AtDevice, surrounded
 from vbraille.cli.build import chosen_profile
+from vbraille.cli.exploring import around_device
 from vbraille.config.settings import display_name, save_profile, settle, with_profile
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import check_actuators
@@ -15,24 +15,23 @@ from vbraille.errors import InputError
 from vbraille.files import read_text, write_file
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line, choose_table
-from vbraille.reading.activity import Activity
+from vbraille.reading.commands.table import BOUND
 from vbraille.reading.device import HAND
+from vbraille.reading.exploration import Exploration
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.keys import spoken
 from vbraille.reading.outputs import language_of
 from vbraille.reading.tuning_course import TuningCourse, from_json, practice_text, to_json
+from vbraille.reading.view import View
 from vbraille.render import MODELS, model_of
 from vbraille.simulation.specs import is_simulated, refuse_hand
 from vbraille.translate import Book, Document
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Iterable
     from pathlib import Path
 
-    from vbraille.cli.atdevice import Surroundings
-    from vbraille.devices.events import Event
-    from vbraille.reading.keyboard import StoppableKeyboard
+    from vbraille.cli.exploring import Around
     from vbraille.render import Model
 
 _KEYS = {
@@ -59,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
         book = _book(arguments)
         hand, language = arguments.hand or HAND, language_of(book, arguments.language)
         often = arguments.rate is not None
-        with surrounded(arguments, keyboard, wanted, hand, language, often=often) as around:
+        with around_device(arguments, keyboard, wanted, hand, language, often=often) as around:
             device = around.device
             display = device.find()
             if arguments.model is not None or is_simulated(arguments.device):
@@ -80,8 +79,9 @@ def run(arguments: argparse.Namespace) -> int:
             device.start(replace(model, style=course.shown(1)))
             keys = around.keys()
             device.show(text)
-            guided = _Guided(around, keys, course, path, profile)
-            guided.run()
+            guided = _Guided(around, course, path, profile)
+            guided.start()
+            Exploration(guided, device, keys, around.outputs).run()
             if guided.course.done:
                 style = guided.course.style
                 saved = replace(model, style=style)
@@ -120,45 +120,31 @@ def _book(arguments: argparse.Namespace) -> Book:
     return Book(Document.open(arguments.file), table)
 
 
-class _Tuning(Activity):
-    """What a reader does who chooses this or that."""
+class _Guided(View):
+    """A course on its way at a terminal, whose choices are kept in a file until it is done."""
 
     does, doing = "tune", "reading"
 
-
-class _Guided(AtDevice):
-    """A course on its way at a terminal, whose choices are kept in a file until it is done."""
-
-    def __init__(
-        self,
-        around: Surroundings,
-        keys: StoppableKeyboard,
-        course: TuningCourse,
-        path: Path,
-        profile: str,
-    ) -> None:
+    def __init__(self, around: Around, course: TuningCourse, path: Path, profile: str) -> None:
         outputs = around.outputs
-        who = _Tuning(around.device.engine, outputs.say, None, outputs.cue)
-        super().__init__(around, who, keys)
+        super().__init__(around.device.engine, outputs.say, BOUND, outputs.cue)
         self.course = course
+        self._device = around.device
         self._path, self._profile = path, profile
         self._which: Literal[1, 2] = 1
 
-    def run(self) -> None:
-        """Lead through the choices that are left; see `AtDevice.run`."""
-        self._who.say(f"display: {self.course.start.title}")
-        self._who.say(f"profile: {self._profile}")
+    def start(self) -> None:
+        """Say what the course is for, and ask for the first choice that is left."""
+        self.say(f"display: {self.course.start.title}")
+        self.say(f"profile: {self._profile}")
         if self.course.choices:
-            self._who.say(f"going on: choices made {len(self.course.choices)}")
+            self.say(f"going on: choices made {len(self.course.choices)}")
         self._ask()
-        super().run()
 
-    def _see(self, events: Iterable[Event]) -> None:
-        """Let the reader read; the device obeys its own events."""
-
-    def _press(self, key: str) -> None:
-        device, say = self._device, self._who.say
-        if self._who.done:
+    def press(self, key: str) -> None:
+        """Feel the other of the two, choose, or whatever else a key stands for."""
+        device, say = self._device, self.say
+        if self.done:
             return
         if device.placing is Placing.STOP:
             device.set_zero()
@@ -179,7 +165,7 @@ class _Guided(AtDevice):
                 if not device.reader.go(device.reader.line_number + step):
                     say("last line" if step > 0 else "first line")
             case "q":
-                self._who.quit()
+                self.quit()
                 say(f"left: {len(self.course.choices)} of {self.course.total} choices made")
             case "h" | "?":
                 for name, does in _KEYS.items():
@@ -195,11 +181,11 @@ class _Guided(AtDevice):
         kept = to_json(course, self._profile, display_name(course.start))
         write_file(self._path, kept.encode(), replace=True, durable=True)
         for found in course.found[settled:]:
-            self._who.say(found.knob.said(found.value))
+            self.say(found.knob.said(found.value))
             interval = f"{found.low:g} to {found.high:g} {found.knob.unit}".rstrip()
-            self._who.say(f"95 % interval: {interval}")
+            self.say(f"95 % interval: {interval}")
         if course.done:
-            self._who.quit()
+            self.quit()
             return
         self._which = 1
         self._ask()
@@ -208,11 +194,11 @@ class _Guided(AtDevice):
         knob = self.course.knob
         if knob is not None:
             made = len(self.course.choices)
-            self._who.say(f"choice {made + 1} of {self.course.total}: {knob.label}")
+            self.say(f"choice {made + 1} of {self.course.total}: {knob.label}")
             self._feel()
 
     def _feel(self) -> None:
         """Show the one or the other."""
         style = self.course.shown(self._which)
         self._device.tune(geometry=style.geometry, tuning=style.tuning)
-        self._who.say(f"now: {self._which}")
+        self.say(f"now: {self._which}")

@@ -6,7 +6,7 @@ from dataclasses import replace
 from operator import methodcaller
 
 from vbraille.reading.commands import control
-from vbraille.reading.commands.table import TYPING, say_keys
+from vbraille.reading.commands.table import TYPING
 from vbraille.reading.keys import ANY, Bindings, Command, Context, bind
 
 STEP_MM, FAR_MM = 1.0, 10.0
@@ -82,7 +82,7 @@ COMMANDS = (
     Command("CONTRAST_DOWN", ("C",), "less contrast", methodcaller("turn_contrast", -1)),
     Command("RELOAD", ("r",), "read the file of the picture again", methodcaller("reload")),
     Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
-    Command("HELP", ("h", "f1"), "say the keys", say_keys),
+    Command("HELP", ("h", "f1"), "say the keys", control.say_keys),
     Command(
         "LEARN",
         ("?", "f2"),

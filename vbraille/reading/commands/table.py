@@ -10,24 +10,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, ParamSpec
 
 from vbraille.config.options import knobs
-from vbraille.reading.activity import LONGEST
-from vbraille.reading.keys import (
-    ANY,
-    PASTE,
-    Bindings,
-    Bound,
-    Command,
-    Context,
-    bind,
-    pasted,
-    spoken,
-)
+from vbraille.reading.keys import ANY, LONGEST, TURNED, Bindings, Bound, Command, Context, bind
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from vbraille.config.settings import Settings
-    from vbraille.reading.activity import Activity
     from vbraille.reading.commands import (
         asking,
         control,
@@ -37,7 +25,6 @@ if TYPE_CHECKING:
         structure,
         turning,
     )
-    from vbraille.reading.reader import Reader
 
 Given = ParamSpec("Given")
 
@@ -59,11 +46,12 @@ class Deferred:
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
         """Give the function of a name, whether or not there is one."""
+        return partial(call, self._module, name)
 
-        def function(*given: Any, **named: Any) -> Any:
-            return getattr(import_module(self._module), name)(*given, **named)
 
-        return function
+def call(module: str, name: str, *given: Any, **named: Any) -> Any:
+    """Call a function of a module by its name."""
+    return getattr(import_module(module), name)(*given, **named)
 
 
 if not TYPE_CHECKING:
@@ -90,10 +78,6 @@ def made(
         make(*given, **named)(reader)
 
     return handler
-
-
-# Values of the tuning that a knob of the device may turn.
-TURNED = {"TEXTURE": "texture", "CONTRAST": "contrast"}
 
 
 def bound_for(settings: Settings, keys: str | None = None) -> Bound:
@@ -132,104 +116,6 @@ def bound_by(bindings: Bindings, keys: str = "usual") -> Bound:
     """
     ready = bind(COMMANDS, Bindings(KEY_SETS[keys])).commands
     return bind(ready, bindings, tuple(TURNED))
-
-
-def find(key: str, context: Context) -> Command | None:
-    """Command that a key calls in a context unless settings say otherwise; None if none."""
-    return BOUND.find(key, context)
-
-
-def press(reader: Activity, key: str) -> None:
-    """Call the command that a key stands for in the reader's context."""
-    bound = reader.bound or BOUND
-    text = pasted(key)
-    if text is not None:
-        _paste(reader, key, text)
-    elif reader.context is Context.LEARNING:
-        _learn(reader, spoken(key), bound.find(key, Context.READING))
-    else:
-        command = bound.find(key, reader.context)
-        if command is not None:
-            command.handler(reader)
-        elif reader.prompt is not None and reader.context is Context.PROMPT:
-            reader.prompt.press(key)
-        else:
-            reader.say(f"no command: {spoken(key)}; {reader.key('HELP', 'h')} says the keys")
-
-
-def _paste(reader: Activity, key: str, text: str) -> None:
-    """Put pasted text into what is being typed; elsewhere it is no command."""
-    if reader.prompt is not None and reader.context is Context.PROMPT:
-        reader.prompt.paste(text)
-    elif key.startswith(PASTE):
-        reader.say("paste: text that is pasted is passed over; type the keys")
-
-
-def press_button(reader: Activity, number: int) -> None:
-    """Call the command that a button of the device stands for."""
-    _call(reader, f"button {number}", (reader.bound or BOUND).buttons.get(number))
-
-
-def press_display_key(reader: Reader, name: str) -> None:
-    """Call the command that a key of a conventional display stands for.
-
-    Parameters
-    ----------
-    name
-        BRLTTY's name for the key.
-    """
-    _call(reader, f"display {name}", (reader.bound or BOUND).display_keys.get(name))
-
-
-def _call(reader: Activity, name: str, command: Command | None) -> None:
-    """Call the command of something that is pressed and is no key of the keyboard."""
-    if reader.context is Context.LEARNING:
-        _learn(reader, name, command)
-    elif command is None:
-        reader.say(f"{name}: no command; the settings file can give it one")
-    elif reader.context in command.contexts:
-        command.handler(reader)
-    else:
-        reader.say(f"{name}: not now; answer first")
-
-
-def turn_knob(reader: Reader, number: int, share: float) -> str:
-    """Give the value of the tuning that a knob of the device turns its place in the knob's range.
-
-    Parameters
-    ----------
-    share
-        Place of the knob, 0 to 1.
-
-    Returns
-    -------
-    str
-        Sentence that tells the new value, for whoever says it; empty if nothing has changed.
-    """
-    name = (reader.bound or BOUND).knobs.get(number)
-    if reader.context is Context.LEARNING:
-        says = "no value" if name is None else TURNED[name].replace("_", " ")
-        return f"knob {number}: {says}"
-    if name is not None:
-        value = round(share, 2)
-        if getattr(reader.style.tuning, TURNED[name]) != value:
-            reader.tune(**{TURNED[name]: value})
-            return f"{TURNED[name]}: {value:g}"
-    return ""
-
-
-def say_keys(reader: Activity) -> None:
-    """Say what the keys do."""
-    for command in (reader.bound or BOUND).of(reader.context):
-        if command.keys:
-            reader.say(f"{command.spoken_keys}: {command.help}")
-
-
-def _learn(reader: Activity, name: str, command: Command | None) -> None:
-    if command is not None and command.name in ("LEARN", "QUIT"):
-        control.end_learning(reader)
-    else:
-        reader.say(f"{name}: {'no command' if command is None else command.help}")
 
 
 def _levels(*, backward: bool) -> tuple[Command, ...]:
@@ -370,7 +256,7 @@ COMMANDS = (
     shared("BAND_DOWN", ("(",), "leave a line of a page sooner", made(turning.turn_band, -1)),
     shared("UNDO", ("U",), "take back the last change of how braille feels", turning.undo_turn),
     Command("PREFSAVE", ("P",), "save how braille feels", turning.save_settings),
-    Command("HELP", ("h", "f1"), "say the keys", say_keys),
+    Command("HELP", ("h", "f1"), "say the keys", control.say_keys),
     Command(
         "LEARN",
         ("?", "f2"),

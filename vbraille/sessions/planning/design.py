@@ -10,7 +10,7 @@ from msgspec import structs
 
 from vbraille.braille.spelling import LETTERS, name_dots, to_braille
 from vbraille.errors import check_range
-from vbraille.sessions.planning.conduct import check_file_name
+from vbraille.sessions.planning.pace import check_file_name
 from vbraille.sessions.planning.spellings import Mask, Masks, WrittenText
 from vbraille.sessions.planning.stimuli import KNOBS, KnobName, StimulusKnob
 from vbraille.tomlfile import Table

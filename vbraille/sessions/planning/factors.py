@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from msgspec import structs
 
-from vbraille.sessions.planning.appearance import Condition
-from vbraille.sessions.planning.conduct import check_name
+from vbraille.sessions.planning.pace import check_name
+from vbraille.sessions.planning.style import Condition
 from vbraille.tomlfile import Table
 from vbraille.wording import nearest
 

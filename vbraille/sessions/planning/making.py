@@ -11,8 +11,8 @@ from msgspec import structs
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.chance import Chance, balanced_orders
-from vbraille.sessions.planning.choosing import varied
 from vbraille.sessions.planning.design import Catch, Choice, Item, StringList
+from vbraille.sessions.planning.nexttrial import varied
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.sequencing import arranged
 from vbraille.sessions.planning.spellings import WrittenText
@@ -23,8 +23,8 @@ from vbraille.wording import setting
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from vbraille.sessions.planning.appearance import Condition
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.style import Condition
 
 
 _Shown = tuple[Item, "Condition"]
@@ -151,7 +151,7 @@ def _difference(plan: Plan, again: Plan) -> str:
 
 def _own_tuning(protocol: Protocol, plan: Plan, name: str) -> float | None:
     """Texture or contrast that was given for the session instead of the display's; else None."""
-    free = [condition.name for condition in protocol.conditions if name not in condition.given]
+    free = [condition.name for condition in protocol.conditions if name not in condition.changes]
     if name == varied(protocol):
         return None
     for trial in (*plan.trials, *plan.practice):
@@ -170,11 +170,14 @@ def _tuned(protocol: Protocol, given: dict[str, float | None]) -> list[Condition
             raise ValueError(
                 f"the {what} of {protocol.name} chooses {name}; leave {setting(name)} out"
             )
-        if all(name in condition.given for condition in protocol.conditions):
+        if all(name in condition.changes for condition in protocol.conditions):
             raise ValueError(
                 f"every condition of {protocol.name} has its own {name}; leave {setting(name)} out"
             )
-    return [structs.replace(c, **(given | c.given)) for c in protocol.conditions]
+    return [
+        structs.replace(c, **(given | {n: v for n, v in c.changes.items() if n in given}))
+        for c in protocol.conditions
+    ]
 
 
 def _blocks(

@@ -13,7 +13,6 @@ from vbraille.braille.geometry import Geometry
 from vbraille.braille.spelling import spell, to_braille
 from vbraille.errors import InputError
 from vbraille.render import Tuning
-from vbraille.sessions.planning.appearance import mapping_named
 from vbraille.sessions.planning.stimuli import (
     Stimuli,
     Stimulus,
@@ -21,6 +20,7 @@ from vbraille.sessions.planning.stimuli import (
     check_participant,
     check_seed,
 )
+from vbraille.sessions.planning.style import mapping_named
 
 VERSION = 2  # of the making of plans; what a seed makes may change with a higher one alone
 _OF_STIMULUS = {"cells", "value_mm", *(f.name for f in (*fields(Tuning), *fields(Geometry)))}

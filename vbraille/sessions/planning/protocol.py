@@ -14,21 +14,6 @@ import numpy as np
 from msgspec import field, structs
 
 from vbraille.render import MODELS
-from vbraille.sessions.planning.appearance import (
-    CONVENTIONAL,
-    Appearance,
-    Condition,
-    ConventionalTable,
-    mapping_named,
-)
-from vbraille.sessions.planning.conduct import (
-    FaultRules,
-    Question,
-    SessionPace,
-    SignalSound,
-    TrialPace,
-    check_line,
-)
 from vbraille.sessions.planning.design import (
     BlockOrder,
     Choice,
@@ -51,10 +36,25 @@ from vbraille.sessions.planning.factors import (
     within,
 )
 from vbraille.sessions.planning.items import ItemRow, Items, OrderRow
+from vbraille.sessions.planning.pace import (
+    FaultRules,
+    ParticipantField,
+    SessionPace,
+    SignalSound,
+    TrialPace,
+    check_line,
+)
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
 from vbraille.sessions.planning.questions import AnyQuestion, CellSpelling, usual_question
 from vbraille.sessions.planning.spellings import SpellingKeys, WrittenText, cells_of
 from vbraille.sessions.planning.stimuli import Stimulus, with_value
+from vbraille.sessions.planning.style import (
+    CONVENTIONAL,
+    Condition,
+    ConventionalTable,
+    DisplayStyle,
+    mapping_named,
+)
 from vbraille.tomlfile import Table, which
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     source: str
     model_name: str = field(name="model")
     medium: Literal["device", "paper"] = "device"
-    display: Appearance = Appearance()
+    display: DisplayStyle = DisplayStyle()
     keys: SpellingKeys = field(default_factory=SpellingKeys)
     design: Combinations | StringList | Choice | ItemList
     items: Items | None = None
@@ -94,7 +94,7 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     session: SessionPace = SessionPace()
     faults: FaultRules = FaultRules()
     sound: SignalSound = SignalSound()
-    fields: tuple[Question, ...] = ()
+    fields: tuple[ParticipantField, ...] = ()
 
 
 class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
@@ -339,7 +339,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         return condition.on or self.display.on or "device"
 
     @property
-    def stands_beside(self) -> bool:
+    def needs_conventional(self) -> bool:
         """Whether a conventional display is needed."""
         return bool(self.conventional.reference) or any(
             self.place_of(condition) == CONVENTIONAL for condition in self.conditions
@@ -398,18 +398,18 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         )
         return style.render(np.array(self.line(stimulus.masks), np.uint8), self.model.display)
 
-    def told(self, item: tuple[int, ...]) -> dict[str, str]:
-        """What the file of items tells of an item, by column; see `Trial.item`."""
-        return self._told.get(self.design.content(item), dict.fromkeys(self.item_columns, ""))
+    def columns_of(self, item: tuple[int, ...]) -> dict[str, str]:
+        """Cells of an item in the file of items, by column; see `Trial.item`."""
+        return self._item_cells.get(self.design.content(item), dict.fromkeys(self.item_columns, ""))
 
     @cached_property
     def item_columns(self) -> tuple[str, ...]:
         """Columns that the file of items has beside the strings."""
-        return tuple(self.item_rows[0].told) if self.item_rows else ()
+        return tuple(self.item_rows[0].columns) if self.item_rows else ()
 
     @cached_property
-    def _told(self) -> dict[Item, dict[str, str]]:
-        return {self.design.content(row.masks): dict(row.told) for row in self.item_rows}
+    def _item_cells(self) -> dict[Item, dict[str, str]]:
+        return {self.design.content(row.masks): dict(row.columns) for row in self.item_rows}
 
     def line(self, masks: tuple[int, ...]) -> tuple[int, ...]:
         """Cells of the line on which a string is shown, with the blank ones before it."""

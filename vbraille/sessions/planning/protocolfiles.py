@@ -15,7 +15,6 @@ from vbraille.braille.spelling import name_dots, to_braille
 from vbraille.errors import InputError
 from vbraille.files import read_text
 from vbraille.render import Profile
-from vbraille.sessions.planning.appearance import CONVENTIONAL, LENGTHS, Condition
 from vbraille.sessions.planning.design import MOST_TRIALS, UNFELT, Choice, ItemList, StringList
 from vbraille.sessions.planning.factors import check_factors
 from vbraille.sessions.planning.items import read_items, read_orders, read_words
@@ -29,6 +28,7 @@ from vbraille.sessions.planning.spellings import (
     spelled,
 )
 from vbraille.sessions.planning.stimuli import GAP, KNOBS, with_value
+from vbraille.sessions.planning.style import CONVENTIONAL, LENGTHS, Condition
 from vbraille.tomlfile import TomlFile, which
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ def parse_protocol(
     files = _files(file, tables, beside)
     with file.checking():
         protocol = _resolved(tables, text, files, keys, written=written)
-        check_agreement(protocol, planned=planned)
+        check_protocol(protocol, planned=planned)
         if protocol.practice.trials and not protocol.practice.items:
             raise ValueError(
                 f"[practice] has no items of its own, and those of the test would be given away; "
@@ -251,7 +251,7 @@ class _Keyed(msgspec.Struct):
     keys: SpellingKeys = field(default_factory=SpellingKeys)
 
 
-def check_agreement(protocol: Protocol, *, planned: bool = False) -> None:
+def check_protocol(protocol: Protocol, *, planned: bool = False) -> None:
     """Check that the tables of a protocol agree with each other, for each group.
 
     Parameters
@@ -355,7 +355,7 @@ def _check_groups(protocol: Protocol, *, planned: bool) -> None:
     for group in protocol.groups:
         number = 1 + next(n for n, factor in enumerate(protocol.factors) if factor.between)
         with _naming(f"[[factors]] number {number} group {group}:"):
-            check_agreement(protocol.assigned(group), planned=planned)
+            check_protocol(protocol.assigned(group), planned=planned)
 
 
 def _place(protocol: Protocol, condition: Condition) -> str:

@@ -29,7 +29,7 @@ from vbraille.braille.spelling import (
     to_braille,
 )
 from vbraille.errors import check_range
-from vbraille.sessions.planning.conduct import LONGEST_LINE, check_line
+from vbraille.sessions.planning.pace import LONGEST_LINE, check_line
 from vbraille.sessions.planning.spellings import parse_text
 from vbraille.sessions.planning.stimuli import KNOBS, said_value
 from vbraille.sessions.simulated.feeling import nearer

@@ -13,10 +13,10 @@ from vbraille.sessions.planning.factors import within
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Sequence
 
-    from vbraille.sessions.planning.appearance import Condition
     from vbraille.sessions.planning.chance import Chance
     from vbraille.sessions.planning.design import Item
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.style import Condition
 
     Shown = tuple[Item, Condition]
 
@@ -34,7 +34,7 @@ def limited(protocol: Protocol) -> dict[str, Callable[[Shown], str]]:
         return levels[shown[1].name][name]
 
     def told(name: str, shown: Shown) -> str:
-        return protocol.told(tuple(map(int, shown[0])))[name]
+        return protocol.columns_of(tuple(map(int, shown[0])))[name]
 
     return {
         CONDITION: lambda shown: shown[1].name,

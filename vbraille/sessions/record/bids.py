@@ -124,9 +124,9 @@ class BidsRun:
 
 def runs_of(record: Record) -> list[BidsRun]:
     """Runs of a session, in order."""
-    notes = {note.event: note for note in read_notes(record.told.events)}
+    notes = {note.event: note for note in read_notes(record.journal.events)}
     runs: list[BidsRun] = []
-    for event in record.told.events:
+    for event in record.journal.events:
         if isinstance(event, Run):
             runs.append(BidsRun(event, [], notes))
         elif runs:

@@ -105,7 +105,7 @@ def designed(protocol: Protocol, trial: Trial) -> dict[str, str]:
     for name, level in protocol.levels(trial.condition).items():
         cells[f"factor_{name}"] = level
     if protocol.item_columns:
-        own = protocol.told(trial.item)
+        own = protocol.columns_of(trial.item)
         cells |= {f"item_{name}": value for name, value in own.items()}
     if protocol.design.catch is not None:
         cells["catch"] = trial.catch

@@ -15,8 +15,8 @@ from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.braille.spelling import to_braille
 from vbraille.engine.record import Flag
 from vbraille.files import no_formula
-from vbraille.sessions.planning.appearance import TUNED
 from vbraille.sessions.planning.design import StringList
+from vbraille.sessions.planning.style import TUNED
 from vbraille.sessions.record.codebook import COLUMNS, designed
 from vbraille.sessions.record.events import AnyTime, JournalEvent, Note, Presented
 from vbraille.sessions.record.folder import Record, read_told_trace
@@ -126,7 +126,7 @@ class Traces:
     def read(self, name: str) -> Trace:
         """Read the trace of a name, or return it if it was read before."""
         if name not in self._traces:
-            trace = read_told_trace(self._record.folder, name, self._record.told)
+            trace = read_told_trace(self._record.folder, name, self._record.journal)
             self._traces[name] = trace
             if trace.damage is not None:
                 self.faults.append(f"{name} is damaged, {trace.damage}")
@@ -214,7 +214,7 @@ def walk(
     progress = record.progress() if progress is None else progress
     traces = Traces(record) if traces is None else traces
     fields = {f"field_{name}": value for name, value in record.head["fields"].items()}
-    notes = read_notes(record.told.events)
+    notes = read_notes(record.journal.events)
     for told in progress.trials.values():
         trial = told.shown
         row, seen = _row(record, trial, told), None
@@ -406,7 +406,7 @@ _SOURCES = ("typed", "simulated", "program")
 
 def number_of(record: Record) -> str:
     """Eight digits that identify a session, whatever its directory is called."""
-    return f"{record.told.crcs[0] if record.told.crcs else 0:08x}"
+    return f"{record.journal.crcs[0] if record.journal.crcs else 0:08x}"
 
 
 def without_paths(text: str) -> str:

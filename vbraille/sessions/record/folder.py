@@ -20,13 +20,22 @@ import numpy as np
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_folder
-from vbraille.sessions.planning.choosing import Procedure, procedure_of
 from vbraille.sessions.planning.making import check_plan
+from vbraille.sessions.planning.nexttrial import Procedure, procedure_of
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
-from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Closed, Lost, Run, Session
-from vbraille.sessions.record.journal import JournalContents, Tie, salvage
+from vbraille.sessions.record.journal import NAME as JOURNAL
+from vbraille.sessions.record.journal import (
+    TORN,
+    JournalContents,
+    Tie,
+    decode,
+    first_lines,
+    salvage,
+    sum_of,
+    sum_of_torn,
+)
 from vbraille.sessions.record.progress import Progress, stimulus_of
 from vbraille.sessions.record.traces import TRACE, Trace, read_last_tie, read_trace
 from vbraille.version import __version__
@@ -56,7 +65,7 @@ class Record:
         Content of session.json: who takes part, what is shown, and with which equipment.
     protocol, plan
         What the session shows, and in which order.
-    told
+    journal
         Content of the journal at the time when it was read.
     procedure
         Rule that chooses the next trial.
@@ -66,12 +75,12 @@ class Record:
     head: dict[str, Any]
     protocol: Protocol
     plan: Plan
-    told: JournalContents
+    journal: JournalContents
     procedure: Procedure
 
     def progress(self) -> Progress:
         """How far the session had come by then."""
-        return Progress(self.plan, self.told.events, self.procedure)
+        return Progress(self.plan, self.journal.events, self.procedure)
 
 
 def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -> None:
@@ -95,7 +104,7 @@ def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -
     }
     sums = {name: sha256(content).hexdigest() for name, content in files.items()}
     # The others' checksums are in the journal, as its first event.
-    files[journal.NAME] = journal.first_lines(Session(format=FORMAT, sha256=sums, t_s=0.0))
+    files[JOURNAL] = first_lines(Session(format=FORMAT, sha256=sums, t_s=0.0))
     write_folder(
         folder, files, durable=True, private=True, clear=lambda partial: _clear(partial, files)
     )
@@ -113,12 +122,12 @@ def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:
     VbrailleError
         If the journal cannot be read, or its first line is damaged.
     """
-    path, content = folder / journal.NAME, _journal_bytes(folder)
-    told = salvage(content) if salvaged else journal.decode(content)
-    if not told.events:
+    path, content = folder / JOURNAL, _journal_bytes(folder)
+    contents = salvage(content) if salvaged else decode(content)
+    if not contents.events:
         raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
-    first = told.events[0]
-    if 1 in told.bad and not (
+    first = contents.events[0]
+    if 1 in contents.bad and not (
         isinstance(first, Session) and first.sha256.keys() >= set(FILES) and first.format == FORMAT
     ):
         raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
@@ -129,7 +138,7 @@ def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:
             f"{folder} is a session of format {first.format}, and this vbraille knows format "
             f"{FORMAT}; use the vbraille that made it"
         )
-    return told
+    return contents
 
 
 def whole_lines(folder: Path) -> bytes:
@@ -144,7 +153,7 @@ def whole_lines(folder: Path) -> bytes:
     return content[: content.rfind(b"\n") + 1]
 
 
-def read_file(folder: Path, name: str, told: JournalContents) -> bytes:
+def read_file(folder: Path, name: str, contents: JournalContents) -> bytes:
     """Read one of `FILES`, and check that it is as it was when the session began.
 
     Raises
@@ -157,7 +166,7 @@ def read_file(folder: Path, name: str, told: JournalContents) -> bytes:
         content = path.read_bytes()
     except OSError as error:
         raise VbrailleError(f"{path} cannot be read: {error.strerror}") from None
-    if sha256(content).hexdigest() != told.session.sha256[name]:
+    if sha256(content).hexdigest() != contents.session.sha256[name]:
         raise VbrailleError(
             f"{path} is not what it was when the session began; "
             f"put it back as it was, nothing else was changed"
@@ -175,26 +184,26 @@ def load(folder: Path, *, salvaged: bool = False) -> Record:
     VbrailleError
         If the journal cannot be used, or another file is missing or was changed.
     """
-    told = read_journal(folder, salvaged=salvaged)
-    contents = {name: read_file(folder, name, told).decode() for name in FILES}
-    plan = Plan.from_json(contents[PLAN])
+    contents = read_journal(folder, salvaged=salvaged)
+    texts = {name: read_file(folder, name, contents).decode() for name in FILES}
+    plan = Plan.from_json(texts[PLAN])
 
     def beside(name: str) -> str:
-        if name not in told.session.sha256:
+        if name not in contents.session.sha256:
             raise VbrailleError(f"{folder} has lost {name} of its protocol; nothing was changed")
-        return read_file(folder, name, told).decode()
+        return read_file(folder, name, contents).decode()
 
     where = str(folder / PROTOCOL)
-    whole = parse_protocol(contents[PROTOCOL], where, planned=True, beside=beside)
+    whole = parse_protocol(texts[PROTOCOL], where, planned=True, beside=beside)
     try:
         protocol = whole.assigned(plan.group)
     except ValueError as error:
         raise VbrailleError(f"{folder / PLAN} is damaged: {error}; put it back") from None
-    head = json.loads(contents[HEAD])
-    return Record(folder, head, protocol, plan, told, procedure_of(protocol, plan))
+    head = json.loads(texts[HEAD])
+    return Record(folder, head, protocol, plan, contents, procedure_of(protocol, plan))
 
 
-def read_told_trace(folder: Path, name: str, told: JournalContents) -> Trace:
+def read_told_trace(folder: Path, name: str, contents: JournalContents) -> Trace:
     """Read a trace of a session, up to its last whole chunk.
 
     A trace also counts as damaged if it is missing, or does not have the length that the journal
@@ -206,7 +215,9 @@ def read_told_trace(folder: Path, name: str, told: JournalContents) -> Trace:
         size = path.stat().st_size
     except (VbrailleError, OSError):
         return Trace(np.zeros(0, TRACE), 0, "it cannot be read" if path.exists() else "it is gone")
-    closed = {event.trace: event.trace_bytes for event in told.events if isinstance(event, Closed)}
+    closed = {
+        event.trace: event.trace_bytes for event in contents.events if isinstance(event, Closed)
+    }
     damage = trace.damage
     if damage is None and name in closed and size != closed[name]:
         damage = f"it has {size} bytes, and had {closed[name]} when it was closed"
@@ -215,23 +226,23 @@ def read_told_trace(folder: Path, name: str, told: JournalContents) -> Trace:
     return replace(trace, damage=damage)
 
 
-def missed_tie(ties: Iterable[Tie], told: JournalContents) -> str | None:
+def missed_tie(ties: Iterable[Tie], contents: JournalContents) -> str | None:
     """Say which events the journal has lost since a trace was written; None if it has all."""
     for number, crc in ties:
-        if number > len(told.events):
+        if number > len(contents.events):
             return (
-                f"it was written when {journal.NAME} had {number} events, and it has "
-                f"{len(told.events)}: events were lost or taken off its end"
+                f"it was written when {JOURNAL} had {number} events, and it has "
+                f"{len(contents.events)}: events were lost or taken off its end"
             )
-        if number and told.crcs[number - 1] != crc:
+        if number and contents.crcs[number - 1] != crc:
             return (
-                f"it was written when event {number} of {journal.NAME} was another: events were "
+                f"it was written when event {number} of {JOURNAL} was another: events were "
                 f"taken off its end and replaced"
             )
     return None
 
 
-def check_end(folder: Path, told: JournalContents) -> None:
+def check_end(folder: Path, contents: JournalContents) -> None:
     """Check that a journal has all events that it had when its traces were written.
 
     Raises
@@ -241,7 +252,7 @@ def check_end(folder: Path, told: JournalContents) -> None:
     """
     for path in sorted(folder.glob("trace-*.gz")):
         tie = read_last_tie(path)
-        fault = None if tie is None else missed_tie([tie], told)
+        fault = None if tie is None else missed_tie([tie], contents)
         if fault is not None:
             raise VbrailleError(
                 f"{folder} is not whole: of {path.name}, {fault}; nothing was changed"
@@ -260,7 +271,7 @@ def versions() -> dict[str, str]:
 
 def _journal_bytes(folder: Path) -> bytes:
     try:
-        return (folder / journal.NAME).read_bytes()
+        return (folder / JOURNAL).read_bytes()
     except OSError as error:
         raise _no_journal(folder, error) from None
 
@@ -273,11 +284,11 @@ def _no_journal(folder: Path, error: OSError) -> VbrailleError:
         return InputError(f"there is no directory {folder}; give that of a session")
     except OSError as fault:
         return InputError(f"{folder} cannot be read: {fault.strerror}; give a session's directory")
-    if journal.NAME in names:
-        return VbrailleError(f"{folder / journal.NAME} cannot be read: {error.strerror}")
+    if JOURNAL in names:
+        return VbrailleError(f"{folder / JOURNAL} cannot be read: {error.strerror}")
     if names.issuperset(FILES):
-        return VbrailleError(f"{folder} has lost its {journal.NAME}; there is nothing to go by")
-    return InputError(f"{folder} is not the directory of a session: it has no {journal.NAME}")
+        return VbrailleError(f"{folder} has lost its {JOURNAL}; there is nothing to go by")
+    return InputError(f"{folder} is not the directory of a session: it has no {JOURNAL}")
 
 
 def _is_member(path: Path, trace: Trace) -> bool:
@@ -315,10 +326,10 @@ def participants_in(room: Path) -> dict[str, str]:
         return {}
     for head in heads:
         try:
-            told = json.loads(head.read_text("utf-8"))
-            found.setdefault(str(told["participant"]), head.parent.name)
+            content = json.loads(head.read_text("utf-8"))
+            found.setdefault(str(content["participant"]), head.parent.name)
         except (OSError, ValueError, KeyError, TypeError):
-            continue  # this is no readable session; whoever uses it will be told
+            continue  # this is no readable session; using it says so
     return found
 
 
@@ -365,7 +376,7 @@ def check_folder(folder: Path, expected: str | None = None) -> Iterator[Finding]
     folder
         Directory of the session.
     expected
-        SHA-256 of the journal, or its first digits, as a stop, the end or an export told it.
+        SHA-256 of the journal, or its first digits, as a stop, the end or an export tells it.
 
     Raises
     ------
@@ -374,11 +385,11 @@ def check_folder(folder: Path, expected: str | None = None) -> Iterator[Finding]
     VbrailleError
         If there is no journal that can be used.
     """
-    told = read_journal(folder, salvaged=True)
+    contents = read_journal(folder, salvaged=True)
     faults: list[Finding] = []
-    for name in told.session.sha256:
+    for name in contents.session.sha256:
         try:
-            read_file(folder, name, told)
+            read_file(folder, name, contents)
         except VbrailleError as error:
             faults.append(Finding(str(error), good=False))
     if not faults:
@@ -386,17 +397,17 @@ def check_folder(folder: Path, expected: str | None = None) -> Iterator[Finding]
         yield from _check_sum(folder, expected)
         return
     yield from faults
-    yield from _check_journal(told)
-    yield from _check_torn(folder, told)
+    yield from _check_journal(contents)
+    yield from _check_torn(folder, contents)
     yield from _check_sum(folder, expected)
-    runs = [event for event in told.events if isinstance(event, Run)]
+    runs = [event for event in contents.events if isinstance(event, Run)]
     for name in _trace_names(folder, runs):
-        yield _describe(name, read_told_trace(folder, name, told))
+        yield _describe(name, read_told_trace(folder, name, contents))
 
 
 def check(record: Record) -> Iterator[Finding]:
     """Check every file of a session whose first three files are whole."""
-    told = record.told
+    contents = record.journal
     names = ", ".join([*FILES, *record.protocol.files])
     yield Finding(f"{names}: as they were when the session began")
     try:
@@ -405,10 +416,10 @@ def check(record: Record) -> Iterator[Finding]:
         yield Finding(f"plan: {len(record.plan.trials)} trials{deck}, as the seed makes them")
     except VbrailleError as error:
         yield Finding(f"plan: {error}", good=False)
-    yield from _check_journal(told)
-    yield from _check_torn(record.folder, told)
+    yield from _check_journal(contents)
+    yield from _check_torn(record.folder, contents)
     yield from _check_watched(record)
-    progress = Progress(record.plan, told.events, record.procedure)
+    progress = Progress(record.plan, contents.events, record.procedure)
     yield from _check_traces(record, progress)
     yield from _check_choices(record, progress)
     state = "ended" if progress.ended else "not ended, session resume goes on"
@@ -417,42 +428,42 @@ def check(record: Record) -> Iterator[Finding]:
 
 def _check_choices(record: Record, progress: Progress) -> Iterator[Finding]:
     """Check that each trial was shown as the procedure chooses it after the answers before it."""
-    if not record.protocol.adaptive or record.told.bad:
+    if not record.protocol.adaptive or record.journal.bad:
         return
     asked = 0
-    for told in progress.trials.values():
-        for showing in told.showings:
-            if stimulus_of(showing) != told.trial.stimuli[showing.stimulus]:
+    for state in progress.trials.values():
+        for showing in state.showings:
+            if stimulus_of(showing) != state.trial.stimuli[showing.stimulus]:
                 what = "was shown with other values than the answers before it ask for"
-                yield Finding(f"procedure: trial {told.trial.number} {what}", good=False)
+                yield Finding(f"procedure: trial {state.trial.number} {what}", good=False)
                 break
-        asked += bool(told.showings)
+        asked += bool(state.showings)
     yield Finding(f"procedure: {asked} trials compared with what the answers before them ask for")
 
 
-def _check_journal(told: JournalContents) -> Iterator[Finding]:
-    if told.damage is not None:
-        before = len(told.crcs)
+def _check_journal(contents: JournalContents) -> Iterator[Finding]:
+    if contents.damage is not None:
+        before = len(contents.crcs)
         whole = f"the {before} events before it are whole"
-        after = sum(not isinstance(event, Lost) for event in told.events[before:])
+        after = sum(not isinstance(event, Lost) for event in contents.events[before:])
         if after:
             whole += f", and {after} after it, which session export {setting('salvage')} has too"
-        yield Finding(f"{journal.NAME}: damaged, {told.damage}; {whole}", good=False)
-        for line, previous in zip(told.bad[1:], told.bad, strict=False):
+        yield Finding(f"{JOURNAL}: damaged, {contents.damage}; {whole}", good=False)
+        for line, previous in zip(contents.bad[1:], contents.bad, strict=False):
             if line != previous + 1:
                 what = f"line {line} does not match its checksum either"
-                yield Finding(f"{journal.NAME}: damaged, {what}", good=False)
+                yield Finding(f"{JOURNAL}: damaged, {what}", good=False)
     else:
-        yield Finding(f"{journal.NAME}: {len(told.events)} events, whole")
-        runs = [event for event in told.events if isinstance(event, Run)]
-        if runs and runs[-1].trace and not isinstance(told.events[-1], Closed):
+        yield Finding(f"{JOURNAL}: {len(contents.events)} events, whole")
+        runs = [event for event in contents.events if isinstance(event, Run)]
+        if runs and runs[-1].trace and not isinstance(contents.events[-1], Closed):
             yield Finding(
-                f"{journal.NAME}: its last run was not closed; it goes on, or was cut short, or "
+                f"{JOURNAL}: its last run was not closed; it goes on, or was cut short, or "
                 f"lines were taken off its end"
             )
-    if told.torn:
+    if contents.torn:
         yield Finding(
-            f"{journal.NAME}: its last line was cut short, {len(told.torn)} bytes; "
+            f"{JOURNAL}: its last line was cut short, {len(contents.torn)} bytes; "
             f"session resume sets them aside"
         )
 
@@ -460,7 +471,7 @@ def _check_journal(told: JournalContents) -> Iterator[Finding]:
 def _check_sum(folder: Path, expected: str | None) -> Iterator[Finding]:
     """Tell the journal's checksum, and compare it with one that was kept elsewhere."""
     content = whole_lines(folder)
-    yield Finding(f"record: {journal.sum_of(content)}")
+    yield Finding(f"record: {sum_of(content)}")
     if expected is None:
         return
     lines, so_far = content.split(b"\n")[:-1], sha256()
@@ -475,26 +486,26 @@ def _check_sum(folder: Path, expected: str | None) -> Iterator[Finding]:
     yield Finding(f"expected: the sum is not that of this journal; {what}", good=False)
 
 
-def _check_torn(folder: Path, told: JournalContents) -> Iterator[Finding]:
+def _check_torn(folder: Path, contents: JournalContents) -> Iterator[Finding]:
     """Check that `journal.torn` begins with everything that the journal says was set aside."""
     try:
-        torn = (folder / journal.TORN).read_bytes()
+        torn = (folder / TORN).read_bytes()
     except FileNotFoundError:
         torn = b""
     except OSError as error:
-        yield Finding(f"{journal.TORN} cannot be read: {error.strerror}", good=False)
+        yield Finding(f"{TORN} cannot be read: {error.strerror}", good=False)
         return
-    sums = [run.torn_file for run in told.events if isinstance(run, Run) and run.torn_file]
-    good = all(journal.sum_of_torn(torn[: known["bytes"]]) == known for known in sums)
+    sums = [run.torn_file for run in contents.events if isinstance(run, Run) and run.torn_file]
+    good = all(sum_of_torn(torn[: known["bytes"]]) == known for known in sums)
     if not good:
-        yield Finding(f"{journal.TORN}: {len(torn)} bytes, and not those set aside", good=False)
+        yield Finding(f"{TORN}: {len(torn)} bytes, and not those set aside", good=False)
     elif torn:  # if a crash came at once, the journal may not tell of the last bytes
-        yield Finding(f"{journal.TORN}: {len(torn)} bytes set aside by session resume")
+        yield Finding(f"{TORN}: {len(torn)} bytes set aside by session resume")
 
 
 def _check_watched(record: Record) -> Iterator[Finding]:
     """Check that the live view has hidden stimuli in every run if the protocol says so."""
-    runs = [event for event in record.told.events if isinstance(event, Run)]
+    runs = [event for event in record.journal.events if isinstance(event, Run)]
     blind = record.protocol.session.blind
     for number, run in enumerate(runs, 1):
         if run.monitor is None:
@@ -509,28 +520,30 @@ def _check_watched(record: Record) -> Iterator[Finding]:
 
 
 def _check_traces(record: Record, progress: Progress) -> Iterator[Finding]:
-    told = record.told
+    contents = record.journal
     expected = {run.trace for run in progress.runs if run.trace}
     answered, known = _answered_lines(progress), _known_lines(progress)
     # After a crash, a trace may go on where the journal has lost its end.
-    open_end = bool(told.torn) or not told.events or not isinstance(told.events[-1], Closed)
+    open_end = (
+        bool(contents.torn) or not contents.events or not isinstance(contents.events[-1], Closed)
+    )
     for name in _trace_names(record.folder, progress.runs):
-        trace = read_told_trace(record.folder, name, told)
+        trace = read_told_trace(record.folder, name, contents)
         yield _describe(name, trace)
-        if name not in expected and not told.bad:
+        if name not in expected and not contents.bad:
             yield Finding(f"{name}: of a run that the journal does not tell of")
         # A damage is told once: a file that is not whole is compared with no other.
-        if trace.damage is None and not told.bad:
-            yield from _check_tie(record.folder / name, trace, told)
+        if trace.damage is None and not contents.bad:
+            yield from _check_tie(record.folder / name, trace, contents)
             lines = set(np.unique(trace.ticks["line"]).tolist())
             yield from _compare(name, lines, answered.get(name, set()), known | {0}, open_end)
 
 
-def _check_tie(path: Path, trace: Trace, told: JournalContents) -> Iterator[Finding]:
+def _check_tie(path: Path, trace: Trace, contents: JournalContents) -> Iterator[Finding]:
     """Check that the journal has all lines that it had when a trace was written."""
-    if (fault := missed_tie(trace.ties, told)) is not None:
+    if (fault := missed_tie(trace.ties, contents)) is not None:
         yield Finding(f"{path.name}: {fault}", good=False)
-    closed = [event for event in told.events if isinstance(event, Closed)]
+    closed = [event for event in contents.events if isinstance(event, Closed)]
     sums = [event.trace_sha256 for event in closed if event.trace == path.name]
     if sums and sums[-1] != sha256(path.read_bytes()).hexdigest():
         yield Finding(f"{path.name}: it is not what it was when it was closed", good=False)
@@ -538,8 +551,8 @@ def _check_tie(path: Path, trace: Trace, told: JournalContents) -> Iterator[Find
 
 def _trace_names(folder: Path, runs: list[Run]) -> list[str]:
     """Names of all traces that exist or should exist."""
-    told = {run.trace for run in runs if run.trace}
-    return sorted(told | {path.name for path in folder.glob("trace-*.gz")})
+    expected = {run.trace for run in runs if run.trace}
+    return sorted(expected | {path.name for path in folder.glob("trace-*.gz")})
 
 
 def _describe(name: str, trace: Trace) -> Finding:
@@ -569,14 +582,14 @@ def _compare(
 def _answered_lines(progress: Progress) -> dict[str, set[int]]:
     """Line numbers of the showings that were answered, by the name of the trace."""
     lines: dict[str, set[int]] = {}
-    for told in progress.trials.values():
-        if told.answer is None and told.first_answer is None:
+    for state in progress.trials.values():
+        if state.answer is None and state.first_answer is None:
             continue
-        if told.trace is not None:
-            lines.setdefault(told.trace, set()).update(each.line for each in told.last_attempt)
+        if state.trace is not None:
+            lines.setdefault(state.trace, set()).update(each.line for each in state.last_attempt)
     return lines
 
 
 def _known_lines(progress: Progress) -> set[int]:
     trials = (*progress.trials.values(), *progress.practice.values())
-    return {showing.line for told in trials for showing in told.showings}
+    return {showing.line for state in trials for showing in state.showings}

@@ -146,7 +146,7 @@ class Journal:
 
     Attributes
     ----------
-    told : JournalContents
+    contents : JournalContents
         Content of the journal when it was opened.
     durable : Tie
         Last event of this run that is sure to be on the disk.
@@ -169,18 +169,19 @@ class Journal:
             ) from None
         try:
             self._lock()
-            self.told = decode(self._path.read_bytes())
-            if self.told.damage is not None:
+            self.contents = decode(self._path.read_bytes())
+            if self.contents.damage is not None:
                 raise VbrailleError(
-                    f"{self._path} is damaged: {self.told.damage}; the {len(self.told.events)} "
-                    f"events before it are whole, and nothing was changed"
+                    f"{self._path} is damaged: {self.contents.damage}; the "
+                    f"{len(self.contents.events)} events before it are whole, and nothing was "
+                    f"changed"
                 )
         except BaseException:
             self.close()
             raise
         self.durable = Tie(0, 0)
-        self._count, self._crc = len(self.told.events), self.told.crc
-        self._length = self.told.good_bytes + len(self.told.torn)
+        self._count, self._crc = len(self.contents.events), self.contents.crc
+        self._length = self.contents.good_bytes + len(self.contents.torn)
 
     def torn_file(self) -> dict[str, Any]:
         """Length and checksum of `journal.torn`; empty if that file does not exist.
@@ -204,7 +205,7 @@ class Journal:
         VbrailleError
             If the disk does not take the line, which then stays where it was.
         """
-        torn = self.told.torn
+        torn = self.contents.torn
         if not torn:
             return 0
         try:
@@ -215,8 +216,8 @@ class Journal:
                 file.flush()
                 os.fsync(file.fileno())
             sync_names(self._path.parent)
-            os.ftruncate(self._file, self.told.good_bytes)
-            self._length = self.told.good_bytes
+            os.ftruncate(self._file, self.contents.good_bytes)
+            self._length = self.contents.good_bytes
             os.fsync(self._file)
         except OSError as error:
             raise VbrailleError(
@@ -308,9 +309,9 @@ def salvage(content: bytes) -> JournalContents:
 
     Each other event is replaced by a `Lost` that has its number.
     """
-    told = decode(content)
-    if told.damage is None:
-        return told
+    contents = decode(content)
+    if contents.damage is None:
+        return contents
     *lines, torn = content.split(b"\n")
     whole, found = _read_lines(lines)
     events: list[JournalEvent] = []
@@ -328,7 +329,9 @@ def salvage(content: bytes) -> JournalContents:
     if not bad:  # the last line has lost its end
         bad, torn = [len(lines) + 1], b""
         events += _lost(events, events[-1].n + 1, events[-1]) if events else []
-    return JournalContents(events, told.good_bytes, told.crcs, torn, told.damage, tuple(bad))
+    return JournalContents(
+        events, contents.good_bytes, contents.crcs, torn, contents.damage, tuple(bad)
+    )
 
 
 def _read_lines(lines: list[bytes]) -> tuple[list[bool], list[JournalEvent | None]]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from msgspec import structs
 
 from vbraille.errors import VbrailleError
-from vbraille.sessions.planning.choosing import Answered, FixedOrder, Procedure
+from vbraille.sessions.planning.nexttrial import Answered, FixedOrder, Procedure
 from vbraille.sessions.planning.plan import Plan, stimulus_from_json
 from vbraille.sessions.planning.stimuli import Stimuli, Stimulus, Trial
 from vbraille.sessions.record import events
@@ -233,7 +233,7 @@ class Progress:
         """Text for a number of trials, with the number of all trials if that is known."""
         return f"{number}" if self.planned is None else f"{number} of {self.planned}"
 
-    def told(self, trial: Trial) -> TrialRecord:
+    def record_of(self, trial: Trial) -> TrialRecord:
         """What is known about a trial, practice or not."""
         return (self.practice if trial.practice else self.trials)[trial.number]
 
@@ -250,7 +250,7 @@ class Progress:
             self.script_lines[self._answers] = event.script_line
         record = None
         if isinstance(event, events.AnyTime) and event.trial:
-            record = self._record_of(event)
+            record = self._record_at(event)
         self._change(event, record)
         if record is None:
             return
@@ -274,7 +274,7 @@ class Progress:
                 self.trials[trial.number] = TrialRecord(trial)
         return trial
 
-    def _record_of(self, event: events.AnyTime) -> TrialRecord:
+    def _record_at(self, event: events.AnyTime) -> TrialRecord:
         records = self.practice if event.practice else self.trials
         record = records.get(event.trial)
         if record is None and self._unasked and not event.practice:
@@ -379,7 +379,7 @@ class Progress:
         if self.correcting is not None:
             self.correcting = None
             self.history[-1] = answered
-            if self._next is None or not self.told(self._next).attempts:
+            if self._next is None or not self.record_of(self._next).attempts:
                 self._next = self._ask()  # a trial that was shown already stays
             return
         record.early = event.early

@@ -111,10 +111,10 @@ class Apparatus:
             Fields of the run's event: why it began, spec of the device, and simulated hand.
         """
         with Journal(record.folder) as book:
-            check_end(record.folder, book.told)
+            check_end(record.folder, book.contents)
             torn_bytes = book.set_torn_aside()
             self.open(record.protocol, record.plan)
-            progress = Progress(record.plan, book.told.events, record.procedure)
+            progress = Progress(record.plan, book.contents.events, record.procedure)
             device = self._device(record, book)
             sound = self.sound()
             runner = Runner(
@@ -188,11 +188,12 @@ class Apparatus:
             told["torn_file"] = torn
         if progress.runs:
             same_start = bool(told["boot"]) and told["boot"] == progress.runs[-1].boot
-            told |= _gap(book.told.events[-1], same_start=same_start)
+            told |= _gap(book.contents.events[-1], same_start=same_start)
             self.say(f"resume: {progress.of_all(progress.done)} trials have answers")
-        if book.told.torn:
+        if book.contents.torn:
             self.say(
-                f"torn: {len(book.told.torn)} bytes at the end of the journal are in journal.torn"
+                f"torn: {len(book.contents.torn)} bytes at the end of the journal are in "
+                f"journal.torn"
             )
         return told
 

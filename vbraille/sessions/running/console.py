@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.conduct import ENTER
+from vbraille.sessions.planning.pace import ENTER
 from vbraille.sessions.record import events
 from vbraille.sessions.running.runner import PendingAnswer, Phase, Runner
 
@@ -116,7 +116,10 @@ class Console:
         except ValueError as error:
             self._refuse("no answer", error)
             return
-        told: dict[str, Any] = {"attempt": self._progress.told(trial).attempts, "answer": answer}
+        told: dict[str, Any] = {
+            "attempt": self._progress.record_of(trial).attempts,
+            "answer": answer,
+        }
         if correcting is not None:
             told["corrects"] = True
         else:
@@ -275,7 +278,7 @@ class Console:
         sure = f", confidence {told['confidence']}" if "confidence" in told else ""
         self._say(f"answer: {runner.name(trial)}, {self._spoken(told['answer'])}{sure}")
         if trial.practice and (protocol := runner.protocol).practice.feedback:
-            shown, knob = self._progress.told(trial).shown, protocol.parameter
+            shown, knob = self._progress.record_of(trial).shown, protocol.parameter
             said = protocol.asks.feedback(shown, told["answer"], protocol.keys, knob)
             if said:
                 self._say(f"practice: {said}")
@@ -294,7 +297,7 @@ class Console:
 
     def _asks_again(self, trial: Trial, answer: str) -> bool:
         """Ask once about an answer that was typed before the trial was read; True if it asks."""
-        told = self._progress.told(trial)
+        told = self._progress.record_of(trial)
         early = trial.practice, trial.number, told.attempts, answer
         if not self._runner.responses.typed or early == self._early:
             return False

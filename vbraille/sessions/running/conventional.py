@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.conventional.display import ConventionalDisplay
-    from vbraille.sessions.planning.appearance import ConventionalTable
+    from vbraille.sessions.planning.style import ConventionalTable
 
 _COMES_S = 10.0  # by then a display that is there has said so
 _GONE_S = 2.0  # so long one may come that is not there yet

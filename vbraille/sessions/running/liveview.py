@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     import numpy as np
 
-    from vbraille.engine.shared import Extent
+    from vbraille.engine.mailbox import Extent
     from vbraille.live.messages import LineShown
     from vbraille.live.monitor import Monitor
     from vbraille.sessions.planning.protocol import Protocol
@@ -146,7 +146,7 @@ def _unhidden(state: ViewState, runner: Runner) -> ViewState:
     """ViewState with all that a blind one keeps back."""
     facts, trial = [*state.facts], runner.trial
     answered = runner.progress.last_answered
-    if answered is not None and (answer := runner.progress.told(answered).answer) is not None:
+    if answered is not None and (answer := runner.progress.record_of(answered).answer) is not None:
         of, knob = runner.protocol, runner.protocol.parameter
         facts.append(("last answer", of.asks.verdict(answered, answer, of.keys, knob)))
     if trial is None:
@@ -201,7 +201,7 @@ def _facts(runner: Runner) -> list[tuple[str, str]]:
             facts.append(("block", f"{trial.block} of {blocks}"))
         if len(trial.stimuli) == 2 and runner.phase is Phase.OPEN:
             facts.append(("stimulus", "second of 2" if runner.stimulus else "first of 2"))
-        if (attempt := progress.told(trial).attempts) > 1:
+        if (attempt := progress.record_of(trial).attempts) > 1:
             facts.append(("attempt", f"{attempt}"))
     facts.append(("answered", progress.of_all(progress.done)))
     if protocol.session.break_every is not None:

@@ -14,13 +14,12 @@ import numpy as np
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Button, HandHeld
 from vbraille.devices.sentences import placing_sentence, told
-from vbraille.engine.engine import Engine, placing_of
+from vbraille.engine.engine import HOME_MM, EndOfLine, Engine, Upright, placing_of
 from vbraille.engine.record import Flag
-from vbraille.engine.watchers import HOME_MM, EndOfLine, Upright
 from vbraille.sessions.record import events
 from vbraille.sessions.record.traces import TraceWriter
 from vbraille.sessions.record.trajectory import first_edge_mm
-from vbraille.sessions.simulated.skin import Exploration
+from vbraille.sessions.simulated.skin import FeltFrames
 from vbraille.simulation.steering import ReadLine
 
 if TYPE_CHECKING:
@@ -147,7 +146,7 @@ class Presenter:
         return self.read
 
     @property
-    def explorations(self) -> list[Exploration]:
+    def explorations(self) -> list[FeltFrames]:
         """Frames and places of each stimulus of the trial so far; none off the device."""
         return []
 
@@ -412,10 +411,10 @@ class OnDevice(Presenter):
         return self.read or (self._end is not None and self._end.reached)
 
     @property
-    def explorations(self) -> list[Exploration]:
+    def explorations(self) -> list[FeltFrames]:
         """Frames and places of each stimulus of the trial so far."""
         together = (np.concatenate(parts) for parts in self._felt)
-        return [Exploration(t["frame"], t["x_mm"], t["time_ns"] / 1e9) for t in together]
+        return [FeltFrames(t["frame"], t["x_mm"], t["time_ns"] / 1e9) for t in together]
 
     def show(self, presentation: Presentation, *, first: bool = True) -> None:
         """Put a stimulus under the hand, as the showing with the next line number."""

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.appearance import CONVENTIONAL, Condition
 from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.questions import WhichQuestion
+from vbraille.sessions.planning.style import CONVENTIONAL, Condition
 from vbraille.sessions.record.trajectory import columns_of, edges_mm
 from vbraille.sessions.running.responses import TrialResponses
 from vbraille.sessions.simulated.feeling import CELL_GAP, LENGTHS, DotPair, FeltTrial
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.simulated.skin import Exploration
+    from vbraille.sessions.simulated.skin import FeltFrames
 
 
 def pair_of(
@@ -120,7 +120,7 @@ class Simulated(TrialResponses):
         self._check_feels(protocol)
         self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"
 
-    def next(self, trial: Trial, attempt: int, felt: list[Exploration], /) -> tuple[str, int]:
+    def next(self, trial: Trial, attempt: int, felt: list[FeltFrames], /) -> tuple[str, int]:
         """Answer to a trial, by what was felt of it."""
         drawn = f"{self._drawn} {trial.practice} {trial.number} {attempt}"
         random = np.random.default_rng(seed_of(drawn))

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.simulated.skin import Exploration
+    from vbraille.sessions.simulated.skin import FeltFrames
 
 
 _OFF = b"\0"  # the sign for none
@@ -97,9 +97,7 @@ class Responses(Protocol):
         """Lines given since the last call, waiting a while for one; None if no more will come."""
         ...
 
-    def next(
-        self, trial: Trial, attempt: int, felt: list[Exploration], /
-    ) -> tuple[str, int] | None:
+    def next(self, trial: Trial, attempt: int, felt: list[FeltFrames], /) -> tuple[str, int] | None:
         """Answer to a trial that has been read: a line, and its number in a file, or 0.
 
         None if there are no more lines.
@@ -173,7 +171,7 @@ class Typed:
         return line
 
     def next(
-        self, _trial: Trial, _attempt: int, _felt: list[Exploration], /
+        self, _trial: Trial, _attempt: int, _felt: list[FeltFrames], /
     ) -> tuple[str, int] | None:
         """Return None: a person answers at any time, and is not asked."""
         return None
@@ -227,7 +225,7 @@ class Scripted(TrialResponses):
         self._given = 0
 
     def next(
-        self, _trial: Trial, _attempt: int, _felt: list[Exploration], /
+        self, _trial: Trial, _attempt: int, _felt: list[FeltFrames], /
     ) -> tuple[str, int] | None:
         """Give the next line of the file."""
         if self._given == len(self.left):

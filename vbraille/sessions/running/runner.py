@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.host import HostDiedError
 from vbraille.engine.suspending import Suspension
-from vbraille.sessions.planning.conduct import ENTER
+from vbraille.sessions.planning.pace import ENTER
 from vbraille.sessions.planning.plan import stimulus_to_json
 from vbraille.sessions.record import events
 from vbraille.sessions.record.folder import versions
@@ -30,7 +30,7 @@ from vbraille.sessions.running.responses import KeyPress, Typed
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.sessions.planning.conduct import Tone
+    from vbraille.sessions.planning.pace import Tone
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
@@ -347,7 +347,7 @@ class Runner:
         if trial is None or self.phase is Phase.OVER:
             return
         felt = self.presenter.explorations if self.responses.felt else []
-        given = self.responses.next(trial, self.progress.told(trial).attempts, felt)
+        given = self.responses.next(trial, self.progress.record_of(trial).attempts, felt)
         if given is not None:
             take(*given)
         elif last and not correcting:
@@ -474,7 +474,7 @@ class Runner:
                 self._begin(trial)
         elif self.phase is Phase.OPEN and presenter.taken and not presenter.read:
             self.log(events.Read, trial, attempt=self._attempt, stimulus=0)
-            told = self.progress.told(trial)
+            told = self.progress.record_of(trial)
             seconds = told.t_s["read"] - told.t_s["cue"] - told.unread_s
             self._say(f"read: {seconds:.1f} s; type {self.prompt}")
             presenter.end_reading()
@@ -491,7 +491,7 @@ class Runner:
             self._say(f"ended: the first, by {key}")
             return
         self.ended_by, self._prompted = by, True
-        told = self.progress.told(trial)
+        told = self.progress.record_of(trial)
         seconds = told.t_s["ended"] - told.t_s["cue"] - told.paused_s
         self._say(f"ended: {seconds:.2f} s, by {key}; type {self.prompt}")
 
@@ -580,7 +580,7 @@ class Runner:
 
     def _ready(self, trial: Trial) -> None:
         self.phase = Phase.READY
-        again = ", again" if self.progress.told(trial).attempts else ""
+        again = ", again" if self.progress.record_of(trial).attempts else ""
         where = ", on the conventional display" if self.presenter is self.conventional else ""
         how = "; Enter when reading begins" if self.by_key and self.responses.typed else ""
         self._say(f"ready: {self.name(trial)}{again}{where}{how}")
@@ -595,7 +595,7 @@ class Runner:
 
     def _begin(self, trial: Trial) -> None:
         """Begin the next trial."""
-        self._attempt = self.progress.told(trial).attempts + 1
+        self._attempt = self.progress.record_of(trial).attempts + 1
         self.phase = Phase.OPEN
         self._prompted, self.ended_by = False, ""
         self._show(trial, 0)
@@ -643,7 +643,7 @@ class Runner:
         """Give the warning, or show the second stimulus, if either is due."""
         if self.pending is not None:
             return
-        warning_s, told = self.protocol.trial.warning_s, self.progress.told(trial)
+        warning_s, told = self.protocol.trial.warning_s, self.progress.record_of(trial)
         since_s = (self._now_ns() - self._cue_ns) / 1e9 - told.paused_s
         if warning_s is not None and "warning" not in told.t_s and since_s >= warning_s:
             self._play(self.protocol.sound.warning)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.progress import Progress
-    from vbraille.sessions.simulated.skin import Exploration
+    from vbraille.sessions.simulated.skin import FeltFrames
 
     # What answers may be taken from: a spec as in `Conditions`, a source that is made already, a
     # line for each trial, or a function that gives the line for a trial.
@@ -57,7 +57,7 @@ class ProgramResponses(TrialResponses):
         self._answered: tuple[bool, int, int] | None = None
 
     def next(
-        self, trial: Trial, attempt: int, _felt: list[Exploration], /
+        self, trial: Trial, attempt: int, _felt: list[FeltFrames], /
     ) -> tuple[str, int] | None:
         """Line of the program for a trial; None if there is none, or the trial was answered.
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vbraille.braille.geometry import Geometry
-    from vbraille.sessions.simulated.skin import Exploration
+    from vbraille.sessions.simulated.skin import FeltFrames
 
 WIDTH, GAP, SPACING, CELL_GAP = "dot_width_mm", "dot_gap_mm", "dot_spacing_mm", "cell_gap_mm"
 LENGTHS = (WIDTH, GAP, SPACING, CELL_GAP)
@@ -50,7 +50,7 @@ class DotPair:
 
 
 def felt_mm(
-    observer: Observer, parameter: str, exploration: Exploration, pair: DotPair | None
+    observer: Observer, parameter: str, exploration: FeltFrames, pair: DotPair | None
 ) -> float:
     """Length that is felt of a stimulus; NaN if it is not felt."""
     if parameter in (WIDTH, GAP):
@@ -99,7 +99,7 @@ class FeltTrial:
     """
 
     observer: Observer
-    felt: Sequence[Exploration]
+    felt: Sequence[FeltFrames]
     places: Sequence[int]
     asked: slice
     parameter: str

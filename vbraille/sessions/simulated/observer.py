@@ -56,7 +56,7 @@ import numpy as np
 from vbraille.braille.dots import PLACES, mask_of
 from vbraille.sessions.simulated.skin import (
     STILL_MM_S,
-    Exploration,
+    FeltFrames,
     Rates,
     Wave,
     reference_per_mm2,
@@ -165,7 +165,7 @@ class Observer:
         self._pairs = _per_frame(weights, differences)
         self._swings = _per_frame(weights, np.eye(array.columns))
 
-    def felt(self, exploration: Exploration, places: int) -> Touch:
+    def felt(self, exploration: FeltFrames, places: int) -> Touch:
         """Evidence that an exploration gives of the dots of the first cells of a line.
 
         Parameters
@@ -220,12 +220,12 @@ class Observer:
         ]
 
     def read(
-        self, exploration: Exploration, places: int, random: np.random.Generator
+        self, exploration: FeltFrames, places: int, random: np.random.Generator
     ) -> list[int | None]:
         """Dot masks of the first cells of a line; see `felt` and `answer`."""
         return self.answer(self.felt(exploration, places), random)
 
-    def dots_mm(self, exploration: Exploration) -> NDArray[np.float64]:
+    def dots_mm(self, exploration: FeltFrames) -> NDArray[np.float64]:
         """Where each dot column of a line begins and ends, as far as dots were felt.
 
         Returns
@@ -253,7 +253,7 @@ class Observer:
         firsts, lasts = np.r_[0, apart + 1], np.r_[apart, at.size - 1]
         return np.column_stack((starts_mm[firsts], ends_mm[lasts]))
 
-    def lengths_mm(self, exploration: Exploration) -> tuple[float, float]:
+    def lengths_mm(self, exploration: FeltFrames) -> tuple[float, float]:
         """Width of the first dot of a line, and gap to the next dot; NaN where one is missing."""
         dots_mm = self.dots_mm(exploration)
         if not len(dots_mm):
@@ -261,7 +261,7 @@ class Observer:
         width_mm = float(dots_mm[0, 1] - dots_mm[0, 0])
         return width_mm, float(dots_mm[1, 0] - dots_mm[0, 1]) if len(dots_mm) > 1 else math.nan
 
-    def _near(self, exploration: Exploration, right_mm: float) -> Exploration:
+    def _near(self, exploration: FeltFrames, right_mm: float) -> FeltFrames:
         """Ticks at which the array is over a line, or at most a dot's width beside it.
 
         Raises
@@ -278,7 +278,7 @@ class Observer:
         beside_mm = self._half_mm + aside_mm
         return exploration.within(-beside_mm, right_mm + beside_mm)
 
-    def _felt(self, exploration: Exploration, weights: NDArray[np.float32]) -> NDArray[np.float32]:
+    def _felt(self, exploration: FeltFrames, weights: NDArray[np.float32]) -> NDArray[np.float32]:
         """Strains of pairs or swings of columns; float32[n, pairs or columns, channels]."""
         frames = exploration.frames.reshape(len(exploration.frames), -1)
         felt = np.asarray(frames, np.float32) @ weights.reshape(len(frames[0]), -1)

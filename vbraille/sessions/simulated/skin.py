@@ -24,7 +24,7 @@ _TAILS = 4  # reach of a kernel in standard deviations
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Exploration:
+class FeltFrames:
     """Frames that a hand was given, with places and times, tick by tick.
 
     Parameters
@@ -56,12 +56,12 @@ class Exploration:
         if not (np.diff(self.time_s) >= 0).all():
             raise ValueError("time goes back or is not a number; it must increase")
 
-    def within(self, low_mm: float, high_mm: float) -> Exploration:
+    def within(self, low_mm: float, high_mm: float) -> FeltFrames:
         """Ticks whose place is known, with the array's centre between two places."""
         near = (self.x_mm >= low_mm) & (self.x_mm <= high_mm)
         if near.all():
             return self
-        return Exploration(self.frames[near], self.x_mm[near], self.time_s[near])
+        return FeltFrames(self.frames[near], self.x_mm[near], self.time_s[near])
 
     def speeds_mm_s(self) -> NDArray[np.float64]:
         """Speed at each tick, never negative; float64[n]."""

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from tests.analysis.making import made, record
-from vbraille.analysis.measures.overtime import PAST, over_time, slopes
+from vbraille.analysis.measures.trends import PAST, over_time, slopes
 
 COLUMNS = "participant condition session trial presented answered"
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.sessions.sittings import COMPARED, MINI, Session
-from vbraille.analysis.input.sittings import (
+from vbraille.analysis.input.sessions import (
     IN_PART,
     MOST_PICKED,
     ONE_PASS,
@@ -15,7 +15,7 @@ from vbraille.analysis.input.sittings import (
     Reading,
     _examples,
     pick,
-    read_sitting,
+    read_session,
 )
 from vbraille.errors import InputError
 from vbraille.sessions.record import journal
@@ -48,7 +48,7 @@ def cut(folder, to, name, number):
 
 
 def test_a_sitting_is_its_rows_and_how_each_string_was_read(folder):
-    sitting = read_sitting(folder)
+    sitting = read_session(folder)
     record = load(folder)
     assert sitting.rows == rows(record)
     assert (sitting.folder, sitting.head, sitting.protocol) == (
@@ -69,7 +69,7 @@ def test_a_sitting_is_its_rows_and_how_each_string_was_read(folder):
 
 
 def test_a_pattern_has_an_example_to_draw(folder):
-    sitting = read_sitting(folder)
+    sitting = read_session(folder)
     (example,) = sitting.examples
     durations = {row["trial"]: row["duration_s"] for row in sitting.rows}
     # Of 4, the second.
@@ -134,7 +134,7 @@ def test_a_way_is_picked_evenly_with_the_ticks_that_are_kept():
 def test_a_slow_hand_reads_in_all_kinds_of_ways(tmp_path):
     session = Session(tmp_path / "s", hand="device")
     session.sit()
-    sitting = read_sitting(session.folder)
+    sitting = read_session(session.folder)
     for reading in sitting.readings.values():
         assert isinstance(reading, Reading)
         assert 3 < reading.speed_right_mm_s < 21
@@ -146,25 +146,25 @@ def test_a_slow_hand_reads_in_all_kinds_of_ways(tmp_path):
 
 
 def test_a_session_broken_off_says_where(folder, tmp_path):
-    sitting = read_sitting(cut(folder, tmp_path / "open", "cue", 2))
+    sitting = read_session(cut(folder, tmp_path / "open", "cue", 2))
     assert (sitting.state, list(sitting.readings)) == ("broken off in trial 3", [1, 2])
-    sitting = read_sitting(cut(folder, tmp_path / "between", "answer", 2))
+    sitting = read_session(cut(folder, tmp_path / "between", "answer", 2))
     assert sitting.state == "not ended: 3 of 4 trials answered"
     assert list(sitting.readings) == [1, 2, 3]
     assert [row["answered"] != "" for row in sitting.rows] == [True, True, True, False]
     assert sitting.faults == []
-    planned = read_sitting(Session(tmp_path / "planned").folder)
+    planned = read_session(Session(tmp_path / "planned").folder)
     assert planned.state == "not ended: 0 of 4 trials answered"
     assert (planned.readings, planned.examples) == ({}, ())
     practised = Session(tmp_path / "practice", MINI + '[practice]\ntrials = 1\nstrings = ["aa"]\n')
     practised.sit(("cue: practice 1", "stop"))
-    assert read_sitting(practised.folder).state == "broken off in practice trial 1"
+    assert read_session(practised.folder).state == "broken off in practice trial 1"
 
 
 def test_an_answer_taken_back_is_of_a_trial_that_was_read(tmp_path):
     session = Session(tmp_path / "s")
     session.sit(("read:", "c"), ("cue: trial 2", "undo"), ("undo: trial 1", "stop"))
-    sitting = read_sitting(session.folder)
+    sitting = read_session(session.folder)
     assert (sitting.state, sitting.readings) == ("not ended: 0 of 4 trials answered", {})
 
 
@@ -174,7 +174,7 @@ def test_of_a_damaged_trace_the_trials_before_the_damage_are_read(folder, tmp_pa
     whole = bytearray(path.read_bytes())
     whole[len(whole) // 2] ^= 1
     path.write_bytes(whole)
-    sitting = read_sitting(copy)
+    sitting = read_session(copy)
     (fault,) = sitting.faults
     assert re.fullmatch(
         r"trace-001\.gz is damaged, chunk \d of trace-001\.gz does not match its checksum", fault
@@ -184,7 +184,7 @@ def test_of_a_damaged_trace_the_trials_before_the_damage_are_read(folder, tmp_pa
     assert sitting.readings[4] == "trace-001.gz is damaged before the end of it"
     assert [row["duration_s"] != "" for row in sitting.rows] == known
     path.unlink()
-    sitting = read_sitting(copy)
+    sitting = read_session(copy)
     assert sitting.faults == ["trace-001.gz is damaged, it is gone"]
     assert sitting.examples == ()
 
@@ -194,7 +194,7 @@ def test_of_a_damaged_journal_what_comes_before_is_read(folder, tmp_path):
     lines = (copy / journal.NAME).read_bytes().splitlines(keepends=True)
     lines[12] = lines[12].replace(b"t_s", b"t_S")
     (copy / journal.NAME).write_bytes(b"".join(lines))
-    sitting = read_sitting(copy)
+    sitting = read_session(copy)
     assert sitting.faults == ["journal.jsonl is damaged, line 13 does not match its checksum"]
     assert 0 < len(sitting.readings) < 4
 
@@ -207,7 +207,7 @@ def test_a_hand_that_never_came_to_the_string_has_not_read(folder, tmp_path):
     trace = TraceWriter(copy / "trace-001.gz", lambda: Tie(0, 0))
     trace.add(ticks)
     trace.close()
-    sitting = read_sitting(copy)
+    sitting = read_session(copy)
     assert sitting.readings[2] == NEVER_CAME == "the hand never came to the first dot"
     assert (sitting.rows[1]["duration_s"], sitting.rows[1]["correct"]) == ("", 1)
     assert isinstance(sitting.readings[3], Reading)
@@ -216,13 +216,13 @@ def test_a_hand_that_never_came_to_the_string_has_not_read(folder, tmp_path):
 def test_comparisons_and_paper_have_no_readings(tmp_path):
     session = Session(tmp_path / "choice", COMPARED)
     session.sit()
-    sitting = read_sitting(session.folder)
+    sitting = read_session(session.folder)
     assert (sitting.readings, sitting.examples, sitting.state) == ({}, (), "ended")
     assert sitting.rows == rows(load(session.folder))
     session = Session(tmp_path / "paper", PAPER)
     turn = [("ready:|read:", ""), ("cue:", ""), ("read:", "c")]
     session.sit(*turn * 4, ("last:", ""))
-    sitting = read_sitting(session.folder)
+    sitting = read_session(session.folder)
     assert (sitting.readings, sitting.examples, sitting.state) == ({}, (), "ended")
     assert all(row["duration_s"] != "" for row in sitting.rows)
 
@@ -232,22 +232,22 @@ def test_runs_by_different_programs_are_all_told(folder, tmp_path):
     with Journal(copy) as opened:
         for number in ("9.9", "9.9", "9.10"):
             opened.append(Run(why="resume", versions=versions() | {"numpy": number}, t_s=9.0))
-    told = read_sitting(copy).versions
+    told = read_session(copy).versions
     assert told["numpy"] == f"{versions()['numpy']}, 9.9, 9.10"
     assert told["python"] == versions()["python"]
 
 
 def test_what_is_no_session_is_said_so(tmp_path):
     with pytest.raises(InputError, match="there is no directory"):
-        read_sitting(tmp_path / "none")
+        read_session(tmp_path / "none")
     with pytest.raises(InputError, match="is not the directory of a session"):
-        read_sitting(tmp_path)
+        read_session(tmp_path)
 
 
 def test_only_the_last_attempt_up_to_its_answer_is_read(folder, tmp_path):
     # The first trial was shown before, and the hand went elsewhere after its answer.
     copy = cut(folder, tmp_path / "s", "end", 0)
-    plain = read_sitting(copy).readings[1]
+    plain = read_session(copy).readings[1]
     ticks = read_trace(copy / "trace-001.gz").ticks
     first = ticks[ticks["line"] == 1]
     after = np.zeros(3000, TRACE)
@@ -259,4 +259,4 @@ def test_only_the_last_attempt_up_to_its_answer_is_read(folder, tmp_path):
     trace = TraceWriter(copy / "trace-001.gz", lambda: Tie(0, 0))
     trace.add(np.concatenate([ticks[:until], after, ticks[until:]]))
     trace.close()
-    assert read_sitting(copy).readings[1] == plain
+    assert read_session(copy).readings[1] == plain

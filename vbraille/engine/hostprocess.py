@@ -1,11 +1,10 @@
 """What runs in the host process: the loop, its device and its mailbox, and nothing else.
 
-`vbraille.engine.host` starts it, with two lines of JSON on standard input: which
-device to open, and, perhaps when that has been answered, how much memory to share. It
-answers with lines of JSON on what was standard output, which it keeps to itself:
-what a driver prints goes to standard error. Whatever happens to its parent, it
-brings the array to rest before it ends; and if a driver keeps it from ending,
-the system ends it.
+`vbraille.engine.spawning` starts it, and `vbraille.engine.host` sends it two lines of JSON on
+standard input: which device to open, and, perhaps when that has been answered, how much memory to
+share. It answers with lines of JSON on what was standard output, which it keeps to itself: what a
+driver prints goes to standard error. Whatever happens to its parent, it brings the array to rest
+before it ends; and if a driver keeps it from ending, the system ends it.
 """
 
 from __future__ import annotations
@@ -29,9 +28,9 @@ from vbraille.devices import opened_device
 from vbraille.devices.calibrations import correct_by_kept
 from vbraille.devices.events import EVERY_NS, Notices, is_known, shortened, to_json
 from vbraille.display import Display
-from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock, RealClock
 from vbraille.engine.loop import Loop
+from vbraille.engine.mailbox import Extent, attach, divide
 from vbraille.engine.realtime import go_real_time
 from vbraille.errors import DeviceError, VbrailleError
 from vbraille.logs import keep, print_traceback, want_tracebacks
@@ -63,7 +62,7 @@ _MOST_SAID = 300
 _MOST_OF_SEVERAL = 60
 _WHOLE_BYTES = 4096
 _PR_SET_PDEATHSIG = 1
-_log = logging.getLogger("vbraille.engine.hosted")  # it runs as __main__
+_log = logging.getLogger(__name__)
 
 
 class Channel:
@@ -102,7 +101,7 @@ class Channel:
         os.set_blocking(self._descriptor, False)
 
 
-class Hosted:
+class OrderedLoop:
     """The loop of a host process, which does what its mailbox says.
 
     Parameters
@@ -153,14 +152,14 @@ class Hosted:
         loop.run(mailbox)
 
 
-def warm_up(info: Display, extent: shared.Extent) -> None:
+def warm_up(info: Display, extent: Extent) -> None:
     """Compile and run once all that a tick calls, on a device in memory and a manual clock."""
     clock = ManualClock()
     with SimulatedDevice(info, clock.now_ns) as device:
-        mailbox, ring = shared.divide(memoryview(bytearray(extent.total_bytes)), extent)
+        mailbox, ring = divide(memoryview(bytearray(extent.total_bytes)), extent)
         loop = Loop(device, clock, ring=ring)
         loop.show(nothing(info))
-        hosted = Hosted(loop, mailbox, 0)
+        hosted = OrderedLoop(loop, mailbox, 0)
         for _ in range(_WARM_TICKS):
             hosted.run()
         loop.load()
@@ -232,7 +231,7 @@ def run(orders: RawIOBase, descriptor: int, parent: int, channel: Channel) -> No
     end_after(parent)
     begun_ns = time.monotonic_ns()
     # What it is to drive is not told yet: any array will do.
-    warm_up(_ANY, shared.Extent(_ANY.rows, _ANY.columns, 0, _WARM_TICKS))
+    warm_up(_ANY, Extent(_ANY.rows, _ANY.columns, 0, _WARM_TICKS))
     compiled_ms = (time.monotonic_ns() - begun_ns) / 1e6
     told = orders.readline()
     if not told:
@@ -253,13 +252,13 @@ def run(orders: RawIOBase, descriptor: int, parent: int, channel: Channel) -> No
         told = wait_for_line(orders, device, rate_hz)
         if not told:
             return  # the parent has gone, or given up
-        extent = shared.Extent(**json.loads(told))
-        mailbox, ring = shared.divide(shared.attach(descriptor, extent), extent)
+        extent = Extent(**json.loads(told))
+        mailbox, ring = divide(attach(descriptor, extent), extent)
         os.close(descriptor)
         refused = go_real_time()
         rehearse(device, rate_hz)
         loop = Loop(device, RealClock(), rate_hz=rate_hz, ring=ring)
-        hosted = Hosted(loop, mailbox, parent)
+        hosted = OrderedLoop(loop, mailbox, parent)
         signal.signal(signal.SIGTERM, hosted.end)
         channel.say(ready=True, event=refused and to_json(refused))
         _log.info("ready: %s", "in real time" if refused is None else refused)
@@ -303,7 +302,3 @@ def main() -> int:
         )
         return 1
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

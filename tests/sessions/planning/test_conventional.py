@@ -41,9 +41,9 @@ def test_a_condition_says_where_its_strings_stand_and_the_plan_keeps_it():
         assert trial.stimuli[0].conventional == (trial.condition == "conventional")
     assert Plan.from_json(plan.to_json()) == plan
     assert '"on": "brlapi"' in plan.to_json()
-    assert protocol.stands_beside
+    assert protocol.needs_conventional
     assert cells_needed(protocol, plan) == 4 + 3
-    assert not load_protocol("legibility").stands_beside
+    assert not load_protocol("legibility").needs_conventional
 
 
 def test_texts_stand_there_in_the_table_of_the_condition():

@@ -1,4 +1,4 @@
-"""How a session is conducted: its pace, its sounds, and the questions asked before it."""
+"""Pace of a session, its sounds, and the questions asked before it."""
 
 from __future__ import annotations
 
@@ -175,7 +175,7 @@ class SignalSound(Table, frozen=True):
     warning: Tone = Tone(440.0, 400.0)
 
 
-class Question(Table, frozen=True):
+class ParticipantField(Table, frozen=True):
     """A question about the participant, asked before the session. It asks for nothing personal.
 
     Parameters

@@ -4,14 +4,14 @@ import pytest
 
 from tests.sessions.planning.test_bad_protocols import PAIRS, STRINGS, VBD_HEAD, parse, refuse
 from vbraille.errors import InputError
-from vbraille.sessions.planning.choosing import (
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.nexttrial import (
     Answered,
     ByAnswers,
     FixedOrder,
     describe,
     procedure_of,
 )
-from vbraille.sessions.planning.making import make_plan
 
 WIDTHS = (
     '[design]\nkind = "choice"\nparameter = "dot_width_mm"\nvalues = [0.5, 3.0]\nstring = "a"\n'

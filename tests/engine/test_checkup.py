@@ -10,7 +10,7 @@ from tests.devices.bench import Bench
 from tests.engine.test_loop import info
 from tests.tiers import heavy
 from vbraille.devices.serial.wire import Encoder
-from vbraille.engine.checking import check
+from vbraille.engine.checkup import check
 from vbraille.engine.clock import ManualClock
 
 SMALL = {"rows": 1, "columns": 2, "inverted": b"\0\1", "gain": b"\xff\xff", "enabled": b"\1\1"}

@@ -6,18 +6,17 @@ import numpy as np
 import pytest
 
 from tests.engine.test_loop import Recording, biggest_step, picture, straight
-from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock
-from vbraille.engine.hosted import Hosted, warm_up
+from vbraille.engine.hostprocess import OrderedLoop, warm_up
 from vbraille.engine.loop import Loop
-from vbraille.engine.mailbox import _PIECE_WORDS, Mailbox
+from vbraille.engine.mailbox import _PIECE_WORDS, Extent, Mailbox, divide, watch
 from vbraille.engine.record import Flag
 from vbraille.render import STRESS2
 from vbraille.render.program import Program
 from vbraille.simulation.hand import Sweep
 from vbraille.simulation.steering import ReadLine
 
-EXTENT = shared.Extent(6, 10, STRESS2.style.room(STRESS2.display, 20), 4000)
+EXTENT = Extent(6, 10, STRESS2.style.room(STRESS2.display, 20), 4000)
 
 
 class Bench:
@@ -27,10 +26,10 @@ class Bench:
         memory = memoryview(bytearray(EXTENT.total_bytes))
         self.clock = ManualClock()
         self.device = Recording(self.clock, hand)
-        theirs, ring = shared.divide(memory, EXTENT)
+        theirs, ring = divide(memory, EXTENT)
         self.loop = Loop(self.device, self.clock, ring=ring)
-        self.hosted = Hosted(self.loop, theirs, os.getppid())
-        self.mailbox, self.reader = shared.watch(memory, EXTENT)
+        self.hosted = OrderedLoop(self.loop, theirs, os.getppid())
+        self.mailbox, self.reader = watch(memory, EXTENT)
         self.memory = memory
 
     def run(self, seconds):
@@ -126,7 +125,7 @@ def test_pause_and_zero_and_stop(bench):
 
 
 def test_it_ends_with_its_parent_and_by_a_signal(bench):
-    orphan = Hosted(bench.loop, bench.mailbox, os.getppid() + 1)
+    orphan = OrderedLoop(bench.loop, bench.mailbox, os.getppid() + 1)
     assert not orphan.wanted
     bench.hosted.end(15, None)
     assert not bench.hosted.wanted

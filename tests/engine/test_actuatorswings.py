@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from tests.tiers import examples
 from vbraille.devices.calibration import Calibration, Tried
 from vbraille.display import Display
+from vbraille.engine.checkup import SWING_S, SWINGS, ActuatorSwings
 from vbraille.engine.clock import ManualClock
-from vbraille.engine.swinging import SWING_S, SWINGS, Swinging
 from vbraille.simulation.simulated import SimulatedDevice
 
 SMALL = Display("bench", 2, 2, 1.2, 1.4, levels=10_001, rate_hz=100.0)
@@ -33,7 +33,7 @@ class Kept(SimulatedDevice):
 def swinging(begun=lambda _: None):
     clock = ManualClock()
     device = Kept(clock)
-    return Swinging(device, clock, begun), device
+    return ActuatorSwings(device, clock, begun), device
 
 
 def run(swung, ticks):

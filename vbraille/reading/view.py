@@ -1,20 +1,22 @@
-"""An activity at a device that is told by keys, such as reading, and what is typed meanwhile."""
+"""A view under the hand: what keys, buttons and pages tell it, and what is typed meanwhile."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
-from vbraille.reading.keys import Context, spoken
+from vbraille.reading.keys import LONGEST, PASTE, Context, pasted, spoken
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from vbraille.engine.engine import Engine
     from vbraille.reading.cues import Cue
-    from vbraille.reading.keys import Bound
+    from vbraille.reading.keys import Bound, Command
 
-LONGEST = 200  # characters
 _MOST_EARLIER = 50  # texts that are kept to be brought again
 
 
@@ -102,8 +104,8 @@ class Prompt:
         del self.others[:-_MOST_EARLIER]
 
 
-class Activity:
-    """What somebody does at a device, told by keys, until there is no more to do.
+class View:
+    """Something under the hand, which keys, buttons and pages tell what to do until it is done.
 
     Parameters
     ----------
@@ -112,7 +114,7 @@ class Activity:
     say
         Function that is called with each thing to be said.
     bound
-        Commands with their keys; None for those of reading.
+        Commands with their keys.
     cue
         Function that is called with short signals, beside the sentences.
 
@@ -123,7 +125,7 @@ class Activity:
     context : Context
         Meaning of the keys at the moment.
     prompt : Prompt or None
-        What is being typed.
+        Question that is answered by typing.
     done : bool
         Whether there is no more to do.
     """
@@ -135,7 +137,7 @@ class Activity:
         self,
         engine: Engine,
         say: Callable[[str], None],
-        bound: Bound | None,
+        bound: Bound,
         cue: Callable[[Cue], None],
     ) -> None:
         self.engine = engine
@@ -146,15 +148,65 @@ class Activity:
         self.prompt: Prompt | None = None
         self.done = False
 
-    def attend(self, now_s: float) -> None:
-        """Do what is done by time, in seconds by a clock that does not go back."""
-        raise NotImplementedError
+    def listener(self) -> View:
+        """Give the view that keys are for: this one, or another that stands in for a while."""
+        return self
+
+    def step(self, ticks: NDArray[np.void]) -> None:
+        """Look where the hand was in ticks, which are all since the last call."""
+
+    def steer(self) -> None:
+        """Have a simulated hand go over what is here; a person's hand does so by itself."""
 
     def key(self, name: str, usual: str) -> str:
-        """Name of a key that calls a command, for a sentence."""
-        keys = () if self.bound is None else self.bound.keys_of(name)
+        """Name a key that calls a command, for a sentence."""
+        keys = self.bound.keys_of(name)
         return keys[0] if keys else spoken(usual)
 
     def quit(self) -> None:
         """Do no more."""
         self.done = True
+
+    def press(self, key: str) -> None:
+        """Call the command that a key stands for in this context."""
+        text = pasted(key)
+        if text is not None:
+            self._paste(key, text)
+        elif self.context is Context.LEARNING:
+            self._learn(spoken(key), self.bound.find(key, Context.READING))
+        elif (command := self.bound.find(key, self.context)) is not None:
+            command.handler(self)
+        elif self.prompt is not None and self.context is Context.PROMPT:
+            self.prompt.press(key)
+        else:
+            self.say(f"no command: {spoken(key)}; {self.key('HELP', 'h')} says the keys")
+
+    def press_button(self, number: int) -> None:
+        """Call the command that a button of the device stands for."""
+        self.call(f"button {number}", self.bound.buttons.get(number))
+
+    def call(self, name: str, command: Command | None) -> None:
+        """Call the command of something with a name that is pressed and is no keyboard's key."""
+        if self.context is Context.LEARNING:
+            self._learn(name, command)
+        elif command is None:
+            self.say(f"{name}: no command; the settings file can give it one")
+        elif self.context in command.contexts:
+            command.handler(self)
+        else:
+            self.say(f"{name}: not now; answer first")
+
+    def _paste(self, key: str, text: str) -> None:
+        """Put pasted text into what is being typed; elsewhere it is no command."""
+        if self.prompt is not None and self.context is Context.PROMPT:
+            self.prompt.paste(text)
+        elif key.startswith(PASTE):
+            self.say("paste: text that is pasted is passed over; type the keys")
+
+    def _learn(self, name: str, command: Command | None) -> None:
+        """Say what something stands for, or end learning."""
+        if command is not None and command.name in ("LEARN", "QUIT"):
+            self.context = Context.READING
+            self.say("learn: off")
+        else:
+            self.say(f"{name}: {'no command' if command is None else command.help}")

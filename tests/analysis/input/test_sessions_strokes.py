@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vbraille.analysis.input.sittings import (
+from vbraille.analysis.input.sessions import (
     IN_PART,
     MORE_PASSES,
     ONE_PASS,

@@ -325,7 +325,7 @@ class SessionTrials:
     counts: Counter[str] = field(default_factory=Counter)
 
 
-def read_sitting(folder: Path) -> SessionTrials:
+def read_session(folder: Path) -> SessionTrials:
     """Read a session's directory; if it is damaged, read what is whole.
 
     Raises
@@ -352,8 +352,8 @@ def read_sitting(folder: Path) -> SessionTrials:
         elif seen is not None:
             readings[trial.number] = seen
     faults = list(traces.faults)
-    if record.told.damage is not None:
-        faults.append(f"{journal.NAME} is damaged, {record.told.damage}")
+    if record.journal.damage is not None:
+        faults.append(f"{journal.NAME} is damaged, {record.journal.damage}")
     return SessionTrials(
         folder,
         folder.resolve().name,
@@ -365,8 +365,8 @@ def read_sitting(folder: Path) -> SessionTrials:
         faults,
         _state(progress),
         _versions(record, progress),
-        tuple(read_notes(record.told.events)),
-        _counts(record.told.events),
+        tuple(read_notes(record.journal.events)),
+        _counts(record.journal.events),
     )
 
 
@@ -441,7 +441,7 @@ def _state(progress: Progress) -> str:
         return "ended"
     trial = progress.next_trial
     # A trial whose answer was undone was read to its end all the same.
-    if trial is not None and progress.correcting is None and progress.told(trial).attempts:
+    if trial is not None and progress.correcting is None and progress.record_of(trial).attempts:
         return f"broken off in {'practice ' if trial.practice else ''}trial {trial.number}"
     answered = sum(told.answer is not None for told in progress.trials.values())
     of_all = "" if progress.planned is None else f" of {progress.planned}"

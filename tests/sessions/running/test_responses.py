@@ -11,7 +11,7 @@ from vbraille.sessions.planning.protocolfiles import builtin_text, parse_protoco
 from vbraille.sessions.running.reader import Simulated
 from vbraille.sessions.running.responses import Scripted
 from vbraille.sessions.running.sources import parse_responses
-from vbraille.sessions.simulated.skin import Exploration
+from vbraille.sessions.simulated.skin import FeltFrames
 
 # Coverage would double their time, and others cover what these do.
 pytestmark = pytest.mark.no_cover
@@ -62,7 +62,7 @@ def test_participants_err_each_in_their_own_way_and_so_do_protocols():
         reader = Simulated(protocol, plan, noise=3.0)
         frames = np.full((500, 1, 12), 0.5, np.float32)
         frames[:, :, ::2] = 0.0
-        felt = [Exploration(frames, np.linspace(-8, 45, 500), np.arange(500) / 100)]
+        felt = [FeltFrames(frames, np.linspace(-8, 45, 500), np.arange(500) / 100)]
         read.append(tuple(reader.next(plan.trials[0], n, felt)[0] for n in range(1, 20)))
     assert len(set(read)) == 4
 
@@ -74,7 +74,7 @@ def test_a_repeated_trial_has_noise_of_its_own(tmp_path):
     reader = Simulated(protocol, session.plan, noise=3.0)
     frames = np.full((500, 1, 12), 0.5, np.float32)
     frames[:, :, ::2] = 0.0
-    felt = [Exploration(frames, np.linspace(-8, 45, 500), np.arange(500) / 100)]
+    felt = [FeltFrames(frames, np.linspace(-8, 45, 500), np.arange(500) / 100)]
     trial = session.plan.trials[0]
     answers = [reader.next(trial, attempt, felt)[0] for attempt in range(1, 20)]
     assert len(set(answers)) > 1

@@ -1,4 +1,4 @@
-"""How and where strings are shown: the display's style, and how each condition may differ."""
+"""Styles in which strings are shown: that of the display, and what each condition changes of it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from msgspec import field
 from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.errors import check_range
 from vbraille.render import MAPPINGS, Profile, Tuning, single_row
-from vbraille.sessions.planning.conduct import check_name
+from vbraille.sessions.planning.pace import check_name
 from vbraille.sessions.planning.spellings import Masks
 from vbraille.tomlfile import Table, which
 
@@ -57,11 +57,11 @@ MOST_LEAD = 20
 # Lengths that conditions may differ in; the travel is the device's, and the same for all.
 LENGTHS = tuple(name for name in BOUNDS_MM if name != "travel_mm")
 TUNED = ("texture", "contrast", "cycles")
-LOOKS = (*TUNED, "dot_row", "mapping", "table", "on", *LENGTHS)
+STYLE = (*TUNED, "dot_row", "mapping", "table", "on", *LENGTHS)
 
 
-class Look(Table, frozen=True, kw_only=True):
-    """Any part of the way in which strings are shown; a value that is left out is None.
+class Style(Table, frozen=True, kw_only=True):
+    """Any part of the style in which strings are shown; a value that is left out is None.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ class Look(Table, frozen=True, kw_only=True):
     line_pitch_mm: float | None = None
 
     def __post_init__(self) -> None:
-        Tuning(**self.given)
+        Tuning(**_given(self, TUNED))
         if self.table is not None and (not self.table.strip() or "/" in self.table):
             raise ValueError(
                 f"table is {self.table!r}; it must be the name of a braille table that liblouis "
@@ -107,14 +107,9 @@ class Look(Table, frozen=True, kw_only=True):
             )
 
     @property
-    def given(self) -> dict[str, Any]:
-        """Values that the file gives, by their names in `Tuning`."""
-        return _given(self, TUNED)
-
-    @property
     def changes(self) -> dict[str, Any]:
         """All values that the file gives, by their names as attributes."""
-        return _given(self, LOOKS)
+        return _given(self, STYLE)
 
     def over(self, model: Model, style: BrailleStyle) -> BrailleStyle:
         """Style in which the values given here take the place of its own.
@@ -131,7 +126,7 @@ class Look(Table, frozen=True, kw_only=True):
             )
         geometry = replace(style.geometry, **_given(self, LENGTHS))
         mapping = self._mapping(model) or style.mapping
-        tuning = replace(style.tuning, **self.given)
+        tuning = replace(style.tuning, **_given(self, TUNED))
         return replace(style, mapping=mapping, geometry=geometry, tuning=tuning)
 
     def _mapping(self, model: Model) -> Mapping | None:
@@ -156,7 +151,7 @@ class Look(Table, frozen=True, kw_only=True):
         return mapping
 
 
-class Condition(Look, frozen=True):
+class Condition(Style, frozen=True):
     """A named way of showing strings: a condition of a protocol, or a level of a factor.
 
     Parameters
@@ -177,7 +172,7 @@ class Condition(Look, frozen=True):
         super().__post_init__()
 
 
-class Appearance(Look, frozen=True, kw_only=True):
+class DisplayStyle(Style, frozen=True, kw_only=True):
     """The table ``[display]``. A value that is left out is None, and the model's own is used.
 
     Parameters
