@@ -1,11 +1,9 @@
 """The way of a key: calls, modules and classes from "n" to the FRAME, and what a reading loads.
 
-A reading is profiled in its process, at a terminal of its own: from the key's name, as the
-keyboard has it, to the program in the engine's mailbox; and a loop in this process, from the
-mailbox to the device's write. What is on the way is what hands the line on: every function
-that is not left before the program, or the FRAME, is sent, and those that make its parts. Only
-our own functions count, each once; of one that is asked again and again, such as a property of a
-value, only the first.
+A reading is profiled in its process, at a terminal of its own. On the way of the key "n" are the
+functions of ours that are on the stack when the key is read, when the line is laid out, when it is
+compiled, and when the program is in the engine's mailbox; and, with a loop in this process, those
+on the stack when the FRAME is written. Each counts once, with its module and its class.
 """
 
 from __future__ import annotations
@@ -29,46 +27,56 @@ ROOT = Path(__file__).parents[2]
 TEXT = ROOT / "texts" / "english.txt"
 CALLS, MODULES, CLASSES, LOADED = 22, 14, 12, 90
 _WAIT_S = 30.0
+_MILESTONES = {"Keys.feed", "Layout.line", "BrailleStyle.render", "Mailbox.post"}
+_WRITTEN = "Device.write"
+
+
+def way(frame: Any) -> Iterator[tuple[str, str]]:
+    """Our functions on the stack, by module and name, from the loop's step on."""
+    while frame is not None and frame.f_code.co_name not in ("main", "write_frame"):
+        module = frame.f_globals.get("__name__", "")
+        if module.startswith("vbraille.") and not module.startswith("vbraille.cli."):
+            yield module, frame.f_code.co_qualname.replace(".<locals>", "")
+        frame = frame.f_back
 
 
 def profile(report: int) -> None:
-    """Read a text as `vbraille read` does; after the key "n" write what was called, and quit."""
+    """Read a text as `vbraille read` does; after the key "n" write what was on its way."""
     from vbraille.cli.main import main
     from vbraille.engine.mailbox import Mailbox
     from vbraille.reading.keyboard import Keyboard
 
     pressed, post = Keyboard.pressed, Mailbox.post
-    calls: list[tuple[str, str, int]] = []
+    passed: dict[tuple[str, str], None] = {}
     loaded: list[int] = []
-    depth = 0
 
     def note(frame: Any, event: str, _: object) -> None:
-        nonlocal depth
-        module = frame.f_globals.get("__name__", "")
-        if module.startswith("vbraille.") and event in ("call", "return"):
-            depth += 1 if event == "call" else -1
-            if event == "call":
-                calls.append((module, frame.f_code.co_qualname, depth))
+        if event == "call" and frame.f_code.co_qualname in _MILESTONES:
+            passed.update(dict.fromkeys(way(frame)))
 
     def press(self: Keyboard, wait_s: float = 0.0) -> list[str]:
+        sys.setprofile(note)
         keys = pressed(self, wait_s)
-        if keys and not loaded:
+        if keys:
             loaded.append(sum(name.startswith("vbraille") for name in sys.modules))
-            sys.setprofile(note)
+            passed.setdefault(("vbraille.reading.keyboard", "Keyboard.pressed"))
+        else:
+            sys.setprofile(None)
+            passed.clear()
         return keys
 
     def send(self: Mailbox, *given: Any) -> None:
         post(self, *given)
-        if sys.getprofile() is not None:
+        if loaded and sys.getprofile() is not None:
             sys.setprofile(None)
-            told = {"loaded": loaded[0], "calls": calls}
+            told = {"loaded": loaded[0], "way": list(passed)}
             os.write(report, json.dumps(told).encode() + b"\n")
 
     Keyboard.pressed, Mailbox.post = press, send
     main(["read", str(TEXT), "--device", "sim", "--hand", "sweep:60", "--no-places"])
 
 
-def measured() -> dict[str, Any]:
+def read_once() -> dict[str, Any]:
     """What the profiled reading tells."""
     reads, writes = os.pipe()
     keys, terminal = pty.openpty()
@@ -99,10 +107,50 @@ def measured() -> dict[str, Any]:
         os.close(reads)
 
 
+def write_frame() -> list[tuple[str, str]]:
+    """Our functions on the stack when a loop writes a FRAME."""
+    import vbraille
+    from vbraille.testing import ManualClock, simulated_device
+
+    clock, passed = ManualClock(), {}
+
+    def note(frame: Any, event: str, _: object) -> None:
+        if event == "call" and frame.f_code.co_qualname == _WRITTEN:
+            passed.update(dict.fromkeys(way(frame)))
+
+    device = simulated_device(vbraille.STRESS2, hand="sweep:150", clock=clock)
+    with vbraille.open(device, clock=clock) as opened:
+        opened.show("A line of braille")
+        sys.setprofile(note)
+        opened.engine.poll()
+        sys.setprofile(None)
+    return list(passed)
+
+
+def measured() -> tuple[list[tuple[str, str]], int]:
+    """Module and name of each function on the way, and the number of modules of ours loaded."""
+    told = read_once()
+    found = dict.fromkeys((*map(tuple, told["way"]), *write_frame()))
+    return list(found), told["loaded"]
+
+
 def run() -> Iterator[Result]:
-    told = measured()
-    print(json.dumps(told)[:200])
-    yield Result("x", "", "", met=True)
+    passed, loaded = measured()
+    modules = {module for module, _ in passed}
+    classes = {(module, name.split(".")[0]) for module, name in passed if "." in name}
+    counts = len(passed), len(modules), len(classes)
+    yield Result(
+        'calls, modules and classes from the key "n" to the FRAME',
+        f"≤ {CALLS}, ≤ {MODULES}, ≤ {CLASSES}",
+        ", ".join(map(str, counts)),
+        met=counts[0] <= CALLS and counts[1] <= MODULES and counts[2] <= CLASSES,
+    )
+    yield Result(
+        "modules of ours loaded by `vbraille read` before the first key",
+        f"≤ {LOADED}",
+        str(loaded),
+        met=loaded <= LOADED,
+    )
 
 
 if __name__ == "__main__":

@@ -173,11 +173,14 @@ def test_a_driver_that_waits_for_ever_is_told_of_and_ended_while_its_parent_live
     (stalled,) = (event for event in told if isinstance(event, Stalled))
     assert 1000 < stalled.stalled_ms < 2000
     processes = [host.process_id for host in hosts.values()]
+    # That it is waited for long enough, other tests see: here both are waited for in vain.
+    monkeypatch.setattr("vbraille.engine.host.OPEN_S", 2.0)
+    monkeypatch.setattr("vbraille.engine.host._END_S", 1.5)
     with ThreadPoolExecutor() as pool:
         ending = {
-            "the driver opened did not open its device within 10 s": hosts["opened"].start,
-            "the driver closed did not let the device go within 5 s": hosts["closed"].close,
-            "the driver read did not let the device go within 5 s": hosts["read"].close,
+            "the driver opened did not open its device within 2 s": hosts["opened"].start,
+            "the driver closed did not let the device go within 1.5 s": hosts["closed"].close,
+            "the driver read did not let the device go within 1.5 s": hosts["read"].close,
         }
         for said, ended in {said: pool.submit(end) for said, end in ending.items()}.items():
             with pytest.raises(DeviceError, match=said):

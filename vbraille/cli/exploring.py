@@ -15,9 +15,7 @@ from vbraille.devices.registry import opened_device
 from vbraille.engine.host import OPEN_S, OPENING, too_slow
 from vbraille.reading.cues import choose_cues
 from vbraille.reading.device import OpenDevice
-from vbraille.reading.keyboard import StoppableKeyboard
 from vbraille.reading.outputs import ConsoleOutput, Cues, Echo, Outputs, SpeechOutput
-from vbraille.reading.speech import Speech
 from vbraille.simulation.specs import has_hand
 
 if TYPE_CHECKING:
@@ -79,9 +77,9 @@ class Around:
     keyboard: Keyboard
     closing: ExitStack
 
-    def keys(self) -> StoppableKeyboard:
+    def keys(self) -> Keyboard:
         """Take the keys; till now Ctrl-Z may do what it does elsewhere."""
-        return self.closing.enter_context(StoppableKeyboard(self.keyboard))
+        return self.closing.enter_context(self.keyboard.taken())
 
 
 @contextmanager
@@ -137,6 +135,8 @@ def around_device(
             on_share=None if live is None else live.monitor.share,
         )
         if arguments.speech:
+            from vbraille.reading.speech import Speech
+
             outputs.add(SpeechOutput(Speech(language), lambda: device.line, echo=echo))
         try:
             yield Around(device, outputs, live, keyboard, closing)

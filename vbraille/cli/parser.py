@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import sys
+from importlib import import_module
 
-from vbraille.cli.options import completion, exploring, lab
 from vbraille.cli.options.commandparser import CommandParser
 from vbraille.config.options import OPTIONS, PROFILE
 from vbraille.errors import InputError
@@ -17,6 +17,23 @@ if TYPE_CHECKING:
 
     Options = Callable[[CommandParser], None]
 
+
+class _Options:
+    """A module of options, of which only functions are known that load it when called."""
+
+    def __init__(self, name: str) -> None:
+        self._module = f"vbraille.cli.options.{name}"
+
+    def __getattr__(self, name: str) -> Options:
+        """Give the function of a name, which adds a command's options."""
+
+        def add(parser: CommandParser) -> None:
+            getattr(import_module(self._module), name)(parser)
+
+        return add
+
+
+completion, exploring, lab = map(_Options, ("completion", "exploring", "lab"))
 # For each command: what it does, how its options are made, and an example.
 COMMANDS: dict[str, tuple[str, Options, str]] = {
     "read": (

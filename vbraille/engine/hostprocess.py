@@ -1,11 +1,10 @@
 """What runs in the host process: the loop, its device and its mailbox, and nothing else.
 
-`vbraille.engine.host` starts it, with two lines of JSON on standard input: which
-device to open, and, perhaps when that has been answered, how much memory to share. It
-answers with lines of JSON on what was standard output, which it keeps to itself:
-what a driver prints goes to standard error. Whatever happens to its parent, it
-brings the array to rest before it ends; and if a driver keeps it from ending,
-the system ends it.
+`vbraille.engine.spawning` starts it, and `vbraille.engine.host` sends it two lines of JSON on
+standard input: which device to open, and, perhaps when that has been answered, how much memory to
+share. It answers with lines of JSON on what was standard output, which it keeps to itself: what a
+driver prints goes to standard error. Whatever happens to its parent, it brings the array to rest
+before it ends; and if a driver keeps it from ending, the system ends it.
 """
 
 from __future__ import annotations
@@ -63,7 +62,7 @@ _MOST_SAID = 300
 _MOST_OF_SEVERAL = 60
 _WHOLE_BYTES = 4096
 _PR_SET_PDEATHSIG = 1
-_log = logging.getLogger("vbraille.engine.hostprocess")  # it runs as __main__
+_log = logging.getLogger(__name__)
 
 
 class Channel:
@@ -303,7 +302,3 @@ def main() -> int:
         )
         return 1
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -18,16 +18,13 @@ from vbraille.errors import DeviceError, InputError
 from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
 from vbraille.pose import Pose
 from vbraille.reading.commands.table import BOUND
-from vbraille.reading.frames import check_shown
 from vbraille.reading.keys import TURNED, Context
 from vbraille.reading.lineviews import MOST_CELLS
 from vbraille.reading.outputs import Echo
 from vbraille.reading.reader import Reader
 from vbraille.reading.surface import MOST_LINES
-from vbraille.render.braille.models import STRESS2, Model, model_of
+from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.simulation.hand import Still
-from vbraille.simulation.recorded import Recorded
-from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.specs import (
     device_spec,
     has_hand,
@@ -176,6 +173,7 @@ class OpenDevice:
         self._closed = False
         self._simulated = isinstance(device, str) and is_simulated(device)
         moved = parse_hand(hand, seed, pointed=pointer is not None)
+        once = hand.startswith("recorded:")
         self.steering: Steering | None = None
         self.pointer: Pointer | None = None
         self._reader: Reader | None = None
@@ -187,10 +185,13 @@ class OpenDevice:
             # Imported here, since it loads compiled code, which a host process loads by itself.
             from vbraille.engine.clock import RealClock
             from vbraille.engine.loop import LocalEngine
+            from vbraille.simulation.recorded import Recorded
+            from vbraille.simulation.simulated import SimulatedDevice
 
             rate_hz = min(wanted.rate_hz, device.display.rate_hz)
             if isinstance(device, SimulatedDevice):
                 moved, self.steering, self.pointer = device.hand, device.steering, device.pointer
+                once = isinstance(moved, Recorded)
             self.engine: Host | LocalEngine = LocalEngine(
                 device,
                 RealClock() if clock is None else clock,
@@ -214,8 +215,8 @@ class OpenDevice:
             if self._simulated:
                 self.engine.launch()  # it loads while the text is laid out
         moved = moved if self.steering is not None else None
+        self._once = once and moved is not None  # it reads no more than it has recorded
         self._still = isinstance(moved, Still)
-        self._once = isinstance(moved, Recorded)  # it reads no more than it has recorded
 
     @property
     def held(self) -> bool:

@@ -17,7 +17,7 @@ from vbraille.reading.keys import Context, spoken
 
 if TYPE_CHECKING:
     from vbraille.reading.device import OpenDevice
-    from vbraille.reading.keyboard import StoppableKeyboard
+    from vbraille.reading.keyboard import Keyboard
     from vbraille.reading.outputs import Output
     from vbraille.reading.view import View
 
@@ -39,9 +39,7 @@ class Exploration:
         Console, speech, cues, and whatever else shows what is under the hand.
     """
 
-    def __init__(
-        self, view: View, device: OpenDevice, keys: StoppableKeyboard, outputs: Output
-    ) -> None:
+    def __init__(self, view: View, device: OpenDevice, keys: Keyboard, outputs: Output) -> None:
         self.view, self._device, self._keys, self._outputs = view, device, keys, outputs
 
     def run(self) -> None:
@@ -54,9 +52,9 @@ class Exploration:
         VbrailleError
             If something else goes wrong with the device.
         """
+        self._outputs.attend()
         if self._keys.attached:
             self.view.say(f"{self.view.key('HELP', 'h')} says the keys")
-        self._outputs.attend()
         while not self.view.done:
             self._step()
         self._outputs.attend()

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.display import Display
 from vbraille.errors import InputError
 from vbraille.layout.texts import cells_per_line, check_text, choose_table, lay_out_text
-from vbraille.render.braille.models import MODELS, STRESS2, Model, model_of
-from vbraille.render.braille.style import BrailleStyle
+from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.wording import count
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from vbraille.braille.cells import Cells
+    from vbraille.display import Display
     from vbraille.layout.pages import Layout, Line
+    from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
 
 _MOST_FRAMES = 10_000_000
@@ -261,17 +261,3 @@ def _laid_out(
     width = cells_per_line(style.geometry, model.display)
     chosen = choose_table(language, grade, table)
     return model, style, lay_out_text(text, width, chosen, keep_lines=True)
-
-
-def check_shown(display: object, style: object) -> None:
-    """Raise InputError if what is given for a display or a style, where it is given, is none."""
-    if not isinstance(display, Model | Display | None):
-        known = MODELS.get(display.lower()) if isinstance(display, str) else None
-        hint = f"vbraille.{known.name.upper()}" if known else "vbraille.VBD, vbraille.STRESS2"
-        raise InputError(
-            f"display is {display!r}; give {hint}{'' if known else ' or a vbraille.Display'}"
-        )
-    if not isinstance(style, BrailleStyle | None):
-        raise InputError(
-            f"style is {style!r}; give a vbraille.BrailleStyle, such as vbraille.VBD.style"
-        )

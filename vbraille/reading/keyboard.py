@@ -9,20 +9,29 @@ import sys
 import termios
 import time
 import tty
-from contextlib import suppress
-from typing import Final, Self
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Final, Self
 
 from vbraille.engine.suspending import Suspension
 from vbraille.reading.keys import PASTE_OFF, PASTE_ON, Keys
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
 _TERMINAL = "/dev/tty"  # the terminal at which a process was started, wherever its input comes from
+
+
+POLL_S: Final = 0.02  # for which a loop waits for a key
+STOPPED: Final = "stopped: the array rests; fg goes on"
 
 
 class Keyboard:
     """The terminal on standard input; a context manager that leaves it as it was.
 
     Keys come one at a time between `take` and `release`; `pressed` gives what was typed
-    since the last call. Where standard input is no terminal there are no keys.
+    since the last call. Where standard input is no terminal there are no keys. A loop that may be
+    stopped for a while takes them by `taken`, and looks at `asked` before it takes keys: if that is
+    true, it brings the array to rest, and then calls `stop`.
 
     Parameters
     ----------
@@ -36,6 +45,7 @@ class Keyboard:
         self._own: int | None = None  # a descriptor that is opened here
         self._before: list | None = None
         self._keys = Keys()
+        self._suspension = Suspension()
         if sys.stdin and sys.stdin.isatty():
             self._descriptor = sys.stdin.fileno()
         elif beside:
@@ -56,6 +66,24 @@ class Keyboard:
         if self._own is not None:
             os.close(self._own)
             self._own = self._descriptor = None
+
+    @property
+    def asked(self) -> bool:
+        """Whether the process is to stop for a while."""
+        return self._suspension.asked
+
+    @contextmanager
+    def taken(self) -> Iterator[Self]:
+        """Take the keys, and hear of signals that have the process stop."""
+        with self._suspension:
+            self.take()
+            yield self
+
+    def stop(self) -> None:
+        """Give the terminal back and stop the process; this returns when both are to go on."""
+        self.release()
+        self._suspension.stop()
+        self.take()
 
     def take(self) -> None:
         """Read keys one at a time from now on, with pasted text marked as such.
@@ -93,6 +121,9 @@ class Keyboard:
 
         If there are none, this waits for one, ``wait_s`` at most.
         """
+        if self._suspension.continued:  # the shell has had the terminal
+            self._suspension.continued = False
+            self.take()
         watched = [] if self._descriptor is None else [self._descriptor]
         if not select.select(watched, [], [], wait_s)[0] or self._descriptor is None:
             return self._keys.wait(time.monotonic())
@@ -104,47 +135,3 @@ class Keyboard:
             self._descriptor = None
             return ["q"]
         return self._keys.feed(typed, time.monotonic())
-
-
-POLL_S: Final = 0.02  # for which a loop waits for a key
-STOPPED: Final = "stopped: the array rests; fg goes on"
-
-
-class StoppableKeyboard(Suspension):
-    """A keyboard that the shell has back while the process is stopped. A context manager.
-
-    It is for a loop that looks at `asked` before it takes keys: if that is true, the loop brings
-    the array to rest, and then calls `stop`.
-
-    Parameters
-    ----------
-    keyboard
-        The keyboard; its keys are taken one at a time once this is entered.
-    """
-
-    def __init__(self, keyboard: Keyboard) -> None:
-        super().__init__()
-        self._keyboard = keyboard
-
-    @property
-    def attached(self) -> bool:
-        """Whether there is a terminal to type at."""
-        return self._keyboard.attached
-
-    def pressed(self, wait_s: float = 0.0) -> list[str]:
-        """Keys typed since the last call; see `Keyboard.pressed`."""
-        if self.continued:
-            self.continued = False
-            self._keyboard.take()  # the shell has had the terminal
-        return self._keyboard.pressed(wait_s)
-
-    def stop(self) -> None:
-        """Give the terminal back and stop the process; this returns when both are to go on."""
-        self._keyboard.release()
-        super().stop()
-        self._keyboard.take()
-
-    def __enter__(self) -> Self:
-        super().__enter__()
-        self._keyboard.take()
-        return self

@@ -341,7 +341,8 @@ class TextView:
         """Show a page together with its figures; False if that cannot be."""
         picture = self.figured.page(surface, self.style)
         if picture is not None:
-            self._show(picture, surface)
+            self.alone = None
+            self._engine.show(picture, surface.number)
         return picture is not None
 
     def _render(self, surface: Surface) -> None:
@@ -354,9 +355,6 @@ class TextView:
         start_mm = surface.window.start_mm
         if start_mm:
             program = program.with_anchor(self._display.span_mm / 2 + start_mm)
-        self._show(program, surface)
-
-    def _show(self, program: Program, surface: Surface) -> None:
         self.alone = None
         self._engine.show(program, surface.number)
 

@@ -125,10 +125,11 @@ class LineRange:
 
     def following(self, number: int, step: int, *, skip_blank: bool) -> Line | None:
         """Next line after one, or before it where the step is -1, perhaps one that has dots."""
-        line = self.line(number + step)
-        while skip_blank and line is not None and not line.masks.any():
-            line = self.line(line.number + step)
-        return line
+        while True:
+            line = self.layout.line(number + step) if self._has(number + step) else None
+            if line is None or not skip_blank or line.masks.any():
+                return line
+            number = line.number
 
     def relaid(self, book: Book, width: int) -> LineRange:
         """Lay out the same text in other cells or another width."""

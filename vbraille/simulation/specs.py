@@ -6,12 +6,9 @@ from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
 from vbraille.errors import InputError
-from vbraille.simulation.exploring import parse_explorer
 from vbraille.simulation.hand import DEVICE, FLUENT, HumanHand, Still, Sweep
 from vbraille.simulation.motion import SPEED_BOUNDS_MM_S
-from vbraille.simulation.recorded import load_recorded
 from vbraille.simulation.steering import Steering
-from vbraille.simulation.wander import Wander
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -48,14 +45,21 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
         if spec == "fluent":
             return HumanHand(FLUENT, seed)
         if kind == "recorded" and rest:
+            from vbraille.simulation.recorded import load_recorded
+
             return load_recorded(rest)
         if kind == "sweep":
             return Sweep(_speed(rest, kind))
         if kind == "wander":
+            from vbraille.simulation.wander import Wander
+
             return Wander(_speed(rest, kind), seed)
-        explorer = parse_explorer(spec)
-        if explorer is not None:
-            return explorer
+        if spec != STILL:  # a hand is loaded when it is asked for
+            from vbraille.simulation.exploring import parse_explorer
+
+            explorer = parse_explorer(spec)
+            if explorer is not None:
+                return explorer
     except ValueError as error:
         raise InputError(str(error)) from None
     if spec == STILL and pointed:

@@ -21,7 +21,13 @@ from vbraille.analysis.schemas import (
     ends,
     mean_or_none,
 )
-from vbraille.analysis.statistics.intervals import Unanswerable, mean_share, wilson
+from vbraille.analysis.statistics.intervals import (
+    FEWEST_PARTICIPANTS,
+    Unanswerable,
+    mean_share,
+    too_few,
+    wilson,
+)
 from vbraille.braille.cells import UNICODE_BLANK
 from vbraille.wording import count
 
@@ -316,16 +322,23 @@ def _counts(level: NDArray[np.int64], frame: pd.DataFrame) -> pd.DataFrame:
     """Values of the columns `_COUNTS`, a row a level; the index has the levels, ascending."""
     if not level.size:
         return pd.DataFrame(columns=[column.name for column in _COUNTS])
-    rows: list[Row] = []
-    for _, own in over_participants(level, frame).groupby(level="level"):
-        row: Row = {"participants": len(own), "legibility": own["mean"].mean()}
-        try:
-            rows.append(row | mean_share(own["mean"], own["number"])._asdict())
-        except Unanswerable as reason:
-            rows.append(row | {"note": f"no interval: {reason}"})
+    means = over_participants(level, frame)
+    by = means["mean"].groupby(level="level")
+    rows = pd.DataFrame({"participants": by.size(), "legibility": by.mean()})
+    rows = rows.assign(low=np.nan, high=np.nan)
+    few = rows["participants"] < FEWEST_PARTICIPANTS
+    rows["note"] = [
+        f"no interval: {too_few(number)}" if number < FEWEST_PARTICIPANTS else ""
+        for number in rows["participants"].tolist()
+    ]
+    # Strings may be many, most of them of a participant or two: only the others are looked at.
+    last = rows["participants"].cumsum()
+    for at, stop in last[~few].items():
+        own = means.iloc[stop - rows.at[at, "participants"] : stop]
+        rows.loc[at, ["low", "high"]] = list(mean_share(own["mean"], own["number"]))
     counts = frame["correct"].groupby(level).agg(presented="size", correct="sum")
     counts = counts.assign(pooled=counts["correct"] / counts["presented"])
-    return counts.join(pd.DataFrame(rows, counts.index))
+    return counts.join(rows)
 
 
 def _notes(rows: Sized, places: Places) -> list[str]:

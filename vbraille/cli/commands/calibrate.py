@@ -18,7 +18,7 @@ from vbraille.engine.clock import RealClock
 from vbraille.errors import DeviceError, InputError
 from vbraille.files import settings_path
 from vbraille.reading.calibrating import Round
-from vbraille.reading.keyboard import STOPPED, Keyboard, StoppableKeyboard
+from vbraille.reading.keyboard import STOPPED, Keyboard
 from vbraille.reading.keys import spoken
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ class _Guided:
         found = self._round.found
         if found.tried:
             say_line(f"going on: tried {len(found.tried)} of {found.rows * found.columns}")
-        with StoppableKeyboard(self._keyboard) as keys:
+        with self._keyboard.taken() as keys:
             try:
                 self._device.correct(self._round.shown)
                 self._ask()
@@ -162,7 +162,7 @@ class _Guided:
             self._placing = self._device.placing
             say_line(placing_sentence(self._placing, self._device.display))
 
-    def _suspend(self, keys: StoppableKeyboard) -> None:
+    def _suspend(self, keys: Keyboard) -> None:
         """Stop, with the array at rest, until the shell says to go on."""
         self._swinging.stop()
         while not self._swinging.resting:

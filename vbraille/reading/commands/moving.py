@@ -14,12 +14,15 @@ if TYPE_CHECKING:
 
 def next_line(reader: Reader) -> None:
     """Go to the line after the present one."""
-    _go(reader, 1)
+    if reader.go_by(1):
+        reader.announce()
+    else:
+        _end(reader, "last line")
 
 
 def previous_line(reader: Reader) -> None:
     """Go to the line before the present one."""
-    _go(reader, -1)
+    _back(reader)
 
 
 def pan_right(reader: Reader) -> None:
@@ -27,7 +30,7 @@ def pan_right(reader: Reader) -> None:
     if reader.pan(1):
         _say_part(reader)
     else:
-        _go(reader, 1)
+        next_line(reader)
 
 
 def pan_left(reader: Reader) -> None:
@@ -35,7 +38,7 @@ def pan_left(reader: Reader) -> None:
     if reader.pan(-1):
         _say_part(reader)
     else:
-        _go(reader, -1, at_end=True)
+        _back(reader, at_end=True)
 
 
 def line_start(reader: Reader) -> None:
@@ -98,13 +101,18 @@ def back(reader: Reader) -> None:
         reader.say("back: there was no jump")
 
 
-def _go(reader: Reader, step: int, *, at_end: bool = False) -> None:
-    """Go by a line and say where that is; if there is none, say so."""
-    if reader.go_by(step, at_end=at_end):
+def _back(reader: Reader, *, at_end: bool = False) -> None:
+    """Go to the line before, and say where that is."""
+    if reader.go_by(-1, at_end=at_end):
         reader.announce()
     else:
-        reader.cue(Cue.LIMIT)
-        reader.say("last line" if step > 0 else "first line")
+        _end(reader, "first line")
+
+
+def _end(reader: Reader, what: str) -> None:
+    """Say that there is no line to go to."""
+    reader.cue(Cue.LIMIT)
+    reader.say(what)
 
 
 def _show(reader: Reader, window: Window, end: str) -> None:

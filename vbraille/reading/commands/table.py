@@ -46,11 +46,12 @@ class Deferred:
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
         """Give the function of a name, whether or not there is one."""
+        return partial(call, self._module, name)
 
-        def function(*given: Any, **named: Any) -> Any:
-            return getattr(import_module(self._module), name)(*given, **named)
 
-        return function
+def call(module: str, name: str, *given: Any, **named: Any) -> Any:
+    """Call a function of a module by its name."""
+    return getattr(import_module(module), name)(*given, **named)
 
 
 if not TYPE_CHECKING:

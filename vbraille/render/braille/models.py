@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from vbraille.braille import geometry
 from vbraille.carriers import carrier
 from vbraille.display import Display
+from vbraille.errors import InputError
 from vbraille.render.braille.mappings import MAPPINGS, single_row
 from vbraille.render.braille.profiles import Profile, Tuning
 from vbraille.render.braille.style import BrailleStyle
@@ -167,3 +168,17 @@ def model_of(display: Display) -> Model:
 def swing_of(display: Display) -> float:
     """Way of a contactor of a display from rest to full deflection, in mm, as far as is known."""
     return model_of(display).swing_mm
+
+
+def check_shown(display: object, style: object) -> None:
+    """Raise InputError if what is given for a display or a style, where it is given, is none."""
+    if not isinstance(display, Model | Display | None):
+        known = MODELS.get(display.lower()) if isinstance(display, str) else None
+        hint = f"vbraille.{known.name.upper()}" if known else "vbraille.VBD, vbraille.STRESS2"
+        raise InputError(
+            f"display is {display!r}; give {hint}{'' if known else ' or a vbraille.Display'}"
+        )
+    if not isinstance(style, BrailleStyle | None):
+        raise InputError(
+            f"style is {style!r}; give a vbraille.BrailleStyle, such as vbraille.VBD.style"
+        )
