@@ -1,4 +1,4 @@
-"""What of a scene is at a place: only what has its box there is asked."""
+"""Elements of a scene by their places: only those that have their box there are asked."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class NamedElement:
 
     @property
     def description(self) -> str:
-        """What the scene says of it beside its name."""
+        """Description that the scene has beside its name."""
         return self.pattern.description
 
 
@@ -164,5 +164,5 @@ class SceneIndex:
 
 
 def _is_open(group: Group) -> bool:
-    """Whether the parts of a group are felt where they are, each by itself."""
+    """Tell whether the parts of a group are felt where they are, each by itself."""
     return group.operation in ("overwrite", "maximum", "add") and not group.inverted
