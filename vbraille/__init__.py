@@ -24,10 +24,13 @@ if TYPE_CHECKING:
     from vbraille.errors import InputError as InputError
     from vbraille.errors import VbrailleError as VbrailleError
     from vbraille.feeling.composing import open_framed as open_scene
+    from vbraille.layout.texts import translate_text as translate_text
     from vbraille.pose import Pose as Pose
     from vbraille.reading.device import OpenDevice as OpenDevice
     from vbraille.reading.device import open_to_read as open  # noqa: A004
     from vbraille.reading.frames import RenderedLine as RenderedLine
+    from vbraille.reading.frames import RenderedPage as RenderedPage
+    from vbraille.reading.frames import render_page as render_page
     from vbraille.reading.frames import render_text as render_text
     from vbraille.render.braille.mappings import MAPPINGS as MAPPINGS
     from vbraille.render.braille.models import LATERO as LATERO
@@ -59,6 +62,7 @@ _PLACES = {
     "OpenDevice": "vbraille.reading.device",
     "Pose": "vbraille.pose",
     "RenderedLine": "vbraille.reading.frames",
+    "RenderedPage": "vbraille.reading.frames",
     "Results": "vbraille.analysis.results",
     "STRESS2": "vbraille.render.braille.models",
     "STRESS2_8X8": "vbraille.render.braille.models",
@@ -71,7 +75,9 @@ _PLACES = {
     "analyse": "vbraille.analysis",
     "open": "vbraille.reading.device:open_to_read",
     "open_scene": "vbraille.feeling.composing:open_framed",
+    "render_page": "vbraille.reading.frames",
     "render_text": "vbraille.reading.frames",
+    "translate_text": "vbraille.layout.texts",
 }
 __all__ = [
     "LATERO",
@@ -91,6 +97,7 @@ __all__ = [
     "OpenDevice",
     "Pose",
     "RenderedLine",
+    "RenderedPage",
     "Results",
     "Scene",
     "Session",
@@ -100,8 +107,10 @@ __all__ = [
     "analyse",
     "open",
     "open_scene",
+    "render_page",
     "render_text",
     "testing",
+    "translate_text",
 ]
 
 

@@ -6,6 +6,7 @@ A device offers its `Display`; pages are laid out for it, and pictures are compi
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Integral
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -75,6 +76,9 @@ class Display:
     shown_near: bool = False
 
     def __post_init__(self) -> None:
+        for name in ("rows", "columns", "levels"):
+            if not isinstance(getattr(self, name), Integral):
+                raise ValueError(f"{name} is {getattr(self, name)!r}; it must be a whole number")
         if not (1 <= self.rows <= MOST_ROWS and 1 <= self.columns <= MOST_COLUMNS):
             raise ValueError(
                 f"an array of {self.rows} × {self.columns} actuators is not possible; "

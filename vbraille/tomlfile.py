@@ -235,7 +235,7 @@ class TomlFile:
         return tuple(table or ())
 
     def is_table(self, *path: str | int) -> bool:
-        """Whether there is a table at a place of the file."""
+        """Tell whether there is a table at a place of the file."""
         return isinstance(self._at(path), dict)
 
     @property
@@ -396,7 +396,7 @@ def which(name: str, names: Collection[str]) -> str:
 
 
 def _is_good(value: object, spaces: dict[int, str]) -> bool:
-    """Whether a value without others in it is no string with control characters, nor too large."""
+    """Tell whether a plain value is no string with control characters, nor too large."""
     if isinstance(value, str):
         return value.isprintable() or value.translate(spaces).isprintable()
     return not isinstance(value, int) or abs(value) <= _MOST_WHOLE

@@ -193,7 +193,7 @@ class Worker(Generic[Message]):
 
     @property
     def ended(self) -> bool:
-        """Whether the process is gone, as `receive` or `send` has found."""
+        """Tell whether the process is gone, as `receive` or `send` has found."""
         return self._closed or self._told.ended
 
     def send(self, message: object, *, alone: bool = False) -> bool:

@@ -8,7 +8,7 @@ import weakref
 import numpy as np
 
 from vbraille.engine.mailbox import Extent, attach, divide
-from vbraille.live.watching import TickViews
+from vbraille.live.devicesource import TickViews
 
 EXTENT = Extent(2, 3, 200_000, 500)
 PERIOD_NS = 1_000_000

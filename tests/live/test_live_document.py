@@ -12,7 +12,7 @@ from tests.live import headers
 from tests.live.canned import canned_frame
 from tests.live.pages import read_frame
 from vbraille.engine.record import Flag
-from vbraille.live import messages, server, talking
+from vbraille.live import connection, messages, server
 from vbraille.live.server import HEADERS
 
 PAGE = (Path(__file__).parents[2] / "docs/live-view.md").read_text()
@@ -131,9 +131,9 @@ def test_limits():
         "connections at a time": f"{server.MOST_CONNECTIONS}",
         "bytes of a request": f"{messages.MOST_BYTES}",
         "samples of a frame": f"{messages.MOST_SAMPLES}",
-        "frames asked for ahead that are looked at": f"{talking.MOST_QUEUED}",
-        "seconds until hello": f"{talking._HELLO_S:g}",
-        "seconds until a frame comes that is not new": f"{talking._MOST_WAIT_S:g}",
+        "frames asked for ahead that are looked at": f"{connection.MOST_QUEUED}",
+        "seconds until hello": f"{connection._HELLO_S:g}",
+        "seconds until a frame comes that is not new": f"{connection._MOST_WAIT_S:g}",
         "seconds from one ping to the next, and until it must be answered": f"{server._PING_S:g}",
     }
 

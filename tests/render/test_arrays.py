@@ -1,3 +1,5 @@
+import re
+
 import numpy as np
 import pytest
 
@@ -50,6 +52,13 @@ def test_impossible_numbers_of_actuators(rows, columns):
     )
     with pytest.raises(ValueError, match=says):
         array_of(rows, columns, 1.0, 1.0)
+
+
+@pytest.mark.parametrize("number", [3.5, "3", None, float("nan")])
+def test_numbers_of_actuators_are_whole(number):
+    says = f"^rows is {re.escape(repr(number))}; it must be a whole number$"
+    with pytest.raises(ValueError, match=says):
+        array_of(number, 2, 1.0, 1.0)
 
 
 @pytest.mark.parametrize("pitch", [0.0, 0.049, 50.1, -1.0, float("nan"), float("inf")])

@@ -491,7 +491,7 @@ def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToR
 
 
 def _said(arguments: argparse.Namespace) -> frozenset[str]:
-    """Which of the options on translation were given, and are not from the settings file."""
+    """Give the options on translation that were given, and are not from the settings file."""
     given = {name for name in CHOICE_OF_TABLE if getattr(arguments, name) is not None}
     return frozenset(given - arguments.settled)
 

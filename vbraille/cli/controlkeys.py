@@ -27,7 +27,7 @@ class ControlKeys:
 
     @property
     def attached(self) -> bool:
-        """Whether there is a terminal to type at, and the program is in its foreground."""
+        """Tell whether there is a terminal to type at, and the program is in its foreground."""
         return self._keyboard is not None and self._keyboard.attached and _in_front()
 
     def __enter__(self) -> Self:
@@ -49,7 +49,7 @@ class ControlKeys:
 
 
 def _in_front() -> bool:
-    """Whether the program is in the foreground of the terminal on standard input."""
+    """Tell whether the program is in the foreground of the terminal on standard input."""
     with suppress(OSError, ValueError, AttributeError):
         return os.tcgetpgrp(sys.stdin.fileno()) == os.getpgrp()
     return False

@@ -119,7 +119,7 @@ def _to_dataset(
 
 
 def _answer(record: Record, field: str) -> str:
-    """What was answered to a question about the participant."""
+    """Give the answer to a question about the participant."""
     fields = record.head["fields"]
     if field not in fields:
         known = ", ".join(fields) or "none"
@@ -159,7 +159,7 @@ def _to_table(
 
 
 def _bad(one: Record) -> list[str]:
-    """What is damaged in a session's journal."""
+    """List the damage of a session's journal."""
     told = one.journal
     if told.bad:
         single = len(told.bad) == 1

@@ -1,4 +1,4 @@
-"""How a command says a line, and the progress of long work."""
+"""Lines that a command says, and the progress of long work."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ DEFAULT_PROFILE = "default"
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What a settings file has.
+    """Content of a settings file.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What frames of a picture cost: time against place, and what each element has in it.
+"""Costs of a picture's frames: time against place, and the share of each element.
 
 Lévesque 2009, 8.5.2: the time of a whole frame as a function of where the display is, on a path
 (fig. 8.30), as a histogram and as a map (fig. 8.31). Budgets are 8.5.3's.
@@ -75,7 +75,7 @@ class Costs:
 
 @dataclass(frozen=True, slots=True)
 class ElementCost:
-    """What an element has in the time of frames.
+    """Share of an element in the time of frames.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ class NamedElement:
 
     @property
     def description(self) -> str:
-        """What the scene says of it beside its name."""
+        """Description that the scene has beside its name."""
         return self.pattern.description
 
 
@@ -270,7 +270,7 @@ class SceneIndex:
 
 
 def _is_open(group: Group) -> bool:
-    """Whether the parts of a group are felt where they are, each by itself."""
+    """Tell whether the parts of a group are felt where they are, each by itself."""
     return group.operation in ("overwrite", "maximum", "add") and not group.inverted
 
 
@@ -296,7 +296,7 @@ def _away(outline: NDArray[np.float64], x_mm: float, y_mm: float) -> float:
 
 
 def _is_within(pattern: AnyPattern, x_mm: float, y_mm: float) -> bool:
-    """Whether a place is inside of the outlines of a shape, by the even-odd rule."""
+    """Tell whether a place is inside of the outlines of a shape, by the even-odd rule."""
     crossed = 0
     for outline in _outlines(pattern):
         (x, y), (x_next, y_next) = outline[:-1].T, outline[1:].T

@@ -157,7 +157,7 @@ class FileWatch:
         return True
 
     def _stamp(self) -> _Stamp | None:
-        """What tells one state of the file from another; None if there is no file."""
+        """Give the stamp that tells states of the file apart; None if there is no file."""
         try:
             found = self._path.stat()
         except OSError:

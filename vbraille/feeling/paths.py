@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class PathOptions:
-    """How a path over a picture is chosen; None stands for what is usual.
+    """Choice of a path over a picture; None stands for the usual value.
 
     Parameters
     ----------

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
 from vbraille.translate import Book, BrailleTable, Document, Undefined, find_table
+from vbraille.translate.text import Text
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
+    from vbraille.braille.cells import Cells
     from vbraille.braille.geometry import Geometry
     from vbraille.display import Display
 
@@ -60,6 +62,44 @@ def choose_table(
             f"a table has its language and grade; give either {setting('table')} or those"
         )
     return BrailleTable(table, how)
+
+
+def check_text(text: object) -> None:
+    """Raise InputError if what is given for a text is no string."""
+    if not isinstance(text, str):
+        raise InputError(f"the text is {text!r:.40}; give a string")
+
+
+def translate_text(
+    text: str,
+    language: str | None = None,
+    grade: int | None = None,
+    table: str | None = None,
+    undefined: Undefined | str = Undefined.MARK,
+) -> Cells:
+    """Translate a text to cells, each of which knows the characters that it stands for.
+
+    Parameters
+    ----------
+    text
+        Text of one paragraph.
+    language, grade, table, undefined
+        As of `choose_table`.
+
+    Raises
+    ------
+    InputError
+        If something cannot be used.
+
+    Examples
+    --------
+    >>> import vbraille
+    >>> cells = vbraille.translate_text("the world", language="en", grade=2)
+    >>> cells.to_unicode(), cells.source(0), cells.of_source(4)
+    ('⠮⠀⠸⠺', (0, 3), (2, 4))
+    """
+    check_text(text)
+    return choose_table(language, grade, table, undefined).translate(Text.of(text))
 
 
 def lay_out_text(text: str, width: int, table: BrailleTable, *, keep_lines: bool = False) -> Layout:

@@ -1,4 +1,4 @@
-"""Who may see the live view, who may steer, and by which addresses the server is called.
+"""Rights to see the live view and to steer, and the addresses by which the server is called.
 
 A page of another site must not reach a server on this machine through somebody's browser: neither
 by its own name that leads here (the Host header is checked), nor from its own page (the Origin
@@ -23,7 +23,7 @@ _HTTP_PORT: Final = 80
 
 
 class Right(Enum):
-    """What whoever opened a page may do."""
+    """Rights of a page."""
 
     NONE = "none"
     WATCH = "watch"
@@ -59,7 +59,7 @@ class Admission:
 
     @property
     def on_loopback(self) -> bool:
-        """Whether only this machine reaches the server, so that watching needs no token."""
+        """Tell whether only this machine reaches the server, so that watching needs no token."""
         return is_loopback(self.host)
 
     @property
@@ -108,7 +108,7 @@ class Admission:
         return Right.NONE
 
     def is_ours(self, host: str, local: str) -> bool:
-        """Whether a Host header names this server.
+        """Tell whether a Host header names this server.
 
         Parameters
         ----------
@@ -162,7 +162,7 @@ def _in_table(end: tuple[Any, ...]) -> str:
 
 
 def is_loopback(host: str) -> bool:
-    """Whether a name or an address is reached from this machine only."""
+    """Tell whether a name or an address is reached from this machine only."""
     try:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:

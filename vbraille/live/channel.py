@@ -1,4 +1,4 @@
-"""What a program and the server of its live view say to each other, and the line between them.
+"""Messages between a program and the server of its live view, and the line between them.
 
 It is a pair of sockets that keep messages apart, in JSON. Neither side ever waits for the other.
 Memory goes along as a descriptor.
@@ -21,7 +21,7 @@ MOST_MESSAGE_BYTES: Final = 1 << 22
 
 
 class Begin(msgspec.Struct, frozen=True):
-    """How the server is to begin, which it is told by its command line.
+    """Settings with which the server begins, as its command line tells them.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Tells(msgspec.Struct, frozen=True, tag=True):
 
 
 class Asks(msgspec.Struct, frozen=True, tag=True):
-    """What a page with the right to steer asks for."""
+    """Request of a page with the right to steer."""
 
     request: PagePress | Turn
 

@@ -30,7 +30,7 @@ _SAMPLE_BYTES: Final = 12
 
 
 class FrameHeader(NamedTuple):
-    """What the header of a frame says beside the sizes of what follows.
+    """Facts in the header of a frame, beside the sizes of its parts.
 
     Parameters
     ----------

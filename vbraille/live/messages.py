@@ -1,4 +1,4 @@
-"""What the page of the live view and its server say to each other.
+"""Messages between a page of the live view and its server.
 
 The page pulls: it asks for a frame when it has drawn the one before, so that nothing can pile up
 on the way. It asks in JSON. The server answers each `Next` with the `ViewState`, if that has
@@ -22,7 +22,7 @@ MAP_KIND: Final = 2
 
 
 class Request(msgspec.Struct, frozen=True, tag_field="ask", forbid_unknown_fields=True):
-    """What a page asks for; its subclasses are the kinds."""
+    """Request of a page; its subclasses are the kinds."""
 
 
 class PageHello(Request, frozen=True, tag="hello"):

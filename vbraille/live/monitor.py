@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def has_desktop() -> bool:
-    """Whether somebody sits here who would see a browser that opens."""
+    """Tell whether somebody sits here who would see a browser that opens."""
     desktop = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
     with suppress(OSError, ValueError, AttributeError):  # there may be no standard input
         return bool(desktop) and sys.stdin.isatty()

@@ -20,8 +20,8 @@ from websockets.http11 import Response
 
 from vbraille.errors import InputError
 from vbraille.live.admission import LOOPBACK, Admission, owner_of
+from vbraille.live.connection import MOST_QUEUED, HandHolder, Talk
 from vbraille.live.messages import MOST_BYTES
-from vbraille.live.talking import MOST_QUEUED, Held, Talk
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ class LiveServer:
         self.source = source
         self.pages = 0
         self._drawer = ThreadPoolExecutor(1)
-        self._held = Held()
+        self._held = HandHolder()
         self._host = LOOPBACK if host in (None, "localhost") else host
         self._port = port or 0
         self._steers = steers

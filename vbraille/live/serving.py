@@ -36,8 +36,8 @@ from vbraille.live.channel import (
     prepare,
     to_server,
 )
+from vbraille.live.devicesource import DeviceSource, TickViews
 from vbraille.live.server import LiveServer
-from vbraille.live.watching import TickViews, Watching
 from vbraille.logs import keep
 from vbraille.simulation.steering import Pointer
 from vbraille.wording import spelled
@@ -90,11 +90,11 @@ class ServerLine:
             return False
         return True
 
-    def follow(self, source: Watching) -> None:
+    def follow(self, source: DeviceSource) -> None:
         """Take all that the program says, from now on, to a source."""
         asyncio.get_running_loop().add_reader(self._socket, self._hear, source)
 
-    def _hear(self, source: Watching) -> None:
+    def _hear(self, source: DeviceSource) -> None:
         try:
             while True:
                 said, descriptors, _, _ = socket.recv_fds(self._socket, MOST_MESSAGE_BYTES, 1)
@@ -113,7 +113,7 @@ class ServerLine:
         self.ended.set()
 
 
-def _take(said: bytes, descriptors: list[int], source: Watching) -> None:
+def _take(said: bytes, descriptors: list[int], source: DeviceSource) -> None:
     message = to_server(said)
     if not isinstance(message, Shares):
         source.show(message.state)
@@ -141,7 +141,7 @@ async def serve(begin: Begin, line: ServerLine) -> None:
         If nobody can listen where it is to listen.
     """
     hand = None if begin.pointer is None else Pointer(begin.pointer)
-    source = Watching(line.forward, hand, blind=begin.blind)
+    source = DeviceSource(line.forward, hand, blind=begin.blind)
     server = LiveServer(source, host=begin.host, port=begin.port, steers=begin.steers)
     line.follow(source)
     async with server:

@@ -1,4 +1,4 @@
-"""What the server of the live view shows: a device that is read now, or a recording."""
+"""Sources of the live view: a device that is read now, or a recording."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Steering = PagePress | Turn | Point | LetGo
 
 
 class Viewer(Protocol):
-    """What one page sees of a source, with a cursor of its own."""
+    """View of a source by one page, with a cursor of its own."""
 
     def state(self, request: Next) -> tuple[int, bytes]:
         """Number of the state that belongs to what is asked for, and the state as JSON.
@@ -44,11 +44,11 @@ class Viewer(Protocol):
 
 
 class LiveSource(Protocol):
-    """What a server shows."""
+    """Source that a server shows."""
 
     @property
     def playback(self) -> bool:
-        """Whether it is a recording, so that pages name times."""
+        """Tell whether it is a recording, so that pages name times."""
         ...
 
     @property
@@ -58,7 +58,7 @@ class LiveSource(Protocol):
 
     @property
     def moments(self) -> Sequence[PlayedEvent]:
-        """What happened in the recording, by time."""
+        """Events of the recording, by time."""
         ...
 
     def viewer(self) -> Viewer:

@@ -141,7 +141,7 @@ def line_shown(
 
 
 def _sources(line: Line) -> NDArray[np.int64]:
-    """Where in the line's text what each cell after the indent stands for begins and ends."""
+    """Begin and end in the line's text of what each cell after the indent stands for."""
     starts, places = line.cells.starts, line.block.text.places
     after = np.searchsorted(starts, starts, side="right")
     following = np.append(starts, line.cells.end)[after]

@@ -55,9 +55,9 @@ def _open(path: Path) -> Recording:
         return Rendered(path)
     is_trace = start is not None and start[:2] == _GZIP and path.suffix == ".gz"
     if start is None or is_trace:
-        from vbraille.playback.traced import Traced
+        from vbraille.playback.sessiontrace import SessionRecording
 
-        return Traced(path.parent, path.name) if is_trace else Traced(path)
+        return SessionRecording(path.parent, path.name) if is_trace else SessionRecording(path)
     what = "is no recording" if start else "is empty"
     raise InputError(f"{_named(path)} {what}; {_GIVE}")
 

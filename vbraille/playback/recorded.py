@@ -194,7 +194,7 @@ class Recording(ABC):
 
 
 class RecordingViewer:
-    """What one page sees of a recording.
+    """View of a recording by one page.
 
     Parameters
     ----------

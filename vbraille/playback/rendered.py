@@ -1,4 +1,4 @@
-"""What `vbraille render` wrote, played back: `docs/recording.md` describes the file."""
+"""Recordings of `vbraille render`, played back: `docs/recording.md` describes the file."""
 
 from __future__ import annotations
 
@@ -172,7 +172,7 @@ class Rendered(Recording):
     def _describe(
         self, columns_mm: NDArray[np.float64], rows_mm: NDArray[np.float64]
     ) -> tuple[BrailleStyle | None, Display]:
-        """How braille was shown, None if that cannot be told, and on what."""
+        """Style of the braille, None if that cannot be told, and the display."""
         file = self._file
         model = MODELS.get(self._told("model", ""))
         geometry = Geometry(**json.loads(self._told("geometry", "{}")))

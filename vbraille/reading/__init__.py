@@ -1,4 +1,4 @@
-"""What a reader does with a text: line after line, and the commands in between."""
+"""Reading: a text line after line, or a picture, and the commands in between."""
 
 from vbraille.reading.commands.table import COMMANDS
 from vbraille.reading.keys import Command, Context

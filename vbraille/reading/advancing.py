@@ -223,7 +223,7 @@ _STAY_NS: Final = round(STAY_S * 1e9)
 _UNFELT: Final = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD | Flag.TURNED)
 
 
-class Foot:
+class PageFoot:
     """Watches for a finger that has been on a page and stays below its last line.
 
     Parameters
@@ -313,7 +313,7 @@ class Scroll:
 
     @property
     def on(self) -> bool:
-        """Whether lines come by themselves; the present line has all its time once that is set."""
+        """True if lines come by themselves; the present line has all its time once that is set."""
         return self._on
 
     @on.setter
@@ -347,7 +347,7 @@ class Scroll:
         self._till_s = now_s
 
     def due(self, line_cells: int, now_s: float) -> bool:
-        """Whether the time of the line is over; if so, that of the next line begins.
+        """Tell whether the time of the line is over; if so, that of the next line begins.
 
         Call it again and again, as the speed may change: that counts at once for the present line.
         Time in which it is not called, as in a pause, does not count.

@@ -112,7 +112,7 @@ class BookFigures:
 
     @property
     def ready(self) -> bool:
-        """Whether a page can be made without waiting for the compiler to be loaded."""
+        """Tell whether a page can be made without waiting for the compiler to be loaded."""
         return self._warming is None or not self._warming.is_alive()
 
     def find(self, address: str) -> BookFigure | None:

@@ -100,7 +100,7 @@ class Pane:
 
 
 def _same(line: Line, other: Line | None) -> bool:
-    """Whether two are one line, which may have been laid out twice."""
+    """Tell whether two are one line, which may have been laid out twice."""
     return other is not None and (
         line is other
         or (line.number == other.number and line.masks.tobytes() == other.masks.tobytes())

@@ -16,7 +16,7 @@ class Cue(Enum):
 
 
 class CueKind(Enum):
-    """What cues are given by."""
+    """Kinds of signals by which cues are given."""
 
     SOUND = "sound"
     BELL = "bell"

@@ -22,7 +22,7 @@ from vbraille.reading.keys import TURNED, Context
 from vbraille.reading.lineviews import MOST_CELLS
 from vbraille.reading.outputs import Echo
 from vbraille.reading.reader import Reader
-from vbraille.reading.surface import MOST_LINES
+from vbraille.reading.viewport import MOST_LINES
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.simulation.hand import Still
 from vbraille.simulation.specs import (
@@ -61,7 +61,7 @@ _HELD = int(Flag.HELD)  # a plain number, as in `vbraille.reading.reader`
 
 
 class KnobTurns:
-    """What knobs of a device have changed and what was not said of that yet.
+    """Changes by knobs of a device that were not said yet.
 
     A knob that is being turned tells its place fifty times a second. Each is shown at once; only
     the one at which the knob is left is said.
@@ -220,7 +220,7 @@ class OpenDevice:
 
     @property
     def held(self) -> bool:
-        """Whether somebody holds the simulated hand."""
+        """Tell whether somebody holds the simulated hand."""
         return self.pointer is not None and self.pointer.held
 
     @property
@@ -256,7 +256,7 @@ class OpenDevice:
 
     @property
     def done(self) -> bool:
-        """Whether all that was shown has been read."""
+        """Tell whether all that was shown has been read."""
         return self._reader is None or self._reader.done
 
     @property
@@ -280,7 +280,7 @@ class OpenDevice:
 
     @property
     def paused(self) -> bool:
-        """Whether the array rests; setting it has the array rest at once, or go on."""
+        """Tell whether the array rests; setting it has the array rest at once, or go on."""
         return self.engine.paused
 
     @paused.setter
@@ -490,7 +490,7 @@ class OpenDevice:
             raise DeviceError(reader.under.hopeless)
 
     def _is_patient(self, now_ns: int) -> bool:
-        """Whether what the hand does or does not do at a time is somebody's own doing.
+        """Tell whether the hand's doing at a time is somebody's own.
 
         A still hand waits for somebody, and one that was let go just now has not moved by itself.
         """

@@ -1,26 +1,29 @@
-"""A line of text as frames: what the actuators do as the array goes along it."""
+"""A line or a page of text as frames: what the actuators do as the array goes over it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vbraille.errors import InputError
-from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
+from vbraille.layout.texts import cells_per_line, check_text, choose_table, lay_out_text
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.wording import count
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from vbraille.braille.cells import Cells
     from vbraille.display import Display
-    from vbraille.layout.pages import Line
+    from vbraille.layout.pages import Layout, Line
     from vbraille.render.braille.style import BrailleStyle
+    from vbraille.render.program import Program
 
 _MOST_FRAMES = 10_000_000
+MOST_LINES = 1000  # of a page
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,6 +60,68 @@ class RenderedLine:
 
     def __len__(self) -> int:
         return self.positions_mm.size
+
+    def at(self, x_mm: float) -> NDArray[np.float64]:
+        """Frame whose place comes nearest to a place of the array's centre.
+
+        Returns
+        -------
+        float64[rows, columns]
+            Deflections, 0 (rest) to 1 (full swing).
+        """
+        return self.frames[np.abs(self.positions_mm - x_mm).argmin()]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RenderedPage:
+    """Lines of a text, one below the other, which give the frame of any pose over them.
+
+    Parameters
+    ----------
+    lines
+        Lines with their text, and with the character that each cell stands for.
+    display, style
+        Display and style that the page is rendered for.
+    program
+        The page as the engine takes it.
+    """
+
+    lines: tuple[Line, ...]
+    display: Display
+    style: BrailleStyle
+    program: Program
+
+    def frames(
+        self,
+        x_mm: ArrayLike,
+        y_mm: ArrayLike,
+        theta_rad: ArrayLike = 0.0,
+    ) -> NDArray[np.float64]:
+        """Frames along a path over the page.
+
+        Parameters
+        ----------
+        x_mm, y_mm : float[n]
+            Places of the array's centre: to the right of where the lines begin, and below the
+            upper edge of the first line. The middle of line n is (n - ½) line pitches down.
+        theta_rad : float[n]
+            Angles by which the array is turned, anticlockwise.
+
+        Returns
+        -------
+        float64[n, rows, columns]
+            Deflections, 0 (rest) to 1 (full swing).
+
+        Raises
+        ------
+        ValueError
+            If the places are not of one length, or not finite.
+        """
+        poses = [np.atleast_1d(np.asarray(of, np.float64)) for of in (x_mm, y_mm, theta_rad)]
+        x, y, theta = (np.ascontiguousarray(of) for of in np.broadcast_arrays(*poses))
+        if x.ndim != 1 or not all(np.isfinite(of).all() for of in (x, y, theta)):
+            raise ValueError("places of a path must be finite numbers, in arrays of one dimension")
+        return self.program.poses(x, y, theta)[1].astype(np.float64)
 
 
 def render_text(
@@ -104,17 +169,7 @@ def render_text(
     >>> float(made.frames.max())
     1.0
     """
-    check_shown(display, style)
-    model = display if isinstance(display, Model) else model_of(display)
-    if style is None:
-        geometry = replace(model.style.geometry, travel_mm=model.display.travel_mm)
-        style = model.style.replace(geometry=geometry)
-    layout = lay_out_text(
-        text,
-        cells_per_line(style.geometry, model.display),
-        choose_table(language, grade, table),
-        keep_lines=True,
-    )
+    model, style, layout = _laid_out(text, display, style, language, grade, table)
     if line is None and layout.line(2) is not None:
         raise InputError(
             f"the text takes {count(layout.count(), 'line')} on the {model.title}; say which with "
@@ -138,3 +193,71 @@ def render_text(
         raise InputError(str(error)) from None
     frames = program.path(positions_mm).astype(np.float64)
     return RenderedLine(found, model.display, style, positions_mm, frames)
+
+
+def render_page(
+    text: str,
+    display: Model | Display = STRESS2,
+    *,
+    style: BrailleStyle | None = None,
+    language: str | None = None,
+    grade: int | None = None,
+    table: str | None = None,
+    first: int = 1,
+    last: int | None = None,
+) -> RenderedPage:
+    r"""Lay lines of a text out one below the other, as a carriage of two axes reads them.
+
+    Parameters
+    ----------
+    text, display, style, language, grade, table
+        As of `render_text`.
+    first, last
+        Numbers of the first and the last line, from 1; without a last one, all that there are, up
+        to `MOST_LINES`.
+
+    Raises
+    ------
+    InputError
+        If something cannot be used, or the text has no such lines.
+
+    Examples
+    --------
+    >>> import vbraille
+    >>> page = vbraille.render_page("one\ntwo", display=vbraille.STRESS2_8X8)
+    >>> [line.text for line in page.lines], page.frames([10.0, 20.0], [5.5, 16.5]).shape
+    (['one', 'two'], (2, 8, 8))
+    """
+    model, style, layout = _laid_out(text, display, style, language, grade, table)
+    if first < 1 or (last is not None and last < first):
+        raise InputError(f"lines {first} to {last} are no range; lines count from 1 upwards")
+    lines = tuple(islice(layout.lines(first, last), MOST_LINES + 1))
+    if not lines or (last is not None and len(lines) <= last - first):
+        raise InputError(f"the text ends at line {layout.count()}; give lines up to that")
+    if len(lines) > MOST_LINES:
+        raise InputError(f"a page has at most {MOST_LINES} lines; say which with first and last")
+    try:
+        program = style.render_page([line.masks for line in lines], model.display)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    return RenderedPage(lines, model.display, style, program)
+
+
+def _laid_out(
+    text: str,
+    display: Model | Display,
+    style: BrailleStyle | None,
+    language: str | None,
+    grade: int | None,
+    table: str | None,
+) -> tuple[Model, BrailleStyle, Layout]:
+    """Lay a text out in the lines of a display; without a style, as the display is usually read."""
+    check_shown(display, style)
+    check_text(text)
+    model = display if isinstance(display, Model) else model_of(display)
+    if style is None:
+        geometry = replace(model.style.geometry, travel_mm=model.display.travel_mm)
+        style = model.style.replace(geometry=geometry)
+    width = cells_per_line(style.geometry, model.display)
+    chosen = choose_table(language, grade, table)
+    return model, style, lay_out_text(text, width, chosen, keep_lines=True)

@@ -55,7 +55,7 @@ class Keyboard:
 
     @property
     def attached(self) -> bool:
-        """Whether there is a terminal to type at."""
+        """Tell whether there is a terminal to type at."""
         return self._descriptor is not None
 
     def __enter__(self) -> Self:
@@ -69,7 +69,7 @@ class Keyboard:
 
     @property
     def asked(self) -> bool:
-        """Whether the process is to stop for a while."""
+        """Tell whether the process is to stop for a while."""
         return self._suspension.asked
 
     @contextmanager

@@ -299,7 +299,7 @@ _DEVICE_KEY = re.compile(r"(?:(button|knob) )?([1-9][0-9]{0,2})")
 
 
 class Context(Enum):
-    """What a reader is doing, which decides what each key stands for."""
+    """Contexts of a reader, which decide what each key stands for."""
 
     READING = "reading"
     """A line is under the hand."""

@@ -224,7 +224,7 @@ _LARGEST_TUNING = 100_000  # bytes
 
 
 class KeptBook:
-    """What is kept of a book: the place, bookmarks, tuning, options and the index.
+    """Book as it is kept: its place, bookmarks, tuning, options and index.
 
     What is set is written at once, except places, which are written at most every half second.
     What cannot be written, since the disk is full or another process is writing, is remembered
@@ -275,12 +275,12 @@ class KeptBook:
 
     @property
     def changed(self) -> bool:
-        """Whether the file is another than its places are for: `settle` mends that."""
+        """Tell whether the file is another than its places are for: `settle` mends that."""
         return not self._settled
 
     @property
     def index(self) -> Index | None:
-        """Where the book's blocks are, as far as it was kept."""
+        """Index of the book's blocks, as far as it was kept."""
         row = self._store.first("SELECT packed FROM indices WHERE book = ?", self.digest)
         return None if row is None else decoded(row[0], Index)
 

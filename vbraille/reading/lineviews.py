@@ -10,8 +10,8 @@ import numpy as np
 from vbraille.engine.engine import EndOfLine
 from vbraille.engine.record import Flag
 from vbraille.layout.texts import cells_per_line
-from vbraille.reading.advancing import Foot, LineWatch, too_fast_note
-from vbraille.reading.surface import Surface, below_pitches, rows_on
+from vbraille.reading.advancing import LineWatch, PageFoot, too_fast_note
+from vbraille.reading.viewport import Surface, below_pitches, rows_on
 from vbraille.simulation.steering import ReadLine, ReadPage
 from vbraille.translate.source import MarkKind
 
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from vbraille.engine.engine import Engine
     from vbraille.layout.pages import Line
     from vbraille.reading.cues import Cue
-    from vbraille.reading.surface import Surface, Window
     from vbraille.reading.view import View
+    from vbraille.reading.viewport import Surface, Window
     from vbraille.render import BrailleStyle, Model
     from vbraille.render.program import Program
     from vbraille.simulation.steering import Steering
@@ -38,7 +38,7 @@ _PAUSED, _HELD, _TURNED = int(Flag.PAUSED), int(Flag.HELD), int(Flag.TURNED)
 
 
 class TextView:
-    """What is under the hand: a part of a line, or a page of lines of which the finger is on one.
+    """Part of a line under the hand, or a page of lines of which the finger is on one.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class TextView:
         self._y_mm: float | None = None  # where the finger is, and the part of what is shown there
         self._part = -1
         self._near, self._near_ns = -1, 0  # the row that the finger came to last, and when
-        self._foot: Foot
+        self._foot: PageFoot
         self._steering = steering
         self._say = say
         self._by_hand = by_hand
@@ -140,8 +140,8 @@ class TextView:
         return self.figured.under(self._engine.x_mm, self._y_mm)
 
     @property
-    def here(self) -> Here | None:
-        """What of a figure the finger is on; None if it is on no figure."""
+    def here(self) -> FigureElement | None:
+        """Figure and element that the finger is on; None if it is on no figure."""
         return self.figured.here(self._engine.x_mm, self._y_mm)
 
     def keep(self, line: Line) -> int:
@@ -160,7 +160,7 @@ class TextView:
 
     @property
     def reached(self) -> bool:
-        """Whether the hand has been at the end."""
+        """Tell whether the hand has been at the end."""
         return self.window is not None and self._end.reached
 
     def width_in(self, style: BrailleStyle) -> int:
@@ -185,7 +185,7 @@ class TextView:
         """
         self.surface = surface
         self.shown += 1
-        self._foot = Foot(len(surface.windows))
+        self._foot = PageFoot(len(surface.windows))
         self._enter(surface.row, name)
         # Braille comes at once, and figures join it when they are compiled.
         self.figured.forget()
@@ -283,7 +283,7 @@ class TextView:
         self._steering.give(ReadPage(lines, pitch_mm, end_mm, foot_mm))
 
     def steered_till(self, tick: np.void) -> bool:
-        """Whether a simulated hand had read the line by the time of a tick; False without one."""
+        """Tell whether a simulated hand had read the line by a tick; False without one."""
         return self._steering is not None and self._steering.done_at(int(tick["device_ns"]))
 
     def felt(self, ticks: NDArray[np.void]) -> NDArray[np.void]:
@@ -391,7 +391,7 @@ class Figures(Protocol):
 
     @property
     def ready(self) -> bool:
-        """Whether a page can be made at once."""
+        """Tell whether a page can be made at once."""
         ...
 
     def feel(self, address: str, say: Callable[[str], None], cue: Callable[[Cue], None]) -> View:
@@ -435,7 +435,7 @@ class PlacedFigure(NamedTuple):
     top_mm: float
 
 
-class Here(NamedTuple):
+class FigureElement(NamedTuple):
     """Title of the figure under the finger, and name of its element there, or an empty one."""
 
     title: str
@@ -503,7 +503,7 @@ class Figured:
 
     @property
     def ready(self) -> bool:
-        """Whether figures can join a page at once."""
+        """Tell whether figures can join a page at once."""
         return self._figures is None or self._figures.ready
 
     def sentences(self, line: Line, key: str, below: int) -> Iterator[str]:
@@ -563,12 +563,12 @@ class Figured:
                 return placed
         return None
 
-    def here(self, x_mm: float | None, y_mm: float | None) -> Here | None:
+    def here(self, x_mm: float | None, y_mm: float | None) -> FigureElement | None:
         """Tell what of the page's figures is at a place in mm; None if no figure is there."""
         placed = self.under(x_mm, y_mm)
         if placed is None or x_mm is None or y_mm is None:
             return None
-        return Here(placed.figure.title, placed.figure.name_at(x_mm, y_mm - placed.top_mm))
+        return FigureElement(placed.figure.title, placed.figure.name_at(x_mm, y_mm - placed.top_mm))
 
     def rows_of(
         self, y_mm: NDArray[np.float64], style: BrailleStyle, rows: int

@@ -26,7 +26,7 @@ from vbraille.reading.commands.table import COMMANDS
 from vbraille.reading.commands.turning import turn_to
 from vbraille.reading.keys import Context
 from vbraille.reading.outputs import Output
-from vbraille.reading.whereabouts import is_counted, line_name, percent
+from vbraille.reading.position import is_counted, line_name, percent
 from vbraille.wording import printable, spelled
 
 if TYPE_CHECKING:
@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     from vbraille.reading.device import OpenDevice
     from vbraille.reading.reader import Reader
     from vbraille.reading.sceneview import SceneView
-    from vbraille.reading.surface import Window
     from vbraille.reading.view import View
+    from vbraille.reading.viewport import Window
     from vbraille.simulation.steering import Pointer
 
 MOST_SAID: Final = 20
@@ -79,7 +79,7 @@ class LastSentences:
 
 
 class ExploredState(ABC):
-    """What is explored on a device, as the state of the live view.
+    """State of an exploration, as pages of the live view are told of it.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ class ExploredState(ABC):
 
     @abstractmethod
     def _compared(self) -> tuple[object, ...]:
-        """What else may change, which is compared as objects but for plain values."""
+        """Give whatever else may change, which is compared as objects but for plain values."""
 
     @abstractmethod
     def _parts(self) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Final, Self
 
 from vbraille.reading.cues import Cue, CueKind
-from vbraille.reading.whereabouts import place_sentence
+from vbraille.reading.position import place_sentence
 from vbraille.workers import Worker
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Echo(StrEnum):
-    """How much is said of each line."""
+    """Kinds of echo: the parts of each line that are said."""
 
     NONE = "none"
     TEXT = "text"

@@ -10,11 +10,7 @@ from vbraille.reading.cues import Cue
 from vbraille.reading.keys import Context
 from vbraille.reading.lineviews import TextView
 from vbraille.reading.outputs import Echo
-from vbraille.reading.search.questions import CountLines
-from vbraille.reading.search.seeker import Search
-from vbraille.reading.surface import LineRange, Surface, Window, around, turned
-from vbraille.reading.view import Prompt, View
-from vbraille.reading.whereabouts import (
+from vbraille.reading.position import (
     LINES_PER_PAGE,
     first_character,
     heading_name,
@@ -23,6 +19,10 @@ from vbraille.reading.whereabouts import (
     page_label,
     place_sentence,
 )
+from vbraille.reading.search.questions import CountLines
+from vbraille.reading.search.seeker import Search
+from vbraille.reading.view import Prompt, View
+from vbraille.reading.viewport import LineRange, Surface, Window, around, turned
 from vbraille.translate.source import BlockKind
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ _TRAIL = 100  # places that are kept to go back to
 
 
 class Unkept:
-    """What is kept of a book no longer than a reading lasts."""
+    """Bookmarks that last no longer than a reading."""
 
     fault: str | None = None
 
@@ -77,7 +77,7 @@ class Unkept:
         """Keep no place: there is no other time."""
 
 
-class Keeping:
+class PlaceKeeper:
     """Keep the place of a reading, at most once a second.
 
     Parameters
@@ -227,7 +227,7 @@ class Reader(View):
             engine, model, steering, say, by_hand=advance, key=key, figures=figures
         )
         self.search = Search(say, seeker, verbose=verbose, counted=self._take_count)
-        self.keeping = Keeping(kept)
+        self.keeping = PlaceKeeper(kept)
         self.save_style = save_style
         self.styles_before: list[BrailleStyle] = []  # before each turn that was not taken back
         # The book as it is read, and as it was before its table was changed last.
@@ -260,7 +260,7 @@ class Reader(View):
 
     @property
     def style(self) -> BrailleStyle:
-        """How lines are shown."""
+        """Style in which lines are shown."""
         return self.under.style
 
     @property
@@ -304,7 +304,7 @@ class Reader(View):
 
     @property
     def kept(self) -> KeptBook | Unkept:
-        """What is kept of the book."""
+        """Book as it is kept."""
         return self.keeping.kept
 
     @property
@@ -471,7 +471,7 @@ class Reader(View):
         return turned(self.range, here, step, rows, skip_blank=skip, keep=under.keep)
 
     def _page_sentence(self, page: Surface) -> str:
-        """Which lines a page has, or where it begins while lines are not counted."""
+        """Say the lines of a page, or its beginning while lines are not counted."""
         first, last = page.there[0].line, page.there[-1].line
         if not is_counted(self.layout):
             return place_sentence(self.layout, first)
@@ -486,7 +486,7 @@ class Reader(View):
 
     @property
     def _here(self) -> Surface | None:
-        """What is under the hand, with the row that the finger is in as the one that is meant."""
+        """Surface under the hand, with the row that the finger is in as the one that is meant."""
         surface, window = self.under.surface, self.window
         return None if surface is None else replace(surface, row=surface.windows.index(window))
 

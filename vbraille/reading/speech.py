@@ -1,4 +1,4 @@
-"""What a reader is told, spoken by the machine's speech server."""
+"""Speech: sentences that the machine's speech server speaks."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ _LIKED = "liked"
 
 
 class TunedKnob(NamedTuple):
-    """What was found of a knob.
+    """Finding on a knob.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def _next(asked: Compared) -> tuple[float, float]:
 
 @dataclass(frozen=True, slots=True)
 class _Stand:
-    """How far the choices have brought a course."""
+    """Progress of a course after its choices."""
 
     style: BrailleStyle
     found: tuple[TunedKnob, ...]
@@ -161,7 +161,7 @@ class TuningCourse:
 
     @property
     def done(self) -> bool:
-        """Whether every choice is made."""
+        """Tell whether every choice is made."""
         return len(self.choices) >= self.total
 
     @property
@@ -226,7 +226,7 @@ class TuningCourse:
 
 
 def _lower_first(number: int) -> bool:
-    """Whether the lower value is the first of a choice: every other time, so that nobody learns."""
+    """Tell whether the lower value is the first of a choice: every other time, against learning."""
     return number % 2 == 0
 
 

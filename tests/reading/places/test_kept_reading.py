@@ -3,7 +3,7 @@
 from tests.reading.places.resumed import open_kept
 from vbraille.layout.pages import Layout
 from vbraille.reading.library import KeptPlaces, book_options
-from vbraille.reading.reader import Keeping
+from vbraille.reading.reader import PlaceKeeper
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.source import BlockKind
@@ -22,7 +22,7 @@ def read(folder, then):
             before = resumed.place.lines_before_for(20, "en-ueb-g2.ctb")
             line = resumed.place.line
         layout = Layout(book, 20, start=start, lines_before=before)
-        then(Keeping(resumed.kept), layout)
+        then(PlaceKeeper(resumed.kept), layout)
         resumed.kept.keep_index(resumed.source.index())
         return resumed.place, line
 
@@ -82,7 +82,7 @@ def test_the_page_of_print(tmp_path):
     layout = Layout(Book(source, BrailleTable("en-ueb-g2.ctb")), 20)
     with KeptPlaces.open(tmp_path / "places.sqlite") as places:
         book = places.book(tmp_path / "book.txt")
-        keeping = Keeping(book)
+        keeping = PlaceKeeper(book)
         pages = []
         for number in (1, 2, 4, 5):
             keeping.moved(layout, layout.place(int(source.block(number).text.places[3]))[0])

@@ -40,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def describe(book: ListedBook, now: datetime) -> str:
-    """What is said of a book in the list, as seen from a time in the reader's zone."""
+    """Describe a book of the list, as seen from a time in the reader's zone."""
     parts = [book.title]
     if book.place is not None:
         about = "about " if book.place.about else ""

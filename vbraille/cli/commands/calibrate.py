@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from typing import TYPE_CHECKING, Final
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final, Self
 
 from vbraille.cli.exploring import opened_in_time
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
-from vbraille.devices.calibration import Calibration
+from vbraille.devices.calibration import LEAST_GAIN, Calibration, Tried
 from vbraille.devices.calibrations import load, name_of, path_of, save
 from vbraille.devices.sentences import placing_sentence, told
 from vbraille.engine.checkup import ActuatorSwings
 from vbraille.engine.clock import RealClock
 from vbraille.errors import DeviceError, InputError
 from vbraille.files import settings_path
-from vbraille.reading.calibrating import Round
 from vbraille.reading.keyboard import STOPPED, Keyboard
 from vbraille.reading.keys import spoken
 
@@ -28,6 +28,93 @@ if TYPE_CHECKING:
     from vbraille.devices import Device
     from vbraille.devices.calibration import State
     from vbraille.display import Display
+
+GAIN_STEP: Final = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class ActuatorRound:
+    """State of a round through the actuators.
+
+    Parameters
+    ----------
+    found
+        What was found so far.
+    now
+        The actuator in turn, with what was set of it and is not found yet.
+    before
+        The round before the last finding, for undo; None if there was none since it began.
+    """
+
+    found: Calibration
+    now: Tried
+    before: ActuatorRound | None = None
+
+    @classmethod
+    def of(cls, found: Calibration) -> Self:
+        """Begin at the first actuator that was not tried, or at the first of all."""
+        return cls(found, _usual(found, _untried_from(found, (0, 0)) or (0, 0)))
+
+    @property
+    def shown(self) -> Calibration:
+        """Calibration by which the actuator in turn swings as it is set; it is never dead there."""
+        return self.found.with_tried(replace(self.now, state="ok"))
+
+    def is_(self, state: State) -> ActuatorRound:
+        """Find the actuator to be in a state, and go to the next that was not tried."""
+        found = self.found.with_tried(replace(self.now, state=state))
+        place = _untried_from(found, self.now.place) or _stepped(found, self.now.place, 1)
+        return ActuatorRound(found, _usual(found, place), self)
+
+    def undo(self) -> ActuatorRound | None:
+        """Take the last finding back, and go to its actuator; None if there is none."""
+        if self.before is not None:
+            return self.before
+        if not self.found.tried:
+            return None
+        last = self.found.tried[-1]
+        return ActuatorRound(self.found.without_last(), replace(last, state="ok"))
+
+    def go(self, steps: int) -> ActuatorRound:
+        """Go to another actuator without finding anything."""
+        place = _stepped(self.found, self.now.place, steps)
+        return replace(self, now=_usual(self.found, place))
+
+    def inverted(self) -> ActuatorRound:
+        """Set the actuator to be inverted, or not to be."""
+        return replace(self, now=replace(self.now, inverted=not self.now.inverted))
+
+    def louder(self, steps: int) -> ActuatorRound:
+        """Set the actuator's gain some steps higher, or lower."""
+        gain = round(self.now.gain + steps * GAIN_STEP, 2)
+        return replace(self, now=replace(self.now, gain=min(max(gain, LEAST_GAIN), 1.0)))
+
+    @property
+    def reference(self) -> tuple[int, int] | None:
+        """Row and column, from 0, of the last other actuator found to be ok; None if none was."""
+        others = (one for one in reversed(self.found.tried) if one.place != self.now.place)
+        return next((one.place for one in others if one.state == "ok"), None)
+
+
+def _usual(found: Calibration, place: tuple[int, int]) -> Tried:
+    """Give the setting of an actuator as it comes in turn: that found before, or the usual one."""
+    before = found.of(place)
+    return Tried(*place) if before is None else replace(before, state="ok")
+
+
+def _stepped(found: Calibration, place: tuple[int, int], steps: int) -> tuple[int, int]:
+    """Place of an actuator some steps further in reading order; the first follows the last."""
+    count = found.rows * found.columns
+    row, column = place
+    return divmod((row * found.columns + column + steps) % count, found.columns)
+
+
+def _untried_from(found: Calibration, place: tuple[int, int]) -> tuple[int, int] | None:
+    """Place of the first actuator from here on that was not tried; None if all were."""
+    tried = {one.place for one in found.tried}
+    around = (_stepped(found, place, steps) for steps in range(found.rows * found.columns))
+    return next((place for place in around if place not in tried), None)
+
 
 _KEYS: Final = {
     "space": "swing it again",
@@ -124,7 +211,9 @@ class _Guided:
     ) -> None:
         info = device.display
         self._device, self._keyboard, self._settings = device, keyboard, settings
-        self._round = Round.of(kept or Calibration(name_of(device), info.rows, info.columns))
+        self._round = ActuatorRound.of(
+            kept or Calibration(name_of(device), info.rows, info.columns)
+        )
         self._left = False
         self._placing = Placing.DONE
         self._compares = False
@@ -210,7 +299,7 @@ class _Guided:
             case _:
                 say_line(f"no command: {spoken(key)}; h says the keys")
 
-    def _compare(self, turn: Round) -> None:
+    def _compare(self, turn: ActuatorRound) -> None:
         """Have the last actuator that was well swing, and then the one in turn."""
         well = turn.reference
         if well is None:
@@ -219,7 +308,7 @@ class _Guided:
         self._compares = True
         self._swinging.swing(well, turn.now.place)
 
-    def _find(self, turn: Round) -> None:
+    def _find(self, turn: ActuatorRound) -> None:
         """Go on to another round, keep what it has found, and ask of its actuator."""
         was_whole = self._round.found.whole
         self._set(turn)
@@ -231,7 +320,7 @@ class _Guided:
         else:
             self._ask()
 
-    def _set(self, turn: Round) -> None:
+    def _set(self, turn: ActuatorRound) -> None:
         """Have the actuator in turn rest, and then swing as it is set."""
         self._swinging.stop()
         while not self._swinging.resting:
@@ -265,7 +354,7 @@ class _Guided:
             kept.result()
 
 
-def _so_far(turn: Round) -> str:
+def _so_far(turn: ActuatorRound) -> str:
     before = turn.found.of(turn.now.place)
     if before is None:
         return ""

@@ -196,7 +196,7 @@ def _save(path: Path, profile: str, model: Model) -> str:
 
 
 def _echo(chosen: str | None) -> Echo:
-    """How much is said of each line; at a terminal, speech must not read the book aloud."""
+    """Choose the echo; at a terminal, speech must not read the book aloud."""
     if chosen is not None:
         return Echo(chosen)
     return Echo.NONE if sys.stdout.isatty() else Echo.BOTH

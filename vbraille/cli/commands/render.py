@@ -128,7 +128,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _is_scene(arguments: argparse.Namespace) -> bool:
-    """Whether the file is a tactile picture; options of its path are for such files alone."""
+    """Tell whether the file is a tactile picture; options of its path are for such files alone."""
     suffix = Path(arguments.file).suffix.lower()
     if suffix in _SCENES or arguments.path is not None:
         return True

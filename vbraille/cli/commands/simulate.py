@@ -134,7 +134,7 @@ def _display(arguments: argparse.Namespace) -> Display:
 
 
 def _height_mm(arguments: argparse.Namespace) -> float:
-    """How far the carriage goes across the lines; 0 for one axis."""
+    """Give the way of the carriage across the lines in mm; 0 for one axis."""
     if "y" in arguments.axes:
         own_mm = MODELS[arguments.model].display.height_mm or HEIGHT_MM
         height_mm = own_mm if arguments.height is None else arguments.height

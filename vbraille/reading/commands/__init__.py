@@ -1,1 +1,1 @@
-"""What a reader can be told to do: a table of commands, and what each of them does."""
+"""Commands of a reader: a table, and a function for each."""

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from vbraille.braille.dots import dots_of
 from vbraille.reading.outputs import Echo
+from vbraille.reading.position import block_of, whereabouts
 from vbraille.reading.search.structure import within
-from vbraille.reading.whereabouts import block_of, whereabouts
 from vbraille.translate.documents.markup.tables import BETWEEN
 from vbraille.translate.source import BlockKind
 from vbraille.translate.substitutes import describe

@@ -9,7 +9,7 @@ from vbraille.reading.search.questions import FindShare
 
 if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
-    from vbraille.reading.surface import Window
+    from vbraille.reading.viewport import Window
 
 
 def next_line(reader: Reader) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
+from vbraille.reading.position import first_character
 from vbraille.reading.search.questions import FindText
-from vbraille.reading.whereabouts import first_character
 
 if TYPE_CHECKING:
     from vbraille.reading.reader import Reader

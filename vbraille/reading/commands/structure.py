@@ -10,6 +10,13 @@ from vbraille.errors import InputError
 from vbraille.reading.cues import Cue
 from vbraille.reading.keys import Context
 from vbraille.reading.lineviews import figure_of_block
+from vbraille.reading.position import (
+    LINES_PER_PAGE,
+    block_of,
+    first_character,
+    has_pages,
+    is_counted,
+)
 from vbraille.reading.search.questions import FindKind, FindLine, FindPage, FindShare, ListHeadings
 from vbraille.reading.search.structure import (
     EACH_ITEM,
@@ -19,13 +26,6 @@ from vbraille.reading.search.structure import (
     first_place,
     marks_of,
     within,
-)
-from vbraille.reading.whereabouts import (
-    LINES_PER_PAGE,
-    block_of,
-    first_character,
-    has_pages,
-    is_counted,
 )
 from vbraille.translate.source import BlockKind, MarkKind
 from vbraille.wording import count, spelled

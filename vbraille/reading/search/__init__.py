@@ -1,1 +1,1 @@
-"""What a reader asks of a whole book, answered by a process of its own."""
+"""Search in a whole book, by a process of its own."""

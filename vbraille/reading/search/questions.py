@@ -1,4 +1,4 @@
-"""What a reader asks of a whole book, and what comes back, between two processes.
+"""Questions about a whole book, and their answers, between two processes.
 
 Looking through a book may take longer than a hand must wait: a process of its own does it.
 """
@@ -11,7 +11,7 @@ from vbraille.translate.source import Index
 
 
 class FindText(msgspec.Struct, frozen=True, tag="text"):
-    """Where a text stands next.
+    """Question for the next place of a text.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class FindText(msgspec.Struct, frozen=True, tag="text"):
 
 
 class FindKind(msgspec.Struct, frozen=True, tag="kind"):
-    """Where the next block of a kind begins.
+    """Question for the beginning of the next block of a kind.
 
     Parameters
     ----------
@@ -59,13 +59,13 @@ class FindKind(msgspec.Struct, frozen=True, tag="kind"):
 
 
 class FindShare(msgspec.Struct, frozen=True, tag="share"):
-    """Where so much of the book, 0 to 1, stands before."""
+    """Question for the place before which such a share of the book stands, 0 to 1."""
 
     share: float
 
 
 class FindPage(msgspec.Struct, frozen=True, tag="page"):
-    """Where a page begins, by its number as the book writes it, or counts it in a braille file."""
+    """Question for a page, by its number as the book writes it, or counts it in a braille file."""
 
     label: str
 
@@ -75,7 +75,7 @@ class ListHeadings(msgspec.Struct, frozen=True, tag="headings"):
 
 
 class CountLines(msgspec.Struct, frozen=True, tag="count"):
-    """How many lines stand before a block, in lines of a width.
+    """Question for the number of lines before a block, in lines of a width.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class CountLines(msgspec.Struct, frozen=True, tag="count"):
 
 
 class FindLine(msgspec.Struct, frozen=True, tag="line"):
-    """Where a line begins, by its number.
+    """Question for the beginning of a line, by its number.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ class Listed(msgspec.Struct, frozen=True, tag="listed"):
 
 
 class NotFound(msgspec.Struct, frozen=True, tag="none"):
-    """What was looked for is not there."""
+    """Answer that there is no such place."""
 
 
 class Searched(msgspec.Struct, frozen=True, tag="progress"):
@@ -168,7 +168,7 @@ class Failed(msgspec.Struct, frozen=True, tag="failed"):
 
 
 class Indexed(msgspec.Struct, frozen=True, tag="indexed"):
-    """Where all blocks are: nobody asked, and it came of itself once the whole source was read."""
+    """Index of all blocks, which comes unasked once the whole source was read."""
 
     index: Index
 
@@ -177,7 +177,7 @@ Answer = Found | Listed | NotFound | Searched | Counted | Failed | Indexed
 
 
 class BookOpening(msgspec.Struct, frozen=True, tag="open"):
-    """How a book is opened, as plain values that go through a pipe.
+    """Opening of a book, as plain values that go through a pipe.
 
     Parameters
     ----------

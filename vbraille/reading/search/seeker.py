@@ -244,7 +244,7 @@ class Seeker:
 
     @property
     def busy(self) -> bool:
-        """Whether a question has not been answered; a count of lines is no question here."""
+        """Tell whether a question has not been answered; a count of lines is no question here."""
         return False in self._asked
 
     @property
@@ -369,7 +369,7 @@ class Search:
 
     @property
     def busy(self) -> bool:
-        """Whether something is looked for."""
+        """Tell whether something is looked for."""
         return self._then is not None
 
     def find(self, source: Source, query: Query, then: Callable[[Any], None]) -> None:

@@ -114,7 +114,7 @@ def _is_wanted(block: Block, query: FindKind) -> bool:
 
 
 def _is_start(source: Source, number: int, block: Block) -> bool:
-    """Whether a paragraph begins; lines that the source keeps are one until an empty one."""
+    """Tell whether a paragraph begins; lines that the source keeps are one until an empty one."""
     if block.continues or not str(block.text).strip():
         return False
     before = source.block(number - 1) if number and block.kind is BlockKind.LINE else None
@@ -219,7 +219,7 @@ def find_share(source: Source, share: float) -> Iterator[int | float]:
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """How far to look.
+    """Bounds of a look around.
 
     Parameters
     ----------

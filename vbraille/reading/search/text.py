@@ -119,7 +119,7 @@ def _letters() -> NDArray[np.uint32]:
 
 
 def needle_of(text: str, *, accents: bool) -> str:
-    """What is looked for, folded; empty if nothing is left of it."""
+    """Fold a text that is looked for; empty if nothing is left of it."""
     return fold(_NOT_READ.sub("", text).strip(), accents=accents).strip()
 
 
@@ -191,7 +191,7 @@ _ASCII_SAFE = ("utf-8", "ascii", "cp125", "iso8859", "latin", "koi8", "mac")
 
 
 @dataclass(frozen=True, slots=True)
-class Suspect:
+class SearchedPart:
     """A part of a document that was looked through.
 
     Parameters
@@ -211,7 +211,7 @@ class Suspect:
 
 
 class Sieve:
-    """What lets through each piece of text that a hit may be in.
+    """Sieve that lets through each piece of text in which a hit may be.
 
     Parameters
     ----------
@@ -232,7 +232,7 @@ class Sieve:
         self._odd = tuple(unlike(needle, accents=accents))
 
     def may_hold(self, text: str, *, plain: bool) -> bool:
-        """Whether a hit may be in a text whose ASCII letters are small.
+        """Tell whether a hit may be in a text whose ASCII letters are small.
 
         Parameters
         ----------
@@ -260,7 +260,7 @@ class Sieve:
         )
 
     def enough(self, tail: str) -> bool:
-        """Whether a text has as many characters as a hit can have after its first."""
+        """Tell whether a text has as many characters as a hit can have after its first."""
         most = 64 * self.characters + _TAIL_BYTES
         return any(  # what comes first is nearly always enough
             len(_NO_TEXT.sub("", tail[:cut])) > 2 * self.characters
@@ -287,7 +287,7 @@ def ahead(
     row: Sequence[int | str],
     sieve: Sieve,
     piece_bytes: int = PIECE_BYTES,
-) -> Iterator[Suspect]:
+) -> Iterator[SearchedPart]:
     """Look through a document from a chunk on, whose row in the document's index is given."""
     _, character, offset, held, flag, skip, *_ = row
     decoder = TextDecoder(document.encoding.name)
@@ -305,7 +305,7 @@ def ahead(
         window = tail + text
         # Where a hit may have begun before the tail, the blocks must say.
         hit = since < start or sieve.may_hold(window, plain=plain and plain_before)
-        yield Suspect(max(0, since), place + characters, end, hit)
+        yield SearchedPart(max(0, since), place + characters, end, hit)
         plain_before = plain
         tail = window[-(64 * sieve.characters + _TAIL_BYTES) :]
         offset, place = end, place + characters
@@ -316,7 +316,7 @@ def ahead(
 
 def behind(
     document: Document, rows: Sequence[Sequence[int | str]], last: int, sieve: Sieve
-) -> Iterator[Suspect]:
+) -> Iterator[SearchedPart]:
     """Look through a document backwards from the end of a chunk, whose number is given."""
     after = last + 1
     while after > 0:
@@ -342,7 +342,7 @@ def behind(
             plain = plain and _is_plain(document, raw, more)
             text, stop = text + more, end
         hit = sieve.may_hold(text, plain=plain)
-        yield Suspect(int(character), min(place + len(text), end_place), offset, hit)
+        yield SearchedPart(int(character), min(place + len(text), end_place), offset, hit)
         after = first
 
 
@@ -372,7 +372,7 @@ SPAN_CHARACTERS = 32_768
 
 @dataclass(frozen=True, slots=True)
 class Sought:
-    """What is looked for.
+    """Text that is looked for.
 
     Parameters
     ----------
@@ -632,7 +632,7 @@ def _back_in(document: Document, sought: Sought) -> Iterator[int | float]:
 
 
 def _hit(
-    document: Document, suspect: Suspect, sought: Sought, *, backward: bool
+    document: Document, suspect: SearchedPart, sought: Sought, *, backward: bool
 ) -> Generator[float, None, int | None]:
     """Have the blocks say whether there is a hit; they are read as far as that."""
     while suspect.end >= _known_character(document) and extend(document):

@@ -11,7 +11,7 @@ from tests.sessions.written import ON_DEVICE, written
 from vbraille.errors import InputError, VbrailleError
 from vbraille.live.messages import Map, Next
 from vbraille.playback import open_recording
-from vbraille.playback.traced import Traced
+from vbraille.playback.sessiontrace import SessionRecording
 from vbraille.sessions.record import replay
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.journal import Journal
@@ -33,7 +33,7 @@ def sent(folder):
 def test_each_frame_is_what_the_actuators_had_forwards_and_backwards(name):
     path = written(name)
     ticks, frames = sent(path)
-    source = Traced(path)
+    source = SessionRecording(path)
     pieces = [source.piece(number).ticks for number in range(source.pieces)]
     times_s = np.concatenate([piece["time_s"] for piece in pieces]).tolist()
     assert len(times_s) == len(ticks)

@@ -1,4 +1,4 @@
-"""Where in a book somebody is: line, page, share, heading, and what is left."""
+"""The place in a book: line, page, share, heading, and the words that are left."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _LEAST_SHARE = 1e-4  # of a book, from which the rest is estimated
 
 
 def is_counted(layout: Layout) -> bool:
-    """Whether line numbers are counted from the beginning of the book."""
+    """Tell whether line numbers are counted from the beginning of the book."""
     return layout.counted
 
 
@@ -44,7 +44,7 @@ def before(source: Source, line: Line, kind: BlockKind) -> Block | None:
 
 
 def has_pages(source: Source, line: Line) -> bool:
-    """Whether the book says around a line where its pages begin."""
+    """Tell whether the book says around a line where its pages begin."""
     if before(source, line, BlockKind.PAGE) is not None:
         return True
     reach = Reach(seconds=_SEARCH_S)
@@ -59,19 +59,19 @@ def page_label(source: Source, line: Line) -> str:
 
 
 def percent(layout: Layout, line: Line) -> str:
-    """How many hundredths of the book stand before a line: "40", or "about 40" if not counted."""
+    """Say the hundredths of the book before a line: "40", or "about 40" if not counted."""
     share = layout.progress(line)
     about = "" if layout.book.source.complete or not share else "about "
     return f"{about}{100 * share:.0f}"
 
 
 def line_name(layout: Layout, line: Line) -> str:
-    """What a line is called in a sentence; one whose number nobody knows is "the line"."""
+    """Name a line for a sentence; one whose number is not known is "the line"."""
     return f"line {layout.number_of(line)}" if is_counted(layout) else "the line"
 
 
 def place_sentence(layout: Layout, line: Line, what: str = "") -> str:
-    """Where a line is: its number, or its share and page while the lines are not counted.
+    """Say the place of a line: its number, or its share and page while lines are not counted.
 
     Parameters
     ----------

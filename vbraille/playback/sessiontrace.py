@@ -73,7 +73,7 @@ class _PlayedRun:
         return self.begun_s + (time_ns - self.first_ns) / 1e9
 
 
-class Traced(Recording):
+class SessionRecording(Recording):
     """Frames of a session, or of one of its traces.
 
     Parameters
@@ -246,7 +246,7 @@ class Traced(Recording):
         return np.concatenate(parts) if parts else ticks[:0]
 
     def _played(self, run: _PlayedRun, ticks: NDArray[np.void]) -> NDArray[np.void]:
-        """What is known of ticks beside their deflections."""
+        """Give the numbers of ticks beside their deflections."""
         made = np.zeros(ticks.size, PLAYED)
         for name in ("flags", "line", "part", "late", "tick", "x_mm", "y_mm", "theta_rad",
                      "vx_mm_s", "share"):  # fmt: skip

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from vbraille.layout.pages import Layout
-from vbraille.reading.whereabouts import first_character
+from vbraille.reading.position import first_character
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -81,7 +81,7 @@ class Window:
         return cell if 0 <= shown < len(self) and cell >= 0 else None
 
     def share_at(self, x_mm: float, geometry: Geometry) -> float:
-        """How much of its cell is left of a place on the surface, 0 to 1."""
+        """Give the share of its cell that is left of a place on the surface, 0 to 1."""
         return (x_mm - self.start_mm) / geometry.cell_pitch_mm % 1
 
     def under(self, cell: int, share: float, x_mm: float, geometry: Geometry) -> Window:
@@ -194,7 +194,7 @@ class Surface:
         return top if top > 0 else top - 1  # 0 means that nothing was shown yet
 
     def has(self, row: int) -> bool:
-        """Whether there is a line in a row."""
+        """Tell whether there is a line in a row."""
         return 0 <= row < len(self.windows) and self.windows[row] is not None
 
     def line_rows(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -227,7 +227,7 @@ def rows_on(display: Display, style: BrailleStyle) -> int:
 
 
 def below_pitches(style: BrailleStyle) -> float:
-    """How far below the last line's edge a finger must get to be off the page, in line pitches."""
+    """Give the way below the last line's edge that takes a finger off the page, in line pitches."""
     return style.straying.band / 2 + FOOT_PITCHES
 
 

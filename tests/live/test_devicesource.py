@@ -17,8 +17,8 @@ from tests.tiers import examples
 from vbraille.engine.mailbox import Extent
 from vbraille.engine.record import FLOATS, INTS, tick_dtype
 from vbraille.errors import InputError
+from vbraille.live.devicesource import _NUMBERS, DeviceSource, TickViews
 from vbraille.live.messages import MOST_SAMPLES, LetGo, Map, Next, PagePress, Point, Turn
-from vbraille.live.watching import _NUMBERS, TickViews, Watching
 from vbraille.render import STRESS2
 from vbraille.render.program import vibration
 from vbraille.simulation.steering import BeAt, Pointer
@@ -31,7 +31,7 @@ def ring():
 
 @pytest.fixture
 def source(ring):
-    watching = Watching(lambda _request: None)
+    watching = DeviceSource(lambda _request: None)
     watching.watch(ring.views())
     return watching
 
@@ -89,7 +89,7 @@ def test_an_actuator_that_there_is_not_has_no_deflection(ring, source, place):
 @given(st.lists(st.integers(0, 1200), max_size=6), st.integers(0, 1))
 def test_pages_see_every_tick_once_thinned_out_over_any_pauses(pauses, row):
     ring = TestRing()
-    source = Watching(lambda _request: None)
+    source = DeviceSource(lambda _request: None)
     source.watch(ring.views())
     viewer, seen = source.viewer(), 1
     ring.append()
@@ -139,7 +139,7 @@ def test_nothing_new_is_no_frame_and_the_old_one_if_there_must_be_one(ring, sour
 
 @pytest.mark.parametrize("shares", [False, True], ids=["no host", "no tick"])
 def test_before_the_first_tick_there_is_a_frame_of_nothing(ring, shares):
-    source = Watching(lambda _request: None)
+    source = DeviceSource(lambda _request: None)
     if shares:
         source.watch(ring.views())
     viewer = source.viewer()
@@ -195,7 +195,7 @@ def test_frames_belong_to_the_newest_state(ring, source):
     ("blind", "states"), [(True, (False,)), (False, (True, False))], ids=["monitor", "state"]
 )
 def test_blind_hides_whatever_an_answer_could_be_read_from_for_good(blind, states):
-    source = Watching(lambda _request: None, blind=blind)
+    source = DeviceSource(lambda _request: None, blind=blind)
     ring = TestRing()
     source.watch(ring.views())
     viewer = source.viewer()
@@ -220,12 +220,12 @@ def test_there_is_no_map_of_nothing(source):
     with pytest.raises(InputError, match="nothing is under the hand yet"):
         source.map(Map())
     with pytest.raises(InputError, match="nothing is under the hand yet"):
-        Watching(lambda _request: None).map(Map())
+        DeviceSource(lambda _request: None).map(Map())
 
 
 def test_the_hand_is_held_and_let_go():
     pointer = Pointer()
-    source = Watching(lambda _request: None, pointer)
+    source = DeviceSource(lambda _request: None, pointer)
     source.ask(Point(3.0, 1.0, 0.5))
     assert Pointer(pointer.descriptor).at() == BeAt(3.0, 1.0, 0.5)
     source.ask(LetGo())
@@ -242,7 +242,7 @@ def test_a_device_with_a_real_hand_cannot_be_pointed(source):
 
 def test_commands_and_knobs_go_to_whoever_reads():
     heard = []
-    source = Watching(heard.append)
+    source = DeviceSource(heard.append)
     asked = [PagePress("next line"), Turn("contrast", 0.5)]
     for request in asked:
         source.ask(request)

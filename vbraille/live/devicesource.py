@@ -93,7 +93,7 @@ class TickViews:
 
     @property
     def published(self) -> int:
-        """How many records there have been, up to now."""
+        """Number of records up to now."""
         return self._published[0]
 
     def newest(self, end: int) -> tuple[tuple[float, ...], bytes]:
@@ -150,7 +150,7 @@ class TickViews:
         return self._samples[:count].tobytes()
 
 
-class Watching:
+class DeviceSource:
     """A `vbraille.live.sources.LiveSource` of a device that is read now.
 
     Parameters
@@ -203,9 +203,9 @@ class Watching:
         """Have pages watch a host that was started; each begins with its newest tick."""
         self.watched = watched
 
-    def viewer(self) -> WatchingViewer:
+    def viewer(self) -> DeviceViewer:
         """Make the viewer of a page."""
-        return WatchingViewer(self)
+        return DeviceViewer(self)
 
     def map(self, request: Map) -> bytes:
         """Draw the map of what is under the hand.
@@ -261,8 +261,8 @@ class Watching:
         self._hand.hold(at)
 
 
-class WatchingViewer:
-    """What one page sees of a device.
+class DeviceViewer:
+    """View of a device by one page.
 
     Parameters
     ----------
@@ -270,7 +270,7 @@ class WatchingViewer:
         The device.
     """
 
-    def __init__(self, source: Watching) -> None:
+    def __init__(self, source: DeviceSource) -> None:
         self._source = source
         self._watched: TickViews | None = None
         self._cursor = 0  # number of the record that comes next

@@ -55,8 +55,8 @@ class _EndTalkError(Exception):
 
 
 @dataclass(slots=True)
-class Held:
-    """Which talk, if any, has the simulated hand: the last that moved it."""
+class HandHolder:
+    """Owner of the simulated hand: the talk that moved it last, if any."""
 
     by: Talk | None = None
 
@@ -84,7 +84,7 @@ class Talk:
         source: LiveSource,
         admission: Admission,
         drawer: Executor,
-        held: Held,
+        held: HandHolder,
     ) -> None:
         self._connection = connection
         self._source = source
