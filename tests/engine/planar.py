@@ -52,7 +52,7 @@ class Bench:
 
     def run(self, seconds):
         """Tick for so long; the records of these ticks."""
-        count = round(seconds * self.engine.loop.rate_hz)
+        count = round(seconds * self.engine.rate_hz)
         ticks = np.concatenate([self.engine.poll() for _ in range(count)])
         self.blocks.append(ticks)
         return ticks

@@ -73,7 +73,7 @@ def run(engine, script, ticks):
 
 
 def moved_by(engine):
-    return engine.loop.device if isinstance(engine, LocalEngine) else engine.device
+    return engine.device
 
 
 def show(shown, line, *, anew=True):

@@ -118,7 +118,7 @@ def test_frames_after_a_gap_are_not_known_until_a_fade_is_over():
 def test_blocks_are_the_loop_s_with_pages_and_vibrations(hand, poll_ticks):
     def show(engine, picture, line):
         engine.show(picture, line)
-        moved = engine.loop.device if isinstance(engine, LocalEngine) else engine.device
+        moved = engine.device
         moved.steering.give(ReadLine(12.0))
 
     def pause(engine, paused):

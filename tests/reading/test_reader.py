@@ -50,7 +50,7 @@ class Bench:
         self.engine = LocalEngine(
             self.device, self.clock, rate_hz=rate_hz, poll_ticks=round(rate_hz / 100)
         )
-        self.loop = self.engine.loop
+        self.loop = self.engine
         self.said: list[str] = []
         if book is None:
             document = Document.from_text(text, keep_lines=keep_lines)

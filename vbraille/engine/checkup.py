@@ -220,12 +220,12 @@ def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
     rate_hz = device.display.rate_hz
     engine = LocalEngine(device, clock, rate_hz=rate_hz, poll_ticks=round(rate_hz / 4))
     # All actuators swell and sink, once a second.
-    engine.loop.show(vibration(device.display, 1.0, exposure_s=math.inf))
-    engine.loop.restart_clock()
+    engine.show(vibration(device.display, 1.0, exposure_s=math.inf))
+    engine.restart_clock()
     polled = []
     while engine.tally.ticks + engine.tally.late < seconds * rate_hz:
         polled.append(engine.poll())
-    engine.loop.fade_to_rest()
+    engine.fade_to_rest()
     ticks = np.concatenate(polled)
     median, most = np.percentile(ticks["work_ns"] / 1e3, (50, 99))
     known = ticks[~np.isnan(ticks["x_mm"])]

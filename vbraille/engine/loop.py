@@ -17,7 +17,7 @@ from vbraille.errors import DeviceError
 from vbraille.pose import Pose
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
     from typing import Any
 
     from numpy.typing import NDArray
@@ -112,12 +112,12 @@ class Loop:
         self._told[serialtick.GUARD] = self._period_ns // _GUARD if same else 0
         self._silence = np.zeros(1, np.int64), np.zeros(1, np.int64)
 
-    def show(self, program: Program | None, line: int = 0) -> None:
+    def show(self, picture: Program | None, line: int = 0) -> None:
         """Put another picture under the hand; it fades in.
 
         None stands for rest. ``line`` is the number by which records call it.
         """
-        self.state.want(program, line)
+        self.state.want(picture, line)
 
     @property
     def output(self) -> NDArray[np.float64]:
@@ -342,7 +342,7 @@ class Loop:
         self.state.want(None, 0)
 
 
-class LocalEngine:
+class LocalEngine(Loop):
     """An engine in this process, for a device that a program has, tests and clocks turned by hand.
 
     Parameters
@@ -361,68 +361,41 @@ class LocalEngine:
         self, device: Device, clock: Clock, *, rate_hz: float = 1000.0, poll_ticks: int = 1
     ) -> None:
         ring = Ring.alone(device.display.shape, poll_ticks + 1)
+        super().__init__(device, clock, rate_hz=rate_hz, ring=ring)
         self._reader = ring.reader()
-        self.loop = Loop(device, clock, rate_hz=rate_hz, ring=ring)
         self._poll_ticks = poll_ticks
 
     @property
     def display(self) -> Display:
         """The actuators and the carriage of the device."""
-        return self.loop.device.display
-
-    @property
-    def tally(self) -> Tally:
-        """Counts of what the loop has done."""
-        return self.loop.tally
-
-    @property
-    def x_mm(self) -> float | None:
-        """Where the array's centre is along x; None before it is known."""
-        return self.loop.x_mm
-
-    @property
-    def paused(self) -> bool:
-        """Whether the array rests."""
-        return self.loop.paused
-
-    @paused.setter
-    def paused(self, paused: bool) -> None:
-        self.loop.paused = paused
-
-    def show(self, picture: Program, line: int) -> None:
-        """Put a picture of a line under the hand; see `Engine`."""
-        self.loop.show(picture, line)
+        return self.device.display
 
     def poll(self) -> NDArray[np.void]:
         """Do some ticks; return their records."""
         for _ in range(self._poll_ticks):
-            self.loop.tick()
-        self.loop.ring.publish()
+            self.tick()
+        self.ring.publish()
         return self._reader.drain()
-
-    def take_events(self) -> Sequence[Event]:
-        """Take the events since the last call."""
-        return self.loop.take_events()
 
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""
-        self.loop.device.set_zero()
+        self.device.set_zero()
 
     @property
     def calibration(self) -> dict[str, Any] | None:
         """What is made up for in the device's actuators, as `Calibration.to_json` says it."""
-        found = self.loop.device.calibration
+        found = self.device.calibration
         return None if found is None else found.to_json()
 
     @property
     def counts(self) -> Mapping[str, int]:
         """What went wrong with the device, by name."""
-        return self.loop.device.counts()
+        return self.device.counts()
 
     def start(self) -> None:
         """Begin with the next poll: what has gone by until now is not late."""
-        self.loop.restart_clock()
+        self.restart_clock()
 
     def close(self) -> None:
         """Have the array fade to rest; whoever opened the device closes it."""
-        self.loop.fade_to_rest()
+        self.fade_to_rest()

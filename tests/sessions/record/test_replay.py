@@ -34,7 +34,7 @@ def test_what_an_engine_did_is_replayed_bit_for_bit(tmp_path):
     clock = ManualClock()
     engine = LocalEngine(device(STRESS2, "fluent", clock.now_ns), clock, poll_ticks=3000)
     engine.show(picture, 1)
-    engine.loop.device.steering.give(ReadLine(30.0))
+    engine.device.steering.give(ReadLine(30.0))
     ticks = engine.poll()
     writer = TraceWriter(tmp_path / "trace", lambda: Tie(0, 0))
     writer.add(ticks)

@@ -236,7 +236,7 @@ class InMemory(LocalEngine):
 def test_a_device_that_goes_to_rest_by_itself(tmp_path, engine):
     class Rests(engine):
         def poll(self):
-            device = self.loop.device if isinstance(self, InMemory) else self.device
+            device = self.device
             assert isinstance(device, SimulatedDevice)
             if self.tally.ticks == 800:
                 device.rested += 1

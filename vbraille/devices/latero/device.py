@@ -342,10 +342,7 @@ class LateroDevice(Device):
                 f"the watchdog of the {NAME} has ended, and without it nobody may read on it; the "
                 f"blades go to rest, so begin again"
             )
-        self._mind_stall(now_ns)
-        self._hear(now_ns)
-        self.conversation.tend(now_ns)
-        self._send_due(now_ns)
+        self._step(now_ns)
         self._copy()
         return self.conversation.take_pose()
 
@@ -360,7 +357,7 @@ class LateroDevice(Device):
         """Bring the blades to rest, which takes 20 ms: a frame of rest would be a jump."""
         self.conversation.rest(self._now_ns())
         for _ in range(_REST_STEPS):
-            self._step()
+            self._step(self._now_ns())
             if self.conversation.blades.rests:
                 return
             self._pause(_STEP_S)
@@ -422,8 +419,8 @@ class LateroDevice(Device):
         if answer is not None:
             self.particulars = _particulars(answer, self.conversation.place.offsets)
 
-    def _step(self) -> None:
-        now_ns = self._now_ns()
+    def _step(self, now_ns: int) -> None:
+        """Hear what has come, see what time it is, and say what is due."""
         self._mind_stall(now_ns)
         self._hear(now_ns)
         self.conversation.tend(now_ns)
@@ -435,7 +432,7 @@ class LateroDevice(Device):
             silent = conversation.stage is LateroStage.SILENT
             conversation.leave(self._now_ns())
             for _ in range(_LEAVE_STEPS):
-                self._step()
+                self._step(self._now_ns())
                 if conversation.left or (silent and conversation.blades.rests):
                     break
                 self._pause(_STEP_S)
