@@ -15,7 +15,6 @@ from vbraille.scene.patterns import (
     Group,
     Label,
     Polygon,
-    StraightLine,
     Tile,
     Use,
 )
@@ -232,30 +231,6 @@ def test_more_than_five_textures_are_told_and_places_make_no_difference():
     assert advice(*six) == ("there are 6 different textures; more than 5 are hard to tell apart",)
     assert not advice(*six[:5], filled(5, 3.0, (7.0, 7.0)))
     assert report(circle(fill=Fill(texture=Uniform()))).textures == 0
-
-
-def test_elements_with_too_little_blank_between_them_are_told():
-    beside = (circle(), circle(x=76.0), circle(x=102.5))
-    assert advice(*beside) == (
-        "elements, number 1: element 1, circle stands less than 2.5 mm from element 2, with "
-        "2.0 mm of blank",
-    )
-    shaking = circle(x=76.0, vibration=MID)
-    assert advice(circle(), shaking)[0].endswith("2.0 mm of blank, which a vibration fills")
-    over = StraightLine(start_mm=(40, 50), end_mm=(60, 50), stroke=Stroke())
-    assert not advice(circle(), over)
-
-
-def test_of_very_many_that_are_close_some_are_told_and_how_many_more():
-    many = [circle(x=26.0 * n + 14, y=14.0 + 26.0 * m) for n in range(9) for m in range(7)]
-    said = advice(*many)
-    assert len(said) < 25
-    assert said[-1].startswith("so do ")
-
-
-def test_very_many_side_by_side_take_no_time():
-    dots = [Dots(centers_mm=((140.0, 100 + n / 100),)) for n in range(2000)]
-    assert advice(*dots)[-1].startswith("there are too many elements side by side")
 
 
 def test_an_empty_scene_says_that_nothing_can_be_felt():

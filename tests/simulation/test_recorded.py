@@ -129,7 +129,7 @@ def test_a_recording_checks_itself():
         HEADER + "3,1\n3.1,2.5\n3.5,-4\n",
         "3,1\n3.1,2.5\n3.5,-4\n",
         "\ufeff" + HEADER + "3,1\r\n3.1,2.5\r\n3.5,-4",
-        'force,x_mm,note,t_s\n,1,"a, b",3\nhard,2.5,,3.1\nnan,-4,,3.5\n',
+        'x_mm,t_s\n1,"3"\n2.5,3.1\n-4,3.5\n',
         "\n t_s , x_mm \n3 , 1\n\n3.1,2.5\n  \n3.5,-4\n",
     ],
 )
@@ -145,7 +145,7 @@ def test_columns_are_found_by_name_or_are_two(load, text):
         ("0,1,7\n0.1,2,8\n", [7, 8], None),
         ("0,1,7,90\n0.1,2,8,-180\n", [7, 8], [np.pi / 2, -np.pi]),
         ("t_s,theta_deg,x_mm\n0,90,1\n0.1,-180,2\n", None, [np.pi / 2, -np.pi]),
-        ("y_mm,note,x_mm,t_s\n7,,1,0\n8,a,2,0.1\n", [7, 8], None),
+        ("y_mm,x_mm,t_s\n7,1,0\n8,2,0.1\n", [7, 8], None),
         ("t_s,x_mm\n0,1\n0.1,2\n", None, None),
     ],
 )
@@ -196,6 +196,7 @@ def test_the_longest_gap_is_allowed_whatever_its_rounding(load):
         ("0,1,2,3,4\n", "line 1 has neither names nor two to four numbers"),
         ("0\n0.1\n", "line 1 has neither names nor two to four numbers"),
         ("t_s,x_mm,y_mm,y_mm\n0,1,2,2\n", "line 1 does not name one column y_mm"),
+        ("t_s,x_mm,theta_rad\n0,1,2\n", "line 1 names a column 'theta_rad', which no hand has"),
         ("t_s,x_mm,theta_deg\n0,1,\n", "line 2: theta_deg is empty"),
         ("0,1,inf\n0.1,1,2\n", "line 1: y_mm is 'inf'"),
         ("0,1,1e5\n", "line 1: y_mm is 100000; it must be -10000 to 10000 mm"),

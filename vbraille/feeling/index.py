@@ -140,7 +140,9 @@ class SceneIndex:
             pattern = leaf.pattern
             stroke = pattern.stroke if isinstance(pattern, Shape) else None
             half_mm = _EDGE_MM if stroke is None else stroke.width_mm / 2
-            away_mm = min((_away(one, x_mm, y_mm) for one in _outlines(pattern)), default=math.inf)
+            away_mm = min(
+                (distance_mm(one, x_mm, y_mm) for one in outlines(pattern)), default=math.inf
+            )
             return Spot(leaf.element, "edge" if away_mm <= half_mm else "on")
         around = [
             ((leaf.box.right - leaf.box.left) * (leaf.box.bottom - leaf.box.top), number)
@@ -261,7 +263,7 @@ class SceneIndex:
             above = NamedElement(name or "without a title", pattern, covered)
             self.elements.append(above)
         # What a group inverts, or shows by a mask, is asked of the group as a whole.
-        if isinstance(pattern, Group) and _is_open(pattern):
+        if isinstance(pattern, Group) and is_open(pattern):
             for part in pattern.parts:
                 yield from self._leaves_of(part, above)
         elif above is not None:
@@ -269,12 +271,12 @@ class SceneIndex:
             yield _Leaf(pattern, above, box)
 
 
-def _is_open(group: Group) -> bool:
+def is_open(group: Group) -> bool:
     """Tell whether the parts of a group are felt where they are, each by itself."""
     return group.operation in ("overwrite", "maximum", "add") and not group.inverted
 
 
-def _outlines(pattern: AnyPattern) -> list[NDArray[np.float64]]:
+def outlines(pattern: AnyPattern) -> list[NDArray[np.floating]]:
     """Closed outlines of a shape, each float64[n, 2] with its first corner again at its end."""
     if isinstance(pattern, Circle):
         around = np.stack((np.cos(_ARC), np.sin(_ARC)), axis=1)
@@ -286,7 +288,7 @@ def _outlines(pattern: AnyPattern) -> list[NDArray[np.float64]]:
     return []
 
 
-def _away(outline: NDArray[np.float64], x_mm: float, y_mm: float) -> float:
+def distance_mm(outline: NDArray[np.floating], x_mm: float, y_mm: float) -> float:
     """Distance of a place from an outline, in mm."""
     begin, along = outline[:-1], np.diff(outline, axis=0)
     to = np.array((x_mm, y_mm)) - begin
@@ -298,7 +300,7 @@ def _away(outline: NDArray[np.float64], x_mm: float, y_mm: float) -> float:
 def _is_within(pattern: AnyPattern, x_mm: float, y_mm: float) -> bool:
     """Tell whether a place is inside of the outlines of a shape, by the even-odd rule."""
     crossed = 0
-    for outline in _outlines(pattern):
+    for outline in outlines(pattern):
         (x, y), (x_next, y_next) = outline[:-1].T, outline[1:].T
         passes = (y > y_mm) != (y_next > y_mm)
         at = x[passes] + (y_mm - y[passes]) * (x_next - x)[passes] / (y_next - y)[passes]

@@ -43,9 +43,6 @@ if TYPE_CHECKING:
     Boxes = Mapping[Image | Label, Box]
 
 
-_MOST_PAIRS_SAID = 20
-
-
 @dataclass(frozen=True, slots=True)
 class ElementReport:
     """An element of a scene, as its author knows it.
@@ -184,25 +181,6 @@ def _advice(scene: Scene, elements: Sequence[ElementReport]) -> Iterator[str]:
             f"there are {textures} different textures; more than {MOST_TEXTURES} are "
             "hard to tell apart"
         )
-    pairs, is_all = _too_close([element.box for element in elements])
-    close = [
-        (
-            first,
-            f"stands less than {LEAST_BLANK_MM:g} mm from element {second + 1}, with "
-            f"{blank:.1f} mm of blank"
-            + (", which a vibration fills" if _vibrates(elements, first, second) else ""),
-        )
-        for first, second, blank in pairs[:_MOST_PAIRS_SAID]
-    ]
-    yield from _grouped(close, elements)
-    if len(pairs) > _MOST_PAIRS_SAID:
-        yield f"so do {len(pairs) - _MOST_PAIRS_SAID} pairs of elements more"
-    if not is_all:
-        yield "there are too many elements side by side to look at the blank between all of them"
-
-
-def _vibrates(elements: Sequence[ElementReport], *numbers: int) -> bool:
-    return any(elements[number].vibration_hz for number in numbers)
 
 
 def _grouped(told: Sequence[tuple[int, str]], elements: Sequence[ElementReport]) -> Iterator[str]:
@@ -223,8 +201,6 @@ LEAST_WAVE_MM, MOST_WAVE_MM = 2.0, 15.0
 LEAST_STROKE_MM, MOST_STROKE_MM = 2.0, 10.0
 # Size of the largest array of 8 × 8, the Latero's, which reaches beyond its centre's travel.
 _ARRAY_MM = (9.0, 12.7)
-# Pairs of elements that stand side by side, and are looked at.
-_MOST_PAIRS = 50_000
 
 
 def _canvas_advice(canvas: Canvas) -> Iterator[str]:
@@ -315,47 +291,6 @@ def _hidden(scene: Scene, boxes: Sequence[Box | None]) -> Iterator[tuple[int, st
                 "is everywhere, and hides all elements before it; write it first, or fill a shape "
                 "with it",
             )
-
-
-def _too_close(boxes: Sequence[Box | None]) -> tuple[list[tuple[int, int, float]], bool]:
-    """Elements between which there is too little blank, by the rectangles around them.
-
-    Elements that overlap are not meant: one stands on the other.
-
-    Parameters
-    ----------
-    boxes
-        Rectangle around each element; None for one that is everywhere.
-
-    Returns
-    -------
-    pairs
-        Numbers from 0 of two elements, and the blank between them in mm.
-    all_compared
-        Whether all were compared; very many that stand side by side are not.
-    """
-    placed = sorted(
-        (box.left, number, box)
-        for number, box in enumerate(boxes)
-        if box is not None and not box.is_empty
-    )
-    found: list[tuple[int, int, float]] = []
-    left = _MOST_PAIRS
-    active: list[tuple[float, int, Box]] = []
-    for start, number, box in placed:
-        active = [one for one in active if one[2].right + LEAST_BLANK_MM > start]
-        left -= len(active)
-        if left < 0:
-            return found, False
-        for _, other_number, other in active:
-            dx = max(box.left - other.right, other.left - box.right, 0.0)
-            dy = max(box.top - other.bottom, other.top - box.bottom, 0.0)
-            blank = (dx * dx + dy * dy) ** 0.5
-            if 0.0 < blank < LEAST_BLANK_MM - 1e-6:
-                first, second = sorted((number, other_number))
-                found.append((first, second, blank))
-        active.append((start, number, box))
-    return sorted(found), True
 
 
 # Frequencies that differ by less cannot be told apart (8.6).

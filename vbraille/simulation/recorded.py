@@ -16,6 +16,7 @@ import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.simulation.motion import SLACK, Motion
+from vbraille.wording import nearest, printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -70,8 +71,8 @@ def load_recorded(path: Path | str) -> Recorded:
     ----------
     path
         UTF-8, commas between fields. Either a header names the columns
-        ``t_s`` and ``x_mm``, perhaps ``y_mm`` and ``theta_deg``, and others are
-        passed over; or each row is just these numbers, two to four in that
+        ``t_s`` and ``x_mm``, perhaps ``y_mm`` and ``theta_deg``, and no others;
+        or each row is just these numbers, two to four in that
         order. Blank lines are passed over. ``x_mm`` is where the array is along
         its lines: half its span left of its centre, which is where its left
         column is as long as it is not turned. ``y_mm`` is where its centre is
@@ -87,7 +88,7 @@ def load_recorded(path: Path | str) -> Recorded:
     ------
     InputError
         If the file is missing, a directory, unreadable, not text or empty;
-        if a column is missing, or named twice; if a field is not a number or
+        if a column is missing, named twice, or another than these; if a field is not a number or
         not finite, or a position beyond `MOST_MM`, or an angle beyond 1000
         turns; if time does not increase, or leaves a gap.
     """
@@ -109,6 +110,12 @@ def load_recorded(path: Path | str) -> Recorded:
                 raise InputError(
                     f"{where} does not name one column {name}; "
                     f"name one t_s and one x_mm, with a comma between"
+                )
+        for name in names:
+            if name not in COLUMNS:
+                raise InputError(
+                    f"{where} names a column {printable(name)!r}, which no hand has"
+                    f"{nearest(name, COLUMNS)}; there are {', '.join(COLUMNS)}"
                 )
     places = {name: names.index(name) for name in COLUMNS if name in names}
     t_s = array("d")

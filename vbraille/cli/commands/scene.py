@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -47,12 +47,14 @@ def _convert(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> int:
+    from vbraille.feeling.checking import felt_advice
     from vbraille.feeling.loading import load_scene
     from vbraille.render import MODELS
     from vbraille.scene.checking import check_scene
 
     loaded = load_scene(arguments.file, MODELS["stress2"].style)
     report = check_scene(loaded.opened, loaded.boxes())
+    report = replace(report, advice=(*report.advice, *felt_advice(loaded)))
     if arguments.json:
         print_json(_as_json(loaded, report))
     else:

@@ -1,0 +1,102 @@
+"""What `vbraille scene check` says of what is felt: ten mistakes of an author, and none besides."""
+
+import pytest
+
+from vbraille.feeling.checking import felt_advice
+from vbraille.feeling.loading import load_scene
+from vbraille.render import MODELS
+from vbraille.scene.checking import check_scene
+
+STYLE = MODELS["stress2"].style
+STROKE = "stroke = { width_mm = 3 }"
+FILL = 'fill = { texture = { kind = "linear-grating", ridge_mm = %g }, gap_mm = %g }'
+
+
+def circle(x, y, radius, more="", title=""):
+    name = f'title = "{title}", ' if title else ""
+    inner = f'kind = "circle", {name}center_mm = [{x}, {y}], radius_mm = {radius}, {STROKE}'
+    return f"{{ {inner}{', ' if more else ''}{more} }}"
+
+
+def group(*parts, more=""):
+    return f'{{ kind = "group", {more}parts = [{", ".join(parts)}] }}'
+
+
+def label(text, x, y):
+    return f'{{ kind = "label", text = "{text}", place_mm = [{x}, {y}] }}'
+
+
+def advice(tmp_path, *elements, canvas="{ width_mm = 200, height_mm = 150 }"):
+    path = tmp_path / "a.scene"
+    path.write_text(f"canvas = {canvas}\nelements = [{', '.join(elements)}]\n")
+    loaded = load_scene(path, STYLE)
+    first = check_scene(loaded.opened, loaded.boxes())
+    return [*first.advice, *first.vibrations, *felt_advice(loaded)]
+
+
+SOLID = 'fill = { texture = { kind = "uniform" } }'
+DISC = circle(60, 60, 20, SOLID)
+MISTAKES = {
+    "a part of a group is too near another": (
+        [group(circle(40, 60, 10, title="Eye"), circle(65, 60, 10))],
+        "its circle Eye stands less than 2.5 mm from the circle of element 1, with 2.",
+    ),
+    "a label on the edge of a shape": ([DISC, label("ab", 75, 55)], "label ab lies on element 1"),
+    "a label that is written over": ([label("ab", 55, 55), DISC], "label ab lies on element 2"),
+    "an element that is wholly hidden": (
+        [circle(60, 60, 8, title="Moon"), DISC],
+        "circle Moon is wholly hidden by what is written after it",
+    ),
+    "a fill without room": (
+        [circle(60, 60, 8, FILL % (2, 7))],
+        "has a gap of 7 mm before its fill",
+    ),
+    "waves longer than their shape": (
+        [circle(60, 60, 5, FILL % (14, 0))],
+        "is filled with waves of 14 mm, longer than the 10.0 mm",
+    ),
+    "what swings too little": (
+        [group(circle(60, 60, 20, "amplitude = 0.3"), more="amplitude = 0.5, ")],
+        "its circle swings by 0.15 of the full swing",
+    ),
+    "boxes that are near, where the shapes are not": (
+        [circle(40, 40, 20), circle(75, 75, 20)],
+        None,
+    ),
+    "too little blank": (
+        [circle(40, 40, 10), circle(65, 40, 10, "vibration = { frequency_hz = 25 }")],
+        "with 2.0 mm of blank, which a vibration fills",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_each_mistake_is_said_and_nothing_else(tmp_path, name):
+    elements, told = MISTAKES[name]
+    said = advice(tmp_path, *elements)
+    assert len(said) == (told is not None), said
+    assert all(told in sentence for sentence in said)
+
+
+def test_what_is_right_is_not_remarked_on(tmp_path):
+    elements = (
+        circle(40, 60, 20, SOLID),
+        circle(40, 60, 6, SOLID),  # on it
+        circle(40, 120, 15, FILL % (4, 3)),
+        circle(90, 60, 10),
+        circle(116.5, 60, 10),
+        label("ab", 150, 100),
+    )
+    assert not advice(tmp_path, *elements)
+
+
+def test_a_part_of_very_many_is_said(tmp_path):
+    many = [circle(3 + 9 * (n % 20), 3 + 7 * (n // 20), 1.5) for n in range(301)]
+    said = advice(tmp_path, *many)
+    assert any(sentence.startswith("only the first 300 parts") for sentence in said)
+    assert sum("of blank" in sentence for sentence in said) <= 20
+
+
+def test_a_canvas_of_ten_metres_is_looked_at(tmp_path):
+    big = "{ width_mm = 10000, height_mm = 10000 }"
+    assert any("hidden" in one for one in advice(tmp_path, circle(60, 60, 10), DISC, canvas=big))
