@@ -145,7 +145,7 @@ PYCS    := $(BIN)/python -m compileall -q -j 0 -x '/tests?/' .venv/lib || true
 
 # What drives the actuators is compiled here, so that no reading waits for it.
 .venv/compiled: .venv/runs $(shell find vbraille/render vbraille/devices vbraille/engine -name "*.py")
-	$(BIN)/python -m vbraille.engine.compiling
+	$(BIN)/vbraille setup
 	@touch $@
 
 clean:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     ]
 
 
-def _table(name: str, place: str, check: Callable[[Any], None]) -> type[Table]:
+def _table(name: str, place: str, check: Callable[[Any], None]) -> Any:
     """Make the type of a table of the file from the options that hold in it."""
 
     def check_all(table: Table) -> None:
