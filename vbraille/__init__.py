@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from vbraille.errors import DeviceError as DeviceError
     from vbraille.errors import InputError as InputError
     from vbraille.errors import VbrailleError as VbrailleError
+    from vbraille.feeling.composing import open_framed as open_scene
     from vbraille.layout.texts import translate_text as translate_text
     from vbraille.pose import Pose as Pose
     from vbraille.reading.device import OpenDevice as OpenDevice
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
     from vbraille.render.braille.profiles import Tuning as Tuning
     from vbraille.render.braille.straying import Straying as Straying
     from vbraille.render.braille.style import BrailleStyle as BrailleStyle
-    from vbraille.scene.reading import open_scene as open_scene
     from vbraille.scene.scene import Canvas as Canvas
     from vbraille.scene.scene import Scene as Scene
     from vbraille.sessions.conditions import Conditions as Conditions
@@ -74,7 +74,7 @@ _PLACES = {
     "VbrailleError": "vbraille.errors",
     "analyse": "vbraille.analysis",
     "open": "vbraille.reading.device:open_to_read",
-    "open_scene": "vbraille.scene.reading",
+    "open_scene": "vbraille.feeling.composing:open_framed",
     "render_page": "vbraille.reading.frames",
     "render_text": "vbraille.reading.frames",
     "translate_text": "vbraille.layout.texts",

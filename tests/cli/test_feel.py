@@ -39,7 +39,7 @@ def test_at_a_terminal_keys_move_the_hand_and_say_what_is_there(scene):
         terminal.type("gnowhere\n")
         terminal.until("element: none is called nowhere; e says them all")
         terminal.type("e")
-        terminal.until("element: wall, at 40 mm right, 55 mm down")
+        terminal.until("element: wall, 43 mm × 53 mm, middle 40 mm from the left")
         terminal.type("m")
         terminal.until("entering: wall")
         terminal.type("\x1b[1;2C")  # 10 mm right

@@ -8,8 +8,10 @@ import h5py
 import numpy as np
 import pytest
 
+import vbraille
 from tests.reading.felt import DISPLAY, SCENE
 from tests.render.scene.twin import deflections
+from vbraille.errors import InputError
 from vbraille.playback.rendered import Rendered
 from vbraille.recording import scene_of
 from vbraille.render.scene.assets import Assets
@@ -64,6 +66,16 @@ def test_each_frame_is_what_the_twin_has_at_its_pose_and_time(call, scene, tmp_p
         places = x_mm.ravel(), y_mm.ravel(), parity.ravel()
         wanted = deflections(resolved, Assets(), *places, time_s=float(t_s[n]))
         np.testing.assert_allclose(frames[n].ravel(), wanted, atol=1e-6)
+    poses = np.column_stack((*centre_mm, theta_rad))
+    opened = vbraille.open_scene(scene)
+    np.testing.assert_array_equal(opened.frames(poses, t_s), frames)
+    np.testing.assert_array_equal(opened.frames(poses, t_s, (60.0, 0.0)), frames)
+    assert opened.frames(poses[:2, :2], display=vbraille.LATERO).shape == (2, 8, 8)
+    for wrong in (poses[0], poses[:, :1], poses * np.nan):
+        with pytest.raises(InputError, match="poses must be finite"):
+            opened.frames(wrong)
+    with pytest.raises(InputError, match="one for each pose"):
+        opened.frames(poses, t_s[:7])
 
 
 def test_a_recording_of_a_picture_is_played_with_the_picture(call, scene, tmp_path):

@@ -82,7 +82,7 @@ def test_parts_go_by_the_name_of_their_group_unless_they_have_one():
     assert name_at(index, 50, 20) == "Window"
     assert name_at(index, 35, 60) is None
     assert [element.name for element in index.elements] == ["House", "Window"]
-    assert index.elements[1].center_mm == pytest.approx((50, 20))
+    assert index.elements[1].box == pytest.approx((41, 11, 59, 29))
 
 
 def test_a_group_that_is_felt_as_a_whole_is_asked_as_a_whole():

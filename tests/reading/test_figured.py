@@ -253,7 +253,7 @@ def test_a_key_feels_it_alone_and_leads_back(tmp_path):
     wanted = twin(bench, 12.0, 15.0).reshape(frame.shape)
     assert wanted.max() > 0.5
     np.testing.assert_allclose(frame, wanted, rtol=0, atol=1e-6)
-    assert bench.press("i")[0] == "here: lake"
+    assert bench.press("i")[0] == "here: edge of lake"
     assert bench.press("escape") == ["line: 2"]
     bench.run(0.3)
     assert bench.under.alone is None

@@ -1,6 +1,8 @@
 """What is said to whoever feels a picture, and what keys do to it."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,30 +26,34 @@ def test_it_says_what_is_here_and_more_of_it(scene):
     assert felt.press("i") == ["here: Sun", "place: 90 mm from the left, 20 mm from the top"]
     assert felt.press("d") == ["Sun: It shines."]
     felt.be_at(60, 50)
-    assert felt.press("d") == ["wall: no description"]
+    assert felt.press("u")[0] == "here: edge of wall"
+    assert felt.press("d") == ["wall: polygon, 43 mm × 53 mm with linear grating"]
     felt.be_at(110, 80)
-    assert felt.press("i")[0] == "here: nothing with a name"
-    assert felt.press("d") == ["here: nothing with a name"]
+    nothing = ["here: nothing with a name", "nearest: wall, 49 mm left"]
+    assert felt.press("i") == [*nothing, "place: 110 mm from the left, 80 mm from the top"]
+    assert felt.press("d") == nothing
     assert felt.press("t") == [
         "picture: A house",
         "description: A house and the sun.",
         "size: 120 mm × 90 mm",
     ]
     assert felt.press("e") == [
-        "element: Sun, at 90 mm right, 20 mm down",
-        "element: wall, at 40 mm right, 55 mm down",
+        "element: Sun, 23 mm × 23 mm, middle 90 mm from the left, 20 mm from the top",
+        "element: wall, 43 mm × 53 mm, middle 40 mm from the left, 55 mm from the top",
     ]
     felt.at = None
-    assert felt.press("i") == ["place: not known yet"]
+    assert felt.press("i") == felt.press("d") == ["place: not known yet"]
 
 
 def test_elements_are_said_on_entering_if_that_is_asked_for(scene):
     felt = Felt(scene)
     assert felt.be_at(90, 20) == []
     assert felt.press("s") == ["entering: said"]
-    assert felt.be_at(60, 50) == ["entering: wall"]
+    assert felt.be_at(60, 50) == ["leaving: Sun", "entering: wall"]
     assert felt.be_at(60, 52) == []
-    assert felt.be_at(110, 80) == []
+    assert felt.be_at(50, 52) == ["on: wall"]
+    assert felt.be_at(59, 52) == ["edge: wall"]
+    assert felt.be_at(110, 80) == ["leaving: wall"]
     assert felt.be_at(90, 20) == ["entering: Sun"]
     assert felt.press("s") == ["entering: not said"]
     assert felt.be_at(60, 50) == []
@@ -111,7 +117,7 @@ def test_a_changed_file_fades_in_and_a_broken_one_is_said(scene):
     assert not felt.bench.device.sent[-1].any()
     assert np.abs(np.diff(np.array(felt.bench.device.sent), axis=0)).max() <= 1 / 100 + 1e-9
     felt.be_at(30, 10)
-    assert felt.press("i")[0] == "here: Moon"
+    assert felt.press("i")[0] == "here: edge of Moon"
     felt.bench.run(0.2)
     np.testing.assert_allclose(felt.bench.device.sent[-1], before, atol=1e-9)
     scene.write_text(SCENE.replace("radius_mm = 10", "radius_mm = -10"))
@@ -125,7 +131,7 @@ def test_a_changed_file_fades_in_and_a_broken_one_is_said(scene):
     assert felt.press("r")[0].startswith("not reloaded: ")
     felt.bench.run(0.2)
     np.testing.assert_allclose(felt.bench.device.sent[-1], before, atol=1e-9)
-    assert felt.press("i")[0] == "here: Moon"
+    assert felt.press("i")[0] == "here: edge of Moon"
 
 
 def test_a_picture_that_has_grown_too_large_is_said(scene):
@@ -151,7 +157,9 @@ def test_on_one_axis_keys_choose_the_height(scene):
     felt.bench.run(0.01)
     assert felt.press("shift-up") == ["height: 35 mm from the top"]
     assert felt.bench.run(0.01)["y_mm"][-1] == 35
-    assert felt.press(*["o"] * 5)[-1] == "height: 0 mm from the top"
+    assert felt.press(*["shift-up"] * 5)[-1] == "height: 0 mm from the top"
+    assert felt.press("g", *"sun", "\n")[-1] == "height: 20 mm from the top"
+    assert felt.be_at(80, 20, 1.0) == ["way: 10 mm right"]
 
 
 def test_pause_learning_and_the_end(scene):
@@ -167,3 +175,91 @@ def test_pause_learning_and_the_end(scene):
     assert not felt.feeler.done
     felt.press("q")
     assert felt.feeler.done
+
+
+PLAN = """
+canvas = { width_mm = 120, height_mm = 90 }
+
+[[elements]]
+kind = "polygon"
+title = "Roof"
+vertices_mm = [[20, 40], [60, 10], [100, 40]]
+stroke = { width_mm = 3 }
+
+[[elements]]
+kind = "group"
+title = "House"
+operation = "overwrite"
+parts = [
+  { kind = "polygon", vertices_mm = [[20, 40], [100, 40], [100, 85], [20, 85]], stroke = WIDE },
+  { kind = "circle", title = "Window", center_mm = [60, 60], radius_mm = 8, stroke = NARROW },
+]
+
+[[elements]]
+kind = "label"
+text = "hut"
+place_mm = [5, 5]
+""".replace("WIDE", "{ width_mm = 3 }").replace("NARROW", "{ width_mm = 2 }")
+
+
+@pytest.fixture
+def plan(tmp_path):
+    """A file of a picture of outlines, with a label."""
+    path = tmp_path / "plan.scene"
+    path.write_text(PLAN)
+    return path
+
+
+def test_outlines_tell_inside_edge_and_outside(plan):
+    felt = Felt(plan, entering=True)
+    assert felt.be_at(110, 5) == []
+    assert felt.be_at(60, 10) == ["entering: Roof"]
+    assert felt.be_at(60, 25) == ["inside: Roof"]
+    assert felt.press("i")[0] == "here: inside Roof"
+    assert felt.be_at(60, 45) == ["leaving: Roof", "entering: House"]
+    assert felt.be_at(60, 52) == ["entering: Window"]  # the house is around it
+    assert felt.be_at(60, 60) == ["inside: Window"]
+    assert felt.press("d") == ["Window: circle, 18 mm × 18 mm"]
+    assert felt.be_at(60, 75) == ["leaving: Window", "entering: House"]
+
+
+def test_a_label_says_its_text_and_outlines_are_led_to_where_they_are_felt(plan):
+    felt = Felt(plan)
+    assert felt.press("e")[-1].startswith("element: hut, ")
+    felt.press("g", *"roof", "\n")
+    said = felt.be_at(60, 25, 1.0)[0]
+    assert said != "there: Roof"  # its middle, where nothing is felt
+    felt.press("g", *"hut", "\n")
+    felt.be_at(60, 60, 3.0)
+    assert felt.press("n") == ["element: no more"]
+    assert felt.press("p") == ["element: Window"]
+    assert felt.press("p", "p", "p")[-1] == "element: no others before"
+
+
+WAY = re.compile(r"(\d+) mm (left|right|up|down)")
+NAME = re.compile(r"element: (.*), \d+ mm × ")
+SCENES = sorted(Path("texts/scenes").rglob("*.scene"))
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+def test_who_only_hears_finds_each_element_of_the_gallery(path):
+    """Following the sentences that say the way leads to a place where the element is felt."""
+    felt = Felt(path)
+    x_mm, y_mm = 1.0, 1.0
+    felt.be_at(x_mm, y_mm)
+    now_s = 0.0
+    for name in [found[1] for said in felt.press("e") if (found := NAME.match(said))]:
+        felt.press("g", *name, "\n")
+        for _ in range(10):
+            now_s += 1.0
+            said = felt.be_at(x_mm, y_mm, now_s)
+            if said and said[-1].startswith("there: "):
+                break
+            ways = {way: int(mm) for mm, way in WAY.findall(said[-1])}
+            x_mm += ways.get("right", 0) - ways.get("left", 0)
+            y_mm += ways.get("down", 0) - ways.get("up", 0)
+        assert said[-1].casefold() == f"there: {name}".casefold()
+        index = felt.feeler._index
+        element = index.find(name)
+        x, y = index.point_on(element)
+        assert index.where(x, y) is not None, name

@@ -117,7 +117,7 @@ def errors(table: ResultTable, own: ResultTable) -> ReportFigure:
 
 
 def choices(table: ResultTable, preferred: ResultTable, own: ResultTable) -> Iterator[ReportFigure]:
-    """How often each value was chosen, one figure for a parameter: Lévesque 2009, fig. 3.12."""
+    """Counts of the choices of each value, one figure for a parameter: Lévesque 2009, fig. 3.12."""
     for liked in preferred.records():
         name = liked["parameter"]
         rows = [row for row in table.records() if row["parameter"] == name]

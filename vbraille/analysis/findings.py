@@ -1,4 +1,4 @@
-"""What was found, in sentences made of the tables' rows, for the head of a report."""
+"""Findings, in sentences made of the tables' rows, for the head of a report."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an analysis has found, in the order in which a report tells it."""
+"""Results of an analysis, in the order in which a report tells them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class ReportFigure:
     title
         What the figure shows, in a line.
     text
-        What is to be seen in it, in sentences, for somebody who does not see it.
+        What is to be seen in it, in sentences, for readers who do not see it.
     table
         Name of the table that has the figure's numbers.
     chart

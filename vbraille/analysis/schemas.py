@@ -35,7 +35,7 @@ _DIGITS = 12  # more digits than a measurement has, fewer than rounding in binar
 
 
 class Kind(Enum):
-    """What a column holds, and how the report prints it; CSV and JSON have its full precision."""
+    """Kind of a column's values, by which the report prints them; other files have all digits."""
 
     TEXT = "text"
     COUNT = "count"
@@ -115,7 +115,7 @@ def ends(
 
 @dataclass(frozen=True, slots=True)
 class Schema:
-    """What is known of a table before any trial: name, title, columns.
+    """Description of a table before any trial: name, title, columns.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ class ResultTable:
 
     @property
     def title(self) -> str:
-        """What the table shows."""
+        """Title of the table."""
         return self.schema.title
 
     @property
@@ -259,7 +259,7 @@ class ResultTable:
         return self.frame.astype(object).where(self.frame.notna(), None)
 
     def is_right(self, row: Sequence[Value], at: int) -> bool:
-        """Whether a column of a confusion matrix counts a row's right answers."""
+        """True if a column of a confusion matrix counts a row's right answers."""
         return bool(self.marks) and at > 0 and self.columns[at].heading == row[0]
 
     def mark(self, row: Sequence[Value], at: int) -> int | None:

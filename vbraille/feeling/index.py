@@ -1,25 +1,26 @@
-"""Elements of a scene by their places: only those that have their box there are asked."""
+"""Elements of a scene by place and by name: what is at a place, near it, and where one is felt."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 import numpy as np
 
 from vbraille.render.scene.canvas import SceneMap
-from vbraille.scene.bounds import bounds
-from vbraille.scene.patterns import Group
+from vbraille.scene.bounds import Box, bounds
+from vbraille.scene.patterns import Circle, Group, Label, PathShape, Polygon, Shape
 from vbraille.scene.scene import Scene
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from numpy.typing import NDArray
+
     from vbraille.render.scene.assets import Assets
-    from vbraille.scene.bounds import Box
-    from vbraille.scene.patterns import AnyPattern, Image, Label
+    from vbraille.scene.patterns import AnyPattern, Image
 
 # Ours: an element is felt where it hides half of what it stands on, or does anything if it is the
 # only one there.
@@ -27,28 +28,34 @@ _FELT: Final = 0.5
 _TRACE: Final = 0.02
 _MOST_LOOKED_AT: Final = 64  # of those that lie over each other, from the top
 _MOST_COMPILED: Final = 100
+_STEP_MM: Final = 0.5  # between places at which it is looked where an element is felt
+_MOST_STEPS: Final = 400  # of these along each side of its box
+_MOST_TRIED: Final = 60  # of the places where it is felt, for one that nothing hides
+_MOST_NEAR: Final = 3  # elements whose boxes are near, of which the nearest is found
+_EDGE_MM: Final = 1.0  # so near to an outline without a stroke is its edge
+_ARC: Final = np.linspace(0.0, math.tau, 181)
 
 
 _EVERYWHERE: Final = (-math.inf, -math.inf, math.inf, math.inf)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class NamedElement:
-    """An element of a scene that has a title, an id or a description.
+    """An element of a scene that has a title, an id or a description, or is a label.
 
     Parameters
     ----------
     name
-        Title, or the id where there is no title.
+        Title, or the id where there is no title; of a label, its text.
     pattern
         The element.
-    center_mm
-        Middle of what it covers; the canvas's own where it covers all.
+    box
+        What it covers of the canvas, which is all of that for what is everywhere.
     """
 
     name: str
     pattern: AnyPattern
-    center_mm: tuple[float, float]
+    box: Box
 
     @property
     def description(self) -> str:
@@ -56,9 +63,26 @@ class NamedElement:
         return self.pattern.description
 
 
+class Spot(NamedTuple):
+    """An element at a place, and where the place is in it.
+
+    Parameters
+    ----------
+    element
+        The element.
+    where
+        "edge" on its outline, "inside" where the outline is around the place and nothing is felt
+        there, "on" elsewhere.
+    """
+
+    element: NamedElement
+    where: Literal["edge", "inside", "on"]
+
+
 def label_of(pattern: AnyPattern) -> str:
-    """Title of an element, or its id; empty if it has neither."""
-    return pattern.title or pattern.id
+    """Title of an element, or the text of a label, or the id; empty if it has none."""
+    text = " ".join(pattern.text.split()) if isinstance(pattern, Label) else ""
+    return pattern.title or text or pattern.id
 
 
 class _Leaf(NamedTuple):
@@ -92,7 +116,8 @@ class SceneIndex:
         # In compiled code, which thousands of dots do not hold up.
         self._map_of = lru_cache(_MOST_COMPILED)(self._compile)
         self._known = {} if known is None else known
-        self._size_mm = scene.canvas.width_mm, scene.canvas.height_mm
+        self._canvas = Box(0.0, 0.0, scene.canvas.width_mm, scene.canvas.height_mm)
+        self._points = lru_cache(_MOST_COMPILED)(self._find_points)
         self.elements: list[NamedElement] = []
         self._leaves: list[_Leaf] = []
         for pattern in scene.elements:
@@ -102,19 +127,100 @@ class SceneIndex:
 
     def here(self, x_mm: float, y_mm: float) -> NamedElement | None:
         """Find the uppermost element with a name at a place in mm; None if there is none."""
-        width_mm, height_mm = self._size_mm
-        if not (0 <= x_mm <= width_mm and 0 <= y_mm <= height_mm):
+        found = self._leaf_at(x_mm, y_mm)
+        return None if found is None else found.element
+
+    def where(self, x_mm: float, y_mm: float) -> Spot | None:
+        """Find what is at a place in mm, or else the smallest outline around it; None if none is.
+
+        What is felt there counts more than an outline around it.
+        """
+        leaf = self._leaf_at(x_mm, y_mm)
+        if leaf is not None:
+            pattern = leaf.pattern
+            stroke = pattern.stroke if isinstance(pattern, Shape) else None
+            half_mm = _EDGE_MM if stroke is None else stroke.width_mm / 2
+            away_mm = min((_away(one, x_mm, y_mm) for one in _outlines(pattern)), default=math.inf)
+            return Spot(leaf.element, "edge" if away_mm <= half_mm else "on")
+        around = [
+            ((leaf.box.right - leaf.box.left) * (leaf.box.bottom - leaf.box.top), number)
+            for number in self._covering(x_mm, y_mm)
+            if (leaf := self._leaves[number]).box and _is_within(leaf.pattern, x_mm, y_mm)
+        ]
+        return Spot(self._leaves[min(around)[1]].element, "inside") if around else None
+
+    def encloses(self, element: NamedElement, x_mm: float, y_mm: float) -> bool:
+        """Tell whether an outline of an element is around a place in mm."""
+        return any(
+            leaf.element is element and _is_within(leaf.pattern, x_mm, y_mm)
+            for leaf in map(self._leaves.__getitem__, self._covering(x_mm, y_mm))
+        )
+
+    def point_on(self, element: NamedElement) -> tuple[float, float]:
+        """Find a place in mm where an element is felt, as near to its middle as there is one.
+
+        A place that nothing else hides goes before one that is nearer.
+        """
+        box = element.box
+        middle = (box.left + box.right) / 2, (box.top + box.bottom) / 2
+        if self.here(*middle) is element:
+            return middle
+        points = self._points(element)
+        if not len(points):
+            return middle
+        nearest = points[np.argsort(np.hypot(*(points - middle).T), kind="stable")]
+        tried = nearest[:: max(1, len(nearest) // _MOST_TRIED)]
+        seen = (point for point in tried.tolist() if self.here(*point) is element)
+        x_mm, y_mm = next(seen, nearest[0].tolist())
+        return x_mm, y_mm
+
+    def nearest(self, x_mm: float, y_mm: float) -> tuple[NamedElement, tuple[float, float]] | None:
+        """Find the element that is felt nearest to a place, and where; both in mm."""
+        found = []
+        boxes = [(_to_box(element.box, x_mm, y_mm), n) for n, element in enumerate(self.elements)]
+        for away_mm, number in sorted(boxes)[:_MOST_NEAR]:
+            points = self._points(self.elements[number])
+            if len(points) and math.isfinite(away_mm):
+                away = np.hypot(points[:, 0] - x_mm, points[:, 1] - y_mm)
+                found.append((away.min(), number, points[away.argmin()].tolist()))
+        if not found:
             return None
+        _, number, (to_x_mm, to_y_mm) = min(found)
+        return self.elements[number], (to_x_mm, to_y_mm)
+
+    def _find_points(self, element: NamedElement) -> NDArray[np.float64]:
+        """Places where an element by itself is felt, float64[n, 2] in mm."""
+        box = element.box
+        if box.is_empty:
+            return np.empty((0, 2))
+        x_mm, y_mm = (
+            low + (np.arange(count) + 0.5) * (high - low) / count
+            for low, high in ((box.left, box.right), (box.top, box.bottom))
+            for count in [min(max(int((high - low) / _STEP_MM), 1), _MOST_STEPS)]
+        )
+        alone = Scene(canvas=self._scene.canvas, elements=(element.pattern,))
+        shown = SceneMap(alone, self._assets).opacity(x_mm, y_mm)
+        felt = shown >= min(_FELT, max(float(shown.max()) / 2, _TRACE))
+        rows, columns = np.nonzero(felt)
+        return np.stack((x_mm[columns], y_mm[rows]), axis=1)
+
+    def _covering(self, x_mm: float, y_mm: float) -> list[int]:
+        """Numbers of the leaves whose boxes a place is in, the uppermost first."""
         left, top, right, bottom = self._edges
         there = (left <= x_mm) & (x_mm <= right) & (top <= y_mm) & (y_mm <= bottom)
+        return np.flatnonzero(there)[: -1 - _MOST_LOOKED_AT : -1].tolist()
+
+    def _leaf_at(self, x_mm: float, y_mm: float) -> _Leaf | None:
+        """Uppermost part that is felt at a place."""
+        if not self._canvas.holds(x_mm, y_mm):
+            return None
         found, most = None, _TRACE
-        for at in np.flatnonzero(there)[: -1 - _MOST_LOOKED_AT : -1].tolist():
-            element = self._leaves[at].element
+        for at in self._covering(x_mm, y_mm):
             share = self.opacity(at, x_mm, y_mm)
             if share >= _FELT:
-                return element
+                return self._leaves[at]
             if share > most:
-                found, most = element, share
+                found, most = self._leaves[at], share
         return found
 
     def opacity(self, number: int, x_mm: float, y_mm: float) -> float:
@@ -127,15 +233,17 @@ class SceneIndex:
         wanted = text.strip().casefold()
         if not wanted:
             return None
-        names = [(e.pattern.id.casefold(), e.pattern.title.casefold()) for e in self.elements]
+        names = [element.name.casefold() for element in self.elements]  # which are said
+        ids = [element.pattern.id.casefold() for element in self.elements]
         for fits in (
             lambda name: name == wanted,
             lambda name: name.startswith(wanted),
             lambda name: wanted in name,
         ):
-            for element, (id_, title) in zip(self.elements, names, strict=True):
-                if fits(id_) or fits(title):
-                    return element
+            for given in (names, ids):
+                for element, name in zip(self.elements, given, strict=True):
+                    if fits(name):
+                        return element
         return None
 
     def _compile(self, number: int) -> SceneMap:
@@ -149,10 +257,8 @@ class SceneIndex:
         if name or (pattern.description and above is None):
             if isinstance(pattern, Group):
                 box = bounds(pattern, self._known)
-            center = self._size_mm[0] / 2, self._size_mm[1] / 2
-            if box is not None and not box.is_empty:
-                center = (box.left + box.right) / 2, (box.top + box.bottom) / 2
-            above = NamedElement(name or "without a title", pattern, center)
+            covered = self._canvas if box is None else box.common(self._canvas)
+            above = NamedElement(name or "without a title", pattern, covered)
             self.elements.append(above)
         # What a group inverts, or shows by a mask, is asked of the group as a whole.
         if isinstance(pattern, Group) and _is_open(pattern):
@@ -166,3 +272,44 @@ class SceneIndex:
 def _is_open(group: Group) -> bool:
     """Tell whether the parts of a group are felt where they are, each by itself."""
     return group.operation in ("overwrite", "maximum", "add") and not group.inverted
+
+
+def _outlines(pattern: AnyPattern) -> list[NDArray[np.float64]]:
+    """Closed outlines of a shape, each float64[n, 2] with its first corner again at its end."""
+    if isinstance(pattern, Circle):
+        around = np.stack((np.cos(_ARC), np.sin(_ARC)), axis=1)
+        return [np.array(pattern.center_mm) + pattern.radius_mm * around]
+    if isinstance(pattern, Polygon):
+        return [np.array([*pattern.vertices_mm, pattern.vertices_mm[0]])]
+    if isinstance(pattern, PathShape) and pattern.closed:
+        return [np.array([*contour, contour[0]]) for contour in pattern.contours_mm]
+    return []
+
+
+def _away(outline: NDArray[np.float64], x_mm: float, y_mm: float) -> float:
+    """Distance of a place from an outline, in mm."""
+    begin, along = outline[:-1], np.diff(outline, axis=0)
+    to = np.array((x_mm, y_mm)) - begin
+    length = np.maximum((along * along).sum(axis=1), 1e-12)
+    share = np.clip((to * along).sum(axis=1) / length, 0.0, 1.0)
+    return float(np.hypot(*(to - share[:, None] * along).T).min())
+
+
+def _is_within(pattern: AnyPattern, x_mm: float, y_mm: float) -> bool:
+    """Tell whether a place is inside of the outlines of a shape, by the even-odd rule."""
+    crossed = 0
+    for outline in _outlines(pattern):
+        (x, y), (x_next, y_next) = outline[:-1].T, outline[1:].T
+        passes = (y > y_mm) != (y_next > y_mm)
+        at = x[passes] + (y_mm - y[passes]) * (x_next - x)[passes] / (y_next - y)[passes]
+        crossed += int((at > x_mm).sum())
+    return crossed % 2 == 1
+
+
+def _to_box(box: Box, x_mm: float, y_mm: float) -> float:
+    """Distance of a place from a box, in mm; infinite for an empty one."""
+    if box.is_empty:
+        return math.inf
+    return math.hypot(
+        max(box.left - x_mm, x_mm - box.right, 0.0), max(box.top - y_mm, y_mm - box.bottom, 0.0)
+    )

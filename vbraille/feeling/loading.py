@@ -83,7 +83,11 @@ def load_scene(path: Path | str, style: BrailleStyle) -> LoadedScene:
     InputError
         If one of the files cannot be used, or a label cannot be written.
     """
-    opened = open_scene(path)
+    return with_assets(open_scene(path), style)
+
+
+def with_assets(opened: OpenedScene, style: BrailleStyle) -> LoadedScene:
+    """Load the images of a scene that was opened, and translate its labels; see `load_scene`."""
     scene = opened.resolved
     kinds = {type(pattern) for pattern in each(*scene.elements)}
     if kinds.isdisjoint((Image, Label)):  # Places take as long as all the rest of it.

@@ -13,6 +13,8 @@ from vbraille.feeling.loading import FileWatch, check_fits, load_scene
 from vbraille.reading.cues import Cue
 from vbraille.reading.keys import Context
 from vbraille.reading.view import Prompt, View
+from vbraille.scene.checking import kind_of
+from vbraille.scene.traversal import each
 from vbraille.simulation.steering import GlideTo, ReadPage
 from vbraille.wording import spelled
 
@@ -23,11 +25,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.display import Display
-    from vbraille.feeling.index import NamedElement
+    from vbraille.feeling.index import NamedElement, Spot
     from vbraille.feeling.loading import LoadedScene
     from vbraille.reading.device import OpenDevice
     from vbraille.reading.keys import Bound
     from vbraille.render.program import Program
+    from vbraille.scene.bounds import Box
 
 _EVERY_S: Final = 1.0
 _NS_PER_S: Final = 1_000_000_000
@@ -62,20 +65,44 @@ class Guide:
 
     def sentence(self, place: tuple[float, float], now_s: float) -> str:
         """Words for the way from a place in mm; empty if nothing is to be said now."""
-        right_mm = self._at_mm[0] - place[0]
-        down_mm = self._at_mm[1] - place[1] if self._down else 0.0
-        if math.hypot(right_mm, down_mm) <= _THERE_MM:
+        to = self._at_mm if self._down else (self._at_mm[0], place[1])
+        if math.dist(to, place) <= _THERE_MM:
             self.there = True
             return f"there: {self._name}"
         if now_s - self._said_s < _EVERY_S:
             return ""
         self._said_s = now_s
-        ways = (_way(right_mm, "right", "left"), _way(down_mm, "down", "up"))
-        return f"way: {', '.join(way for way in ways if way)}"
+        return f"way: {_way(place, to)}"
 
 
-def _way(mm: float, forward: str, back: str) -> str:
-    return f"{abs(mm):.0f} mm {forward if mm > 0 else back}" if abs(mm) >= 1 else ""
+def _way(place: tuple[float, float], to: tuple[float, float]) -> str:
+    """Words for the way from a place to another, in mm."""
+    ways = [
+        f"{abs(mm):.0f} mm {forward if mm > 0 else back}"
+        for mm, forward, back in (
+            (to[0] - place[0], "right", "left"),
+            (to[1] - place[1], "down", "up"),
+        )
+        if abs(mm) >= 1
+    ]
+    return ", ".join(ways) or "less than 1 mm"
+
+
+def _placed(x_mm: float, y_mm: float) -> str:
+    return f"{x_mm:.0f} mm from the left, {y_mm:.0f} mm from the top"
+
+
+def _sized(box: Box) -> str:
+    return f"{box.right - box.left:.0f} mm × {box.bottom - box.top:.0f} mm"
+
+
+def _looks(element: NamedElement) -> str:
+    """Words for an element that says nothing of itself: its kind, its size and its textures."""
+    pattern = element.pattern
+    kinds = [kind_of(one).replace("-", " ") for one in each(pattern)]
+    inner = dict.fromkeys(kind for kind in kinds[1:] if kind != "use")
+    parts = f"{' with ' + ', '.join(inner) if inner else ''}"
+    return f"{kinds[0]}, {_sized(element.box)}{parts}"
 
 
 # Ours: as a hand that explores goes, and one that is led somewhere.
@@ -152,6 +179,8 @@ class SceneView(View):
         self._looked_at = (math.nan, math.nan)
         self._guide: Guide | None = None
         self._names: list[str] = []  # of elements that were typed
+        self._spot: Spot | None = None  # what the finger was on when that was last looked for
+        self._element = -1  # number of the element that was gone to last
         self._index = self._index_of(loaded)
         self._watch = FileWatch(Path(loaded.opened.path)) if watched else None
         self._goes = goes and device.steering is not None
@@ -180,12 +209,15 @@ class SceneView(View):
             )
 
     def steer(self) -> None:
-        """Have a hand that goes by itself go over the whole picture."""
+        """Have a hand that goes by itself go over the whole picture, another to its middle."""
         steering = self._device.steering
         if self._goes and steering is not None:
             canvas = self.loaded.scene.canvas
             lines = max(1, round(canvas.height_mm / _LINE_MM))
             steering.give(ReadPage(lines, canvas.height_mm / lines, canvas.width_mm))
+        elif self._watch is not None:
+            canvas = self.loaded.scene.canvas
+            self._glide((canvas.width_mm / 2, canvas.height_mm / 2), LED_MM_S)
 
     def step(self, ticks: NDArray[np.void]) -> None:
         """Look where the hand is, and whether the file has changed or the hand is done."""
@@ -212,10 +244,17 @@ class SceneView(View):
         if math.dist(place, self._looked_at) < _MOVED_MM:
             return
         self._looked_at = place
-        found = self._index.here(*place)
-        before, self.under = self.under, found
-        if self.entering and found is not before and found is not None:
-            self.say(f"entering: {found.name}")
+        before, self._spot = self._spot, self._index.where(*place)
+        spot = self._spot
+        self.under = None if spot is None or spot.where == "inside" else spot.element
+        if not self.entering or spot == before:
+            return
+        if before is not None and (spot is None or spot.element is not before.element):
+            if not self._index.encloses(before.element, *place):
+                self.say(f"leaving: {before.element.name}")
+            before = None
+        if spot is not None:
+            self.say(f"{'entering' if before is None else spot.where}: {spot.element.name}")
 
     # What is asked for
 
@@ -233,25 +272,43 @@ class SceneView(View):
         if place is None:
             self.say("place: not known yet")
             return
-        found = self._index.here(*place)
-        self.say(f"here: {'nothing with a name' if found is None else found.name}")
-        self.say(f"place: {place[0]:.0f} mm from the left, {place[1]:.0f} mm from the top")
+        spot = self._index.where(*place)
+        if spot is None:
+            self._say_nearest(place)
+        else:
+            where = {"edge": "edge of ", "inside": "inside "}.get(spot.where, "")
+            self.say(f"here: {where}{spot.element.name}")
+        self.say(f"place: {_placed(*place)}")
+
+    def _say_nearest(self, place: tuple[float, float]) -> None:
+        """Say that nothing is here, and which element is nearest."""
+        self.say("here: nothing with a name")
+        found = self._index.nearest(*place)
+        if found is not None:
+            element, to = found
+            self.say(f"nearest: {element.name}, {_way(place, to)}")
 
     def describe_here(self) -> None:
-        """Say the description of what is under the middle of the array."""
-        found = None if self.place is None else self._index.here(*self.place)
-        if found is None:
-            self.say("here: nothing with a name")
+        """Say what is under the middle of the array: its description, or else its look."""
+        place = self.place
+        spot = None if place is None else self._index.where(*place)
+        if spot is not None:
+            element = spot.element
+            self.say(f"{element.name}: {element.description or _looks(element)}")
+        elif place is None:
+            self.say("place: not known yet")
         else:
-            self.say(f"{found.name}: {found.description or 'no description'}")
+            self._say_nearest(place)
 
     def say_elements(self) -> None:
         """Say the elements that have a name."""
         if not self._index.elements:
             self.say("elements: none has a name")
         for element in self._index.elements:
-            x_mm, y_mm = element.center_mm
-            self.say(f"element: {element.name}, at {x_mm:.0f} mm right, {y_mm:.0f} mm down")
+            box = element.box
+            middle = (box.left + box.right) / 2, (box.top + box.bottom) / 2
+            place = "outside" if box.is_empty else f"{_sized(box)}, middle {_placed(*middle)}"
+            self.say(f"element: {element.name}, {place}")
 
     def ask_element(self) -> None:
         """Ask for the name of an element, and go there."""
@@ -266,9 +323,26 @@ class SceneView(View):
             self.cue(Cue.NOT_FOUND)
             self.say(f"element: none is called {name}; {self.key('ELEMENTS', 'e')} says them all")
         else:
-            if self._device.steering is not None:
-                self.say(f"going to: {found.name}")
-            self._lead(found.name, found.center_mm)
+            self._go_to(found)
+
+    def step_element(self, step: int) -> None:
+        """Go to the next element that has a name, or to the one before."""
+        number = self._element + step
+        if self._element < 0 and step < 0:
+            number = len(self._index.elements) - 1
+        if 0 <= number < len(self._index.elements):
+            if self._device.steering is None:
+                self.say(f"element: {self._index.elements[number].name}")
+            self._go_to(self._index.elements[number])
+        else:
+            self.cue(Cue.LIMIT)
+            self.say(f"element: no {'more' if step > 0 else 'others before'}")
+
+    def _go_to(self, element: NamedElement) -> None:
+        self._element = self._index.elements.index(element)
+        if self._device.steering is not None:
+            self.say(f"going to: {element.name}")
+        self._lead(element.name, self._index.point_on(element))
 
     def cancel(self) -> None:
         """Say the way no more."""
@@ -327,6 +401,7 @@ class SceneView(View):
         self.loaded = loaded
         self._index = self._index_of(loaded)
         self._looked_at = (math.nan, math.nan)
+        self._element = -1
         self.say(f"reloaded: {loaded.title}")
         for note in loaded.notes:
             self.say(f"note: {note}")
@@ -338,7 +413,9 @@ class SceneView(View):
         self.say(f"height: {self._at_mm:.0f} mm from the top")
 
     def _lead(self, name: str, to: tuple[float, float]) -> None:
-        """Have a simulated hand go to a place, or say the way there."""
+        """Have a simulated hand go to a place, or say the way there; one axis takes its height."""
+        if not self.display.height_mm:
+            self._choose_height(to[1])
         if self._device.steering is not None:
             self._glide(to, LED_MM_S)
         else:

@@ -183,6 +183,7 @@ class Program:
         y_mm: NDArray[np.float64],
         theta_rad: NDArray[np.float64] | float = 0.0,
         time_s: NDArray[np.float64] | float = 0.0,
+        velocity_mm_s: NDArray[np.float64] | float = 0.0,
     ) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
         """Fill the frames of a way over the canvas.
 
@@ -192,6 +193,8 @@ class Program:
             Places of the array's centre, and angles by which the array is turned.
         time_s : float64[n]
             The picture's own time at each, in seconds since its start.
+        velocity_mm_s : float64[n, 2]
+            Velocity of the array along x and y.
 
         Returns
         -------
@@ -204,6 +207,7 @@ class Program:
         at = np.zeros((x_mm.size, 6))
         at[:, work.X], at[:, work.Y], at[:, work.THETA] = x_mm, y_mm, theta_rad
         at[:, work.TIME] = time_s
+        at[:, work.VX : work.VY + 1] = velocity_mm_s
         parts = np.zeros(x_mm.size, np.int64)
         out = np.empty((x_mm.size, *self.shape), np.float32)
         kernels.poses(self.numbers, self.table, self._scratch, at, parts, out)

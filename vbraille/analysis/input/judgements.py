@@ -40,7 +40,7 @@ LEVELS = (
 
 
 def judged(sheet: Sheet, rows: pd.DataFrame) -> pd.Series:
-    """Whether each row is a judgement alone, and neither a string that was read nor a choice.
+    """True if each row is a judgement alone, and neither a string that was read nor a choice.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def read_judgements(sheet: Sheet, rows: pd.DataFrame, who: pd.DataFrame) -> pd.D
 
 
 def _texts(sheet: Sheet, rows: pd.DataFrame, kinds: pd.Series) -> tuple[pd.Series, pd.Series]:
-    """What was presented and answered; two values are written alike wherever they are equal.
+    """Texts presented and answered; two values are written alike wherever they are equal.
 
     Raises
     ------

@@ -44,7 +44,7 @@ ALL = "all"  # name of the condition in a protocol that compares none
 
 
 class Parsed(NamedTuple):
-    """What the sheets hold.
+    """Content of the sheets.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def _joined(
 
 
 def _caught(rows: pd.DataFrame) -> pd.Series:
-    """Whether each row is a catch trial, which belongs to no item."""
+    """True if each row is a catch trial, which belongs to no item."""
     if CATCH not in rows:
         return pd.Series(data=False, index=rows.index)
     return rows[CATCH].astype(str).str.strip().isin(_CATCHES)

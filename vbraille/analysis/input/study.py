@@ -1,4 +1,4 @@
-"""What is analysed: sessions and tables, less what is left out by a stated rule."""
+"""Study that is analysed: sessions and tables, less what is left out by a stated rule."""
 
 from __future__ import annotations
 

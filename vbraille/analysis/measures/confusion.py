@@ -1,4 +1,4 @@
-"""Which cells are taken for which, and by which dots: Lévesque 2009, 3.4.2, tables 3.4 to 4.1."""
+"""Confusions of cells, and of their dots: Lévesque 2009, 3.4.2, tables 3.4 to 4.1."""
 
 from __future__ import annotations
 

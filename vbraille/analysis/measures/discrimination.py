@@ -1,4 +1,4 @@
-"""How well something was told from nothing or from another: d′, criterion and thresholds."""
+"""Detection and discrimination: d′, criterion and thresholds."""
 
 from __future__ import annotations
 

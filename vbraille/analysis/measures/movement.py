@@ -1,4 +1,4 @@
-"""How strings were read, as tables: durations, passes, speeds, patterns (Lévesque 2009, 3.4)."""
+"""Tables of the way strings were read: durations, passes, speeds, patterns (Lévesque 2009, 3.4)."""
 
 from __future__ import annotations
 

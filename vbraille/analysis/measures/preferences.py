@@ -1,4 +1,4 @@
-"""Which of two was chosen: Lévesque 2009, 3.3 and fig. 3.12; and what each participant prefers."""
+"""Choices of one of two (Lévesque 2009, 3.3 and fig. 3.12), and each participant's own value."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was rated, estimated, said and noted, and how sure of it participants were."""
+"""Ratings, magnitudes, words, notes, and the confidence of answers."""
 
 from __future__ import annotations
 

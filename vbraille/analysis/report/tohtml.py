@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.schemas import ResultTable, Value
 
 Element = ElementTree.Element
-ROWS = 60  # rows of a table that a report shows: nobody listens to more, and the CSV has all
+ROWS = 60  # rows of a table that a report shows: more is too long to listen to, and the CSV has all
 KINDS = ("svg", "png", "pdf")  # kinds of files that a figure is written as
 _INLINE = {"a", "span", "strong"}  # every other element begins a new line in the source
 # Nothing is fetched, whatever names there are in the data.

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.results import Results
     from vbraille.analysis.schemas import Column, ResultTable, Value
 
-# One value a line, for whoever compares two files; json's own indenting takes ten times as long.
+# One value a line, so that two files can be compared; json's own indenting takes ten times as long.
 _SEPARATOR = ",\n"
 _ENCODE = json.JSONEncoder(
     ensure_ascii=False, allow_nan=False, separators=(_SEPARATOR, ": ")

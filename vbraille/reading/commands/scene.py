@@ -17,7 +17,10 @@ BUTTONS = {"1": "HERE", "2": "DESCRIBE", "3": "PAUSE"}
 # A command calls a method of the feeler, by its name: what feels loads the kernels.
 COMMANDS = (
     Command(
-        "HERE", ("i", "f5"), "say what is under the finger, and where", methodcaller("say_here")
+        "HERE",
+        ("i", "u", "f5"),
+        "say what is under the finger, and where",
+        methodcaller("say_here"),
     ),
     Command(
         "DESCRIBE", ("d",), "say more of what is under the finger", methodcaller("describe_here")
@@ -25,6 +28,8 @@ COMMANDS = (
     Command("SCENE", ("t",), "say what the picture is", methodcaller("say_scene")),
     Command("ELEMENTS", ("e",), "say the elements that have a name", methodcaller("say_elements")),
     Command("GOTO", ("g",), "go to an element by its name", methodcaller("ask_element")),
+    Command("NEXT", ("n",), "go to the next element", methodcaller("step_element", 1)),
+    Command("PREVIOUS", ("p",), "go to the element before", methodcaller("step_element", -1)),
     Command("CANCEL", ("escape",), "say the way to an element no more", methodcaller("cancel")),
     Command(
         "ENTERING",
@@ -48,25 +53,25 @@ COMMANDS = (
     ),
     Command(
         "FAR_RIGHT",
-        ("shift-right", "l"),
+        ("shift-right",),
         "simulated hand: 10 mm right",
         methodcaller("move", FAR_MM, 0),
     ),
     Command(
         "FAR_LEFT",
-        ("shift-left", "j"),
+        ("shift-left",),
         "simulated hand: 10 mm left",
         methodcaller("move", -FAR_MM, 0),
     ),
     Command(
         "FAR_DOWN",
-        ("shift-down", "k"),
+        ("shift-down",),
         "simulated hand: 10 mm down; one axis: lower",
         methodcaller("move", 0, FAR_MM),
     ),
     Command(
         "FAR_UP",
-        ("shift-up", "o"),
+        ("shift-up",),
         "simulated hand: 10 mm up; one axis: higher",
         methodcaller("move", 0, -FAR_MM),
     ),
