@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import vbraille.analysis
-from vbraille.analysis.schemas import Schema
+from vbraille.analysis.results import Schema
 
 DOCUMENT = Path("docs/tables.md").read_text(encoding="utf-8")
 

@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.input.scoretable import Scores
     from vbraille.analysis.input.study import Study
     from vbraille.analysis.input.trials import LeftOut
-    from vbraille.analysis.results import ReportFigure
-    from vbraille.analysis.schemas import ResultTable
+    from vbraille.analysis.results import ReportFigure, ResultTable
 
 SEED = 20090618
 _MAIN = ("means_", "legibility", "choices_")  # beginnings of names, the first that is found first

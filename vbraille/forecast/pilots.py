@@ -21,8 +21,7 @@ from vbraille.wording import setting
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from vbraille.analysis.results import Results
-    from vbraille.analysis.schemas import ResultTable
+    from vbraille.analysis.results import Results, ResultTable
     from vbraille.forecast.workers import Workers
     from vbraille.sessions.planning.protocol import Protocol
 

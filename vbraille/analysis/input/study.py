@@ -50,7 +50,7 @@ class Study:
     faults
         What is damaged in the sessions, in clauses.
     judgements
-        Data frame as in `vbraille.analysis.input.judgements`; None if there are none.
+        Data frame as in `vbraille.analysis.input.parsing`; None if there are none.
     """
 
     trials: pd.DataFrame | None

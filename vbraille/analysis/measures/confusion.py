@@ -9,7 +9,7 @@ import numpy as np
 
 from vbraille.analysis.input.trials import UNREAD_MASK, groups, masks_of, name_cell, name_string
 from vbraille.analysis.measures.legibility import cell_order, unequal_notes
-from vbraille.analysis.schemas import NOTE_COLUMN, PARTICIPANT, Column, Kind, Schema
+from vbraille.analysis.results import NOTE_COLUMN, PARTICIPANT, Column, Kind, Schema
 from vbraille.analysis.statistics import information
 from vbraille.analysis.statistics.information import transmission
 from vbraille.analysis.statistics.intervals import Unanswerable
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.analysis.input.trials import Places
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.results import ResultTable, Row
 
 MARKS = (4, 9)  # Lévesque 2009, table 4.1
 _ABOUT = (

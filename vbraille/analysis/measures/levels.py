@@ -11,7 +11,7 @@ import pandas as pd
 
 from vbraille.analysis.input.trials import LeftOut
 from vbraille.analysis.input.trials import factor as ordered
-from vbraille.analysis.schemas import (
+from vbraille.analysis.results import (
     NOTE_COLUMN,
     PARTICIPANT,
     Column,
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from vbraille.analysis.input.scoretable import Scores
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.results import ResultTable, Row
 
 NOTHING = "there are no scores to compare"
 MOST_LEVELS = 12  # they make 66 pairs: more t-tests than should be made of one table
