@@ -18,7 +18,7 @@ TSC        := .venv/typescript/node_modules/.bin/tsc
 unexport PYTHONDONTWRITEBYTECODE
 
 .DELETE_ON_ERROR:
-.PHONY: read test test-all soak lint tests all-tests bench format setup clean sound speech
+.PHONY: read test test-all soak lint tests all-tests bench format setup clean sound speech site
 
 read: .venv/compiled
 	$(BIN)/vbraille read texts/english.txt --model stress2 --device sim --hand sweep:60 \
@@ -80,6 +80,12 @@ format: .venv/tests
 	$(BIN)/ruff format
 
 setup: .venv/compiled .venv/all
+
+# The documents as pages for a browser, in site/; a link that leads nowhere fails.
+site: .venv/pip
+	$(BIN)/pip install -q --disable-pip-version-check -e '.[docs]'
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
+	@echo 'The site is site/index.html.'
 
 # PortAudio, for the participant's signals in sessions and the cues of a reading; without it the
 # terminal's bell rings.
@@ -145,7 +151,7 @@ PYCS    := $(BIN)/python -m compileall -q -j 0 -x '/tests?/' .venv/lib || true
 
 # What drives the actuators is compiled here, so that no reading waits for it.
 .venv/compiled: .venv/runs $(shell find vbraille/render vbraille/devices vbraille/engine -name "*.py")
-	$(BIN)/python -m vbraille.engine.compiling
+	$(BIN)/vbraille setup
 	@touch $@
 
 clean:

@@ -36,7 +36,8 @@ def of_each(pages):
 def commands(page):
     """What a reader of a page would copy, a line each, in its order."""
     blocks = _COMMANDS.finditer(page.read_text(encoding="utf-8"))
-    return [line for block in blocks for line in (block[1] or block[2]).splitlines() if line]
+    lines = "".join(block[1] or block[2] for block in blocks).splitlines()
+    return [line.strip() for line in lines if line.strip()]
 
 
 def code(page):
@@ -67,6 +68,21 @@ def test_each_command_can_be_given_as_it_is_written(page):
             assert parse(words).command == words[0]
         else:
             assert program == "vbraille" or line == ". .venv/bin/activate", line
+
+
+@of_each(PAGES)
+def test_each_command_of_a_block_can_be_given(page):
+    """Those with an ellipsis have a part of the reader's own; remarks stand after three blanks."""
+    for line in commands(page):
+        if line.startswith("vbraille ") and "…" not in line and "..." not in line:
+            words = shlex.split(re.split(r" {3,}| > ", line)[0])[1:]
+            assert "--help" in words or parse(words).command == words[0], line
+
+
+@of_each(PAGES)
+def test_a_line_has_at_most_120_characters(page):
+    lines = page.read_text(encoding="utf-8").splitlines()
+    assert [line for line in lines if len(line) > 120 and not line.startswith("|")] == []
 
 
 @of_each(DOORS)

@@ -25,6 +25,7 @@ LIGHT = [
 ]
 # Each compiles what drives the actuators, which a wheel does not bring, or runs on it.
 HEAVY = [
+    "setup",
     "read story.txt --device sim --hand sweep:400 --lines 1",
     "session run rating --participant P1 --answers simulated --device sim --fast --out P1",
     "analyse P1 --out report",

@@ -14,7 +14,7 @@ from vbraille.analysis.measures import (
     trialsmodel,
 )
 from vbraille.analysis.measures import levels as compared
-from vbraille.analysis.schemas import Schema
+from vbraille.analysis.results import Schema
 
 COLUMNS = "participant condition presented answered duration_s"
 

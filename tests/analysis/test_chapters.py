@@ -18,7 +18,7 @@ from vbraille.analysis.input.study import load_scores, load_study
 from vbraille.analysis.input.trials import written
 from vbraille.analysis.report.totext import to_json
 from vbraille.analysis.report.written import write_report
-from vbraille.analysis.schemas import to_csv as frame_to_csv
+from vbraille.analysis.results import to_csv as frame_to_csv
 from vbraille.errors import InputError
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.protocolfiles import parse_protocol

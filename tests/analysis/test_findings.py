@@ -12,7 +12,7 @@ from vbraille.analysis.findings import findings, interval_words
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.scoretable import Scores
 from vbraille.analysis.input.study import Study
-from vbraille.analysis.schemas import Kind, to_print
+from vbraille.analysis.results import Kind, to_print
 
 
 def study(*lines, columns=COLUMNS):

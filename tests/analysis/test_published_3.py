@@ -21,7 +21,7 @@ from vbraille.analysis.input.trials import Places, chosen, name_cell
 from vbraille.analysis.measures import confusion
 from vbraille.analysis.measures import legibility as legibilities
 from vbraille.analysis.measures.legibility import averages, legibility
-from vbraille.analysis.schemas import Kind, round_half_up, to_print
+from vbraille.analysis.results import Kind, round_half_up, to_print
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import load_protocol
 

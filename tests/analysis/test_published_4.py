@@ -11,7 +11,7 @@ from tests.analysis.making import from_rows, record
 from tests.analysis.published import EXACT, RECONSTRUCTED, TOLD, each
 from vbraille.analysis.input.scoretable import of_sheet
 from vbraille.analysis.measures.levels import analyses, level_means, t_tests
-from vbraille.analysis.schemas import Kind, round_half_up, to_print
+from vbraille.analysis.results import Kind, round_half_up, to_print
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import load_protocol
 

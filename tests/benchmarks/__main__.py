@@ -30,6 +30,7 @@ PARTS = (
     "figure",
     "scene",
     "feel",
+    "key",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

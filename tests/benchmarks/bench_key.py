@@ -32,10 +32,11 @@ _WRITTEN = "Device.write"
 
 
 def way(frame: Any) -> Iterator[tuple[str, str]]:
-    """Our functions on the stack, by module and name, from the loop's step on."""
+    """Our functions on the stack, by module and name, without those that run all the time."""
     while frame is not None and frame.f_code.co_name not in ("main", "write_frame"):
         module = frame.f_globals.get("__name__", "")
-        if module.startswith("vbraille.") and not module.startswith("vbraille.cli."):
+        loops = frame.f_code.co_name == "run" or module == "vbraille.cli.main"
+        if module.startswith("vbraille.") and not loops:
             yield module, frame.f_code.co_qualname.replace(".<locals>", "")
         frame = frame.f_back
 

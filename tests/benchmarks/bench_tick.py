@@ -85,7 +85,7 @@ def run(
             for kind in BARS:
                 for busy in (False, True) if kind == "serial" else (False,):
                     for name, root in hosts.items():
-                        with _busy(BUSY_PROCESSES if busy else 0):
+                        with spinning(BUSY_PROCESSES if busy else 0):
                             got = measured(kind, root, seconds if number else 2.0, installed)
                         if number:  # the first compiles, for the others to be warm
                             found.setdefault((kind, name, busy), []).append(got)
@@ -133,7 +133,7 @@ def measured(kind: str, root: Path, seconds: float, installed: str) -> dict[str,
     Parameters
     ----------
     kind
-        Device: one of `BARS`.
+        Device: one of `BARS`, or socket.
     root
         Directory of the host's checkout.
     seconds
@@ -148,6 +148,9 @@ def measured(kind: str, root: Path, seconds: float, installed: str) -> dict[str,
             device = stack.enter_context(_python(ROOT, installed, "tick_device", link))
             _line(device)
             spec = f"serial:{link}"
+        elif kind == "socket":
+            device = stack.enter_context(_python(ROOT, installed, "tick_device", ""))
+            spec = f"serial:socket://127.0.0.1:{int(_line(device))}"
         elif kind == "latero":
             device = stack.enter_context(_python(ROOT, installed, "latero_device"))
             spec = latero_spec(int(_line(device)))
@@ -158,6 +161,8 @@ def measured(kind: str, root: Path, seconds: float, installed: str) -> dict[str,
         if device is not None:
             assert device.stdin is not None
             device.stdin.close()
+            if kind == "socket":
+                _line(device)  # which says that it was ready
             found |= json.loads(_line(device))
     assert Path(found["package"]).parent == root, "the wrong package was measured"
     return found
@@ -189,12 +194,12 @@ def _python(root: Path, installed: str, module: str, *arguments: str) -> subproc
 
 
 @contextmanager
-def _busy(processes: int) -> Iterator[None]:
+def spinning(processes: int) -> Iterator[None]:
     """Have so many other processes busy."""
     with ExitStack() as stack:
         for _ in range(processes):
-            spinning = stack.enter_context(subprocess.Popen([sys.executable, "-c", _SPIN]))
-            stack.callback(spinning.kill)
+            process = stack.enter_context(subprocess.Popen([sys.executable, "-c", _SPIN]))
+            stack.callback(process.kill)
         yield
 
 

@@ -70,15 +70,15 @@ def test_no_database_is_one_sentence(call, tmp_path, monkeypatch):
 
 
 @pytest.mark.usefixtures("kept")
-def test_what_cannot_be_written_is_not_said_to_be_forgotten():
-    before = program.run("books").stdout
+def test_what_cannot_be_written_is_not_said_to_be_forgotten(call):
+    before = call("books").out
     limited = ["sh", "-c", 'ulimit -f 0; exec "$@"', "sh", *program.PROGRAM]
     done = subprocess.run(
         [*limited, "books", "--forget", "1"], check=False, capture_output=True, encoding="utf-8"
     )
     assert (done.returncode, done.stdout) == (1, "")
     assert "could not be forgotten" in done.stderr
-    assert program.run("books").stdout == before
+    assert call("books").out == before
 
 
 @pytest.mark.parametrize(
@@ -115,9 +115,9 @@ def test_a_book_is_opened_by_its_number_with_the_options_that_it_was_read_with(
     assert said.err == program.line_width(26, program.UNCONTRACTED)
     assert "text: First" not in said.out
     assert "text: Second of one.\n" in said.out
-    said = program.run("books", "2")  # the list begins with the last one read
-    assert said.returncode == 0
-    assert "text: Second of two.\n" in said.stdout
+    said = call("books", "2")  # the list begins with the last one read
+    assert said.code == 0
+    assert "text: Second of two.\n" in said.out
 
 
 @pytest.mark.parametrize(

@@ -265,7 +265,7 @@ def test_a_pipe_is_read_like_a_file(text):
     assert (done.returncode, done.stdout) == (0, UNICODE)
 
 
-@pytest.mark.parametrize("arguments", ["page {}", "tables", "--help", "--version"])
+@pytest.mark.parametrize("arguments", ["page {}", "--help"])
 def test_a_full_disk_under_the_output(text, arguments):
     with Path("/dev/full").open("wb") as full:
         done = program.run(
@@ -277,7 +277,7 @@ def test_a_full_disk_under_the_output(text, arguments):
     assert "Traceback" not in done.stderr
 
 
-@pytest.mark.parametrize("arguments", ["page {}", "tables", "--help", "--version"])
+@pytest.mark.parametrize("arguments", ["page {}", "--help"])
 def test_what_is_printed_into_a_closed_output_is_not_said_to_be_done(text, arguments):
     command = [*program.PROGRAM, *arguments.format(text).split()]
     done = subprocess.run(

@@ -294,12 +294,12 @@ def test_standard_input_is_read_without_a_terminal_too(text):
     assert done.stderr == "vbraille: standard input is empty; give a text file\n"
 
 
-def test_help_says_the_keys_and_how_a_slow_hand_is_called():
-    done = program.run("read", "--help")
-    assert done.returncode == 0
+def test_help_says_the_keys_and_how_a_slow_hand_is_called(call):
+    done = call("read", "--help")
+    assert done.code == 0
     for command in COMMANDS:
-        assert re.search(rf"^  \S.*  {re.escape(command.help)}$", done.stdout, re.MULTILINE)
-    assert "slow" in done.stdout
+        assert re.search(rf"^  \S.*  {re.escape(command.help)}$", done.out, re.MULTILINE)
+    assert "slow" in done.out
 
 
 def test_a_key_brings_the_next_line_and_nothing_else_does(text):

@@ -10,11 +10,11 @@ CHAPTER = FILES / "pandoc-3.epub"
 READ = ("--hand", "sweep:1000", "--advance", "key", "--echo", "both")
 
 
-def printed(form):
+def printed(call, form):
     """What ``vbraille page`` prints of the chapter, by lines."""
-    done = program.run("page", CHAPTER, "--format", form)
-    assert done.returncode == 0
-    return [line.rstrip() for line in done.stdout.splitlines()]
+    done = call("page", CHAPTER, "--format", form)
+    assert done.code == 0
+    return [line.rstrip() for line in done.out.splitlines()]
 
 
 def lines_of(said):
@@ -24,8 +24,8 @@ def lines_of(said):
     return [(int(number), cells, text) for number, cells, text in found]
 
 
-def test_a_chapter_that_is_read_is_what_the_page_says_and_is_gone_on_with():
-    cells, texts = printed("unicode"), printed("text")
+def test_a_chapter_that_is_read_is_what_the_page_says_and_is_gone_on_with(call):
+    cells, texts = printed(call, "unicode"), printed(call, "text")
     page = [
         (number, cells, text)
         for number, (cells, text) in enumerate(zip(cells, texts, strict=True), 1)

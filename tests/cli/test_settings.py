@@ -68,20 +68,20 @@ def test_the_path_is_said_even_of_a_file_that_cannot_be_used(call, settings):
 
 def test_reading_goes_by_the_file_unless_an_option_says_otherwise(call, text, settings):
     command = ("read", text, *FAST, "--lines", "1", "--settings", settings)
-    said = program.run(*command)
-    assert said.returncode == 0
+    said = call(*command)
+    assert said.code == 0
     # Dots that stand closer leave room for more cells; grade and echo are the file's.
-    assert said.stderr == program.line_width(28, program.UNCONTRACTED)
-    assert said.stdout.startswith("line: 1\ntext: one two three\n")
+    assert said.err == program.line_width(28, program.UNCONTRACTED)
+    assert said.out.startswith("line: 1\ntext: one two three\n")
     options = ("--table", "fr-bfu-comp6.utb", "--dot-spacing", "3.7", "--echo", "none")
     # An option goes before the file in every command; a page needs no process.
     page = call("page", text, "--settings", settings, *options[:-2])
     assert page.err == program.line_width(26, "French uncontracted braille")
     if TIER is Tier.TEST:
         return
-    said = program.run(*command, *options)
-    assert said.stderr == program.line_width(26, "French uncontracted braille")
-    assert not said.stdout.startswith("line")
+    said = call(*command, *options)
+    assert said.err == program.line_width(26, "French uncontracted braille")
+    assert not said.out.startswith("line")
 
 
 def test_a_page_takes_language_grade_and_table_and_braille_stays_braille(call, text, settings):
@@ -114,7 +114,7 @@ def test_what_reading_refuses_is_refused_where_settings_are_listed(
     assert said in listed.err
 
 
-def test_a_setting_is_a_wish_and_an_option_is_not(tmp_path, text, settings):
+def test_a_setting_is_a_wish_and_an_option_is_not(call, tmp_path, text, settings):
     settings.write_text('[read]\nkeep_lines = true\nencoding = "latin-1"\n')
     book = tmp_path / "book.html"
     book.write_text("<p>one two three", "utf-8")
@@ -128,11 +128,11 @@ def test_a_setting_is_a_wish_and_an_option_is_not(tmp_path, text, settings):
             terminal.type("q")
             assert terminal.end() == 0
     text.write_bytes("caf\xe9\n".encode("latin-1"))
-    said = program.run("read", text, *FAST, "--settings", settings)
-    assert (said.returncode, "text: café" in said.stdout) == (0, True)
-    said = program.run("read", book, *FAST, "--settings", settings, "--keep-lines")
-    assert (said.returncode, said.stdout) == (2, "")
-    assert "--keep-lines" in said.stderr
+    said = call("read", text, *FAST, "--settings", settings)
+    assert (said.code, "text: café" in said.out) == (0, True)
+    said = call("read", book, *FAST, "--settings", settings, "--keep-lines")
+    assert (said.code, said.out) == (2, "")
+    assert "--keep-lines" in said.err
 
 
 def test_a_turn_at_a_terminal_is_saved_and_undone(tmp_path, text, settings):

@@ -3,6 +3,7 @@
 ``python -m tests.scene.keyspage`` writes it anew.
 """
 
+import textwrap
 from pathlib import Path
 
 from vbraille.scene.pattern import Pattern
@@ -27,7 +28,7 @@ def keys_text():
         if not issubclass(table, Pattern):
             own = [key for key in schema["properties"] if key != "kind"]
         lines += ["", f"### {kinds[table.__name__]}", ""]
-        lines += [summary(table), "", *_keys(schema, texts, own, kinds)]
+        lines += [_filled(summary(table)), "", *_keys(schema, texts, own, kinds)]
     return "\n".join(lines) + "\n"
 
 
@@ -48,7 +49,15 @@ def _keys(schema, texts, keys, kinds):
     for key in keys:
         takes = f"`{key}`, {_takes(schema['properties'][key], kinds)}{_usual(schema, key)}"
         said.setdefault(texts[key], []).append(takes)
-    return [f"- {'; '.join(takes)}: {text}" for text, takes in said.items()]
+    return [_filled(f"- {'; '.join(takes)}: {text}") for text, takes in said.items()]
+
+
+def _filled(text):
+    """A paragraph, or an item of a list, in lines of 118 characters."""
+    indent = "  " if text.startswith("- ") else ""
+    return textwrap.fill(
+        text, 118, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+    )
 
 
 def _takes(field, kinds):

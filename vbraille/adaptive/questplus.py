@@ -31,7 +31,7 @@ spread s:
     logistic  F = 1 / (1 + exp(-(x - t) / s))
     weibull   F = 1 - exp(-(x / t)^s),  for x and t above 0; s is the slope.   (4)
 
-**Nearer of two.** Of two values x₁ and x₂ somebody chooses the one that is nearer to an inner
+**Nearer of two.** Of two values x₁ and x₂ a person chooses the one that is nearer to an inner
 value μ. Each distance is judged with independent normal noise of standard deviation s, so that
 
     p(first) = λ / 2 + (1 - λ) Φ((|x₂ - μ| - |x₁ - μ|) / (s √2)).              (5)
@@ -61,7 +61,7 @@ CREDIBLE = 0.95  # share of a posterior that a credible interval holds
 
 @dataclass(frozen=True, slots=True)
 class GridAxis:
-    """Possible values of a parameter of whoever answers, all equally likely beforehand.
+    """Possible values of a parameter of the observer, all equally likely beforehand.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class GridAxis:
 
 
 class GridEstimate(NamedTuple):
-    """What is known about a parameter after some answers.
+    """Estimate of a parameter after some answers.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ class GridQuest:
     stimuli
         Stimuli that may be asked: single values, or ordered pairs.
     axes
-        Parameters of whoever answers, of which one to three have several values.
+        Parameters of the observer, of which one to three have several values.
     table : float64[outcomes, stimuli, …axes]
         Probability of each outcome.
     about
@@ -302,7 +302,7 @@ class GridQuest:
         return self.stimuli[int(np.flatnonzero(gains >= gains.max() - _TIE)[0])]
 
     def gains(self, history: Sequence[tuple[Stimulus, int]]) -> NDArray[np.float64]:
-        """What each stimulus is expected to tell, by equation (1) or (2); float64[stimuli]."""
+        """Expected information of each stimulus, by equation (1) or (2); float64[stimuli]."""
         posterior = self._flat(history)
         likely = self._by_outcome(posterior, 1.0)
         if self._along is None:

@@ -123,7 +123,7 @@ class Climb:
 
 @dataclass(frozen=True, slots=True)
 class StaircaseRule:
-    """How one staircase moves.
+    """Rule by which one staircase moves.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ class StaircaseRule:
             raise ValueError(f"reversals is {self.reversals}; it must be 1 or more")
 
     def is_over(self, climb: Climb) -> bool:
-        """Whether a staircase has turned round as often as it shall."""
+        """True if a staircase has turned round as often as it shall."""
         return self.reversals is not None and len(climb.turned) >= self.reversals
 
     def take(self, climb: Climb, asked: Asked) -> None:
@@ -210,7 +210,7 @@ class StaircaseRule:
 
 
 class TurnEstimate(NamedTuple):
-    """What the reversals of staircases say of the level that they converge to.
+    """Estimate of the level that staircases converge to, by their reversals.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ class TurnEstimate(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Staircases:
-    """Several staircases, interleaved so that nobody can foresee the next level.
+    """Several staircases, interleaved so that the next level cannot be foreseen.
 
     Parameters
     ----------
@@ -282,7 +282,7 @@ class Staircases:
         return TurnEstimate(float(np.mean(levels)), sd, len(levels))
 
     def _drawn(self, number: int, climbs: Sequence[Climb]) -> int | None:
-        """Which staircase has the question of a number, from 0; None if all are over."""
+        """Number of the staircase that has a question, from 0; None if all are over."""
         left = [
             at
             for at, (rule, climb) in enumerate(zip(self.rules, climbs, strict=True))

@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.input.scoretable import Scores
     from vbraille.analysis.input.study import Study
     from vbraille.analysis.input.trials import LeftOut
-    from vbraille.analysis.results import ReportFigure
-    from vbraille.analysis.schemas import ResultTable
+    from vbraille.analysis.results import ReportFigure, ResultTable
 
 SEED = 20090618
 _MAIN = ("means_", "legibility", "choices_")  # beginnings of names, the first that is found first
@@ -42,7 +41,7 @@ _MAIN = ("means_", "legibility", "choices_")  # beginnings of names, the first t
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What may be chosen in an analysis.
+    """Choices in an analysis.
 
     Parameters
     ----------
@@ -72,7 +71,7 @@ class Options:
             raise ValueError(f"correction is {self.correction!r}; it must be one of {METHODS}")
 
     def described(self) -> list[tuple[str, str]]:
-        """What was chosen, as pairs of a word and a sentence, for the report's head."""
+        """Describe the choices, as pairs of a word and a sentence, for the report's head."""
         return [
             ("Correction of t-tests", METHODS[self.correction]),
             ("Compared by", ", ".join(self.factors)),

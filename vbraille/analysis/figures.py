@@ -9,14 +9,14 @@ import numpy as np
 from vbraille.analysis.findings import extremes, interval_words, parameter_words
 from vbraille.analysis.input.trials import UNREAD, name_string, times
 from vbraille.analysis.measures.discrimination import SHAPE_OF
-from vbraille.analysis.results import ReportFigure
-from vbraille.analysis.schemas import (
+from vbraille.analysis.results import (
     OTHER,
     PARTICIPANT,
     SESSION,
     TRIAL,
     Column,
     Kind,
+    ReportFigure,
     Schema,
     to_print,
 )
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from vbraille.analysis.input.sessions import Example, SessionTrials
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.results import ResultTable, Row
     from vbraille.pictures.charts import Chart, Numbers
 
 _SHARE = ("legibility", "low", "high")  # columns of a share with its interval
@@ -117,7 +117,7 @@ def errors(table: ResultTable, own: ResultTable) -> ReportFigure:
 
 
 def choices(table: ResultTable, preferred: ResultTable, own: ResultTable) -> Iterator[ReportFigure]:
-    """How often each value was chosen, one figure for a parameter: Lévesque 2009, fig. 3.12."""
+    """Counts of the choices of each value, one figure for a parameter: Lévesque 2009, fig. 3.12."""
     for liked in preferred.records():
         name = liked["parameter"]
         rows = [row for row in table.records() if row["parameter"] == name]

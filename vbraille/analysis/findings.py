@@ -1,18 +1,18 @@
-"""What was found, in sentences made of the tables' rows, for the head of a report."""
+"""Findings, in sentences made of the tables' rows, for the head of a report."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from vbraille.analysis.input.trials import UNREAD, times
-from vbraille.analysis.schemas import NOTE, Kind, to_print
+from vbraille.analysis.results import NOTE, Kind, to_print
 from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, SEEN
 from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.results import ResultTable, Row
 
 SURE = 0.05  # p below which two things are called different
 _TOLD = ("legibility of strings", "duration (s)", "score")  # measures told; the tables have all

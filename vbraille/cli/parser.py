@@ -141,6 +141,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         exploring.tables,
         "vbraille tables --language fr",
     ),
+    "setup": (
+        "Compile what drives the actuators, so that the first reading does not wait for it.",
+        exploring.nothing,
+        "vbraille setup",
+    ),
     "completion": (
         "Print what makes a shell complete commands, options and values.",
         completion.completion,
@@ -243,7 +248,7 @@ GROUPS = {
     "a page, its frames and drawings": ("page", "render", "plot", "monitor"),
     "devices": ("device", "simulate"),
     "for a lab": ("session", "analyse", "power", "predict"),
-    "for the shell": ("completion",),
+    "for the machine and its shell": ("setup", "completion"),
 }
 
 

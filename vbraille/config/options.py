@@ -145,7 +145,7 @@ class Option:
     @property
     def choices(self) -> tuple[str, ...] | Names | None:
         """Values that it may have; None if any of its type."""
-        return self.kind if isinstance(self.kind, tuple | Names) else None
+        return None if callable(self.kind) else self.kind
 
     @property
     def usual(self) -> str:

@@ -49,11 +49,15 @@ class Settings:
     """
 
     path: Path
-    read: Mapping[str, Any] = field(default_factory=dict)
-    keys: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    buttons: Mapping[str, str] = field(default_factory=dict)
-    profiles: Mapping[str, Mapping[str, Values]] = field(default_factory=dict)
-    lines: Mapping[tuple[str | int, ...], int] = field(default_factory=dict)
+    read: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    keys: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    buttons: Mapping[str, str] = field(default_factory=dict[str, str])
+    profiles: Mapping[str, Mapping[str, Values]] = field(
+        default_factory=dict[str, "Mapping[str, Values]"]
+    )
+    lines: Mapping[tuple[str | int, ...], int] = field(
+        default_factory=dict[tuple[str | int, ...], int]
+    )
 
     @property
     def profile(self) -> str:
@@ -122,8 +126,10 @@ def settle(arguments: argparse.Namespace, names: Collection[str] | None = None) 
     settings = load_settings(arguments.settings)
     # A table of the command line's own stands for its language, and the other way round.
     given = {name for name in CHOICE_OF_TABLE if getattr(arguments, name) is not None}
-    passed_over = {"language", "grade"} if "table" in given else {"table"} if given else set()
-    settled = set()
+    passed_over: set[str] = (
+        {"language", "grade"} if "table" in given else {"table"} if given else set()
+    )
+    settled: set[str] = set()
     for option in held_in(FILE):
         name = option.name
         if name == "profile" or (names is not None and name not in names):
@@ -308,7 +314,8 @@ def save_profile(path: Path, profile: str, model: Model) -> str:
             table[step] = tomlkit.table(is_super_table=step != steps[-1])
         table = table[step]
     values = kept_values(model.style)
-    table.update(values)
+    for name, value in values.items():
+        table[name] = value
     after = tomlkit.dumps(tree)
     written = parse_settings(after, path)
     saved = written.tuning(profile, model)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     ]
 
 
-def _table(name: str, place: str, check: Callable[[Any], None]) -> type[Table]:
+def _table(name: str, place: str, check: Callable[[Any], None]) -> Any:
     """Make the type of a table of the file from the options that hold in it."""
 
     def check_all(table: Table) -> None:
@@ -40,8 +40,8 @@ def _table(name: str, place: str, check: Callable[[Any], None]) -> type[Table]:
 
 def _type(option: Option) -> Any:
     """Give the type that the value of an option has in a file."""
-    if isinstance(option.kind, tuple):
-        return Literal[option.kind]
+    if isinstance(option.choices, tuple):
+        return Literal[option.choices]
     return option.kind if isinstance(option.kind, type) else str
 
 

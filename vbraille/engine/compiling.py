@@ -1,7 +1,4 @@
-"""Compile all that a reading calls, so that the first one does not wait for it.
-
-python -m vbraille.engine.compiling
-"""
+"""Compile all that a reading calls, so that the first one does not wait for it."""
 
 from __future__ import annotations
 
@@ -19,7 +16,7 @@ from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.textures import Uniform
 
 
-def main() -> None:
+def compile_all() -> None:
     """Compile the ticks, the frames of `vbraille render`, those of a replay, and pictures."""
     scene = Scene(canvas=Canvas(width_mm=10.0, height_mm=10.0), elements=(Uniform(),))
     SceneMap(scene).deflections(np.zeros(1), np.zeros(1))
@@ -47,7 +44,3 @@ def main() -> None:
             target,
             frames[0],
         )
-
-
-if __name__ == "__main__":
-    main()

@@ -40,8 +40,7 @@ def come_first(priority: int) -> bool:
     priority
         Priority of the thread: of two that have something to do, the higher number runs.
     """
-    gc.collect()
-    gc.freeze()
+    gc.freeze()  # garbage, too: looking for it would take a tenth of a second
     gc.disable()
     try:
         # Threads that a driver starts are not first in line: RESET_ON_FORK.

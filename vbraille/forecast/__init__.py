@@ -1,4 +1,4 @@
-"""What a study will show before anybody takes part: power, pilots, and maps of predictions.
+"""Forecasts of a study before it begins: power, pilots, and maps of predictions.
 
 `workers` spreads work over processes. `power` simulates studies of a protocol's own design and
 analysis; `pilots` conducts its sessions with the simulated reader; `grids` asks the simulated

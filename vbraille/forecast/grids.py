@@ -1,4 +1,4 @@
-"""What the simulated reader predicts over a grid of styles, texts and speeds; no data on people.
+"""Predictions of the simulated reader over a grid of styles, texts and speeds; no data on people.
 
 Each point of the grid is read in one even pass, at 1,000 frames a second, string after string.
 """
@@ -114,7 +114,7 @@ class GridFile(Table, frozen=True, kw_only=True):
         return [dict(zip(self.varied, point, strict=True)) for point in product(*values)]
 
     def style_at(self, point: dict[str, Any]) -> BrailleStyle:
-        """How strings are shown at a point, of which the values of the style count.
+        """Style at a point, of which the values of the style count.
 
         Raises
         ------
@@ -150,7 +150,7 @@ class GridTask(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
-    """What the simulated reader read at a point: right and all characters, and right strings."""
+    """Result of the simulated reader at a point: right and all characters, and right strings."""
 
     point: dict[str, Any]
     characters: int

@@ -21,8 +21,7 @@ from vbraille.wording import setting
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from vbraille.analysis.results import Results
-    from vbraille.analysis.schemas import ResultTable
+    from vbraille.analysis.results import Results, ResultTable
     from vbraille.forecast.workers import Workers
     from vbraille.sessions.planning.protocol import Protocol
 
@@ -44,7 +43,7 @@ class PilotTask:
     text, where
         The protocol's file: its content, and what messages call it.
     participant
-        Pseudonym, which tells that nobody is meant.
+        Pseudonym, which tells that no person is meant.
     seed
         What the plan, the hand and the noise are drawn by, together with the pseudonym.
     answers
@@ -112,7 +111,7 @@ def pilot(
     folder
         New directory; or that of the same pilot, ended early, which then goes on.
     workers
-        Who conducts the sessions; they are the same whoever does.
+        Processes that conduct the sessions, which do not depend on their number.
     noise
         Noise of the simulated reader.
     seed

@@ -72,7 +72,7 @@ class PowerRow:
 
 @dataclass(frozen=True, slots=True)
 class PowerTable:
-    """What a simulation of power gave.
+    """Result of a simulation of power.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ class PowerTable:
 
 @dataclass(frozen=True, slots=True)
 class PowerQuestion:
-    """What is asked of a simulation of power.
+    """Question to a simulation of power.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ class PowerQuestion:
             )
 
     def plan(self) -> StudyPlan:
-        """What is simulated: the trials of the protocol's plans, and the shares."""
+        """Plan of the simulation: the trials of the protocol's plans, and the shares."""
         shares = shares_of(self.protocol, self.effect)
         choosing = isinstance(self.protocol.design, Choice)
         if choosing and len(self.protocol.conditions) > 1:
@@ -260,7 +260,7 @@ def power(
     finished = sum(tasks[number].studies for number in kept.found)
     if not finished and ended is not None:
         raise ended
-    # In the order of the tasks, whoever was first.
+    # In the order of the tasks, whichever was first.
     counted = np.sum([kept.found[number] for number in sorted(kept.found)], axis=0)
     rows = tuple(_rows(question, plan, counted, finished))
     return PowerTable(_about(question, plan, finished), rows, ended)

@@ -38,7 +38,7 @@ ALPHA = 0.05  # level at which a difference counts as found
 
 @dataclass(frozen=True, slots=True)
 class StudyPlan:
-    """What is simulated and tested, the same in every study.
+    """Simulation and test, the same in every study.
 
     Parameters
     ----------

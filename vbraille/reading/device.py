@@ -463,9 +463,12 @@ class OpenDevice:
 
     def _take(self, events: list[Event]) -> None:
         """Have buttons and knobs of the device do what keys do."""
-        for event in () if self._view is None else events:
+        view = self._view
+        if view is None:
+            return
+        for event in events:
             if isinstance(event, Button) and event.pressed and self.placing is not Placing.STOP:
-                self._view.listener().press_button(event.number)
+                view.listener().press_button(event.number)
             elif isinstance(event, Knob) and self._reader is not None:
                 self._knobs.turn(self._reader, event.number, event.value, time.monotonic())
         if self._reader is not None:

@@ -10,6 +10,7 @@ import codecs
 import re
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
@@ -309,6 +310,11 @@ class Context(Enum):
     """A text is being typed, such as what to look for."""
     LEARNING = "learning"
     """A key says what it does, and does nothing."""
+
+
+def call(module: str, name: str, *given: Any, **named: Any) -> Any:
+    """Call a function of a module, which is loaded now; help knows commands without it."""
+    return getattr(import_module(module), name)(*given, **named)
 
 
 @dataclass(frozen=True, slots=True)

@@ -148,7 +148,11 @@ class ConsoleOutput(Output):
     """
 
     def __init__(self, print_line: Callable[[str], None]) -> None:
-        self.say = print_line
+        self._print = print_line
+
+    def say(self, sentence: str) -> None:
+        """Print a sentence."""
+        self._print(sentence)
 
 
 class SpeechOutput(Output):

@@ -1,4 +1,4 @@
-"""What a session is run with: its device, the source of its answers, and its pace."""
+"""Conditions that a session is run with: its device, the source of its answers, and its pace."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SOUNDS = ("auto", "tones", "bell", "none")
 
 @dataclass(frozen=True, slots=True)
 class LiveAddress:
-    """Where the page of a live view is served.
+    """Address at which the page of a live view is served.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class LiveAddress:
 
 @dataclass(frozen=True, slots=True)
 class Conditions:
-    """What a session is run with, beside its protocol and its plan.
+    """Conditions that a session is run with, beside its protocol and its plan.
 
     Parameters
     ----------

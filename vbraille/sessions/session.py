@@ -144,7 +144,7 @@ def head_of(
 
 
 def _ignore(_sentence: str) -> None:
-    """Ignore a sentence: this is where sentences go that nobody wants to hear."""
+    """Ignore a sentence."""
 
 
 def _nothing() -> None:
@@ -205,6 +205,7 @@ class Session:
         self.progress = progress
         self.fields = told_fields(protocol, {})
         self._begun = False  # whether the session is on the disk
+        self._resumed: Record | None = None  # as it was read to be resumed
         self._drawn = False  # whether the seed was drawn, since none was given
         # The simulated hand differs between participants, and each time that a session is resumed.
         drawn = f"{plan.protocol} {plan.participant} {plan.seed} hand {len(progress.runs)}"
@@ -330,11 +331,12 @@ class Session:
         conditions = replace(began, **changed)
         session = cls(record.folder, record.protocol, record.plan, conditions, progress, engine)
         session._begun = True
+        session._resumed = record
         return session
 
     @property
     def record(self) -> Record:
-        """What the session's directory holds now; the directory exists once the session was run."""
+        """Content of the session's directory, which exists once the session was run."""
         return load(self.folder)
 
     @property
@@ -453,8 +455,10 @@ class Session:
                 if self._drawn:
                     warn(f"seed: {self.plan.seed}")
                 say(f"session: {self.folder}")
+            # Its journal is read again once it is locked; all else cannot change meanwhile.
+            record, self._resumed = self._resumed or self.record, None
             self.progress = apparatus.run(
-                self.record,
+                record,
                 why="start" if begins else "resume",
                 spec=self.conditions.device,
                 hand=self.conditions.hand,
@@ -520,7 +524,7 @@ def usual_view(
     live = conditions.live
     if live is None:
         return None
-    # Imported here, since a session that nobody watches needs none of it.
+    # Imported here, since a session without a live view needs none of it.
     from vbraille.live.monitor import Monitor
     from vbraille.sessions.running.liveview import LOOPBACK, SessionView
 

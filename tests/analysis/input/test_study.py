@@ -12,7 +12,7 @@ from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.study import distinct_names, load_study
 from vbraille.analysis.input.trials import written
 from vbraille.analysis.measures.legibility import strings
-from vbraille.analysis.schemas import to_csv as frame_to_csv
+from vbraille.analysis.results import to_csv as frame_to_csv
 from vbraille.errors import InputError
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import builtin_text, parse_protocol

@@ -16,7 +16,7 @@ from vbraille.analysis.input.trials import (
     natural,
     written,
 )
-from vbraille.analysis.schemas import to_csv
+from vbraille.analysis.results import to_csv
 
 
 @pytest.mark.parametrize(

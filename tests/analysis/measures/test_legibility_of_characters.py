@@ -17,7 +17,7 @@ from vbraille.analysis.measures.legibility import (
     over_participants,
     strings,
 )
-from vbraille.analysis.schemas import mean_or_none
+from vbraille.analysis.results import mean_or_none
 from vbraille.analysis.statistics.intervals import mean_share, wilson
 
 # P1 has a right in 3 of 4 trials of T0 and in none of one of T25, P2 in one of one.

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 from tests.analysis.making import table_of
 from tests.pictures.charts import bars, matrix, runs
-from vbraille.analysis.results import Chapter, ReportFigure, Results
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind
+from vbraille.analysis.results import NOTE_COLUMN, Chapter, Column, Kind, ReportFigure, Results
 
 SCRIPT = "<script>alert('1')</script>"
 NASTY = (

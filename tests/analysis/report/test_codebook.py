@@ -10,8 +10,7 @@ from tests.tiers import heavy
 from vbraille.analysis import analyse
 from vbraille.analysis.report.tohtml import csv_name
 from vbraille.analysis.report.written import codebook
-from vbraille.analysis.results import Chapter, Results
-from vbraille.analysis.schemas import Column, Kind
+from vbraille.analysis.results import Chapter, Column, Kind, Results
 
 SAMPLE = Path(__file__).parents[1] / "input/samples/trials.csv"
 

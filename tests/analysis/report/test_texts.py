@@ -25,8 +25,7 @@ from vbraille.analysis.report import tohtml
 from vbraille.analysis.report.tohtml import to_html
 from vbraille.analysis.report.tomarkdown import escape, to_markdown
 from vbraille.analysis.report.totext import to_json, to_lines
-from vbraille.analysis.results import Chapter, Results
-from vbraille.analysis.schemas import Column, Kind, to_csv
+from vbraille.analysis.results import Chapter, Column, Kind, Results, to_csv
 
 SVG = b"<svg xmlns='http://www.w3.org/2000/svg'/>"
 FIGURES = dict.fromkeys(("legibility", "confusions", "runs"), SVG)

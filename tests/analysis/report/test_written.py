@@ -12,7 +12,7 @@ from PIL import Image
 from tests.analysis.making import table_of
 from tests.analysis.report.made import BARE, RESULTS
 from vbraille.analysis.report.written import write_report
-from vbraille.analysis.schemas import Column, to_csv
+from vbraille.analysis.results import Column, to_csv
 from vbraille.errors import InputError, VbrailleError
 
 WITH_TRIALS = replace(RESULTS, trials=pd.DataFrame({"a": [1], "b": [2]}))

@@ -1,1 +1,1 @@
-"""What is analysed: sessions and tables of trials, read and checked."""
+"""Data that are analysed: sessions and tables of trials, read and checked."""

@@ -75,13 +75,13 @@ class HandStroke(NamedTuple):
 
     @property
     def right(self) -> bool:
-        """Whether the stroke goes to the right."""
+        """True if the stroke goes to the right."""
         return self.to_mm > self.from_mm
 
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """How a string was read in a trial.
+    """Reading of a string in a trial.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def strokes(
 
 
 def turning_points(x_mm: NDArray[np.float64], least_mm: float) -> NDArray[np.intp]:
-    """Where a way turns, when reversals shorter than ``least_mm`` are taken out of it.
+    """Find where a way turns, once reversals shorter than ``least_mm`` are taken out of it.
 
     Parameters
     ----------

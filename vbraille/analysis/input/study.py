@@ -1,4 +1,4 @@
-"""What is analysed: sessions and tables, less what is left out by a stated rule."""
+"""Study that is analysed: sessions and tables, less what is left out by a stated rule."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Study:
     faults
         What is damaged in the sessions, in clauses.
     judgements
-        Data frame as in `vbraille.analysis.input.judgements`; None if there are none.
+        Data frame as in `vbraille.analysis.input.parsing`; None if there are none.
     """
 
     trials: pd.DataFrame | None

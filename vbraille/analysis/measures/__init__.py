@@ -1,1 +1,1 @@
-"""What is measured of trials: one module for each group of tables."""
+"""Measures of trials: one module for each group of tables."""

@@ -1,4 +1,4 @@
-"""Which cells are taken for which, and by which dots: Lévesque 2009, 3.4.2, tables 3.4 to 4.1."""
+"""Confusions of cells, and of their dots: Lévesque 2009, 3.4.2, tables 3.4 to 4.1."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from vbraille.analysis.input.trials import UNREAD_MASK, groups, masks_of, name_cell, name_string
 from vbraille.analysis.measures.legibility import cell_order, unequal_notes
-from vbraille.analysis.schemas import NOTE_COLUMN, PARTICIPANT, Column, Kind, Schema
+from vbraille.analysis.results import NOTE_COLUMN, PARTICIPANT, Column, Kind, Schema
 from vbraille.analysis.statistics import information
 from vbraille.analysis.statistics.information import transmission
 from vbraille.analysis.statistics.intervals import Unanswerable
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.analysis.input.trials import Places
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.results import ResultTable, Row
 
 MARKS = (4, 9)  # Lévesque 2009, table 4.1
 _ABOUT = (

@@ -1,4 +1,4 @@
-"""How well something was told from nothing or from another: d′, criterion and thresholds."""
+"""Detection and discrimination: d′, criterion and thresholds."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import pandas as pd
 
-from vbraille.analysis.input.judgements import LEVELS
+from vbraille.analysis.input.parsing import LEVELS
 from vbraille.analysis.input.trials import groups
-from vbraille.analysis.schemas import (
+from vbraille.analysis.results import (
     CONDITION,
     NOTE_COLUMN,
     PARTICIPANT,
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.results import ResultTable, Row
     from vbraille.analysis.statistics.detection import Detection
 
 SENSITIVITY = Schema(

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from vbraille.analysis.input.trials import Places, codes, groups, name_cell, name_string
-from vbraille.analysis.schemas import (
+from vbraille.analysis.results import (
     CONDITION,
     NOTE_COLUMN,
     PARTICIPANT,
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.analysis.input.trials import Places
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.results import ResultTable, Row
 
 LEGIBILITY = Schema(
     "legibility",

@@ -11,7 +11,7 @@ import pandas as pd
 
 from vbraille.analysis.input.trials import LeftOut
 from vbraille.analysis.input.trials import factor as ordered
-from vbraille.analysis.schemas import (
+from vbraille.analysis.results import (
     NOTE_COLUMN,
     PARTICIPANT,
     Column,
@@ -34,10 +34,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from vbraille.analysis.input.scoretable import Scores
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.results import ResultTable, Row
 
 NOTHING = "there are no scores to compare"
-MOST_LEVELS = 12  # they make 66 pairs: more t-tests than anybody should make of one table
+MOST_LEVELS = 12  # they make 66 pairs: more t-tests than should be made of one table
 MEANS = Schema(
     "level_means",
     "Means of the levels",
@@ -333,6 +333,6 @@ def _pair(means: Any, first: str, second: str, shares: bool) -> Row:
 
 
 def _without(means: Any, having: Iterable[object]) -> list[str]:
-    """Note on who is left out of those who have any score; empty if nobody is."""
+    """Note on participants left out of those who have any score; empty if there are none."""
     without = [who for who in means if who not in set(having)]
     return [f"without {', '.join(without)}: a score is missing"] if without else []

@@ -1,4 +1,4 @@
-"""How strings were read, as tables: durations, passes, speeds, patterns (Lévesque 2009, 3.4)."""
+"""Tables of the way strings were read: durations, passes, speeds, patterns (Lévesque 2009, 3.4)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scipy import stats
 
 from vbraille.analysis.input.sessions import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
 from vbraille.analysis.input.trials import chosen, codes, factor, groups, name_string
-from vbraille.analysis.schemas import (
+from vbraille.analysis.results import (
     CONDITION,
     NOTE_COLUMN,
     PARTICIPANT,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.analysis.input.sessions import SessionTrials
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.results import ResultTable, Row
 
 _WHOSE = (
     PARTICIPANT,

@@ -1,4 +1,4 @@
-"""Which of two was chosen: Lévesque 2009, 3.3 and fig. 3.12; and what each participant prefers."""
+"""Choices of one of two (Lévesque 2009, 3.3 and fig. 3.12), and each participant's own value."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pandas as pd
 
 from vbraille.adaptive.questplus import GridAxis, geometric, nearer_quest, steps
 from vbraille.analysis.input.trials import chosen, codes
-from vbraille.analysis.schemas import (
+from vbraille.analysis.results import (
     NOTE_COLUMN,
     PARTICIPANT,
     PARTICIPANTS,
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.results import ResultTable, Row
     from vbraille.sessions.planning.protocol import Protocol
 
     Axes = tuple[GridAxis, ...]

@@ -1,4 +1,4 @@
-"""What was rated, estimated, said and noted, and how sure of it participants were."""
+"""Ratings, magnitudes, words, notes, and the confidence of answers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.analysis.input.trials import groups
-from vbraille.analysis.schemas import (
+from vbraille.analysis.results import (
     CONDITION,
     NOTE_COLUMN,
     PARTICIPANT,
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.results import ResultTable, Row
 
     Scale = tuple[float, float]
     from collections.abc import Iterable

@@ -9,7 +9,7 @@ import pandas as pd
 from scipy import stats
 
 from vbraille.analysis.input.trials import groups
-from vbraille.analysis.schemas import (
+from vbraille.analysis.results import (
     CONDITION,
     NOTE_COLUMN,
     PARTICIPANT,
@@ -26,7 +26,7 @@ from vbraille.wording import count
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.results import ResultTable, Row
 
 PAST = 10  # trials that the moving average is taken over
 _WHOSE = (

@@ -10,7 +10,7 @@ import pandas as pd
 
 from vbraille.analysis.input.trials import chosen, codes, factor
 from vbraille.analysis.measures.levels import MOST_LEVELS
-from vbraille.analysis.schemas import NOTE_COLUMN, PARTICIPANTS, Column, Kind, Schema, ends
+from vbraille.analysis.results import NOTE_COLUMN, PARTICIPANTS, Column, Kind, Schema, ends
 from vbraille.analysis.statistics.anova import orthonormal_contrasts
 from vbraille.analysis.statistics.intervals import (
     FEWEST_PARTICIPANTS,
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.results import ResultTable, Row
     from vbraille.analysis.statistics.trialsmodel import TrialsFit
 
 ALIKE = "no interval: participants who have it do not differ, or are too few to tell"

@@ -13,18 +13,17 @@ from typing import TYPE_CHECKING
 from urllib.parse import quote
 from xml.etree import ElementTree
 
-from vbraille.analysis.schemas import NOTE, Kind, to_print
+from vbraille.analysis.results import NOTE, Kind, to_print
 from vbraille.pictures.words import plain
 from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from vbraille.analysis.results import ReportFigure, Results
-    from vbraille.analysis.schemas import ResultTable, Value
+    from vbraille.analysis.results import ReportFigure, Results, ResultTable, Value
 
 Element = ElementTree.Element
-ROWS = 60  # rows of a table that a report shows: nobody listens to more, and the CSV has all
+ROWS = 60  # rows of a table that a report shows: more is too long to listen to, and the CSV has all
 KINDS = ("svg", "png", "pdf")  # kinds of files that a figure is written as
 _INLINE = {"a", "span", "strong"}  # every other element begins a new line in the source
 # Nothing is fetched, whatever names there are in the data.

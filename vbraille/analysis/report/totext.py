@@ -7,16 +7,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.analysis.report.tohtml import ROWS
-from vbraille.analysis.schemas import NOTE, to_print
+from vbraille.analysis.results import NOTE, to_print
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.analysis.results import Results
-    from vbraille.analysis.schemas import Column, ResultTable, Value
+    from vbraille.analysis.results import Column, Results, ResultTable, Value
 
-# One value a line, for whoever compares two files; json's own indenting takes ten times as long.
+# One value a line, so that two files can be compared; json's own indenting takes ten times as long.
 _SEPARATOR = ",\n"
 _ENCODE = json.JSONEncoder(
     ensure_ascii=False, allow_nan=False, separators=(_SEPARATOR, ": ")

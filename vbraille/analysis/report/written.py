@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from vbraille.analysis.report.tohtml import KINDS, csv_name, figure_name, to_html
 from vbraille.analysis.report.tomarkdown import to_markdown
 from vbraille.analysis.report.totext import to_json
-from vbraille.analysis.schemas import Kind, to_csv
+from vbraille.analysis.results import Kind, to_csv
 from vbraille.files import check_free, write_folder
 from vbraille.sessions.record.codebook import CodebookEntry, entry_of, to_codebook, unit_of
 from vbraille.sessions.record.export import encode
@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from vbraille.analysis.results import Results
-    from vbraille.analysis.schemas import Column, ResultTable
+    from vbraille.analysis.results import Column, Results, ResultTable
 
 PAGE, TEXT, NUMBERS = "report.html", "report.md", "results.json"
 TRIALS = "trials.csv"

@@ -1,4 +1,4 @@
-"""What is worked out of legibility sessions: intervals, tests, scales, information.
+"""Statistics of plain numbers: intervals, tests, scales, information.
 
 `intervals`
     Intervals of proportions, means, shares and correlations; corrections of p; the error of a

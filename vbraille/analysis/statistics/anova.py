@@ -139,7 +139,7 @@ def anova(
     Unanswerable
         If there are no scores, a factor has one level, there are over 2000 cells, fewer than two
         participants have a score in each, a participant is in two groups, or some combination of
-        groups has nobody or no group has two.
+        groups is empty or no group has two.
     ValueError
         If there are no or too many factors.
     """
@@ -319,7 +319,7 @@ def _effects(
     error, df_error = float((left**2).sum()), n - whole.shape[1]
     for own, columns in parts:
         if not own and not acting:
-            continue  # that the mean of everything is 0 is nobody's question
+            continue  # a mean of 0 is no question
         rest = [others for name, others in parts if name != own]
         own_columns = np.linalg.qr(_left_over(columns, np.hstack(rest)) if rest else columns)[0]
         effect = float(((own_columns.T @ z) ** 2).sum())
@@ -446,7 +446,7 @@ def _columns(names: Sequence[str], groups: Sequence[Cell]) -> list[tuple[Cell, F
 def _too_few(
     complete: tuple[str, ...], dropped: tuple[tuple[str, tuple[Cell, ...]], ...], cells: list[Cell]
 ) -> str:
-    """Reason why there is nobody, or nobody else, to compare."""
+    """Reason why there are too few participants to compare."""
     nobody = [c for c in cells if not complete and all(c in gap for _, gap in dropped)]
     if nobody:
         return f"nobody has a score for '{', '.join(nobody[0])}'; each participant needs every cell"

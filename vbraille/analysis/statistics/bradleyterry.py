@@ -67,7 +67,7 @@ class Preference(NamedTuple):
 
 
 class PositionBias(NamedTuple):
-    """How often the first of a pair was chosen: share, interval and p, which may be None."""
+    """Share of choices of the first of a pair, with its interval and p, which may be None."""
 
     share_first: float
     interval: Interval | None
@@ -143,7 +143,7 @@ def preferred(
     Raises
     ------
     Unanswerable
-        If there are no comparisons, or nobody's comparisons make a scale with a highest value.
+        If there are no comparisons, or no participant's make a scale with a highest value.
     """
     values = np.asarray(values, np.float64)
     wins = _wins_of_each(values.size, first, second, chosen, groups)
@@ -185,7 +185,7 @@ def preferred(
 
 
 def position_bias(chosen: ArrayLike, groups: ArrayLike) -> PositionBias:
-    """Whether the first of two is chosen more or less often than the second.
+    """True if the first of two is chosen more or less often than the second.
 
     For one participant: the share of the first, Wilson's interval, and the exact binomial test
     against a half. For several: the mean of their own shares, its interval for the population that
@@ -230,7 +230,7 @@ def position_bias(chosen: ArrayLike, groups: ArrayLike) -> PositionBias:
 def _wins_of_each(
     k: int, first: ArrayLike, second: ArrayLike, chosen: ArrayLike, groups: ArrayLike
 ) -> NDArray[np.int64]:
-    """How often each participant chose one value over another, int64[participants, k, k]."""
+    """Count each participant's choices of one value over another, int64[participants, k, k]."""
     one, two, choice, who = (np.asarray(column) for column in (first, second, chosen, groups))
     names, index = np.unique(who, return_inverse=True)
     wins = np.zeros((len(names), k, k), dtype=np.int64)
@@ -290,7 +290,7 @@ def _peaks(values: NDArray[np.float64], strengths: NDArray[np.float64]) -> NDArr
 
 
 def connected(wins: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether comparisons lead from every value to every other, bool[r] of float64[r, k, k]."""
+    """True if comparisons lead from every value to every other, bool[r] of float64[r, k, k]."""
     k = wins.shape[-1]
     ways = (wins + wins.swapaxes(1, 2) > 0) + np.eye(k)
     for _ in range(k.bit_length()):  # each squaring doubles the length of the ways

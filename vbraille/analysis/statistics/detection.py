@@ -1,4 +1,4 @@
-"""How well two things are told apart: d′ and criterion, with intervals.
+"""Sensitivity d′ and criterion, with intervals.
 
 For yes and no, for which of two, and for same or different (Macmillan and Creelman 2005, ch. 1, 2,
 7 and 9). Shares of 0 and 1 have no z; the log-linear correction adds half an answer to each

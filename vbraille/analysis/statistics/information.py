@@ -1,4 +1,4 @@
-"""How much came through: accuracy, kappa and transmitted information of a table of answers.
+"""Accuracy, kappa and transmitted information of a table of answers.
 
 Every function takes counts of answers, int[rows, columns]: row i was presented, column j was
 answered. The first columns are the rows' own, in their order; columns beyond them
@@ -209,7 +209,7 @@ def _right_answers(
 def _concentrations(
     errors: NDArray[np.int64], around: NDArray[np.float64], draws: int, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """How closely the errors of each character are likely to follow those of all."""
+    """Draw how closely the errors of each character follow those of all."""
     seen = errors > 0
     counts, shares, sums = errors[seen], around[seen], errors.sum(axis=1)
     likely = [

@@ -46,7 +46,7 @@ SHAPES: Mapping[str, Curve] = MappingProxyType(
         "weibull": lambda x, m, s: -np.expm1(-math.log(2) * (x / m) ** (1 / s)),
     }
 )
-"""What F may be: of the level, the threshold and the spread. The Weibull's spread is one over its
+"""Forms of F, of the level, the threshold and the spread. The Weibull's spread is one over its
 exponent, and its levels are above 0."""
 
 

@@ -76,7 +76,7 @@ class Contrasts:
     ----------
     estimates, errors : float64[studies]
         The combination and its standard error. The error is NaN where participants are too few
-        or do not differ at all, so that nobody sees how they vary.
+        or do not differ at all, so that it is not seen how they vary.
     degrees : float64[studies]
         Degrees of freedom of t, 1 or more; NaN where the error is.
     """
@@ -180,7 +180,7 @@ def combine(fit: TrialsFit, weights: ArrayLike) -> Contrasts:
         raise Unanswerable("one participant; how people differ is not seen")
     adjusted, alone = adjusted_weights(fit, ell)
     variance = (np.einsum("skp,skp->sk", adjusted, fit.scores) ** 2).sum(axis=1)
-    # Firth's penalty leaves a sum of scores that is not 0 even if everybody is alike.
+    # Firth's penalty leaves a sum of scores that is not 0 even if all are alike.
     left = np.einsum("spq,sq->sp", fit.spread, fit.scores.sum(axis=1))
     own = fit.scores - np.einsum("skpq,sq->skp", fit.leverages, left)
     differing = (np.einsum("skp,skp->sk", adjusted, own) ** 2).sum(axis=1)
@@ -299,7 +299,7 @@ def _check_rank(information: NDArray[np.float64]) -> None:
 FEWEST_DEGREES = 1.0  # of the error; with fewer F tells nothing
 _SINGULAR = 1e-9  # of the variance by chance, below which participants do not differ in something
 TO_D = math.sqrt(3) / math.pi
-"""What a logarithm of an odds ratio is multiplied by for Cohen's d of what lies beneath: the
+"""Factor from a logarithm of an odds ratio to Cohen's d of what lies beneath: the
 standard deviation of the logistic distribution (Hasselblad and Hedges 1995)."""
 
 
@@ -361,7 +361,7 @@ def difference(
 
 
 def tells_difference(correct: ArrayLike, trials: ArrayLike) -> NDArray[np.bool_]:
-    """Whether three participants or more have something wrong, and as many something right.
+    """True if three participants or more have something wrong, and as many something right.
 
     Where fewer have, `difference` is wider than it says: of three people near the ceiling it then
     holds the truth 99 to 100 times in 100.

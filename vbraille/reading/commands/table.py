@@ -6,11 +6,20 @@ Names are BRLTTY's where it has the command.
 from __future__ import annotations
 
 from functools import partial
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, ParamSpec
 
 from vbraille.config.options import knobs
-from vbraille.reading.keys import ANY, LONGEST, TURNED, Bindings, Bound, Command, Context, bind
+from vbraille.reading.keys import (
+    ANY,
+    LONGEST,
+    TURNED,
+    Bindings,
+    Bound,
+    Command,
+    Context,
+    bind,
+    call,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -47,11 +56,6 @@ class Deferred:
     def __getattr__(self, name: str) -> Callable[..., Any]:
         """Give the function of a name, whether or not there is one."""
         return partial(call, self._module, name)
-
-
-def call(module: str, name: str, *given: Any, **named: Any) -> Any:
-    """Call a function of a module by its name."""
-    return getattr(import_module(module), name)(*given, **named)
 
 
 if not TYPE_CHECKING:

@@ -103,7 +103,7 @@ _LEFT_DOTS, _RIGHT_DOTS = 0b01000111, 0b10111000
 
 
 class _Design(Table, frozen=True, kw_only=True, tag_field="kind"):
-    """What designs of every kind have in common.
+    """Common part of the designs of every kind.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ class _Design(Table, frozen=True, kw_only=True, tag_field="kind"):
         return Masks(), Masks()
 
     def content(self, item: Item) -> Item:
-        """What an item shows; equal for two items that count as showing the same."""
+        """Content of an item; equal for two items that count as showing the same."""
         return item
 
 
@@ -424,7 +424,7 @@ class Rules(Table, frozen=True):
 
     @property
     def searched(self) -> bool:
-        """Whether an order that keeps the rules must be searched for."""
+        """True if an order that keeps the rules must be searched for."""
         return bool(self.at_most_running) or self.balanced_quarters
 
     def check_letters(self, lines: Iterable[tuple[int, ...]]) -> None:

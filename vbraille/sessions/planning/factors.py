@@ -71,7 +71,7 @@ class Factor(Table, frozen=True, kw_only=True):
 
     @property
     def changes(self) -> dict[str, Any]:
-        """What the levels change, with the values of the first."""
+        """Style that the levels change, with the values of the first."""
         return self.levels[0].changes
 
     def level(self, name: str) -> Condition:

@@ -24,7 +24,7 @@ _TRIES = 2000  # for each string that a rule draws
 
 
 class Items(Table, frozen=True, kw_only=True):
-    """Where the strings of ``kind = "items"`` come from.
+    """Source of the strings of ``kind = "items"``.
 
     Parameters
     ----------

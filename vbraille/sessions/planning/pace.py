@@ -207,7 +207,7 @@ class ParticipantField(Table, frozen=True):
 
 
 class FaultRules(Table, frozen=True):
-    """What is done about a trial in which the device failed.
+    """Rule for a trial in which the device failed.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ class FixedProcedure(Table, frozen=True, tag="fixed", tag_field="kind"):
 
 
 class _ByAnswersTable(Table, frozen=True, kw_only=True, tag_field="kind"):
-    """What procedures that go by the answers have in common.
+    """Common part of the procedures that go by the answers.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
 
     @property
     def stop(self) -> StopRule:
-        """When enough was asked in a condition."""
+        """Rule that ends the questions of a condition."""
         return StopRule(self.trials, self.sd, self.width, self.at_least, self.seconds)
 
     def check(self, design: Design) -> None:
@@ -308,7 +308,7 @@ class StaircaseProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="stairc
 
     @property
     def stop(self) -> StopRule:
-        """When enough was asked in a condition."""
+        """Rule that ends the questions of a condition."""
         return StopRule(self.trials, seconds=self.seconds)
 
     def check(self, design: Design) -> None:

@@ -98,7 +98,7 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
 
 
 class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
-    """What a session shows, and how it is conducted.
+    """A session's stimuli, and the way in which it is conducted.
 
     Parameters
     ----------
@@ -187,12 +187,12 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
 
     @cached_property
     def style(self) -> BrailleStyle:
-        """How strings are shown on the display."""
+        """Style in which strings are shown on the display."""
         return self.display.style(self.model)
 
     @property
     def mapping(self) -> Mapping:
-        """Which dots the rows of the display's array show."""
+        """Mapping of dots to the rows of the display's array."""
         return self.style.mapping
 
     @property
@@ -254,7 +254,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
 
     @property
     def written(self) -> bool:
-        """Whether strings are texts, whose cells are made by the tables of the conditions."""
+        """True if strings are texts, whose cells are made by the tables of the conditions."""
         looks = (self.display, *self.listed, *(f.levels[0] for f in self.factors))
         return any(look.table is not None for look in looks)
 
@@ -271,18 +271,18 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
 
     @property
     def balanced(self) -> bool:
-        """Whether participants differ in the order of the conditions."""
+        """True if participants differ in the order of the conditions."""
         by_blocks = self.design.blocks == "conditions" and self.block_order in ("balanced", None)
         return by_blocks and len(self.conditions) > 1
 
     @property
     def task(self) -> str:
-        """What the participant does: "strings" for reading strings, "choice" for comparing two."""
+        """Task of the participant: "strings" for reading strings, "choice" for comparing two."""
         return "choice" if isinstance(self.design, Choice) else "strings"
 
     @property
     def parameter(self) -> str | None:
-        """What is compared, such as "dot_width_mm" or "contrast"; None if strings are read."""
+        """Parameter compared, such as "dot_width_mm" or "contrast"; None if strings are read."""
         return self.design.parameter if isinstance(self.design, Choice) else None
 
     @property
@@ -291,14 +291,14 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         return self.question or usual_question(2 if self.task == "choice" else 1)
 
     def cell_spelling(self, stimulus: Stimulus) -> CellSpelling:
-        """How cells may be typed in answers about a stimulus."""
+        """Spelling of cells in answers about a stimulus."""
         if stimulus.conventional:
             return CellSpelling(self.keys, _ALL_DOTS)
         return CellSpelling(self.keys, self.mapping_of(stimulus).shown_dots())
 
     @property
     def adaptive(self) -> bool:
-        """Whether it depends on the answers which trials there are."""
+        """True if it depends on the answers which trials there are."""
         return not isinstance(self.procedure, FixedProcedure)
 
     @property
@@ -317,7 +317,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         return self.display.lead_cells
 
     def style_of(self, condition: Condition) -> BrailleStyle:
-        """How strings are shown in a condition.
+        """Style in which strings are shown in a condition.
 
         Raises
         ------
@@ -335,12 +335,12 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         return {}
 
     def place_of(self, condition: Condition) -> str:
-        """Where the strings of a condition stand: "device", or "brlapi"."""
+        """Place of a condition's strings: "device", or "brlapi"."""
         return condition.on or self.display.on or "device"
 
     @property
     def needs_conventional(self) -> bool:
-        """Whether a conventional display is needed."""
+        """True if a conventional display is needed."""
         return bool(self.conventional.reference) or any(
             self.place_of(condition) == CONVENTIONAL for condition in self.conditions
         )
@@ -385,7 +385,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         return with_value(stimulus, self.parameter, value)
 
     def mapping_of(self, stimulus: Stimulus) -> Mapping:
-        """Which dots the rows of the array show while a stimulus is felt."""
+        """Mapping of dots to the array's rows while a stimulus is felt."""
         return self.mapping if stimulus.mapping is None else mapping_named(stimulus.mapping)
 
     def program(self, stimulus: Stimulus, tuning: Tuning) -> Program:

@@ -154,7 +154,7 @@ def _files(
 
 
 def _names_tables(file: TomlFile) -> bool:
-    """Whether a protocol names braille tables, so that its strings are texts."""
+    """True if a protocol names braille tables, so that its strings are texts."""
     looks = file.read(_Looks)
     levels = [level for factor in _tables(looks.factors) for level in _tables(factor.get("levels"))]
     return any(
@@ -316,7 +316,7 @@ def _check_names(protocol: Protocol) -> None:
 
 
 def _ungrouped(protocol: Protocol) -> bool:
-    """Whether the groups of a protocol have tables of their own, and none is chosen."""
+    """True if the groups of a protocol have tables of their own, and none is chosen."""
     own = any(f.between and f.levels[0].table is not None for f in protocol.factors)
     return own and not protocol.group
 

@@ -55,7 +55,7 @@ LEAST_MAGNITUDE = 1e-3  # smallest magnitude given, as a share of the modulus: n
 
 @dataclass(frozen=True, slots=True)
 class CellSpelling:
-    """How cells may be typed in answers.
+    """Spelling of cells in answers.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class CellSpelling:
 
 
 class ConfidenceScale(Table, frozen=True, kw_only=True):
-    """The scale on which somebody says how sure an answer is.
+    """The scale on which participants say how sure an answer is.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ class ConfidenceScale(Table, frozen=True, kw_only=True):
 
     @property
     def typed(self) -> str:
-        """What may be typed, in words for people."""
+        """Words for what may be typed."""
         return f"{self.least} to {self.most}"
 
     def parse(self, text: str) -> int:
@@ -113,7 +113,7 @@ class ConfidenceScale(Table, frozen=True, kw_only=True):
 
 
 class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
-    """What questions of every kind have in common.
+    """Common part of the questions of every kind.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
         raise NotImplementedError
 
     def positive(self, trial: Trial, answer: str, /) -> bool:
-        """Whether an answer counts as a positive one for a procedure."""
+        """True if an answer counts as a positive one for a procedure."""
         return self.good(trial, answer)
 
     def outcome(self, _trial: Trial, _answer: str, /) -> str:
@@ -202,7 +202,7 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
         return ""
 
     def good(self, trial: Trial, answer: str, /) -> bool:
-        """Whether an answer is right."""
+        """True if an answer is right."""
         return self.outcome(trial, answer) in GOOD
 
     def was(self, _trial: Trial, _keys: dict[str, int], /) -> str:
@@ -293,7 +293,7 @@ def read_step(text: str, least: int, most: int) -> int:
 
 
 def is_whole(word: str) -> bool:
-    """Whether a word is a whole number."""
+    """True if a word is a whole number."""
     return len(word) < 10 and word.removeprefix("-").isdecimal()
 
 
@@ -358,7 +358,7 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
     Parameters
     ----------
     right
-        Which of two values is right; None if it is what somebody likes, and nothing is right.
+        Which of two values is right; None if it is what participants like, and nothing is right.
     reference
         Value that the nearest one is nearest to.
 
@@ -463,7 +463,7 @@ class OneOfTwo(QuestionTable, frozen=True, kw_only=True):
         return f"{first} or {second} ({first[0]} or {second[0]})"
 
     def has_signal(self, trial: Trial) -> bool:
-        """Whether the trial has a signal, such as a difference."""
+        """True if the trial has a signal, such as a difference."""
         raise NotImplementedError
 
     def outcome(self, trial: Trial, answer: str, /) -> str:
@@ -504,7 +504,7 @@ class SameQuestion(OneOfTwo, frozen=True, kw_only=True, tag="same-different"):
     )
 
     def has_signal(self, trial: Trial) -> bool:
-        """Whether the two differ in anything."""
+        """True if the two differ in anything."""
         return trial.stimuli[0] != trial.stimuli[1]
 
     def was(self, trial: Trial, _keys: dict[str, int], /) -> str:
@@ -533,11 +533,11 @@ class DetectQuestion(OneOfTwo, frozen=True, kw_only=True, tag="detect"):
     )
 
     def positive(self, _trial: Trial, answer: str, /) -> bool:
-        """Whether the answer is yes."""
+        """True if the answer is yes."""
         return answer == YES
 
     def has_signal(self, trial: Trial) -> bool:
-        """Whether there was anything to be felt in the cells asked for."""
+        """True if there was anything to be felt in the cells asked for."""
         (stimulus,) = trial.stimuli
         return stimulus.tuning.contrast > 0 and any(stimulus.masks[slice(*trial.asked)])
 
@@ -644,7 +644,7 @@ class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude
     ----------
     modulus
         Number that the participant is told for the first or a standard stimulus; None if
-        everybody chooses.
+        participants choose.
 
     Raises
     ------

@@ -27,7 +27,7 @@ _STARTS, _EXCHANGES, _PARTNERS, _DRAWS = 40, 30_000, 25, 40
 
 
 def limited(protocol: Protocol) -> dict[str, Callable[[Shown], str]]:
-    """What ``at_most_running`` may name, each with the level that an item in a condition has."""
+    """Names that ``at_most_running`` may have, each with the level of an item in a condition."""
     levels = {c.name: protocol.levels(c.name) for c in protocol.conditions}
 
     def level(name: str, shown: Shown) -> str:
@@ -78,7 +78,7 @@ class _Limit:
     most: int
 
     def broken(self, start: int) -> bool:
-        """Whether the places from a start on hold one value too often running."""
+        """True if the places from a start on hold one value too often running."""
         stop = start + self.most + 1
         if start < 0 or stop > len(self.values):
             return False

@@ -94,7 +94,7 @@ class Stimulus:
 
     @property
     def conventional(self) -> bool:
-        """Whether it stands on the conventional display, and not on the device."""
+        """True if it stands on the conventional display, and not on the device."""
         return self.on is not None
 
 
@@ -155,12 +155,12 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def practice(self) -> bool:
-        """Whether the trial is practice."""
+        """True if the trial is practice."""
         return self.block == 0
 
     @property
     def item(self) -> tuple[int, ...]:
-        """What is shown, whatever the condition: dot masks of the cells asked for, or the text."""
+        """Content, whatever the condition: dot masks of the cells asked for, or the text."""
         stimulus = self.stimuli[0]
         if stimulus.text is not None:
             return WrittenText.of(stimulus.text)

@@ -198,7 +198,7 @@ class DisplayStyle(Style, frozen=True, kw_only=True):
             raise ValueError(f"lead_cells is {self.lead_cells}; it must be 0 to {MOST_LEAD}")
 
     def style(self, model: Model) -> BrailleStyle:
-        """How strings are shown on a model.
+        """Style in which strings are shown on a model.
 
         Raises
         ------

@@ -377,7 +377,7 @@ def _read_people(folder: Path) -> dict[str, str]:
 
 
 def _check_pseudonym(folder: Path, people: dict[str, str], pseudonym: str) -> None:
-    """Check that nobody else in the dataset could be mistaken for this participant."""
+    """Check that no other participant of the dataset could be mistaken for this one."""
     for other in people.values():
         if other != pseudonym and alike(other, pseudonym):
             raise InputError(
@@ -423,7 +423,7 @@ def _write(folder: Path, new: dict[Path, bytes], people: str, table: bytes) -> N
         write_file(folder / people, table, replace=True, durable=True)
     except BaseException as fault:
         for path in reversed(written):
-            with suppress(OSError):  # a directory that somebody else has used meanwhile stays
+            with suppress(OSError):  # a directory that was used meanwhile stays
                 path.rmdir() if path.is_dir() else path.unlink()
         if isinstance(fault, OSError):
             raise InputError(f"{folder} cannot be written: {fault.strerror}") from None

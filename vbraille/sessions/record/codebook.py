@@ -1,4 +1,4 @@
-r"""What each column of a table holds, with its unit and its values: a codebook.
+r"""Codebook: the meaning of each column of a table, with its unit and its values.
 
 The same entries become the codebook of a CSV file and the JSON beside a table of BIDS.
 
@@ -115,7 +115,7 @@ def designed(protocol: Protocol, trial: Trial) -> dict[str, str]:
 
 
 def describe_design(protocol: Protocol) -> dict[str, str]:
-    """What the columns of a protocol's factors and items hold, by their names."""
+    """Describe the columns of a protocol's factors and items, by their names."""
     told: dict[str, str] = {}
     for factor in protocol.factors:
         whose = "the participant's" if factor.between else "the condition's"
@@ -145,7 +145,7 @@ _VALUES = {
 
 @dataclass(frozen=True, slots=True)
 class CodebookEntry:
-    """What a column holds.
+    """Description of a column.
 
     Parameters
     ----------
@@ -198,7 +198,7 @@ def entry_of(name: str, asked: Mapping[str, str] | None = None) -> CodebookEntry
 
 
 def _designed(name: str) -> str:
-    """What a column of a lab's own design holds; empty if it is no such column."""
+    """Meaning of a column of a lab's own design; empty if it is no such column."""
     if name == "group":
         return "name of the participant's group"
     if name == "catch":

@@ -123,7 +123,7 @@ class Session(JournalEvent, frozen=True, forbid_unknown_fields=False, kw_only=Tr
 
 
 class LiveView(msgspec.Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
-    """How the live view shows a run to those who watch it.
+    """View that the live view gives of a run.
 
     Parameters
     ----------

@@ -296,7 +296,7 @@ def _asked(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
 
 
 def shown_on(protocol: Protocol, trial: Trial) -> str:
-    """Where a trial's string stood: "device", "conventional" for such a display, or "paper"."""
+    """Place of a trial's string: "device", "conventional" for such a display, or "paper"."""
     if trial.stimuli[0].conventional:
         return "conventional"
     return protocol.medium

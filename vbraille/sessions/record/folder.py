@@ -55,7 +55,7 @@ _TOLD_VERSIONS = ("numpy", "numba", "pyserial", "cobs", "h5py")
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """What a session's directory holds.
+    """Content of a session's directory.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class Record:
     procedure: Procedure
 
     def progress(self) -> Progress:
-        """How far the session had come by then."""
+        """Progress of the session by then."""
         return Progress(self.plan, self.journal.events, self.procedure)
 
 
@@ -292,7 +292,7 @@ def _no_journal(folder: Path, error: OSError) -> VbrailleError:
 
 
 def _is_member(path: Path, trace: Trace) -> bool:
-    """Whether the torn end of a trace is a whole chunk, which only states a wrong length."""
+    """True if the torn end of a trace is a whole chunk, which only states a wrong length."""
     try:
         gzip.decompress(path.read_bytes()[-trace.torn_bytes :])
     except (OSError, EOFError, zlib.error):
@@ -313,7 +313,7 @@ def label_of(pseudonym: str) -> str:
 
 
 def alike(one: str, other: str) -> bool:
-    """Whether two pseudonyms differ only in case, leading zeros, or signs that labels lack."""
+    """True if two pseudonyms differ only in case, leading zeros, or signs that labels lack."""
     return _plain(one) == _plain(other) or label_of(one).lower() == label_of(other).lower()
 
 

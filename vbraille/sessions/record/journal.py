@@ -335,7 +335,7 @@ def salvage(content: bytes) -> JournalContents:
 
 
 def _read_lines(lines: list[bytes]) -> tuple[list[bool], list[JournalEvent | None]]:
-    """Whether each line is whole; and its event, kept even if its checksum alone is damaged."""
+    """True if each line is whole; and its event, kept even if its checksum alone is damaged."""
     whole: list[bool] = []
     events: list[JournalEvent | None] = []
     written, reckoned = {0}, set[int]()  # checksums that the line before may have

@@ -1,4 +1,4 @@
-"""How far a session has come, trial by trial, according to its events."""
+"""Progress of a session, trial by trial, according to its events."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class TrialRecord:
-    """What is known about a trial.
+    """Record of a trial.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ class TrialRecord:
         return structs.replace(self.trial, stimuli=Stimuli(stimuli))
 
 
-# What moved the carriage if somebody at the live view was the hand.
+# Mover of the carriage if a page of the live view was the hand.
 POINTED = "simulated:pointer"
 
 
@@ -161,7 +161,7 @@ class Progress:
     ended : bool
         Whether the session has ended for good.
     pointed : bool
-        Whether somebody at the live view is the hand.
+        Whether a page of the live view is the hand.
     torn_bytes : int
         Length of all torn lines that were moved out of the journal.
     """
@@ -234,7 +234,7 @@ class Progress:
         return f"{number}" if self.planned is None else f"{number} of {self.planned}"
 
     def record_of(self, trial: Trial) -> TrialRecord:
-        """What is known about a trial, practice or not."""
+        """Record of a trial, practice or not."""
         return (self.practice if trial.practice else self.trials)[trial.number]
 
     def take(self, event: JournalEvent) -> None:
@@ -413,7 +413,7 @@ def stimulus_of(showing: events.Presented) -> Stimulus:
 
 
 def _mover_of(run: events.Run) -> str:
-    """What moves the carriage in a run; empty on paper, and where the run before tells it."""
+    """Mover of the carriage in a run; empty on paper, and where the run before tells it."""
     if not run.trace or not run.spec:
         return ""
     return "simulated" if run.spec.partition(":")[0] == "sim" else "person"

@@ -357,7 +357,7 @@ def _whole(trace: memoryview) -> int:
 
 
 def _is_torn(rest: bytes) -> bool:
-    """Whether a trace that ends with this was cut short in a chunk that may have been whole."""
+    """True if a trace that ends with this was cut short in a chunk that may have been whole."""
     try:
         return not _whole(memoryview(rest))
     except ValueError:

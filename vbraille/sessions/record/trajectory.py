@@ -20,7 +20,7 @@ _COLUMNS = (0b01000111, 0b10111000)  # masks of a cell's left dots, 1, 2, 3, 7, 
 
 @dataclass(frozen=True, slots=True)
 class Duration:
-    """How long a string was read.
+    """Duration of the reading of a string.
 
     Parameters
     ----------

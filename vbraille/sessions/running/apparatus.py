@@ -39,12 +39,12 @@ if TYPE_CHECKING:
 
 
 def _nothing() -> None:
-    """Do nothing, where nobody watches."""
+    """Do nothing, where there is no live view."""
 
 
 @dataclass(slots=True)
 class Apparatus:
-    """What a run of a session needs: the engine, the responses and the signals.
+    """Apparatus of a run: the engine, the responses and the signals.
 
     Parameters
     ----------

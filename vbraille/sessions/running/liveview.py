@@ -117,7 +117,7 @@ def state_of(runner: Runner, heard: SafeSentences, *, simulated: bool = False) -
     Returns
     -------
     ViewState
-        ViewState without a number, which whoever sends it gives.
+        ViewState without a number, which its sender gives.
     """
     assert runner.device is not None, "paper cannot be watched"
     engine, protocol = runner.device.engine, runner.protocol
@@ -189,7 +189,7 @@ def _asked(protocol: Protocol, trial: Trial, stimulus: Stimulus) -> str:
 
 
 def _facts(runner: Runner) -> list[tuple[str, str]]:
-    """How far the session has come; nothing here depends on stimuli or answers."""
+    """Facts on the progress of the session; nothing here depends on stimuli or answers."""
     protocol, progress, trial = runner.protocol, runner.progress, runner.trial
     facts: list[tuple[str, str]] = []
     if trial is not None:
@@ -317,7 +317,7 @@ class SessionView:
         return tell
 
     def described(self) -> LiveView:
-        """What the journal has about the live view of a run."""
+        """Describe the live view of a run for the journal."""
         return LiveView(self._heard.blind, self._host, self._simulated)
 
     def look(self, runner: Runner) -> None:

@@ -35,7 +35,7 @@ _SERIAL = re.compile(r"serial:(.+?)(?::([1-9][0-9]{0,7}))?")
 
 @dataclass(frozen=True, slots=True)
 class Marker:
-    """What a recorder is told of an event.
+    """Message about an event to a recorder.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Marker:
 
 @dataclass(frozen=True, slots=True)
 class MarkerSpec:
-    """A recorder that is sent markers, as somebody names it.
+    """A recorder that is sent markers, by its name.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ class MarkerSpec:
 
 
 def parse_markers(text: str) -> MarkerSpec:
-    """Read how somebody names a recorder.
+    """Read the name of a recorder.
 
     Raises
     ------
@@ -134,7 +134,7 @@ class _LslStream:
 
     def __init__(self, name: str) -> None:
         try:
-            # Not a dependency, so it is looked for only where somebody asks for it.
+            # Not a dependency, so it is looked for only where it is asked for.
             self._lsl: Any = import_module("pylsl")
             info = self._lsl.StreamInfo(name, "Markers", 1, 0, "string", f"vbraille-{name}")
             self._outlet = self._lsl.StreamOutlet(info)
@@ -181,7 +181,7 @@ class _SerialPort:
 
 
 def _reason(error: Exception) -> str:
-    """What is wrong with a port, in a few words."""
+    """Say in a few words why a port fails."""
     number = getattr(error, "errno", None)
     if isinstance(number, int):
         import os
@@ -305,7 +305,7 @@ class Markers:
         self._let_go()
 
     def _sent(self, marker: Marker) -> bool:
-        """Whether a marker could be sent; a recorder that is gone is looked for again by and by."""
+        """True if a marker could be sent; a recorder that is gone is looked for again by and by."""
         try:
             if self._port is None:
                 if self._now_ns() < self._again_ns:

@@ -137,12 +137,12 @@ class Presenter:
 
     @property
     def ready(self) -> bool:
-        """Whether a trial may begin."""
+        """True if a trial may begin."""
         return not self.why
 
     @property
     def reached(self) -> bool:
-        """Whether the hand has been at the end of the stimulus."""
+        """True if the hand has been at the end of the stimulus."""
         return self.read
 
     @property
@@ -286,12 +286,12 @@ class RunEngine(Engine, Protocol):
 
     @property
     def counts(self) -> Named[str, int]:
-        """How often each thing went wrong with the device, by name; known after `close`."""
+        """Counts of what went wrong with the device, by name; known after `close`."""
         ...
 
     @property
     def calibration(self) -> dict[str, Any] | None:
-        """What is made up for in the device's actuators; known once the device is open."""
+        """Calibration of the device's actuators; known once the device is open."""
         ...
 
     def start(self) -> None:
@@ -402,12 +402,12 @@ class OnDevice(Presenter):
 
     @property
     def ready(self) -> bool:
-        """Whether the device works, and its carriage has just been at the left stop."""
+        """True if the device works, and its carriage has just been at the left stop."""
         return self._ready
 
     @property
     def reached(self) -> bool:
-        """Whether the hand has been at the end of the stimulus."""
+        """True if the hand has been at the end of the stimulus."""
         return self.read or (self._end is not None and self._end.reached)
 
     @property

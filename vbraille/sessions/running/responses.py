@@ -66,7 +66,7 @@ class TerminalKey:
             self._told = at_once
 
     def pressed(self, said: bytes) -> bool:
-        """Whether bytes that came at the beginning of a line are presses of the key alone."""
+        """True if bytes that came at the beginning of a line are presses of the key alone."""
         return self._told and not said.strip(self._key)
 
 

@@ -192,7 +192,7 @@ class Runner:
 
     @property
     def by_key(self) -> bool:
-        """Whether Enter times the trial that is open or comes next, since no device feels it."""
+        """True if Enter times the trial that is open or comes next, since no device feels it."""
         return self.presenter.by_key
 
     @property
@@ -204,18 +204,18 @@ class Runner:
 
     @property
     def read(self) -> bool:
-        """Whether the open trial has been read to its end."""
+        """True if the open trial has been read to its end."""
         return self.open_trial is not None and not self.second_to_come and self.presenter.read
 
     @property
     def second_to_come(self) -> bool:
-        """Whether a stimulus of the open trial has not been shown yet."""
+        """True if a stimulus of the open trial has not been shown yet."""
         trial = self.open_trial
         return trial is not None and self.stimulus + 1 < len(trial.stimuli)
 
     @property
     def reading(self) -> bool:
-        """Whether a stimulus is read, so that the participant's key may end it."""
+        """True if a stimulus is read, so that the participant's key may end it."""
         device = self.device
         if self.open_trial is None or device is None or device.ended or self.by_key:
             return False
@@ -223,7 +223,7 @@ class Runner:
 
     @property
     def prompt(self) -> str:
-        """What the experimenter is to type as an answer."""
+        """Words for an answer that the experimenter is to type."""
         return "the answer" if self.protocol.question is None else self.protocol.question.prompt()
 
     @property
@@ -458,7 +458,7 @@ class Runner:
         self.log(events.Go, self.open_trial)
         if self.open_trial is not None:
             self.presenter.go()
-        self.await_key(self.reading)  # whoever hears the next sentence may press it at once
+        self.await_key(self.reading)  # it may be pressed at the next sentence
 
     def press(self) -> None:
         """Take Enter off the device: reading begins by the first, and ends by the second."""
@@ -558,7 +558,7 @@ class Runner:
         self._begun_ns, self._begun_s = self._now_ns(), self.progress.t_s
 
     def _break_due(self, trial: Trial) -> bool:
-        """Whether there is a break before a trial that comes next."""
+        """True if there is a break before a trial that comes next."""
         done = self.progress.done
         if self.break_wanted:
             return True

@@ -117,14 +117,14 @@ def check_script(script: Scripted, protocol: Protocol, progress: Progress) -> No
 
 
 def _is_whole(protocol: Protocol, trial: Trial, line: str) -> bool:
-    """Whether a line has all that is asked; ValueError if it does not suit its trial."""
+    """True if a line has all that is asked; ValueError if it does not suit its trial."""
     found = find_command(line)
     _, confidence = read_line(protocol, trial, line if found is None else found[1])
     return confidence is not None or protocol.asks.confidence is None
 
 
 def _is_answer(protocol: Protocol, trial: Trial, line: str) -> bool:
-    """Whether a line is an answer and no command; ValueError if it does not suit its trial."""
+    """True if a line is an answer and no command; ValueError if it does not suit its trial."""
     found = find_command(line)
     if found is not None and found[0].word != "answer":
         return False

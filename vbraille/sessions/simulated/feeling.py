@@ -1,4 +1,4 @@
-"""What the simulated reader feels of a trial: cells, strengths, lengths."""
+"""Sensations of the simulated reader in a trial: cells, strengths, lengths."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ class FeltTrial:
 
     @property
     def by_length(self) -> bool:
-        """Whether two stimuli are compared by a length."""
+        """True if two stimuli are compared by a length."""
         return self.parameter in LENGTHS
 
     def cells(self, random: np.random.Generator) -> list[int | None]:

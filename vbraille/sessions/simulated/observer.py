@@ -102,7 +102,7 @@ class Touch:
 
     @property
     def nothing(self) -> bool:
-        """Whether no dot at all was felt."""
+        """True if no dot at all was felt."""
         return not (self.evidence > LEAST_FELT).any()
 
 
@@ -226,7 +226,7 @@ class Observer:
         return self.answer(self.felt(exploration, places), random)
 
     def dots_mm(self, exploration: FeltFrames) -> NDArray[np.float64]:
-        """Where each dot column of a line begins and ends, as far as dots were felt.
+        """Find where each dot column of a line begins and ends, as far as dots were felt.
 
         Returns
         -------

@@ -12,7 +12,7 @@ from tests.analysis.making import all_tables, from_rows, made, table_of
 from tests.tiers import by_tier
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.trials import Places
-from vbraille.analysis.schemas import (
+from vbraille.analysis.results import (
     NOTE_COLUMN,
     Column,
     Kind,
