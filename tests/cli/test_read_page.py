@@ -51,8 +51,8 @@ def test_a_slider_becomes_a_plane(call, letters):
     ("options", "says"),
     [
         (("--height", "-1"), "--height is -1 mm; it must be 0 to 10000 mm"),
-        (("--band", "1"), "band is 1; it must be 0 to 0.9"),
-        (("--band", "nan"), "band is nan; it must be 0 to 0.9"),
+        (("--band", "1"), "--band is 1; it must be 0 to 0.9"),
+        (("--band", "nan"), "--band is nan; it must be 0 to 0.9"),
     ],
 )
 def test_what_no_page_can_be(call, letters, options, says):
