@@ -132,7 +132,7 @@ class Archive:
         Returns
         -------
         Element
-            Its root, with no comments and no entities; no name has a namespace.
+            Root of the tree, with no comments and no entities; no name has a namespace.
 
         Raises
         ------

@@ -9,14 +9,14 @@ from lxml import etree
 
 from vbraille.translate.documents.office.htmltree import (
     HIDDEN,
+    BlockFlow,
     Draft,
-    Flow,
     Level,
     Look,
     Numbering,
-    Style,
+    OfficeTable,
     Styles,
-    Table,
+    TextStyle,
     dublin_core,
     field_target,
     heading_level,
@@ -130,7 +130,7 @@ class _Reader:
 
     def _blocks(self, holder: Element, into: Element) -> None:
         """Read the blocks of a body, of a cell or of a note."""
-        flow = Flow(into)
+        flow = BlockFlow(into)
         pending: list[Element] = []  # bookmarks between paragraphs, which are those of the next
         for element in within(holder, _BLOCKS, _SKIPPED):
             if element.tag == "bookmarkStart":
@@ -141,7 +141,7 @@ class _Reader:
             else:
                 flow.add_table(self._table(element))
 
-    def _paragraph(self, element: Element, flow: Flow, bookmarks: list[Element]) -> None:
+    def _paragraph(self, element: Element, flow: BlockFlow, bookmarks: list[Element]) -> None:
         own = _style_of(element, "pPr/pStyle")
         styles = [own, *self._styles.chain(own.based)]
         level = heading_level(styles)
@@ -162,12 +162,12 @@ class _Reader:
         self._links_open = outer
         flow.add(block, styles, level, item)
 
-    def _table(self, element: Element) -> Table:
+    def _table(self, element: Element) -> OfficeTable:
         rows = list(within(element, ("tr",), _SKIPPED))
         look = element.find("tblPr/tblLook")
         told = {} if look is None else look.attrib
         first = told.get("firstRow", str(_whole(told.get("val"), 0, base=16) >> 5 & 1))
-        table = Table()
+        table = OfficeTable()
         for number, row in enumerate(rows):
             usual = "0" if number or len(rows) == 1 else first
             table.row(is_head=(_value(row, "trPr/tblHeader", usual) or "") not in _OFF)
@@ -286,11 +286,11 @@ class _Reader:
         put_picture(into, next(filter(None, described), ""), what)
 
 
-def _style_of(holder: Element, based: str) -> Style:
+def _style_of(holder: Element, based: str) -> TextStyle:
     """What a style says, or a paragraph; and what that is based on, which stands at a path."""
     outline = _value(holder, "pPr/outlineLvl") or ""
     level = _whole(outline, 9) + 1
-    return Style(
+    return TextStyle(
         (_value(holder, "name") or "").lower(),
         _value(holder, based) or "",
         _look_of(holder),

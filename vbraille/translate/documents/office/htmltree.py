@@ -75,7 +75,7 @@ PLAIN = Look()
 
 
 @dataclass(frozen=True, slots=True)
-class Style:
+class TextStyle:
     """A style of paragraphs or of characters, or what a paragraph says of itself.
 
     Parameters
@@ -104,14 +104,14 @@ class Style:
     begins_page: bool = False
 
 
-class Styles(dict[str, Style]):
+class Styles(dict[str, TextStyle]):
     """Styles of a document by their keys."""
 
     def __init__(self) -> None:
         super().__init__()
         self._looks: dict[str, Look] = {}
 
-    def chain(self, key: str) -> list[Style]:
+    def chain(self, key: str) -> list[TextStyle]:
         """List a style and those that it is based on; nothing for one that is not there."""
         keys: list[str] = []
         while key in self and key not in keys and len(keys) < _LONGEST_CHAIN:
@@ -129,7 +129,7 @@ class Styles(dict[str, Style]):
         return self._looks[key]
 
 
-def heading_level(styles: Iterable[Style]) -> int:
+def heading_level(styles: Iterable[TextStyle]) -> int:
     """Level of a heading by what its styles say, the nearest first; 0 for what is none."""
     for style in styles:
         found = _HEADING.search(style.name)
@@ -149,7 +149,7 @@ class Level:
     Parameters
     ----------
     form
-        Style of its numbers: "1", "a", "A", "i" or "I"; "bullet", or "none" for further
+        TextStyle of its numbers: "1", "a", "A", "i" or "I"; "bullet", or "none" for further
         paragraphs of the items above.
     text
         Bullet, or text around the numbers, as "%1.%2)".
@@ -184,7 +184,7 @@ class Numbering:
         at
             Level of the item.
         number
-            Its number, if that is not the next one.
+            Number of the item, if that is not the next one.
         """
         level = self.levels.get(at, _BULLETS)
         if level.form == "none" or (level.form == "bullet" and not level.text.strip()):
@@ -204,7 +204,7 @@ class Numbering:
         return f"{label} " if label else ""
 
 
-class Table:
+class OfficeTable:
     """A table that is being read, row by row.
 
     Attributes
@@ -276,7 +276,7 @@ class Table:
         return self._table
 
 
-class Flow:
+class BlockFlow:
     """Blocks of a body, of a cell, of a note or of a box, one after the other.
 
     Parameters
@@ -293,7 +293,7 @@ class Flow:
     def add(
         self,
         paragraph: Element,
-        styles: Sequence[Style] = (),
+        styles: Sequence[TextStyle] = (),
         level: int = 0,
         item: tuple[str, int, str | None] | None = None,
     ) -> None:
@@ -304,7 +304,7 @@ class Flow:
         paragraph
             Element with the paragraph's text.
         styles
-            Its styles, by which it is a quotation or code.
+            Styles of the paragraph, by which it is a quotation or code.
         level
             Level of a heading, 0 for others.
         item
@@ -348,7 +348,7 @@ class Flow:
         self._items.append(put(listed, "li", data_marker=marker))
         return self._items[-1]
 
-    def add_table(self, table: Table) -> None:
+    def add_table(self, table: OfficeTable) -> None:
         """Add a table that has been read."""
         self._items = []
         self.into.append(table.finish())

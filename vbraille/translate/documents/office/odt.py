@@ -14,14 +14,14 @@ from vbraille.translate.documents.markup.tables import whole
 from vbraille.translate.documents.office.htmltree import (
     HIDDEN,
     PLAIN,
+    BlockFlow,
     Draft,
-    Flow,
     Level,
     Look,
     Numbering,
-    Style,
+    OfficeTable,
     Styles,
-    Table,
+    TextStyle,
     dublin_core,
     heading_level,
     put,
@@ -122,7 +122,7 @@ class _Reader:
             name = style.get("name", "")
             properties = style.find("paragraph-properties")
             breaks = properties is not None and properties.get("break-before") == "page"
-            self._styles[name] = Style(
+            self._styles[name] = TextStyle(
                 name.replace("_20_", " ").lower(),
                 style.get("parent-style-name", ""),
                 _look_of(style),
@@ -137,7 +137,7 @@ class _Reader:
         self, holder: Element, into: Element, around: Look, outer: tuple[str, int] = ("", 0)
     ) -> None:
         """Read the blocks of a body, of a cell, of a note, or of an item of an outer list."""
-        flow = Flow(into)
+        flow = BlockFlow(into)
         for element in within(holder, _BLOCKS, _SKIPPED):
             match element.tag:
                 case "list":
@@ -153,7 +153,7 @@ class _Reader:
                     self._piece(element, block, around)
                     flow.add(block)
 
-    def _paragraph(self, element: Element, flow: Flow, around: Look) -> None:
+    def _paragraph(self, element: Element, flow: BlockFlow, around: Look) -> None:
         style = element.get("style-name", "")
         styles = self._styles.chain(style)
         look = self._look(element, around)
@@ -279,8 +279,8 @@ class _Reader:
             elif item.tag == "list-header":
                 self._blocks(item, put(listed, "div"), around, (style, at + 1))
 
-    def _table(self, element: Element, around: Look) -> Table:
-        table = Table()
+    def _table(self, element: Element, around: Look) -> OfficeTable:
+        table = OfficeTable()
         for row in within(element, ("table-row",), _SKIPPED):
             around_row = row.getparent()
             is_told = around_row is not None and around_row.tag == "table-header-rows"

@@ -16,12 +16,12 @@ from vbraille.translate.documents.markup.tables import BULLET
 from vbraille.translate.documents.office.htmltree import (
     HIDDEN,
     PLAIN,
+    BlockFlow,
     Draft,
-    Flow,
     Look,
-    Style,
+    OfficeTable,
     Styles,
-    Table,
+    TextStyle,
     field_target,
     heading_level,
     put,
@@ -124,7 +124,7 @@ class _Row:
 class _Place:
     """Where the text goes: a body or a note, and the paragraph and the table that are read."""
 
-    flow: Flow
+    flow: BlockFlow
     told: _Told = field(default_factory=_Told)
     paragraph: Element | None = None
     link: Element | None = None  # within the paragraph
@@ -170,7 +170,7 @@ class _Reader:
         self._name = name
         self._text = text
         self._draft = Draft()
-        self._place = _Place(Flow(self._draft.body))
+        self._place = _Place(BlockFlow(self._draft.body))
         usual = _USUAL.search(text, 0, _HEADER)
         named = [usual[1]] if usual is not None else _LANGUAGE.findall(text)
         tags = (_tag(int(number)) for number, _ in Counter(named).most_common())
@@ -254,7 +254,7 @@ class _Reader:
             level = self._style.get("outlinelevel", 9) + 1
             based = str(self._style.get("sbasedon", ""))
             name = text.strip(" ;").lower()
-            self._styles[str(self._style["s"])] = Style(
+            self._styles[str(self._style["s"])] = TextStyle(
                 name, based, level=level if level < 10 else None
             )
         elif what in ("listtext", "pntext"):
@@ -362,7 +362,7 @@ class _Reader:
                 self._draft.refer(self._place.inner(), key)
             else:
                 body = put(self._place.inner(), "div")
-            self._place = _Place(Flow(body))
+            self._place = _Place(BlockFlow(body))
             tags = group.look.tags & {HIDDEN}
             self._group = replace(group, what="", link=False, look=replace(group.look, tags=tags))
         elif word in _GATHERED:
@@ -459,7 +459,7 @@ class _Reader:
             place.cell.append(paragraph)
             return
         self._end_table()
-        styles = [Style(level=told.outlinelevel + 1 if told.outlinelevel < 9 else None)]
+        styles = [TextStyle(level=told.outlinelevel + 1 if told.outlinelevel < 9 else None)]
         styles += self._styles.chain(str(told.s))
         level = heading_level(styles)
         label, item = place.label, None
@@ -493,9 +493,9 @@ class _Reader:
             place.flow.into.extend(list(stray))
 
 
-def _table_of(rows: list[_Row]) -> Table:
+def _table_of(rows: list[_Row]) -> OfficeTable:
     """Table of rows, whose cells stand at the edges that any of them has."""
-    table = Table()
+    table = OfficeTable()
     edges = sorted({edge for row in rows for edge in row.edges})
     is_ruled = rows[0].is_ruled and not all(row.is_ruled for row in rows)
     for number, row in enumerate(rows):
