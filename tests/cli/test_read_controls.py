@@ -18,17 +18,30 @@ from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulator import Simulator
 
 FADE_S = 0.1
+STEADY = 300  # frames that are alike when the picture has faded in and the hand stays
 TOP = STRESS2.display.levels - 1
 # A knob that is turned in many steps, then jitters by one count, then is pressed a button beside.
 SCRIPT = "\n".join(
     [
-        *(f"{3000 + 20 * step}ms knob 1 {0.5 - step / 100:.4f}" for step in range(31)),
-        *(f"{4200 + 10 * step}ms knob 1 {0.2 + step % 2 / 255:.4f}" for step in range(100)),
-        "5.5s press 2",
-        "5.7s release 2",
+        *(f"{20 * step}ms knob 1 {0.5 - step / 100:.4f}" for step in range(31)),
+        *(f"{1200 + 10 * step}ms knob 1 {0.2 + step % 2 / 255:.4f}" for step in range(100)),
+        "2.5s press 2",
+        "2.7s release 2",
     ]
 )
 SETTINGS = '[buttons]\n"knob 1" = "CONTRAST"\n"button 2" = "LEARN"\n'
+
+
+class ControlsInTime(Controls):
+    """Controls that move by their script from when something has been felt for a while."""
+
+    from_s = None
+    felt = False
+
+    def advance(self, now_s):
+        if self.felt:
+            self.from_s = now_s if self.from_s is None else self.from_s
+            super().advance(now_s - self.from_s)
 
 
 @contextmanager
@@ -42,9 +55,8 @@ def kept_device(script):
     hand = Recorded(stay_s, np.minimum(20.0 * stay_s, 20.0))
     info = describe(STRESS2.display, Encoder.ABSOLUTE)
     port, stopped, frames = Port(), Event(), []
-    simulator = Simulator(
-        info, hand, port, say=lambda _: None, controls=Controls(parse_script(script, "script"))
-    )
+    controls = ControlsInTime(parse_script(script, "script"))
+    simulator = Simulator(info, hand, port, say=lambda _: None, controls=controls)
     controller, receive = simulator.controller, simulator.controller.receive
 
     def seen(chunk, now_us):
@@ -53,6 +65,8 @@ def kept_device(script):
         if controller.frames > before:
             levels = controller.levels.astype(int)
             frames.append((levels, now_us, controller.knobs[0], resting))
+            before = frames[-STEADY:][0][0]
+            controls.felt |= levels.max() > TOP / 2 and np.array_equal(levels, before)
         return answer
 
     controller.receive = seen
