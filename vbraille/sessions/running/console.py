@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Command:
+class TypedCommand:
     """A command that an experimenter may type.
 
     Parameters
@@ -313,31 +313,31 @@ class Console:
 
 
 COMMANDS = (
-    Command(
+    TypedCommand(
         "answer", Console.answer, "before an answer that is also one of these words", takes=True
     ),
-    Command(
+    TypedCommand(
         "undo", Console.undo, "take back the last answer, and type it anew; the record keeps both"
     ),
-    Command("repeat", Console.repeat, "show the open trial again, from its start"),
-    Command("note", Console.note, "write the rest of the line into the record", takes=True),
-    Command("pause", Console.pause, "rest the array at once; again, or Enter, goes on"),
-    Command("go", Console.go_on, "go on, as Enter does"),
-    Command("break", Console.have_break, "a break, after the open trial"),
-    Command("begin", Console.begin, "end practice"),
-    Command(
+    TypedCommand("repeat", Console.repeat, "show the open trial again, from its start"),
+    TypedCommand("note", Console.note, "write the rest of the line into the record", takes=True),
+    TypedCommand("pause", Console.pause, "rest the array at once; again, or Enter, goes on"),
+    TypedCommand("go", Console.go_on, "go on, as Enter does"),
+    TypedCommand("break", Console.have_break, "a break, after the open trial"),
+    TypedCommand("begin", Console.begin, "end practice"),
+    TypedCommand(
         "contrast", Console.contrast, "set the contrast, 0 to 1, unless the plan does", takes=True
     ),
-    Command(
+    TypedCommand(
         "texture", Console.texture, "set the texture, 0 to 1, unless the plan does", takes=True
     ),
-    Command("stop", Console.stop, "end for now; session resume goes on"),
-    Command("help", Console.help, "say what there is to type"),
+    TypedCommand("stop", Console.stop, "end for now; session resume goes on"),
+    TypedCommand("help", Console.help, "say what there is to type"),
 )
 _BY_WORD = {command.word: command for command in COMMANDS}
 
 
-def find_command(line: str) -> tuple[Command, str] | None:
+def find_command(line: str) -> tuple[TypedCommand, str] | None:
     """Command of a line, and what stands after its word; None if the line is no command."""
     word, _, rest = line.strip().partition(" ")
     command = _BY_WORD.get(word.lower())

@@ -9,7 +9,7 @@ from vbraille.braille.spelling import to_braille
 from vbraille.conventional.brlapi import CellsTaken, DisplayAway, DisplayStands
 from vbraille.errors import DeviceError, InputError
 from vbraille.sessions.record import events
-from vbraille.sessions.running.presenters import Notice, Presentation, Presenter
+from vbraille.sessions.running.presenters import Occurrence, Presentation, Presenter
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class OnConventional(Presenter):
         self._reference = False
         self._open = False  # whether a trial needs what was shown
         self._known: DisplayStands | None = None  # what the journal knows
-        self._early: list[Notice] = []  # what happened before the session began
+        self._early: list[Occurrence] = []  # what happened before the session began
 
     @property
     def why(self) -> str:
@@ -125,7 +125,7 @@ class OnConventional(Presenter):
         self.rest()
         self._open = False
 
-    def poll(self) -> list[Notice]:
+    def poll(self) -> list[Occurrence]:
         """Give what has happened since the last call."""
         early, self._early = self._early, []
         return early + [each for message in self._display.poll() for each in self._take(message)]
@@ -139,20 +139,20 @@ class OnConventional(Presenter):
         self._open = True
         self._number = self._display.show(cells)
 
-    def _take(self, message: object) -> list[Notice]:
+    def _take(self, message: object) -> list[Occurrence]:
         match message:
             case DisplayStands():
                 return self._come(message)
             case DisplayAway():
                 self.taken = False
                 said = f"display: {message.why}"
-                return [*self._lost(message.why), Notice(events.Device, {"what": said}, said)]
+                return [*self._lost(message.why), Occurrence(events.Device, {"what": said}, said)]
             case CellsTaken() if message.number == self._number:
                 first, self.taken = not self.taken, True
-                return [Notice(events.Stood, self._told(message.at_ns))] if first else []
+                return [Occurrence(events.Stood, self._told(message.at_ns))] if first else []
         return []
 
-    def _come(self, standing: DisplayStands) -> list[Notice]:
+    def _come(self, standing: DisplayStands) -> list[Occurrence]:
         """Say what display it is, and that what stood on another one is gone with it."""
         if standing == self._known:
             return []
@@ -160,7 +160,7 @@ class OnConventional(Presenter):
         fields = {name: getattr(standing, name) for name in ("driver", "model", "columns", "rows")}
         said = f"display: {standing.title}, {standing.columns} cells"
         short = self._short(standing)
-        came = Notice(
+        came = Occurrence(
             events.DisplayBeside,
             {**fields, "spec": self._spec},
             f"{said}; {short}" if short else said,
@@ -168,8 +168,8 @@ class OnConventional(Presenter):
         lost = self._lost("the conventional display is another one") if another else []
         return [*lost, came]
 
-    def _lost(self, why: str) -> list[Notice]:
-        return [Notice(events.Fault, {"what": why})] if self._open else []
+    def _lost(self, why: str) -> list[Occurrence]:
+        return [Occurrence(events.Fault, {"what": why})] if self._open else []
 
     def _short(self, standing: DisplayStands) -> str:
         if standing.columns >= self._cells:

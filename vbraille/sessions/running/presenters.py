@@ -72,7 +72,7 @@ def presentation_of(protocol: Design, stimulus: Stimulus, tuning: Tuning) -> Pre
     )
 
 
-class Notice(NamedTuple):
+class Occurrence(NamedTuple):
     """Something that the experimenter or the journal should be told.
 
     Parameters
@@ -93,20 +93,20 @@ class Notice(NamedTuple):
     said: str = ""
 
 
-def _reported(what: str) -> Notice:
+def _reported(what: str) -> Occurrence:
     """Make a notice of a sentence on the device."""
-    return Notice(events.Device, {"what": what}, what)
+    return Occurrence(events.Device, {"what": what}, what)
 
 
-def _notices_of(given: Iterable[Event]) -> list[Notice]:
+def _notices_of(given: Iterable[Event]) -> list[Occurrence]:
     """Notices of a device's events, or of its engine's."""
     return [_notice(event, sentence) for event in given for sentence in told((event,))]
 
 
-def _notice(event: Event, sentence: str) -> Notice:
+def _notice(event: Event, sentence: str) -> Occurrence:
     if not isinstance(event, HandHeld):
         return _reported(sentence)
-    return Notice(events.HandTaken if event.held else events.HandGivenBack, {}, sentence)
+    return Occurrence(events.HandTaken if event.held else events.HandGivenBack, {}, sentence)
 
 
 class Presenter:
@@ -167,7 +167,7 @@ class Presenter:
     def withdraw(self) -> None:
         """Take the stimulus away, since the attempt at the trial is over."""
 
-    def poll(self) -> list[Notice]:
+    def poll(self) -> list[Occurrence]:
         """Give what has happened since the last call."""
         return []
 
@@ -208,7 +208,7 @@ class FaultWatch:
         """Begin a trial, or another attempt at it, with the showing of this line number."""
         self.away, self._told_ns, self._line = False, None, line
 
-    def look(self, ticks: NDArray[np.void], lost: NDArray[np.bool_]) -> list[Notice]:
+    def look(self, ticks: NDArray[np.void], lost: NDArray[np.bool_]) -> list[Occurrence]:
         """Faults that begin or end in these ticks.
 
         Parameters
@@ -238,11 +238,11 @@ class FaultWatch:
             if self._told_ns is not None and time_ns - self._told_ns < _TOLD_S * 1e9:
                 return []
             self.away, self._told_ns = True, time_ns
-            notices.append(Notice(events.Fault, {"what": _why(fault), **when(fault)}))
+            notices.append(Occurrence(events.Fault, {"what": _why(fault), **when(fault)}))
         if self.away and not unfelt[-1]:
             self.away = False
             well = int(at[-1]) + 1 if at.size else 0
-            notices.append(Notice(events.Well, when(ticks[well])))
+            notices.append(Occurrence(events.Well, when(ticks[well])))
         return notices
 
     def _wakes(self, ticks: NDArray[np.void]) -> NDArray[np.bool_]:
@@ -466,7 +466,7 @@ class OnDevice(Presenter):
         self.engine.set_zero()
         return True
 
-    def poll(self) -> list[Notice]:
+    def poll(self) -> list[Occurrence]:
         """Add the ticks since the last call to the trace, and return what happened in them.
 
         Raises
@@ -502,7 +502,7 @@ class OnDevice(Presenter):
             )
         return notices + self._pressed(given)
 
-    def _pressed(self, given: Iterable[Event]) -> list[Notice]:
+    def _pressed(self, given: Iterable[Event]) -> list[Occurrence]:
         """Press of the button that ends reading, if it is among these events."""
         if self._shown is None or self.ended:
             return []
@@ -511,7 +511,7 @@ class OnDevice(Presenter):
                 by = {"by": f"button:{event.number}"}
                 # A press from before the stimulus came is told now, and counts from now on.
                 at_ns = event.at_ns if event.at_ns and event.at_ns > self._shown_ns else None
-                return [Notice(events.Ended, by if at_ns is None else by | {"time_ns": at_ns})]
+                return [Occurrence(events.Ended, by if at_ns is None else by | {"time_ns": at_ns})]
         return []
 
     def close(self) -> None:
@@ -528,7 +528,7 @@ class OnDevice(Presenter):
         self._trace.close()
         return self._trace.closed()
 
-    def _follow(self, ticks: NDArray[np.void]) -> list[Notice]:
+    def _follow(self, ticks: NDArray[np.void]) -> list[Occurrence]:
         """Touch of the first dot, and end of reading, if they are in these ticks."""
         ticks = ticks[(ticks["line"] >= self._shown_line) & (ticks["flags"] & _PAUSED == 0)]
         if not ticks.size:
@@ -540,12 +540,12 @@ class OnDevice(Presenter):
             on = np.flatnonzero(ticks["x_mm"] >= self._edge_mm)
             if on.size:
                 self._touched = True
-                notices.append(Notice(events.Contact, when(ticks[int(on[0])])))
+                notices.append(Occurrence(events.Contact, when(ticks[int(on[0])])))
         steered = self._steering is not None and self._steering.done_at(int(ticks["device_ns"][-1]))
         end = None if self.read or not self._by_hand else self._end
         if end is not None and (end.find(ticks["x_mm"]) is not None or steered):
             self.read = True
-            notices.append(Notice(events.Read, when(ticks[-1])))
+            notices.append(Occurrence(events.Read, when(ticks[-1])))
         return notices
 
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.journal import Journal
     from vbraille.sessions.record.progress import Progress
     from vbraille.sessions.running.conventional import OnConventional
-    from vbraille.sessions.running.presenters import Notice, OnDevice, Presentation, Presenter
+    from vbraille.sessions.running.presenters import Occurrence, OnDevice, Presentation, Presenter
     from vbraille.sessions.running.responses import Responses
 
 
@@ -263,7 +263,7 @@ class Runner:
     def start(self, **fields: Any) -> None:
         """Begin a run, once the engine is started; ``fields`` are those of the event `Run`."""
         device = self.device
-        before: list[Notice] = []  # of the time before the event of the run, which comes first
+        before: list[Occurrence] = []  # of the time before the event of the run, which comes first
         self._monitor = {"monitor": fields["monitor"]} if "monitor" in fields else {}
         if device is not None:
             trace = device.open(len(self.progress.runs) + 1, self.progress.line)
@@ -623,7 +623,7 @@ class Runner:
         tuning = replace(stimulus.tuning, **self.progress.tuning)
         return presentation_of(self.protocol, stimulus, tuning)
 
-    def _take(self, notice: Notice) -> None:
+    def _take(self, notice: Occurrence) -> None:
         kind, fields, said = notice
         trial = self.open_trial
         if kind is events.Fault and self.pending is not None:
