@@ -53,9 +53,8 @@ soak: .venv/tests .venv/compiled
 # Types of the files that have changed since types were last right; of all where files have come or
 # gone, and in `make test-all`.
 define TYPES
-set -e; touch .venv/typing; changed=; \
-if [ -e .venv/typed ] && [ pyproject.toml -ot .venv/typed ] \
-  && [ -z "$$(find vbraille -type d ! -name __pycache__ -newer .venv/typed)" ]; then \
+set -e; find vbraille -name '*.py' | sort > .venv/typing; changed=; \
+if [ pyproject.toml -ot .venv/typed ] && cmp -s .venv/typing .venv/typed; then \
   changed=$$(find vbraille -name '*.py' -newer .venv/typed); \
   [ -n "$$changed" ] || exit 0; \
 fi; \
