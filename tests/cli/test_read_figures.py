@@ -69,7 +69,9 @@ def test_a_key_feels_it_on_a_slider_and_the_same_place_is_read_on(water):
         assert "picture: Water cycle\r\n" in said
         assert "one axis: " in said
         terminal.type("e")
-        terminal.until("element: lake, at 20 mm right, 15 mm down\r\n")
+        terminal.until(
+            "element: lake, 20 mm × 20 mm, middle 20 mm from the left, 15 mm from the top\r\n"
+        )
         terminal.type("GV")
         assert "line: 2\r\ntext: figure: water\r\n" in terminal.until(r"text: .*\r\n")
         terminal.type("q")

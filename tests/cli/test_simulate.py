@@ -224,7 +224,7 @@ def test_it_is_unplugged_and_comes_back(tmp_path):
         ("--encoder=odd", "argument --encoder: invalid choice: 'odd'"),
         ("--height=100", "--height is for a carriage of two axes; add --axes xy or --axes xyθ"),
         ("--axes=xy --height=0", "height is 0 mm; it must be above 0"),
-        ("--protocol=1", "--protocol=1 is gone; a simulated controller speaks the one version"),
+        ("--protocol=1", "--protocol is gone; a simulated controller speaks the one version"),
         ("--axes=yx", "argument --axes: invalid choice: 'yx'"),
         ("--script=none", "the script none cannot be read: No such file or directory; check"),
         ("--script=text", "text, line 1: 'kept' is no event; write a time and what is done then"),

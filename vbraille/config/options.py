@@ -547,6 +547,7 @@ OPTIONS = {
             "N",
             usual="as many as the hand can cross",
             low=1,
+            high=200,
         ),
         Option(
             "hand",

@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from vbraille.translate import Book
 
 _CELLS, _LINES = 40, 25  # of a page of paper, where nothing else is asked for
-_MOST_CELLS = 200
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -58,8 +57,6 @@ def _check(arguments: argparse.Namespace) -> None:
         If they do not.
     """
     cells, out = arguments.cells, arguments.out
-    if cells is not None and not 1 <= cells <= _MOST_CELLS:
-        raise InputError(f"--cells is {cells}; it must be 1 to {_MOST_CELLS}")
     if arguments.model is not None and (cells is not None or arguments.format == "pef"):
         raise InputError("a page has as many cells as --cells says; leave out --model")
     if out is not None:
