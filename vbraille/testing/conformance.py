@@ -84,8 +84,8 @@ def check_samples(open_device: Open) -> None:
                 assert way_mm <= info.travel_mm + slack, "the travel ends"
             due_ns = max(due_ns + round(NS_PER_S / info.rate_hz), clock.now_ns())
             clock.sleep_until_ns(due_ns)
-        for fault in watch.faults():
-            raise AssertionError(fault)
+        faults = watch.faults()
+        assert not faults, "; ".join(faults)
 
 
 def check_left_stop(open_device: Open) -> None:
