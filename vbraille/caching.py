@@ -58,7 +58,7 @@ def keep_compiled() -> bool:
 
 
 def is_compiled() -> bool:
-    """Whether the code that drives actuators is compiled already; compiling takes a minute."""
+    """Tell whether the code that drives actuators is compiled already; compiling takes a minute."""
     folder = _compiled_folder()
     return folder is not None and any(folder.glob("*/serialtick.run-*.nbc"))
 
@@ -144,7 +144,7 @@ def _user_folder(kind: str, name: str) -> Path:
 
 
 def _is_writable(folder: Path) -> bool:
-    """Whether files can be made in a folder, which is made first if it is not there."""
+    """Tell whether files can be made in a folder, which is made first if it is not there."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=folder).close()

@@ -119,15 +119,15 @@ class Display:
 
     @property
     def axes(self) -> str:
-        """What the carriage measures: "x", "xy", or either with "θ"."""
+        """Tell what the carriage measures: "x", "xy", or either with "θ"."""
         return "x" + "y" * (self.height_mm > 0) + "θ" * self.turns
 
     def column_offsets_mm(self) -> NDArray[np.float64]:
-        """How far each column is right of the left one; float64[columns]."""
+        """Tell how far each column is right of the left one; float64[columns]."""
         return np.arange(self.columns, dtype=np.float64) * self.column_pitch_mm
 
     def row_offsets_mm(self) -> NDArray[np.float64]:
-        """How far each row is from row 0, towards the reader; float64[rows]."""
+        """Tell how far each row is from row 0, towards the reader; float64[rows]."""
         return np.arange(self.rows, dtype=np.float64) * self.row_pitch_mm
 
 

@@ -207,7 +207,7 @@ def _broken(line: str, table: BrailleTable, width: int | None) -> Iterator[NDArr
 
 
 def _beyond_mm(corners: Sequence[Point], width_mm: float, height_mm: float) -> float:
-    """How far the farthest corner is beyond a canvas; 0 if none is."""
+    """Tell how far the farthest corner is beyond a canvas; 0 if none is."""
     far_mm = max(max(-x, x - width_mm, -y, y - height_mm) for x, y in corners)
     return far_mm if far_mm > _TOUCHING_MM else 0.0
 
@@ -221,7 +221,7 @@ def _overlaps(standing: Sequence[_Standing]) -> Iterator[str]:
 
 
 def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
-    """Whether a side of one of two rectangles has the other one wholly beyond it."""
+    """Tell whether a side of one of two rectangles has the other one wholly beyond it."""
     for corners in (one, other):
         for axis in (corners[1] - corners[0], corners[3] - corners[0]):
             ways = sorted((place @ axis for place in (one, other)), key=lambda way: way.min())

@@ -32,7 +32,7 @@ class Pitched(Protocol):
 
     @property
     def duration_ms(self) -> float:
-        """How long the tone lasts, in ms."""
+        """Tell how long the tone lasts, in ms."""
         ...
 
 

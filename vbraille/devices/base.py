@@ -111,7 +111,7 @@ class Device(ABC):
     @property
     @abstractmethod
     def display(self) -> Display:
-        """What the device says of itself; the same at every call."""
+        """Tell what the device says of itself; the same at every call."""
 
     @abstractmethod
     def read(self) -> Pose | None:
@@ -218,7 +218,7 @@ class Device(ABC):
 
     @cached_property
     def _allows(self) -> Callable[[NDArray[np.float64]], bool]:
-        """Whether all deflections of a frame are in [0, 1]."""
+        """Tell whether all deflections of a frame are in [0, 1]."""
         # numba is heavy, and those who only know of devices need none.
         from vbraille.devices.framekernels import in_range
 

@@ -93,7 +93,7 @@ class Calibration:
             seen.add(one.place)
 
     def of(self, place: tuple[int, int]) -> Tried | None:
-        """What was found of an actuator; None if it was not tried."""
+        """Tell what was found of an actuator; None if it was not tried."""
         return next((one for one in self.tried if one.place == place), None)
 
     def with_tried(self, found: Tried) -> Calibration:
@@ -116,11 +116,11 @@ class Calibration:
 
     @property
     def whole(self) -> bool:
-        """Whether every actuator was tried."""
+        """Tell whether every actuator was tried."""
         return len(self.tried) == self.rows * self.columns
 
     def scale(self) -> NDArray[np.float64]:
-        """What deflections are multiplied by; float64[rows, columns], -1 … 1.
+        """Tell what deflections are multiplied by; float64[rows, columns], -1 … 1.
 
         A dead actuator has 0, and an inverted one less than 0: its deflections count from 1 down.
         """
@@ -131,7 +131,7 @@ class Calibration:
         return scale
 
     def sentences(self) -> Iterator[str]:
-        """What was found, in sentences for people: "label: value"."""
+        """Tell what was found, in sentences for people: "label: value"."""
         count = self.rows * self.columns
         yield f"actuators tried: {len(self.tried)} of {count}"
         named = (
@@ -146,7 +146,7 @@ class Calibration:
                 yield f"gain of {_said([one.place])}: {100 * one.gain:.0f} %"
 
     def to_json(self) -> dict[str, Any]:
-        """What a session keeps of it; rows and columns count from 0."""
+        """Tell what a session keeps of it; rows and columns count from 0."""
         return {
             "device": self.device,
             "tried": len(self.tried),
@@ -195,7 +195,7 @@ class Correction:
 
     @property
     def moving(self) -> bool:
-        """Whether scale and offset are on their way."""
+        """Tell whether scale and offset are on their way."""
         return self._share < 1
 
     def aim(self, calibration: Calibration | None) -> None:

@@ -406,7 +406,7 @@ class _NoticeKind:
     held: int = 0
 
     def due(self, now_ns: int) -> bool:
-        """Whether the next event of the kind may be told."""
+        """Tell whether the next event of the kind may be told."""
         every_ns = PLACE_EVERY_NS if self.event.tells_place else EVERY_NS
         return now_ns - self.told_ns >= every_ns
 

@@ -14,7 +14,7 @@ _compiled = njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 
 @_compiled
 def in_range(frame):
-    """Whether all deflections of a frame, float64[rows, columns], are numbers in [0, 1]."""
+    """Tell whether all deflections of a frame, float64[rows, columns], are numbers in [0, 1]."""
     for row in range(frame.shape[0]):
         for column in range(frame.shape[1]):
             if not 0.0 <= frame[row, column] <= 1.0:  # NaN fails, too

@@ -79,7 +79,7 @@ def say(event: Event) -> str:
 
 
 def placing_sentence(placing: Placing, display: Display, *, press: str = "press a key") -> str:
-    """What the reader is to do so that the place of a carriage is known, or that it is.
+    """Tell what the reader is to do so that the place of a carriage is known, or that it is.
 
     Parameters
     ----------

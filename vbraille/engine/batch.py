@@ -104,7 +104,7 @@ class BatchEngine:
 
     @property
     def paused(self) -> bool:
-        """Whether the array rests; setting it takes effect with the next tick."""
+        """Tell whether the array rests; setting it takes effect with the next tick."""
         return self._state.paused
 
     @paused.setter

@@ -198,7 +198,7 @@ class Watch:
 
 
 def _waits() -> int:
-    """How often this thread has waited for something of its own accord."""
+    """Tell how often this thread has waited for something of its own accord."""
     return resource.getrusage(resource.RUSAGE_THREAD).ru_nvcsw
 
 
@@ -393,7 +393,7 @@ class ActuatorSwings:
 
     @property
     def resting(self) -> bool:
-        """Whether every actuator is at rest, and none is to swing."""
+        """Tell whether every actuator is at rest, and none is to swing."""
         return self._at is None and not self._next
 
     def swing(self, *places: tuple[int, int]) -> None:

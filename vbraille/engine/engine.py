@@ -49,7 +49,7 @@ class Engine(Protocol):
 
     @property
     def paused(self) -> bool:
-        """Whether the array is to rest; setting it takes effect with the next tick."""
+        """Tell whether the array is to rest; setting it takes effect with the next tick."""
         ...
 
     @paused.setter

@@ -268,7 +268,7 @@ class Host:
 
     @property
     def paused(self) -> bool:
-        """Whether the array is to rest."""
+        """Tell whether the array is to rest."""
         return self._paused
 
     @paused.setter

@@ -129,7 +129,7 @@ class OrderedLoop:
 
     @property
     def wanted(self) -> bool:
-        """Whether to go on: nobody has said to stop, and the parent lives."""
+        """Tell whether to go on: nobody has said to stop, and the parent lives."""
         return not (self._ended or self._mailbox.stopped) and os.getppid() == self._parent
 
     def run(self) -> None:

@@ -144,7 +144,7 @@ class Loop:
 
     @property
     def paused(self) -> bool:
-        """Whether the array rests until told otherwise; setting it takes effect at once."""
+        """Tell whether the array rests until told otherwise; setting it takes effect at once."""
         return self.state.paused
 
     @paused.setter
@@ -153,7 +153,7 @@ class Loop:
 
     @property
     def resting(self) -> bool:
-        """Whether every actuator was at rest in the frame last sent."""
+        """Tell whether every actuator was at rest in the frame last sent."""
         return not self.output.any()
 
     def take_events(self) -> list[Event]:
@@ -383,13 +383,13 @@ class LocalEngine(Loop):
 
     @property
     def calibration(self) -> dict[str, Any] | None:
-        """What is made up for in the device's actuators, as `Calibration.to_json` says it."""
+        """Tell what is made up for in the device's actuators, as `Calibration.to_json` says it."""
         found = self.device.calibration
         return None if found is None else found.to_json()
 
     @property
     def counts(self) -> Mapping[str, int]:
-        """What went wrong with the device, by name."""
+        """Tell what went wrong with the device, by name."""
         return self.device.counts()
 
     def start(self) -> None:

@@ -202,7 +202,7 @@ class Mailbox:
 
     @property
     def paused(self) -> bool:
-        """Whether the array is to rest."""
+        """Tell whether the array is to rest."""
         return bool(self._words[_PAUSED])
 
     @paused.setter
@@ -211,7 +211,7 @@ class Mailbox:
 
     @property
     def zeroed(self) -> int:
-        """How often the reader has said that the carriage is at the left stop."""
+        """Tell how often the reader has said that the carriage is at the left stop."""
         return self._words[_ZEROED]
 
     def zero(self) -> None:
@@ -220,7 +220,7 @@ class Mailbox:
 
     @property
     def stopped(self) -> bool:
-        """Whether the loop is to end."""
+        """Tell whether the loop is to end."""
         return bool(self._words[_STOPPED])
 
     def stop(self) -> None:

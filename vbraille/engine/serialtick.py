@@ -152,7 +152,7 @@ _EAGAIN, _EINTR = -errno.EAGAIN, -errno.EINTR
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def _changed(orders, known):
-    """Whether there is anything new in the mailbox."""
+    """Tell whether there is anything new in the mailbox."""
     for word in range(orders.size):  # noqa: SIM110
         if orders[word] != known[word]:
             return True

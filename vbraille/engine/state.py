@@ -163,7 +163,7 @@ class LoopState:
 
     @property
     def paused(self) -> bool:
-        """Whether the array rests until told otherwise."""
+        """Tell whether the array rests until told otherwise."""
         return bool(self.now["paused"])
 
     def pause(self, paused: bool, now_ns: int) -> None:

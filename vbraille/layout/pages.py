@@ -73,7 +73,7 @@ class Layout:
 
     @property
     def counted(self) -> bool:
-        """Whether the lines that were looked at last have their true numbers."""
+        """Tell whether the lines that were looked at last have their true numbers."""
         return self._runs[-1].counted
 
     @property
@@ -185,7 +185,7 @@ class Layout:
         return run.before(run.block_of(number)) if run.counted else None
 
     def progress(self, line: Line) -> float:
-        """How much of the book stands before a line, 0 to 1; see `share_before`."""
+        """Tell how much of the book stands before a line, 0 to 1; see `share_before`."""
         return share_before(self.book.source, line.place)
 
     def _of_number(self, number: int) -> tuple[LaidRun, int] | None:

@@ -96,7 +96,7 @@ class LaidRun:
         return self._before - self._back[-1], self._before + self._after[-1]
 
     def holds(self, block: int) -> bool:
-        """Whether a block is among those that are laid out."""
+        """Tell whether a block is among those that are laid out."""
         return self.first <= block < self.after
 
     def before(self, block: int) -> int:

@@ -73,7 +73,7 @@ def scene_text(scene: Scene) -> str:
 
 
 def name_of(pattern: AnyPattern) -> str:
-    """What a pattern is called: by its title, else by its id, else not at all."""
+    """Tell what a pattern is called: by its title, else by its id, else not at all."""
     return pattern.title or pattern.id
 
 

@@ -261,7 +261,7 @@ def resolution() -> FigureTable:
 
 
 def resolution_words() -> list[str]:
-    """What the map shows, in lines for who does not see it."""
+    """Tell what the map shows, in lines for who does not see it."""
     arms, count_rad = tactograph.ARMS, design.PRINTED_COUNT_RAD
     width_mm, height_mm = tactograph.PAGE_MM
     whole = design.span(arms, count_rad=count_rad)

@@ -204,7 +204,7 @@ def seamless(numbers):
 
 @_compiled
 def patience(numbers):
-    """How long a picture is shown to a hand that does not move, s; infinite for most.
+    """Tell how long a picture is shown to a hand that does not move, s; infinite for most.
 
     Vibration tires the skin (Lévesque 2009, 8.6), and a scene may have it anywhere.
     """

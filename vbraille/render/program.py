@@ -70,7 +70,7 @@ class Program:
 
     @property
     def moves(self) -> bool:
-        """Whether the picture moves by itself, without the hand."""
+        """Tell whether the picture moves by itself, without the hand."""
         return bool(self.numbers[work.FREQUENCY] > 0)
 
     def check_shape(self, shape: tuple[int, int]) -> None:

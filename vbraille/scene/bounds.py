@@ -37,7 +37,7 @@ class Box(NamedTuple):
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is nothing in it, not even a point."""
+        """Tell whether there is nothing in it, not even a point."""
         return self.right < self.left or self.bottom < self.top
 
     def grown(self, by_mm: float) -> Box:
@@ -136,7 +136,7 @@ def is_everywhere(pattern: Pattern) -> bool:
 
 
 def drawn_radius_mm(shape: StraightLine | Circle | Polygon | PathShape) -> float:
-    """How far a shape's stroke or its dots reach from its path, to one side."""
+    """Tell how far a shape's stroke or its dots reach from its path, to one side."""
     if shape.stroke is not None:
         return shape.stroke.width_mm / 2
     return 0.0 if shape.dots is None else shape.dots.dot.radius_mm

@@ -394,7 +394,7 @@ def _of(vibration: Vibration | None) -> set[float]:
 
 
 def _masked(one: set[float], other: set[float]) -> str:
-    """What becomes of two vibrations of which one masks the other."""
+    """Tell what becomes of two vibrations of which one masks the other."""
     differences = {abs(a - b) for a in one for b in other}
     if differences == {0.0}:
         return "their swings are narrower and weaker than either's"

@@ -118,7 +118,7 @@ def _fields(kind: type[Table]) -> list[tuple[str, str, object]]:
 
 
 def _depth(value: object) -> int:
-    """How far down a value stands in its table: what a thing is, its looks, what is in it."""
+    """Tell how far down a value stands in its table: what a thing is, its looks, what is in it."""
     if isinstance(value, Table):
         return 1
     if isinstance(value, Mapping):

@@ -176,7 +176,7 @@ def _turn(before: Point, at: Point, after: Point) -> float:
 
 
 def _widening(angle: float) -> float:
-    """How much farther apart dots are at a corner sharper than 90°: 1 / sin θ."""
+    """Tell how much farther apart dots are at a corner sharper than 90°: 1 / sin θ."""
     return 1.0 / max(math.sin(angle), 1e-6) if angle < math.pi / 2 else 1.0
 
 

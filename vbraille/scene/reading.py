@@ -240,7 +240,7 @@ class _Gathering:
 
 
 def _may_wait(path: Path) -> bool:
-    """Whether reading might wait forever: a pipe or a device is there."""
+    """Tell whether reading might wait forever: a pipe or a device is there."""
     there = str(path)  # whose functions, unlike a path's, take no permission for no
     return os.path.exists(there) and not (os.path.isfile(there) or os.path.isdir(there))  # noqa: PTH110, PTH112, PTH113
 

@@ -145,7 +145,7 @@ class _Resolving:
         return with_children(pattern, lambda more, part: self._resolved(part, (*steps, *more)))
 
     def _used(self, use: Use, steps: Steps) -> AnyPattern:
-        """What a use stands for, with its changes."""
+        """Tell what a use stands for, with its changes."""
         body = self._body(use.name, steps)
         self._count(steps, body.patterns, body.points, body.dots)
         try:
@@ -168,7 +168,7 @@ class _Resolving:
         )
 
     def _body(self, name: str, steps: Steps) -> _Body:
-        """What a name stands for, made once."""
+        """Tell what a name stands for, made once."""
         if name in self._bodies:
             return self._bodies[name]
         if name in self._open:

@@ -60,7 +60,7 @@ def tables_of(kind: type[Table]) -> list[type[Table]]:
 
 
 def told(table: type[Table]) -> dict[str, str]:
-    """What the docstrings of a table, and of those that it is made from, say of each field."""
+    """Tell what the docstrings of a table, and of those that it is made from, say of each field."""
     found: dict[str, str] = {}
     for kind in reversed(table.__mro__):
         section = _SECTION.search(inspect.cleandoc(kind.__doc__ or "") + "\n")
@@ -71,7 +71,7 @@ def told(table: type[Table]) -> dict[str, str]:
 
 
 def summary(table: type[Table]) -> str:
-    """What the docstring of a table says before its fields."""
+    """Tell what the docstring of a table says before its fields."""
     return _plain(
         " ".join(inspect.cleandoc(table.__doc__ or "").partition("\n\nParameters")[0].split())
     )

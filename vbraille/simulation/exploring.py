@@ -66,7 +66,7 @@ class Disturbance:
 
     @property
     def none(self) -> bool:
-        """Whether the path is even."""
+        """Tell whether the path is even."""
         return not (self.sway_mm or self.speed_change or self.back_mm)
 
 

@@ -135,7 +135,7 @@ class Controller:
 
     @property
     def resting(self) -> bool:
-        """Whether no FRAME holds the actuators: they are at rest, or on the ramp to it."""
+        """Tell whether no FRAME holds the actuators: they are at rest, or on the ramp to it."""
         return self.at_rest or self._ramp_us is not None
 
     @property

@@ -83,7 +83,7 @@ class LateroBoard:
 
     @property
     def at_rest(self) -> bool:
-        """Whether all blades are at rest."""
+        """Tell whether all blades are at rest."""
         return bool((self.levels >= REST).all())
 
     @property

@@ -156,7 +156,7 @@ class Network:
         self._random = random.Random(faults.seed)
 
     def carry_request(self) -> int:
-        """How often a request arrives: 0, 1 or 2 times."""
+        """Tell how often a request arrives: 0, 1 or 2 times."""
         faults, tally = self._faults, self.tally
         if self._draw(faults.drop):
             tally.requests_lost += 1
@@ -284,7 +284,7 @@ class LateroSimulator:
 
     @property
     def spec(self) -> str:
-        """How a program names this Latero, whose offsets are known."""
+        """Tell how a program names this Latero, whose offsets are known."""
         host, port = self._socket.getsockname()
         return f"latero:{host}:{port}?offsets={','.join(map(str, OFFSETS))}"
 

@@ -190,7 +190,7 @@ class Course:
         self.ways = tuple(np.full(1, place) for place in (x_mm, y_mm, theta_rad))
 
     def is_over(self, now_ns: int) -> bool:
-        """Whether the hand has come to the end of its motion."""
+        """Tell whether the hand has come to the end of its motion."""
         return (now_ns - self.begun_ns) / _NS_PER_S >= self.t_s[-1]
 
     def at(self, now_ns: int) -> tuple[float, float, float]:

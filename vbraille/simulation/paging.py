@@ -100,14 +100,14 @@ class Drift:
         self._waves = [self._draw(random) for _ in range(2)]
 
     def y_pitches(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far below the middle of the line the hand is at some times, in line pitches.
+        """Tell how far below the middle of the line the hand is at some times, in line pitches.
 
         Values are within the bounds that were given.
         """
         return self._pitches * self._wave(0, t_s)
 
     def theta_rad(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far the hand is turned at some times, within the bound that was given."""
+        """Tell how far the hand is turned at some times, within the bound that was given."""
         return self._tilt_rad * self._wave(1, t_s)
 
     @staticmethod

@@ -153,7 +153,7 @@ class SimulatedDevice(Device):
 
     @property
     def moving(self) -> bool:
-        """Whether the hand is still on its way."""
+        """Tell whether the hand is still on its way."""
         return not self._course.is_over(self._now_ns())
 
     @property
@@ -334,7 +334,7 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
 
 
 def _inherited(kind: type[_Channel], name: str, descriptor: str) -> _Channel:
-    """What moves a hand, in memory that this process has made or inherited."""
+    """Tell what moves a hand, in memory that this process has made or inherited."""
     try:
         return kind(int(descriptor))
     except (ValueError, OverflowError):

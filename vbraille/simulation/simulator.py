@@ -99,7 +99,7 @@ class Spoiler:
         self._begun = b""
 
     def spoil(self, message: bytes) -> bytes:
-        """What is left of a message; empty if it is lost."""
+        """Tell what is left of a message; empty if it is lost."""
         if not self._spoils or message == DELIMITER:
             return message
         lost, corrupted = self._random.random(), self._random.random()
@@ -112,7 +112,7 @@ class Spoiler:
         return message
 
     def spoil_stream(self, chunk: bytes) -> bytes:
-        """What is left of a stream's bytes; a message is held back until it has come whole."""
+        """Tell what is left of a stream's bytes; a message is held back until it has come whole."""
         if not self._spoils:
             return chunk
         *messages, begun = split(self._begun + chunk)

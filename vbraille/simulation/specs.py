@@ -76,7 +76,7 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
 
 
 def has_hand(device: str) -> bool:
-    """Whether the spec of a device is that of a simulated one, whose hand can be steered."""
+    """Tell whether the spec of a device is that of a simulated one, whose hand can be steered."""
     return is_simulated(device) or device.startswith("sim:?")
 
 

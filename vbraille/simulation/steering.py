@@ -239,7 +239,7 @@ class Steering:
         self._slots.tell(_KINDS.index(type(order)), *numbers)
 
     def done_at(self, time_ns: int) -> bool:
-        """Whether the hand had followed all orders by a time of the device's clock."""
+        """Tell whether the hand had followed all orders by a time of the device's clock."""
         given = self._words[_GIVEN]
         return given > 0 and self._words[_DONE] == given and self._words[_DONE_NS] <= time_ns
 
@@ -320,7 +320,7 @@ class Pointer:
 
     @property
     def held(self) -> bool:
-        """Whether somebody holds the hand."""
+        """Tell whether somebody holds the hand."""
         return self.at() is not None
 
     def _write(self, at: BeAt | None) -> None:
@@ -338,7 +338,7 @@ class Pointer:
 
 
 def _lives(process: int) -> bool:
-    """Whether a process has not ended; one that nobody has waited for yet has."""
+    """Tell whether a process has not ended; one that nobody has waited for yet has."""
     try:
         descriptor = os.pidfd_open(process)
     except OSError:

@@ -56,7 +56,7 @@ def check_info(open_device: Open) -> None:
 
 
 def check_members(open_device: Open) -> None:
-    """What is to be a value is one, of its kind; a method there would always count as true."""
+    """Tell what is to be a value is one, of its kind; a method there would always count as true."""
     with _opened(open_device) as device:
         for name in ("read", "write", "set_zero", "take_events", "counts"):
             assert callable(getattr(device, name)), f"{name} must be a method"

@@ -93,7 +93,7 @@ class Book:
         return self._recent.get(number)
 
     def continues(self, number: int) -> bool:
-        """Whether a block goes on where the one before broke off; False past the end."""
+        """Tell whether a block goes on where the one before broke off; False past the end."""
         block = self.source.block(number)
         return block is not None and block.continues
 

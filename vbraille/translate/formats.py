@@ -252,7 +252,7 @@ def _refused(stream: BinaryIO, sample: bytes) -> str | None:
 
 
 def _old_office(stream: BinaryIO) -> str:
-    """What a compound file of Microsoft's is, by the names of its streams, and what to do."""
+    """Tell what a compound file of Microsoft's is, by the names of its streams, and what to do."""
     stream.seek(0)
     content = stream.read(_OLE_SEARCHED_BYTES)
     for stored, said in (
@@ -348,7 +348,7 @@ def _marked_up(text: str, name: str) -> Format | None:
 
 
 def _mostly_braille(text: str) -> bool:
-    """Whether nearly all that is no blank is a pattern of braille."""
+    """Tell whether nearly all that is no blank is a pattern of braille."""
     printed = "".join(text[:_BRAILLE_SAMPLE].split())
     patterns = sum("\u2800" <= character <= "\u28ff" for character in printed)
     return patterns > 0.9 * len(printed)
@@ -468,6 +468,6 @@ def _is_empty(stream: BinaryIO) -> bool:
 
 
 def _is_blank(stream: BinaryIO) -> bool:
-    """Whether a stream of ASCII characters has nothing but blanks, as far as one looks."""
+    """Tell whether a stream of ASCII characters has nothing but blanks, as far as one looks."""
     stream.seek(0)
     return not stream.read(SAMPLE_BYTES).strip(b" \t\r\n\f\x1a\0")

@@ -143,7 +143,7 @@ def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
 
 
 def has_tables(language: str) -> bool:
-    """Whether there is a table for a language, whatever its grade."""
+    """Tell whether there is a table for a language, whatever its grade."""
     try:
         tables_of(language)
     except InputError:

@@ -92,7 +92,7 @@ class _Indicator:
     group: tuple[str, str] = ("(", ")")
 
     def around(self, part: str, following: str) -> tuple[str, str, str]:
-        """What stands before a part, the part, and what stands after it."""
+        """Tell what stands before a part, the part, and what stands after it."""
         if _is_number(part):
             if self.digits:
                 cells = "".join(self.digits[int(digit)] for digit in part)

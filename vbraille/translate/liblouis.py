@@ -140,7 +140,7 @@ class TableInfo:
     kind: str
 
     def speaks(self, language: str) -> bool:
-        """Whether the table is for a language, given by a tag in lower case with hyphens."""
+        """Tell whether the table is for a language, given by a tag in lower case with hyphens."""
         tag = self.language.lower()
         return tag == language or tag.startswith(f"{language}-")
 
@@ -264,7 +264,7 @@ class BrailleTable:
             )
 
     def _writes_some(self, text: str) -> bool:
-        """Whether the table has dots of its own for any character of a text."""
+        """Tell whether the table has dots of its own for any character of a text."""
         return bool(self._call(to_codes(text), _MODE | _NO_UNDEFINED)[0].any())
 
     @property
@@ -290,7 +290,7 @@ class BrailleTable:
 
     @cached_property
     def eight_dots(self) -> bool:
-        """Whether this is a table of eight-dot braille; a six-dot table writes no dot 7 or 8.
+        """Tell whether this is a table of eight-dot braille; a six-dot table writes no dot 7 or 8.
 
         Metadata may leave it unsaid, or say it of a table that never raises dots 7 and 8.
         Six-dot tables may have eight-dot cells for capitals or letters of another script.
@@ -466,7 +466,7 @@ class BrailleTable:
         return masks.max() <= 0x3F or self.eight_dots
 
     def _high(self, letters: str) -> bool:
-        """Whether any of these letters that the table knows is written with dot 7 or 8."""
+        """Tell whether any of these letters that the table knows is written with dot 7 or 8."""
         masks, _ = self._call(to_codes(letters), _MODE | _NO_UNDEFINED)
         return bool(masks.size) and bool(masks.max() > 0x3F)
 

@@ -185,7 +185,7 @@ class Source(Protocol):
 
     @property
     def in_cells(self) -> bool:
-        """Whether all blocks have ready cells, so that no table is needed."""
+        """Tell whether all blocks have ready cells, so that no table is needed."""
         ...
 
     def block(self, number: int) -> Block | None:
@@ -216,7 +216,7 @@ class Source(Protocol):
 
     @property
     def complete(self) -> bool:
-        """Whether all blocks are known, so that the source's end is."""
+        """Tell whether all blocks are known, so that the source's end is."""
         ...
 
     @property

@@ -165,7 +165,7 @@ _HALF: Final = 0x8000
 
 
 def not_before(sequence: int, other: int) -> bool:
-    """Whether a number is another one or comes after it, where numbers wrap at 16 bits."""
+    """Tell whether a number is another one or comes after it, where numbers wrap at 16 bits."""
     return (sequence - other) & _U16 < _HALF
 
 
@@ -209,17 +209,17 @@ class RequestNumbering:
 
     @property
     def caught_up(self) -> bool:
-        """Whether the newest request was answered, so that nothing newer can come."""
+        """Tell whether the newest request was answered, so that nothing newer can come."""
         return self._newest is not None and self._newest == (self._next - 1) & _U16
 
     @property
     def lost(self) -> int:
-        """How many requests were never answered, of those that are older than the last few."""
+        """Tell how many requests were never answered, of those that are older than the last few."""
         return self._gone
 
     @property
     def unanswered(self) -> int:
-        """How many requests were not answered until now, those on their way included."""
+        """Tell how many requests were not answered until now, those on their way included."""
         return self._gone + sum(self._open)
 
     def sent(self, now_ns: int) -> int:
@@ -310,7 +310,7 @@ class Blades:
 
     @property
     def rests(self) -> bool:
-        """Whether all levels are those of rest."""
+        """Tell whether all levels are those of rest."""
         return bool(self.levels.min() == REST)
 
     def show(self, frame: NDArray[np.float64], *, heard: bool = True) -> None:
@@ -692,7 +692,7 @@ class LateroConversation:
 
     @property
     def left(self) -> bool:
-        """Whether the Latero has answered that its blades rest and its motor power is off."""
+        """Tell whether the Latero has answered that its blades rest and its motor power is off."""
         answer = self.answer
         if answer is None or self._resting is None:
             return False
@@ -800,7 +800,7 @@ class LateroConversation:
 
 
 def unpowered(answer: Answer) -> bool:
-    """Whether an answer says that motor power is off."""
+    """Tell whether an answer says that motor power is off."""
     return answer.controller & (POWERED_OFF | POWERED_ON) == POWERED_OFF
 
 

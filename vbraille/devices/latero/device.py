@@ -214,12 +214,12 @@ class WatchdogProcess:
 
     @property
     def alive(self) -> bool:
-        """Whether the watchdog lives; this never waits."""
+        """Tell whether the watchdog lives; this never waits."""
         return not self._look.poll(0)
 
     @property
     def trips(self) -> int:
-        """How often the watchdog has begun to bring the blades to rest."""
+        """Tell how often the watchdog has begun to bring the blades to rest."""
         return self.board.words[watchdog.TRIPS]
 
     def beat(self, now_ns: int) -> None:
@@ -443,7 +443,7 @@ class LateroDevice(Device):
 
 
 def _particulars(answer: Answer, offsets: Sequence[int] | None) -> Particulars:
-    """What the Latero's status words say, and where its encoders are at angle 0."""
+    """Tell what the Latero's status words say, and where its encoders are at angle 0."""
     where = "its offsets are not known before it is shown its lower left corner"
     if offsets is not None:
         where = f"offsets={','.join(map(str, offsets))}"

@@ -293,7 +293,7 @@ class Delivery:
         self._told_ns = now_ns + WATCHDOG_MS * _NS_PER_MS
 
     def stalled(self, now_ns: int) -> bool:
-        """Whether FRAMEs are owed, and the last is so old that the device may rest by now."""
+        """Tell whether FRAMEs are owed, and the last is so old that the device may rest by now."""
         return self.sent_ns is not None and now_ns - self.sent_ns >= _STALL_NS
 
     def judge(self, state: State, now_ns: int) -> Cause:
@@ -350,7 +350,7 @@ class Trips:
 
     @property
     def tripped(self) -> bool:
-        """Whether the last STATE told of a trip."""
+        """Tell whether the last STATE told of a trip."""
         return self._counted
 
     def restart(self) -> None:
@@ -726,7 +726,7 @@ class Conversation:
 
     @property
     def steady(self) -> bool:
-        """Whether FRAMEs hold the actuators, nothing else is due, and all is well."""
+        """Tell whether FRAMEs hold the actuators, nothing else is due, and all is well."""
         return self.stage is Stage.LIVE and not (self.delivery.rest_due or self.drop_unsent)
 
     def take_events(self, now_ns: int) -> list[Event]:

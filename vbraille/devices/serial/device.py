@@ -97,7 +97,7 @@ class SerialDevice(Device):
 
     @property
     def has_own_gains(self) -> bool:
-        """Whether the device's INFO says that its actuators differ."""
+        """Tell whether the device's INFO says that its actuators differ."""
         return self.conversation.drive.has_own_gains
 
     def correct(self, calibration: Calibration | None) -> None:

@@ -150,7 +150,7 @@ def differences(was: Display, now: Display) -> tuple[Difference, ...]:
 
 
 def changes(was: Info, now: Info) -> Changed | None:
-    """What has changed in a device that can be read on, since the conversation before."""
+    """Tell what has changed in a device that can be read on, since the conversation before."""
     shown = _SHOWN if now.encoder is Encoder.INCREMENTAL else ()
     both = (
         (name, _said(getattr(was, name)), _said(getattr(now, name)))
@@ -438,7 +438,7 @@ class ButtonsAndKnobs:
 
 
 def turned(before: int, now: int) -> bool:
-    """Whether a knob was turned between two of its positions, and does not just jitter.
+    """Tell whether a knob was turned between two of its positions, and does not just jitter.
 
     Its ends are told however little is left to them: a knob can be turned as far as it goes.
     """
@@ -534,7 +534,7 @@ class Drive:
 
     @property
     def settled(self) -> bool:
-        """Whether swings and levels at rest stay as they are from FRAME to FRAME."""
+        """Tell whether swings and levels at rest stay as they are from FRAME to FRAME."""
         return self._correction is None or not self._correction.moving
 
     def correct(self, calibration: Calibration | None) -> None:

@@ -351,19 +351,19 @@ def _unwrap(count, last, bits):
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def stalled(talk, now_ns):
-    """Whether the last FRAME is so old that the device may have gone to rest."""
+    """Tell whether the last FRAME is so old that the device may have gone to rest."""
     return talk.owed_ns != NEVER and now_ns - talk.owed_ns >= _STALL_NS
 
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def silent(talk, now_ns):
-    """Whether the last STATE is so old that the device must be told to rest."""
+    """Tell whether the last STATE is so old that the device must be told to rest."""
     return now_ns - talk.heard_ns >= _SILENCE_NS
 
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def _turned(before, now, knobs):
-    """Whether any of so many knobs was turned, as `hardware.turned` says."""
+    """Tell whether any of so many knobs was turned, as `hardware.turned` says."""
     if before == now:
         return False
     for knob in range(knobs):

@@ -62,12 +62,12 @@ class Address:
 
     @property
     def is_path(self) -> bool:
-        """Whether the address is a path, and no URL."""
+        """Tell whether the address is a path, and no URL."""
         return "://" not in self.url
 
     @property
     def limits(self) -> bool:
-        """Whether the baud rate says how much the line carries.
+        """Tell whether the baud rate says how much the line carries.
 
         On a UART it does. With USB CDC, sockets and pseudo-terminals it has no meaning unless
         somebody gives one.
@@ -323,7 +323,7 @@ class SerialLine:
             self._left = DELIMITER
 
     def drained(self) -> bool:
-        """Whether the driver has nothing more to send."""
+        """Tell whether the driver has nothing more to send."""
         if self._left:
             with suppress(BlockingIOError):
                 self._left = self._left[os.write(self._descriptor, self._left) :]

@@ -108,7 +108,7 @@ class Number(Fixed):
 
     @property
     def takes_all(self) -> bool:
-        """Whether every value that the bytes can hold is in range."""
+        """Tell whether every value that the bytes can hold is in range."""
         return self.high - self.low + 1 + len(self.meanings) == 256**self.layout.size
 
     @property
@@ -430,22 +430,22 @@ class State(Message):
 
     @property
     def placed(self) -> bool:
-        """Whether counts say where the carriage is without the reader's help."""
+        """Tell whether counts say where the carriage is without the reader's help."""
         return bool(self.flags & PLACED)
 
     @property
     def resting(self) -> bool:
-        """Whether the actuators are at rest, or on their way to it."""
+        """Tell whether the actuators are at rest, or on their way to it."""
         return bool(self.flags & RESTING)
 
     @property
     def faulty(self) -> bool:
-        """Whether the device takes no FRAME until the next HELLO."""
+        """Tell whether the device takes no FRAME until the next HELLO."""
         return bool(self.flags & FAULTY)
 
     @property
     def tripped(self) -> bool:
-        """Whether the watchdog has tripped and no FRAME was taken since."""
+        """Tell whether the watchdog has tripped and no FRAME was taken since."""
         return bool(self.flags & TRIPPED)
 
 

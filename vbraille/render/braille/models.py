@@ -134,7 +134,7 @@ MODELS = {model.name: model for model in (STRESS2, STRESS2_8X8, PANTOGRAPH, LATE
 
 
 def same_array(one: Display, other: Display) -> bool:
-    """Whether two displays have as many actuators, as far apart; a single row has no pitch."""
+    """Tell whether two displays have as many actuators, as far apart; a single row has no pitch."""
     if one.shape != other.shape:
         return False
     return all(

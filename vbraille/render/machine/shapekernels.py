@@ -143,7 +143,7 @@ def segments(numbers, rows, at, time, block, first, parts, count):
 
 @compiled
 def _along(numbers, part, u, x, y, time):
-    """How far along its path a place is, from how far it is along the part that is nearest.
+    """Tell how far along its path a place is, from how far it is along the part that is nearest.
 
     Near a corner that is rounded it follows an arc: fig. 8.18. Where contours have cycles of their
     own, the place is one within the stroke's ridge, if it is in a ridge.

@@ -118,7 +118,7 @@ def stroke(numbers, rows, at, time, top, count):
 
 @compiled
 def _share_left(numbers, rows, at, time, count):
-    """What a vibration leaves: δ¹ of eq. 8.3; constants any, frequency, amplitude."""
+    """Tell what a vibration leaves: δ¹ of eq. 8.3; constants any, frequency, amplitude."""
     amplitude = numbers[at + 2]
     swing = 0.5 * amplitude * phase(numbers[at + 1], time)
     least = 1.0 - 0.5 * amplitude

@@ -53,7 +53,7 @@ _WALL = (0.0, -1.0, _FAR_MM, -_FAR_MM)
 
 
 def differ(cycles: Sequence[Cycle]) -> bool:
-    """Whether textures along the contours of a path have cycles of their own."""
+    """Tell whether textures along the contours of a path have cycles of their own."""
     return any(cycle != cycles[0] for cycle in cycles[1:])
 
 
@@ -208,7 +208,7 @@ def marker_reach_mm(shape: AnyShape) -> float:
 
 
 def enclosed_dots(pattern: AnyShape | Dots) -> tuple[Enclosed, ...]:
-    """What each of the dots of a pattern, or of a dotted shape, lies in."""
+    """Tell what each of the dots of a pattern, or of a dotted shape, lies in."""
     if isinstance(pattern, Dots):
         radius, places = pattern.dot.radius_mm, pattern.centers_mm
     else:
@@ -217,7 +217,7 @@ def enclosed_dots(pattern: AnyShape | Dots) -> tuple[Enclosed, ...]:
 
 
 def enclosed_stroke(shape: AnyShape) -> tuple[Enclosed, ...]:
-    """What a circle's stroke, or each segment of another shape, lies in."""
+    """Tell what a circle's stroke, or each segment of another shape, lies in."""
     radius = drawn_radius_mm(shape)
     if isinstance(shape, Circle):
         return ((RING, *shape.center_mm, shape.radius_mm, 0.0, radius),)
@@ -228,7 +228,7 @@ def enclosed_stroke(shape: AnyShape) -> tuple[Enclosed, ...]:
 
 
 def enclosed_fill(shape: AnyShape, fill: Fill) -> tuple[Enclosed, ...]:
-    """What each part of a filled shape lies in, in the order in which they are said."""
+    """Tell what each part of a filled shape lies in, in the order in which they are said."""
     reach = drawn_radius_mm(shape)
     if not fill.blended:
         reach += fill.gap_mm + fill.fade_mm

@@ -87,7 +87,7 @@ def _is_coloured(image: Any) -> bool:
 
 
 def _has_alpha(image: Any) -> bool:
-    """Whether a picture has an alpha channel of which something is not opaque."""
+    """Tell whether a picture has an alpha channel of which something is not opaque."""
     if image.mode not in ("RGBA", "LA", "PA") and "transparency" not in image.info:
         return False
     low, _ = image.convert("RGBA").getchannel(3).getextrema()

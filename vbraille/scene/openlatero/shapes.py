@@ -56,7 +56,7 @@ class StrokeLook:
 
 
 def drawn(shape: GenElement, context: GenContext, *, corners_swing: bool = False) -> StrokeLook:
-    """How the stroke of a shape is drawn.
+    """Tell how the stroke of a shape is drawn.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def across_of(ridge: GenElement) -> Across | None:
 
 
 def filling(shape: GenElement, context: GenContext) -> Fill | None:
-    """What fills a closed shape; None for nothing."""
+    """Tell what fills a closed shape; None for nothing."""
     element = shape.part("fill_texture")
     if not element.switch("enable", False):
         element.forget()
@@ -471,7 +471,7 @@ def _nothing(element: GenElement) -> None:
 
 
 def _touch(centers: tuple[Point, ...], apart: float) -> bool:
-    """Whether two of many places are nearer than a distance."""
+    """Tell whether two of many places are nearer than a distance."""
     if apart <= 0 or len(centers) < 2:
         return False
     if len(set(centers)) < len(centers):

@@ -346,7 +346,7 @@ class SvgDrawing:
         return matrix
 
     def _look(self, element: Element) -> ClassLook | None:
-        """What the scene says of an element's class, label or id."""
+        """Tell what the scene says of an element's class, label or id."""
         if not self.class_looks:
             return None
         names = (*classes_of(element), element.get(f"{INKSCAPE}label"), element.get("id"))

@@ -66,7 +66,7 @@ def _share(value: float) -> float:
 
 
 def darkness(color: Color) -> float:
-    """How dark a colour is, from 0, white, to 1, black, by luminance (ITU-R 601)."""
+    """Tell how dark a colour is, from 0, white, to 1, black, by luminance (ITU-R 601)."""
     red, green, blue = color
     return 1.0 - (0.299 * red + 0.587 * green + 0.114 * blue)
 

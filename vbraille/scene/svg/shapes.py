@@ -150,7 +150,7 @@ def patterns_of(
 
 
 def _is_polygon(name: str, contours: list[Contour]) -> bool:
-    """Whether a shape was drawn by its corners, which have joints that others do not."""
+    """Tell whether a shape was drawn by its corners, which have joints that others do not."""
     if len(contours) != 1 or not contours[0].closed:
         return False
     return name == "polygon" or (name == "rect" and len(contours[0].points_mm) == 4)
@@ -191,7 +191,7 @@ def _lengths(element: Element, names: tuple[str, ...], wholes: tuple[float, ...]
 
 
 def _crosses(points_mm: tuple[Point, ...]) -> bool:
-    """Whether a contour crosses itself, or is so long that it may."""
+    """Tell whether a contour crosses itself, or is so long that it may."""
     if len(points_mm) > _MOST_CROSSED:
         return True
     try:
@@ -201,7 +201,7 @@ def _crosses(points_mm: tuple[Point, ...]) -> bool:
 
 
 def _is_convex(points_mm: tuple[Point, ...]) -> bool:
-    """Whether a contour goes round once and always turns the same way; quick to find out."""
+    """Tell whether a contour goes round once and always turns the same way; quick to find out."""
     turned, side = 0.0, 0.0
     for before, here, after in zip(
         (points_mm[-1], *points_mm), points_mm, (*points_mm[1:], points_mm[0]), strict=False
@@ -242,7 +242,7 @@ def _area(ring: tuple[Point, ...]) -> float:
 
 
 def _is_inside(point: Point, ring: tuple[Point, ...]) -> bool:
-    """Whether a place is inside a contour, by the even-odd rule."""
+    """Tell whether a place is inside a contour, by the even-odd rule."""
     x, y = point
     inside = False
     for (x0, y0), (x1, y1) in zip(ring, (*ring[1:], ring[0]), strict=True):

@@ -111,7 +111,7 @@ class StyleSheet:
         self.rules[key].append(_StyleRule(weight, tag, frozenset(k + n for k, n in parts), said))
 
     def said_of(self, element: Element) -> dict[str, str]:
-        """What the sheets say of an element, the most special last."""
+        """Tell what the sheets say of an element, the most special last."""
         if not self.rules:
             return {}
         names = {f".{name}" for name in classes_of(element)}

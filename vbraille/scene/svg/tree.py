@@ -207,7 +207,7 @@ def text_of(element: Element) -> str:
 
 
 def link_of(element: Element) -> str:
-    """What an element refers to; empty if to nothing."""
+    """Tell what an element refers to; empty if to nothing."""
     return (element.get("href") or element.get(f"{XLINK}href") or "").strip()
 
 

@@ -360,7 +360,7 @@ class BrailleLines(ChapterSource):
         return blocks
 
     def _ends_before(self, offset: int) -> bool:
-        """Whether a line or a page ends right before a place of the file."""
+        """Tell whether a line or a page ends right before a place of the file."""
         before = _read(self._stream, self.name, offset - 1, 2)
         return before[:1] in (b"\n", b"\f") or (before[:1] == b"\r" and before[1:] != b"\n")
 

@@ -178,7 +178,7 @@ class ChapterSource(ABC):
 
     @property
     def complete(self) -> bool:
-        """Whether all chapters have been read once."""
+        """Tell whether all chapters have been read once."""
         return self._starts[-1].chapter >= self.chapters
 
     @property

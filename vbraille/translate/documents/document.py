@@ -178,7 +178,7 @@ class Document:
 
     @property
     def complete(self) -> bool:
-        """Whether all blocks are known, so that the end of the text is."""
+        """Tell whether all blocks are known, so that the end of the text is."""
         return self._complete
 
     @property

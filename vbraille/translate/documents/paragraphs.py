@@ -296,7 +296,7 @@ def _overstruck(codes: NDArray[np.uint32], kinds: NDArray[np.uint8]) -> NDArray[
 
 
 def _keep_blanks(kinds: NDArray[np.uint8]) -> NDArray[np.bool_]:
-    """Whether each character is text, or a blank that has text after it on its line."""
+    """Tell whether each character is text, or a blank that has text after it on its line."""
     places = np.arange(kinds.size)
     text = np.where(kinds == TEXT, places, kinds.size)
     newline = np.where((kinds == NEWLINE) | (kinds == BREAK), places, kinds.size)

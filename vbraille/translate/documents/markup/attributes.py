@@ -114,7 +114,7 @@ def roles(attributes: Mapping[str, str]) -> frozenset[str]:
 
 
 def is_hidden(attributes: Mapping[str, str]) -> bool:
-    """Whether an element is not to be shown, going by its own attributes."""
+    """Tell whether an element is not to be shown, going by its own attributes."""
     style = attributes.get("style")
     return (
         attributes.get("aria-hidden", "").strip().lower() == "true"

@@ -153,12 +153,12 @@ class Flow:
 
     @property
     def ends_blank(self) -> bool:
-        """Whether what was added last ends with a blank."""
+        """Tell whether what was added last ends with a blank."""
         return bool(self._between)
 
     @property
     def is_full(self) -> bool:
-        """Whether the text is so long that a part of it should be taken."""
+        """Tell whether the text is so long that a part of it should be taken."""
         return self.length > self._most
 
     def take_part(self, language: str) -> FoldedText | None:

@@ -36,12 +36,12 @@ class BookPart:
 
     @property
     def is_text(self) -> bool:
-        """Whether the document is markup."""
+        """Tell whether the document is markup."""
         return self.kind in _XHTML or self.kind in (_DTBOOK, "image/svg+xml")
 
     @property
     def is_dtbook(self) -> bool:
-        """Whether the document is of DAISY's markup."""
+        """Tell whether the document is of DAISY's markup."""
         return self.kind == _DTBOOK
 
 

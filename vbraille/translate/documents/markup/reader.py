@@ -421,7 +421,7 @@ def all_text(element: Element) -> str:
 
 
 def _is_shown(name: str, found: Mapping[str, str]) -> bool:
-    """Whether an element is for a reader, going by its name and its own attributes."""
+    """Tell whether an element is for a reader, going by its name and its own attributes."""
     if name in _DROPPED:
         return False
     if not found or not attribute.is_hidden(found) or name in _SHOWN:

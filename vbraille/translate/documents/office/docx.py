@@ -287,7 +287,7 @@ class _Reader:
 
 
 def _style_of(holder: Element, based: str) -> TextStyle:
-    """What a style says, or a paragraph; and what that is based on, which stands at a path."""
+    """Tell what a style says, or a paragraph; and what that is based on, which stands at a path."""
     outline = _value(holder, "pPr/outlineLvl") or ""
     level = _whole(outline, 9) + 1
     return TextStyle(

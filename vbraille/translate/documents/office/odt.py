@@ -294,7 +294,7 @@ class _Reader:
         return table
 
     def _is_heading_row(self, row: Element) -> bool:
-        """Whether the paragraphs of a row have the style of a table's head."""
+        """Tell whether the paragraphs of a row have the style of a table's head."""
         styles = [self._styles.chain(e.get("style-name", "")) for e in row.iter("p")]
         return bool(styles) and all(
             any(style.name.startswith("table heading") for style in chained) for chained in styles

@@ -514,7 +514,7 @@ def _table_of(rows: list[_Row]) -> OfficeTable:
 
 
 def _is_bold(cell: Element) -> bool:
-    """Whether all text of a cell is bold, and there is some."""
+    """Tell whether all text of a cell is bold, and there is some."""
     text = "".join(map(str, cell.itertext())).strip()
     bold = "".join("".join(map(str, e.itertext())) for e in cell.iter("b")).strip()
     return bool(text) and text == bold
