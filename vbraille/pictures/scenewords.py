@@ -1,4 +1,4 @@
-"""What a scene's picture shows, in words: one thing per line, for whoever cannot see it."""
+"""Words for the picture of a scene: one thing a line, for people who do not see it."""
 
 from __future__ import annotations
 

@@ -127,7 +127,7 @@ class PlaceKeeper:
 
 
 class Reader(View):
-    """Somebody who reads one line after the other, each alone or on a page of several.
+    """A reading of one line after the other, each alone or on a page of several.
 
     The line under the hand is the one that the finger is on: on a page it changes as the finger
     goes up or down. What is put under the hand there comes into the row that the finger is in.

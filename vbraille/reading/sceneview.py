@@ -1,4 +1,4 @@
-"""Somebody who feels a picture: what is under the hand, and all that may be asked for meanwhile."""
+"""A picture under the hand: what is felt there, and the commands obeyed meanwhile."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ _MOVED_MM: Final = 0.2  # a hand that moved less is asked about no more
 
 
 class SceneView(View):
-    """Somebody who feels a scene on a device; `vbraille.reading.commands.scene` calls its methods.
+    """The view of a scene on a device; `vbraille.reading.commands.scene` calls its methods.
 
     Parameters
     ----------
