@@ -1,4 +1,4 @@
-"""How often the analysis's 95 % intervals hold the truth; its tables stand in docs/validation.md.
+"""Coverage of the analysis's 95 % intervals; its tables stand in docs/validation.md.
 
 `OMP_NUM_THREADS=1 python -m tests.benchmarks.bench_coverage` writes them there: every number
 comes from seeds of its own cell, so that a rerun writes the same.

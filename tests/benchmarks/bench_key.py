@@ -78,7 +78,7 @@ def profile(report: int) -> None:
 
 
 def read_once() -> dict[str, Any]:
-    """What the profiled reading tells."""
+    """Counts that the profiled reading gives."""
     reads, writes = os.pipe()
     keys, terminal = pty.openpty()
     process = subprocess.Popen(

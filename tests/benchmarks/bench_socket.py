@@ -20,7 +20,7 @@ MOST_US = 500.0  # of 99 %
 
 
 def run(seconds: float = BLOCK_S) -> Iterator[Result]:
-    """Measure the host for so many seconds."""
+    """Measure the host for some seconds."""
     with tempfile.TemporaryDirectory() as folder:
         bench_tick.measured("socket", bench_tick.ROOT, 2.0, folder)  # which compiles
         with bench_tick.spinning(BUSY_PROCESSES):

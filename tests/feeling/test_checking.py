@@ -1,4 +1,4 @@
-"""What `vbraille scene check` says of what is felt: ten mistakes of an author, and none besides."""
+"""Advice of `vbraille scene check` on what is felt: each mistake is said, and nothing else."""
 
 import pytest
 

@@ -197,7 +197,7 @@ def simulate(parser: CommandParser) -> None:
         "--encoder",
         ("absolute", "index", "incremental"),
         "Choose what the encoder knows of the carriage's place when it starts: the place, "
-        "nothing before it has passed its mark, or nothing before somebody says where the left "
+        "nothing before it has passed its mark, or nothing before it is told where the left "
         "stop is.",
         default="absolute",
     )
@@ -289,7 +289,7 @@ def simulate_latero(parser: CommandParser) -> None:
     for name, text in (
         ("late", "Send this share of the answers 20 ms late"),
         ("double", "Have this share of the datagrams come twice, both ways"),
-        ("foreign", "Send somebody else's datagram along with this share of the answers"),
+        ("foreign", "Send a stranger's datagram along with this share of the answers"),
     ):
         latero.add_argument(f"--{name}", type=number, metavar="0…1", help=f"{text} (default: 0).")
 
