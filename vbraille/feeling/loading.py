@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from vbraille.errors import InputError
 from vbraille.labelling import label_warnings, write_labels
-from vbraille.render.scene.assets import Assets
-from vbraille.render.scene.brailleplaces import box_of
+from vbraille.render.scene.labels import Assets, box_of
 from vbraille.scene.bounds import Box
 from vbraille.scene.images import load_bitmaps
 from vbraille.scene.patterns import Image, Label

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.display import Display
-    from vbraille.render.scene.assets import Assets
+    from vbraille.render.scene.labels import Assets
     from vbraille.scene.scene import Canvas, Scene
 
 
@@ -121,7 +121,7 @@ def show_array(
     time_s
         Time for what vibrates or moves.
     """
-    from vbraille.render.scene.canvas import SceneMap  # loads the kernels
+    from vbraille.render.scene.compiling import SceneMap  # loads the kernels
 
     drawn = SceneMap(scene, assets)
     places, frame = actuators_mm(display, place), np.empty(display.shape)
@@ -230,7 +230,7 @@ def felt_contours(scene: Scene, assets: Assets) -> list[NDArray[np.float64]]:
     """
     from contourpy import FillType, contour_generator
 
-    from vbraille.render.scene.canvas import SceneMap  # loads the kernels
+    from vbraille.render.scene.compiling import SceneMap  # loads the kernels
 
     canvas = scene.canvas
     area = canvas.width_mm * canvas.height_mm

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.render.scene.assets import Assets
+    from vbraille.render.scene.labels import Assets
     from vbraille.scene.scene import Canvas, Scene
 
 PIXELS_PER_MM = 4.0
@@ -156,7 +156,7 @@ def map_deflections(
     InputError
         As `map_places` has it.
     """
-    from vbraille.render.scene.canvas import SceneMap  # loads the kernels
+    from vbraille.render.scene.compiling import SceneMap  # loads the kernels
 
     x_mm, y_mm = map_places(scene.canvas, pixels_per_mm)
     drawn = SceneMap(scene, assets)
