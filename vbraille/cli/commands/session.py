@@ -63,6 +63,7 @@ def _plan(arguments: argparse.Namespace) -> int:
     )
     if plan.group:
         _say(f"group: {plan.group}")
+    _say(f"analysis: {protocol.planned_analysis.described()}")
     if protocol.adaptive:
         from vbraille.sessions.planning.nexttrial import describe
 

@@ -95,6 +95,7 @@ def make_plan(
         seed=seed,
         order=order,
         group=protocol.group,
+        analysis=protocol.planned_analysis,
         practice=_numbered(practice),
         trials=_numbered(trials),
     )

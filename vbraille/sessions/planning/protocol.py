@@ -14,6 +14,7 @@ import numpy as np
 from msgspec import field, structs
 
 from vbraille.render import MODELS
+from vbraille.sessions.planning.analysis import PlannedAnalysis
 from vbraille.sessions.planning.design import (
     BlockOrder,
     Choice,
@@ -95,6 +96,7 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     faults: FaultRules = FaultRules()
     sound: SignalSound = SignalSound()
     fields: tuple[ParticipantField, ...] = ()
+    analysis: PlannedAnalysis | None = None
 
 
 class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
@@ -143,6 +145,8 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         Sounds that the participant hears.
     fields
         Questions about the participant.
+    analysis
+        Analysis that is planned; None for the usual one of the task.
     text
         The file's TOML text, as it was read.
     files
@@ -295,6 +299,11 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         if stimulus.conventional:
             return CellSpelling(self.keys, _ALL_DOTS)
         return CellSpelling(self.keys, self.mapping_of(stimulus).shown_dots())
+
+    @cached_property
+    def planned_analysis(self) -> PlannedAnalysis:
+        """Analysis that is planned, with the usual choices of the task where none is made."""
+        return (self.analysis or PlannedAnalysis()).resolved(self)
 
     @property
     def adaptive(self) -> bool:

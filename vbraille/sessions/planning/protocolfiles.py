@@ -291,6 +291,8 @@ def check_protocol(protocol: Protocol, *, planned: bool = False) -> None:
         check_lines(protocol)
     _check_letters(protocol)
     _check_rules(protocol)
+    with _naming("[analysis]"):
+        protocol.planned_analysis  # noqa: B018
     if not protocol.group:
         _check_groups(protocol, planned=planned)
 

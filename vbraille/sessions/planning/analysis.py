@@ -1,0 +1,207 @@
+"""The analysis that a protocol plans: the one that answers what its sessions are for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from msgspec import structs
+
+from vbraille.errors import check_range
+from vbraille.sessions.planning.factors import within
+from vbraille.sessions.planning.pace import check_line
+from vbraille.tomlfile import Table, which
+from vbraille.wording import count
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from vbraille.sessions.planning.protocol import Protocol
+
+MOST_PEOPLE = 10_000
+CONDITION = "condition"  # the factor of conditions that a protocol lists by name
+
+
+class Measure(NamedTuple):
+    """A measure that may be the primary one.
+
+    Parameters
+    ----------
+    words
+        Name in a report, without a unit.
+    unit
+        Unit in which it is printed: "%" of a share; empty for numbers.
+    scale
+        "share" of right answers; "log" for what is above 0 and skewed, and compared by ratios;
+        "linear" for all else.
+    questions
+        Kinds of question that give it.
+    """
+
+    words: str
+    unit: str
+    scale: Literal["share", "log", "linear"]
+    questions: tuple[str, ...]
+
+
+MEASURES = {
+    "legibility": Measure("legibility of strings", "%", "share", ("identify",)),
+    "characters": Measure("legibility of characters", "%", "share", ("identify",)),
+    "duration": Measure("duration of right answers", "s", "log", ("identify",)),
+    "right": Measure("right answers", "%", "share", ("which", "same-different", "detect")),
+    "threshold": Measure("threshold", "", "log", ("detect", "which", "identify")),
+    "d_prime": Measure("d′", "", "linear", ("detect", "same-different", "which")),
+    "preferred": Measure("preferred value", "", "linear", ("which",)),
+    "rating": Measure("rating", "", "linear", ("rating",)),
+    "magnitude": Measure("magnitude", "", "log", ("magnitude",)),
+}
+
+
+class PlannedAnalysis(Table, frozen=True, kw_only=True):
+    """The table ``[analysis]`` of a protocol.
+
+    Parameters
+    ----------
+    measure
+        Primary measure, a key of `MEASURES`; None for the usual one of the question.
+    factors
+        Names of the factors that it is compared by, or "condition" for conditions that are listed;
+        None for all that the plan has.
+    model
+        "trials": logistic regression of single trials, with participants as clusters; "means":
+        participants' own means. None for "trials" of shares, and "means" of all else.
+    correction
+        How the p of all tests of the primary analysis are corrected together.
+    too_fast_s, too_slow_s
+        Trials that took less, or more, are left out; None for no such limit.
+    catch_right
+        Least share of a participant's catch trials that are right; with a smaller one the
+        participant is left out. None for no such rule.
+    participants
+        Planned number of participants; None if it is not planned.
+    stop
+        Rule by which the study stops, in words; empty if there is none but the number.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    measure: str | None = None
+    factors: tuple[str, ...] | None = None
+    model: Literal["trials", "means"] | None = None
+    correction: Literal["holm", "bonferroni", "fdr", "none"] = "holm"
+    too_fast_s: float | None = None
+    too_slow_s: float | None = None
+    catch_right: float | None = None
+    participants: int | None = None
+    stop: str = ""
+
+    def __post_init__(self) -> None:
+        if self.measure is not None and self.measure not in MEASURES:
+            raise ValueError(f"measure is {self.measure!r}{which(self.measure, MEASURES)}")
+        check_range("too_fast_s", self.too_fast_s, 0, 3600, " s")
+        check_range("too_slow_s", self.too_slow_s, 0, 86400, " s")
+        check_range("catch_right", self.catch_right, 0, 1)
+        check_range("participants", self.participants, 1, MOST_PEOPLE)
+        if None not in (self.too_fast_s, self.too_slow_s) and self.too_fast_s >= self.too_slow_s:
+            raise ValueError("too_fast_s must be below too_slow_s")
+        if self.stop:
+            check_line("stop", self.stop)
+
+    def resolved(self, protocol: Protocol) -> PlannedAnalysis:
+        """Fill in the usual choices of a protocol where none is made.
+
+        Raises
+        ------
+        ValueError
+            If a choice does not suit the protocol.
+        """
+        question = protocol.asks.name
+        measure = self.measure or usual_measure(protocol)
+        if measure is not None and question not in MEASURES[measure].questions:
+            known = [name for name, of in MEASURES.items() if question in of.questions]
+            raise ValueError(
+                f"measure is {measure!r}, which the question {question} does not give"
+                f"{which(measure, known) if known else '; leave it out'}"
+            )
+        if measure == "threshold" and question == "identify" and not protocol.adaptive:
+            raise ValueError("measure is 'threshold', which strings have with [procedure] alone")
+        possible = factors_of(protocol)
+        factors = possible if self.factors is None else self.factors
+        for name in factors:
+            if name not in possible:
+                raise ValueError(f"factors has {name!r}{which(name, possible)}")
+        if len(set(factors)) < len(factors):
+            raise ValueError("factors has one twice; leave it out once")
+        if measure in ("threshold", "preferred") and self.factors is None:
+            factors = tuple(name for name in factors if name not in _levels(protocol))
+        share = measure is not None and MEASURES[measure].scale == "share"
+        if self.model == "trials" and not share:
+            raise ValueError(
+                f"model is 'trials', which is of shares of right answers, not {measure}"
+            )
+        if self.catch_right is not None and protocol.design.catch is None:
+            raise ValueError("catch_right is of catch trials, and [design] has none; leave it out")
+        return structs.replace(
+            self,
+            measure=measure,
+            factors=tuple(factors),
+            model=self.model or ("trials" if share else "means"),
+        )
+
+    def described(self) -> str:
+        """Describe the analysis in a line."""
+        if self.measure is None:
+            return "none; answers are words"
+        by = " by " + " × ".join(self.factors) if self.factors else ""
+        told = [f"{MEASURES[self.measure].words}{by}", f"model {self.model}"]
+        told += [f"p corrected by {self.correction}"] if self.factors else []
+        for limit, words in ((self.too_fast_s, "below"), (self.too_slow_s, "above")):
+            told += [] if limit is None else [f"without trials {words} {limit:g} s"]
+        if self.catch_right is not None:
+            told.append(
+                f"without people with less than {self.catch_right:.0%} of catch trials right"
+            )
+        told += [] if self.participants is None else [count(self.participants, "participant")]
+        return "; ".join(told + ([self.stop] if self.stop else []))
+
+    def column(self, factor: str) -> str:
+        """Column of trials that has the levels of a factor."""
+        return factor if factor == CONDITION else f"factor_{factor}"
+
+
+def factors_of(protocol: Protocol) -> tuple[str, ...]:
+    """Names of the factors that a plan varies, within participants or between them."""
+    listed = (CONDITION,) if not within(protocol.factors) and len(protocol.conditions) > 1 else ()
+    return (*listed, *(factor.name for factor in protocol.factors))
+
+
+def usual_measure(protocol: Protocol) -> str | None:
+    """Usual primary measure of a protocol's question; None if answers are words."""
+    question = protocol.asks
+    if question.name == "identify" and protocol.adaptive:
+        return "threshold"
+    if question.name == "which":
+        right = getattr(question, "right", None)
+        return "preferred" if right in (None, "nearest") else "threshold"
+    if question.name == "same-different":
+        return "d_prime"
+    if question.name == "detect":
+        return "threshold" if protocol.adaptive or _levels(protocol) else "d_prime"
+    return next((name for name, of in MEASURES.items() if question.name in of.questions), None)
+
+
+def _levels(protocol: Protocol) -> tuple[str, ...]:
+    """Factors whose levels a threshold is found among: those that change a number."""
+    if protocol.adaptive:
+        return ()
+    numeric = {"contrast", "texture", "dot_width_mm", "dot_spacing_mm", "cell_gap_mm",
+               "row_spacing_mm"}  # fmt: skip
+    own = [factor.name for factor in protocol.factors if _varies(factor.levels, numeric)]
+    listed = [CONDITION] if _varies(protocol.listed, numeric) else []
+    return (*listed, *own) if protocol.asks.name == "detect" else ()
+
+
+def _varies(levels: Iterable, numeric: set[str]) -> bool:
+    return any(numeric & level.changes.keys() for level in levels)
