@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 from msgspec import structs
 
 from vbraille.errors import check_range
-from vbraille.sessions.planning.factors import within
 from vbraille.sessions.planning.pace import check_line
 from vbraille.tomlfile import Table, which
 from vbraille.wording import count
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from vbraille.sessions.planning.protocol import Protocol
-
 MOST_PEOPLE = 10_000
 CONDITION = "condition"  # the factor of conditions that a protocol lists by name
+# What has levels on a scale, along which a threshold may be found.
+NUMBERS = frozenset(
+    ("contrast", "texture", "dot_width_mm", "dot_spacing_mm", "cell_gap_mm", "row_spacing_mm")
+)
 
 
 class Measure(NamedTuple):
@@ -54,6 +52,49 @@ MEASURES = {
     "rating": Measure("rating", "", "linear", ("rating",)),
     "magnitude": Measure("magnitude", "", "log", ("magnitude",)),
 }
+
+
+class Task(NamedTuple):
+    """A protocol's task, as far as its usual analysis follows from it.
+
+    Parameters
+    ----------
+    question
+        Kind of the question.
+    scored
+        Whether one of two stimuli is right by having more or less of something.
+    adaptive, catch
+        Whether there is a procedure, and whether there are catch trials.
+    factors
+        What each factor changes, by its name; "condition" for conditions that are listed.
+    """
+
+    question: str
+    scored: bool
+    adaptive: bool
+    catch: bool
+    factors: dict[str, frozenset[str]]
+
+    @property
+    def levels(self) -> tuple[str, ...]:
+        """Factors whose levels a threshold is found among: those that change a number."""
+        if self.question != "detect" or self.adaptive:
+            return ()
+        return tuple(name for name, changes in self.factors.items() if changes & NUMBERS)
+
+    @property
+    def measure(self) -> str | None:
+        """Usual primary measure; None if answers are words."""
+        match self.question:
+            case "identify" if self.adaptive:
+                return "threshold"
+            case "which":
+                return "threshold" if self.scored else "preferred"
+            case "same-different":
+                return "d_prime"
+            case "detect":
+                return "threshold" if self.adaptive or self.levels else "d_prime"
+        return next((n for n, of in MEASURES.items() if self.question in of.questions), None)
 
 
 class PlannedAnalysis(Table, frozen=True, kw_only=True):
@@ -109,44 +150,42 @@ class PlannedAnalysis(Table, frozen=True, kw_only=True):
         if self.stop:
             check_line("stop", self.stop)
 
-    def resolved(self, protocol: Protocol) -> PlannedAnalysis:
-        """Fill in the usual choices of a protocol where none is made.
+    def resolved(self, task: Task) -> PlannedAnalysis:
+        """Fill in the usual choices of a task where none is made.
 
         Raises
         ------
         ValueError
-            If a choice does not suit the protocol.
+            If a choice does not suit the task.
         """
-        question = protocol.asks.name
-        measure = self.measure or usual_measure(protocol)
-        if measure is not None and question not in MEASURES[measure].questions:
-            known = [name for name, of in MEASURES.items() if question in of.questions]
+        measure = self.measure or task.measure
+        if measure is not None and task.question not in MEASURES[measure].questions:
+            known = [name for name, of in MEASURES.items() if task.question in of.questions]
             raise ValueError(
-                f"measure is {measure!r}, which the question {question} does not give"
+                f"measure is {measure!r}, which the question {task.question} does not give"
                 f"{which(measure, known) if known else '; leave it out'}"
             )
-        if measure == "threshold" and question == "identify" and not protocol.adaptive:
+        if measure == "threshold" and task.question == "identify" and not task.adaptive:
             raise ValueError("measure is 'threshold', which strings have with [procedure] alone")
-        possible = factors_of(protocol)
-        factors = possible if self.factors is None else self.factors
+        factors = tuple(task.factors) if self.factors is None else self.factors
         for name in factors:
-            if name not in possible:
-                raise ValueError(f"factors has {name!r}{which(name, possible)}")
+            if name not in task.factors:
+                raise ValueError(f"factors has {name!r}{which(name, task.factors)}")
         if len(set(factors)) < len(factors):
             raise ValueError("factors has one twice; leave it out once")
-        if measure in ("threshold", "preferred") and self.factors is None:
-            factors = tuple(name for name in factors if name not in _levels(protocol))
+        if measure == "threshold" and self.factors is None:
+            factors = tuple(name for name in factors if name not in task.levels)
         share = measure is not None and MEASURES[measure].scale == "share"
         if self.model == "trials" and not share:
             raise ValueError(
-                f"model is 'trials', which is of shares of right answers, not {measure}"
+                f"model is 'trials', which is of shares of right answers, not of {measure}"
             )
-        if self.catch_right is not None and protocol.design.catch is None:
+        if self.catch_right is not None and not task.catch:
             raise ValueError("catch_right is of catch trials, and [design] has none; leave it out")
         return structs.replace(
             self,
             measure=measure,
-            factors=tuple(factors),
+            factors=factors,
             model=self.model or ("trials" if share else "means"),
         )
 
@@ -169,39 +208,3 @@ class PlannedAnalysis(Table, frozen=True, kw_only=True):
     def column(self, factor: str) -> str:
         """Column of trials that has the levels of a factor."""
         return factor if factor == CONDITION else f"factor_{factor}"
-
-
-def factors_of(protocol: Protocol) -> tuple[str, ...]:
-    """Names of the factors that a plan varies, within participants or between them."""
-    listed = (CONDITION,) if not within(protocol.factors) and len(protocol.conditions) > 1 else ()
-    return (*listed, *(factor.name for factor in protocol.factors))
-
-
-def usual_measure(protocol: Protocol) -> str | None:
-    """Usual primary measure of a protocol's question; None if answers are words."""
-    question = protocol.asks
-    if question.name == "identify" and protocol.adaptive:
-        return "threshold"
-    if question.name == "which":
-        right = getattr(question, "right", None)
-        return "preferred" if right in (None, "nearest") else "threshold"
-    if question.name == "same-different":
-        return "d_prime"
-    if question.name == "detect":
-        return "threshold" if protocol.adaptive or _levels(protocol) else "d_prime"
-    return next((name for name, of in MEASURES.items() if question.name in of.questions), None)
-
-
-def _levels(protocol: Protocol) -> tuple[str, ...]:
-    """Factors whose levels a threshold is found among: those that change a number."""
-    if protocol.adaptive:
-        return ()
-    numeric = {"contrast", "texture", "dot_width_mm", "dot_spacing_mm", "cell_gap_mm",
-               "row_spacing_mm"}  # fmt: skip
-    own = [factor.name for factor in protocol.factors if _varies(factor.levels, numeric)]
-    listed = [CONDITION] if _varies(protocol.listed, numeric) else []
-    return (*listed, *own) if protocol.asks.name == "detect" else ()
-
-
-def _varies(levels: Iterable, numeric: set[str]) -> bool:
-    return any(numeric & level.changes.keys() for level in levels)

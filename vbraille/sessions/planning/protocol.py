@@ -14,7 +14,7 @@ import numpy as np
 from msgspec import field, structs
 
 from vbraille.render import MODELS
-from vbraille.sessions.planning.analysis import PlannedAnalysis
+from vbraille.sessions.planning.analysis import CONDITION, PlannedAnalysis, Task
 from vbraille.sessions.planning.design import (
     BlockOrder,
     Choice,
@@ -303,7 +303,19 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
     @cached_property
     def planned_analysis(self) -> PlannedAnalysis:
         """Analysis that is planned, with the usual choices of the task where none is made."""
-        return (self.analysis or PlannedAnalysis()).resolved(self)
+        factors = {factor.name: frozenset(factor.changes) for factor in self.factors}
+        if not within(self.factors) and len(self.conditions) > 1:
+            changes = frozenset().union(*(each.changes for each in self.conditions))
+            factors = {CONDITION: changes, **factors}
+        right = getattr(self.asks, "right", None)
+        task = Task(
+            question=self.asks.name,
+            scored=right in ("more", "less"),
+            adaptive=self.adaptive,
+            catch=self.design.catch is not None,
+            factors=factors,
+        )
+        return (self.analysis or PlannedAnalysis()).resolved(task)
 
     @property
     def adaptive(self) -> bool:
