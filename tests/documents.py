@@ -1,11 +1,15 @@
 """Tables of documents that follow from the program; `python -m tests.documents` writes them."""
 
+import inspect
 import re
+import textwrap
 from pathlib import Path
+from typing import get_args
 
 from vbraille.config.options import BOOK, FILE, PROFILE, held_in
 from vbraille.reading.commands.scene import COMMANDS as FEELING
 from vbraille.reading.commands.table import COMMANDS as READING
+from vbraille.sessions.record.events import OTHER, AnyEvent, AnyTime, InTrial, WithStimulus
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -44,13 +48,47 @@ def _keys(commands):
         yield _row(f"`{command.name}`", command.spoken_keys, command.help, when)
 
 
+def described(kind):
+    """First sentence of a class's docstring, and what it says of each field of its own."""
+    text = inspect.cleandoc(kind.__doc__)
+    said, _, fields = text.partition("\n\nParameters\n----------\n")
+    found = re.findall(r"^(\w.*)\n((?:    .*\n?)+)", fields, re.MULTILINE)
+    return " ".join(said.split()), {names: " ".join(told.split()) for names, told in found}
+
+
+def members(fields):
+    """Say fields in a cell of a table."""
+    return " ".join(f"`{names.replace(', ', '`, `')}`: {told}" for names, told in fields.items())
+
+
+def _events():
+    yield "| event | what happened | other members |"
+    for kind in get_args(AnyEvent):
+        said, fields = described(kind)
+        given = "with a stimulus" if issubclass(kind, WithStimulus) else ""
+        given = given or ("in a trial" if issubclass(kind, InTrial) else "")
+        given = given or ("at any time" if issubclass(kind, AnyTime) else "")
+        name = f"`{kind.__struct_config__.tag}`" + (" *" if kind.durable else "")
+        cells = (name, said + (f" ({given})" if given else ""), members(fields))
+        yield "| " + " | ".join(cells) + " |"
+
+
+def _bytes():
+    told = [f"`{kind.__struct_config__.tag}` {kind.code}" for kind in get_args(AnyEvent)]
+    said = ", ".join([*told, f"any other {OTHER}"])
+    return "\n".join(textwrap.wrap(said, 118, break_on_hyphens=False))
+
+
 # Each document with its tables, which begin with the first row of each.
 TABLES = (
     ("settings.md", list(_read())),
     ("settings.md", list(_profile())),
     ("keys.md", list(_keys(READING))),
     ("feeling.md", list(_keys(FEELING))),
+    ("session-format.md", list(_events())),
 )
+# Each document with its other parts: the words that stand around one, and the part itself.
+PARTS = (("session-format.md", "<!-- bytes: begin -->\n", "\n<!-- bytes: end -->", _bytes()),)
 
 
 def with_table(text, rows):
@@ -62,7 +100,16 @@ def with_table(text, rows):
     return text[:start] + table + text[found.end() :]
 
 
+def with_part(text, begin, end, part):
+    """A document in which a part stands between these words."""
+    before, _, rest = text.partition(begin)
+    return before + begin + part + end + rest.partition(end)[2]
+
+
 if __name__ == "__main__":
     for name, rows in TABLES:
         page = DOCS / name
         page.write_text(with_table(page.read_text(encoding="utf-8"), rows), encoding="utf-8")
+    for name, *part in PARTS:
+        page = DOCS / name
+        page.write_text(with_part(page.read_text(encoding="utf-8"), *part), encoding="utf-8")

@@ -418,6 +418,12 @@ def _check_question(protocol: Protocol) -> None:
         )
     if protocol.trial.end is not None and protocol.medium == "paper":
         raise ValueError("[trial] end is of a device; on paper Enter ends reading, leave it out")
+    there = any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions)
+    if protocol.trial.exposure_s is not None and (there or protocol.medium == "paper"):
+        raise ValueError(
+            "[trial] exposure_s is of a device, and strings stand on paper or on a conventional "
+            "display; leave it out"
+        )
 
 
 def _check_procedure(protocol: Protocol) -> None:
@@ -430,6 +436,11 @@ def _check_procedure(protocol: Protocol) -> None:
         raise ValueError(
             "[procedure] guess is 0, and people say yes at nothing too; give the shares that may "
             "be, such as guess = [0.01, 0.05, 0.1, 0.2, 0.3, 0.4]"
+        )
+    if protocol.trial.late == "missed":
+        raise ValueError(
+            "[trial] late is 'missed', which leaves trials without an answer, and [procedure] goes "
+            "by the answers; give 'kept'"
         )
     if protocol.medium == "paper":
         raise ValueError(

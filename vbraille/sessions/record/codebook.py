@@ -71,8 +71,8 @@ COLUMNS = {
     "contact_s": "from the start signal to the first touch",
     "response_s": "from the start signal to the participant's key, or to the answer where there "
     "was none, pauses left out",
-    "ended_by": "what ended reading: button:N, key:NAME, or answer if the answer came before the "
-    "participant's key; empty if the protocol has no such key",
+    "ended_by": "what ended reading: button:N, key:NAME, exposure, or answer if the answer came "
+    "before these; empty if the protocol has no such key, and no limit of the exposure",
     "paused_s": "length of the pauses",
     "early": "1 if it was answered before it was read to its end: its duration does not count",
     "analysed": "1 if the analysis uses the trial; 0 for a catch trial, unless detecting is what "
@@ -87,10 +87,11 @@ COLUMNS = {
     "trace": "file of the trace of the last attempt",
 }
 
-# Columns of protocols whose strings are texts.
-WRITTEN = {
+# Columns that a protocol has only if it asks for what they hold.
+FURTHER = {
     "table": "braille table that made the cells of the text",
     "text": "text that the cells asked for stand for; empty for a blank catch trial",
+    "late": "1 if the answer came after the time that the protocol gives for it, or not at all",
 }
 
 
@@ -134,6 +135,7 @@ _VALUES = {
     "returned": {"1": "the hand went back", "0": "it did not"},
     "early": {"1": "it does not count", "0": "it counts"},
     "analysed": {"1": "the analysis uses the trial", "0": "it does not"},
+    "late": {"1": "it came too late, or not at all", "0": "it came in time"},
     "warned": {"1": "the warning sounded", "0": "it did not"},
     "moved_by": {
         "person": "a person's hand",
@@ -193,7 +195,7 @@ def entry_of(name: str, asked: Mapping[str, str] | None = None) -> CodebookEntry
         question = (asked or {}).get(name.removeprefix(FIELD))
         meaning = question or "answer to a question of the protocol about the participant"
         return CodebookEntry(name, meaning)
-    meaning = COLUMNS.get(name) or WRITTEN.get(name) or _designed(name) or "as it was given"
+    meaning = COLUMNS.get(name) or FURTHER.get(name) or _designed(name) or "as it was given"
     return CodebookEntry(name, meaning, unit_of(name), _VALUES.get(name, {}))
 
 

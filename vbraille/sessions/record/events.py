@@ -310,12 +310,12 @@ class Read(WithStimulus, frozen=True, kw_only=True):
 
 
 class Ended(WithStimulus, frozen=True, kw_only=True):
-    """The participant's own key ended the reading of a stimulus.
+    """The participant's own key, or the limit of the exposure, ended the reading of a stimulus.
 
     Parameters
     ----------
     by
-        Which key it was: "button:N" of the device, or "key:NAME".
+        What it was: "button:N" of the device, "key:NAME", or "exposure".
     time_ns
         Time of it by the host's monotonic clock, as in the trace; left out if it is not known.
     """
@@ -356,8 +356,10 @@ class Answer(InTrial, frozen=True, kw_only=True):
     confidence_s
         Seconds from the answer to its confidence, with which it was written.
     ended_by
-        What ended reading: "button:N", "key:NAME", or "answer" if the answer came before the
-        participant's key; left out if the protocol has no such key.
+        What ended reading: "button:N", "key:NAME", "exposure", or "answer" if the answer came
+        before these; left out if the protocol has no such key and no limit of the exposure.
+    late
+        Whether the answer came after the time that the protocol gives for it.
     """
 
     code: ClassVar[int] = 7
@@ -370,11 +372,27 @@ class Answer(InTrial, frozen=True, kw_only=True):
     confidence: int | None = None
     confidence_s: float = 0.0
     ended_by: str = ""
+    late: bool = False
 
     @property
     def said(self) -> str:
         """Answer, with its confidence."""
         return self.answer + ("" if self.confidence is None else f"; {self.confidence}")
+
+
+class Missed(InTrial, frozen=True, kw_only=True):
+    """The time for an answer was over, and the trial ended without one.
+
+    Parameters
+    ----------
+    attempt
+        Number of the attempt at the trial that was not answered.
+    """
+
+    code: ClassVar[int] = 28
+    durable: ClassVar[bool] = True
+
+    attempt: int
 
 
 class Undo(InTrial, frozen=True):

@@ -270,6 +270,8 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     }
     if "cue" in t_s and "contact" in t_s and t_s["contact"] >= t_s["cue"]:
         row["contact_s"] = round(t_s["contact"] - t_s["cue"], 6)
+    if protocol.trial.answer_s is not None:
+        row["late"] = int(told.late)
     if told.response_s is not None:
         row["response_s"] = round(told.response_s, 6)
     return row | _asked(record, trial, told)

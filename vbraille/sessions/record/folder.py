@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
     from vbraille.sessions.planning.protocol import Protocol
 
-FORMAT = 6
+FORMAT = 7
 HEAD, PLAN, PROTOCOL = "session.json", "plan.json", "protocol.toml"
 FILES = (HEAD, PLAN, PROTOCOL)
 _TOLD_VERSIONS = ("numpy", "numba", "pyserial", "cobs", "h5py")

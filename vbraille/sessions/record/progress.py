@@ -62,8 +62,12 @@ class TrialRecord:
     confidence
         How sure the answer that counts is, on the protocol's scale; None if that was not asked.
     ended_by
-        What ended reading: the participant's key, or "answer" if the answer came before it; empty
-        if the protocol has no such key.
+        What ended reading: the participant's key, "exposure", or "answer" if the answer came before
+        these; empty if the protocol has no such key and no limit of the exposure.
+    late
+        Whether the answer came after the time for it, or not at all.
+    missed
+        Whether the trial ended without an answer, since the time for one was over.
     """
 
     trial: Trial
@@ -83,6 +87,13 @@ class TrialRecord:
     lost: list[int] = field(default_factory=list)
     confidence: int | None = None
     ended_by: str = ""
+    late: bool = False
+    missed: bool = False
+
+    @property
+    def over(self) -> bool:
+        """True if the trial is over, with an answer or without one."""
+        return self.answer is not None or self.missed
 
     @property
     def response_s(self) -> float | None:
@@ -90,7 +101,7 @@ class TrialRecord:
 
         Pauses are left out. None if there is no answer.
         """
-        by_key = self.ended_by not in ("", "answer") and "ended" in self.t_s
+        by_key = self.ended_by.startswith(("button:", "key:")) and "ended" in self.t_s
         end = "ended" if by_key else "answer"
         if "cue" not in self.t_s or end not in self.t_s or "answer" not in self.t_s:
             return None
@@ -204,7 +215,7 @@ class Progress:
         """The trial that comes next, or is open; None after the last."""
         if not self.begun:
             for record in self.practice.values():
-                if record.answer is None:
+                if not record.over:
                     return record.trial
         return self._next
 
@@ -315,6 +326,10 @@ class Progress:
                 self._take_presented(event, record)
             case events.Answer() if record:
                 self._take_answer(event, record)
+            case events.Missed() if record:
+                record.missed = record.late = True
+                self._end_pause(record, event)
+                self._go_on(event, Answered(record.trial, "", event.t_s))
             case events.Undo() if record:
                 self.correcting = self.last_answered
                 record.first_answer = record.first_answer or record.answer
@@ -372,6 +387,7 @@ class Progress:
     def _take_answer(self, event: events.Answer, record: TrialRecord) -> None:
         record.answer = event.answer
         record.confidence = event.confidence
+        record.missed = False
         record.source = self._answers
         # What goes by the answers goes by what was felt, whatever it would choose today.
         shown = record.trial if self.procedure.trials is not None else record.shown
@@ -384,7 +400,12 @@ class Progress:
             return
         record.early = event.early
         record.ended_by = event.ended_by
+        record.late = event.late
         self._end_pause(record, event)  # an answer ends a pause
+        self._go_on(event, answered)
+
+    def _go_on(self, event: events.InTrial, answered: Answered) -> None:
+        """Ask for the trial after one that is over."""
         if not event.practice:
             self.history.append(answered)
             self._next = self._ask()

@@ -127,7 +127,9 @@ class Console:
                 if self._asks_again(trial, answer):
                     return
                 told["early"] = True
-            if runner.protocol.trial.end is not None:
+            if runner.late:
+                told["late"] = True
+            if (runner.protocol.trial.end, runner.protocol.trial.exposure_s) != (None, None):
                 told["ended_by"] = runner.ended_by or "answer"
             runner.withdraw()
         scale = runner.protocol.asks.confidence

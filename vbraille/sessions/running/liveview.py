@@ -50,6 +50,8 @@ _SAFE: Final = frozenset(
         "go",
         "hand",
         "last",
+        "late",
+        "missed",
         "pause",
         "place",
         "read",

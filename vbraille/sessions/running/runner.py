@@ -71,6 +71,22 @@ class PendingAnswer:
     at_s: float
 
 
+@dataclass(frozen=True, slots=True)
+class TimePoint:
+    """A moment of a trial.
+
+    Parameters
+    ----------
+    time_ns
+        Time of it by the session's clock.
+    paused_s
+        Seconds that the trial had been paused by then.
+    """
+
+    time_ns: int
+    paused_s: float
+
+
 POLL_S = 0.02
 MOST_DEATHS = 3  # number of deaths after which the host is not started again
 
@@ -165,7 +181,10 @@ class Runner:
         self._real = real
         self._attempt = 0
         self._ready_ns = 0
-        self._cue_ns = 0
+        self._cue = TimePoint(0, 0.0)
+        self._exposed: TimePoint | None = None  # from when the stimulus's exposure counts
+        self._asked: TimePoint | None = None  # from when the time for the answer counts
+        self._told_late = False
         self._deaths = 0
         self._why = ""  # what the experimenter was told that the trial waits for
         self._prompted = False  # whether the experimenter was asked for the answer
@@ -220,6 +239,14 @@ class Runner:
         if self.open_trial is None or device is None or device.ended or self.by_key:
             return False
         return not (self.paused or self.pending or self.ended_by)
+
+    @property
+    def late(self) -> bool:
+        """True if the time for an answer to the open trial is over."""
+        limit_s, trial = self.protocol.trial.answer_s, self.open_trial
+        if limit_s is None or trial is None or self._asked is None:
+            return False
+        return self._since_s(self._asked, trial) > limit_s
 
     @property
     def prompt(self) -> str:
@@ -318,7 +345,7 @@ class Runner:
     def _take_lines(self, take: Callable[[str, int], None]) -> bool:
         """Take the lines that have come, and what the presenters tell; False if no more come."""
         self.await_key(self.reading)
-        lines = self.responses.lines(POLL_S if self._real else 0.0)
+        lines = self.responses.lines(self._wait_s() if self._real else 0.0)
         if lines is None:
             return False
         if lines:
@@ -334,6 +361,21 @@ class Runner:
         if not self.responses.typed:
             self._ask(take)
         return True
+
+    def _wait_s(self) -> float:
+        """Seconds until the session looks at its presenters again, or the exposure is over."""
+        limit_s, trial = self.protocol.trial.exposure_s, self.open_trial
+        if limit_s is None or trial is None or self._exposed is None or self.paused:
+            return POLL_S
+        return min(max(limit_s - self._since_s(self._exposed, trial), 0.0), POLL_S)
+
+    def _since_s(self, point: TimePoint, trial: Trial) -> float:
+        """Seconds since a moment of a trial, pauses left out."""
+        paused_s = self.progress.record_of(trial).paused_s - point.paused_s
+        return (self._now_ns() - point.time_ns) / 1e9 - paused_s
+
+    def _point(self, trial: Trial, time_ns: int) -> TimePoint:
+        return TimePoint(time_ns, self.progress.record_of(trial).paused_s)
 
     def _ask(self, take: Callable[[str, int], None]) -> None:
         """Ask a source that does not type for a line, where a person would be waited for."""
@@ -480,16 +522,19 @@ class Runner:
             presenter.end_reading()
 
     def end_reading(self, by: str, **when: int) -> None:
-        """Take the participant's key, which ends reading of the stimulus that is shown."""
+        """End reading of the stimulus that is shown, by the participant's key or the exposure."""
         trial = self.open_trial
         if trial is None or not self.reading:
             return
         self.log(events.Ended, trial, attempt=self._attempt, stimulus=self.stimulus, by=by, **when)
         self.presenter.end_reading()
+        self._exposed = None
         key = by.replace(":", " ")
         if self.second_to_come:
             self._say(f"ended: the first, by {key}")
             return
+        if self.protocol.trial.exposure_s is not None:
+            self._asked = self._point(trial, self._now_ns())
         self.ended_by, self._prompted = by, True
         told = self.progress.record_of(trial)
         seconds = told.t_s["ended"] - told.t_s["cue"] - told.paused_s
@@ -597,7 +642,7 @@ class Runner:
         """Begin the next trial."""
         self._attempt = self.progress.record_of(trial).attempts + 1
         self.phase = Phase.OPEN
-        self._prompted, self.ended_by = False, ""
+        self._prompted, self.ended_by, self._told_late = False, "", False
         self._show(trial, 0)
 
     def _show(self, trial: Trial, stimulus: int) -> None:
@@ -613,7 +658,12 @@ class Runner:
         if (referred := self._referred) is not None and not stimulus:
             referred.show_reference()
         self.presenter.show(self._presentation(trial), first=not stimulus)
-        self._cue_ns = self._now_ns()
+        self._cue = self._point(trial, self._now_ns())
+        limits = self.protocol.trial
+        exposed = limits.exposure_s is not None and limits.exposure_from == "cue"
+        self._exposed = self._cue if exposed else None
+        limited = limits.exposure_s is None and not self.second_to_come
+        self._asked = self._cue if limited else None
         self._play(self.protocol.sound.cue)
         self.log(events.Cue, trial)
         self._say(f"cue: {self.name(trial)}" + (", second" if stimulus else ""))
@@ -636,19 +686,37 @@ class Runner:
             self._say(said)
         elif trial is not None:
             self.log(kind, trial, attempt=self._attempt, stimulus=self.stimulus, **fields)
+            if kind is events.Contact and self.protocol.trial.exposure_from == "contact":
+                self._exposed = self._point(trial, fields["time_ns"])
             if kind is events.Fault:
                 self._repeat_faulty(trial, fields["what"])
 
     def _watch(self, trial: Trial) -> None:
-        """Give the warning, or show the second stimulus, if either is due."""
+        """Do what is due by the time: a warning, an end of the exposure, the second stimulus."""
         if self.pending is not None:
             return
-        warning_s, told = self.protocol.trial.warning_s, self.progress.record_of(trial)
-        since_s = (self._now_ns() - self._cue_ns) / 1e9 - told.paused_s
-        if warning_s is not None and "warning" not in told.t_s and since_s >= warning_s:
+        limits, told = self.protocol.trial, self.progress.record_of(trial)
+        warning_s, exposure_s = limits.warning_s, limits.exposure_s
+        if (
+            exposure_s is not None
+            and self._exposed is not None
+            and self._since_s(self._exposed, trial) >= exposure_s
+        ):
+            self.end_reading("exposure")
+        if (
+            warning_s is not None
+            and "warning" not in told.t_s
+            and self._since_s(self._cue, trial) >= warning_s
+        ):
             self._play(self.protocol.sound.warning)
             self.log(events.Warning, trial)
             self._say(f"warning: {self.name(trial)}, {warning_s:g} s")
+        if self.late and limits.late == "missed":
+            self._miss(trial)
+            return
+        if self.late and not self._told_late:
+            self._told_late = True
+            self._say(f"late: {self.name(trial)}, after {limits.answer_s:g} s")
         if self.by_key or not self.presenter.read:
             return
         if self.second_to_come:
@@ -657,6 +725,13 @@ class Runner:
         elif not self._prompted and self.responses.typed:
             self._prompted = True
             self._say(f"read: type {self.prompt}")
+
+    def _miss(self, trial: Trial) -> None:
+        """End the open trial without an answer."""
+        self.withdraw()
+        self.log(events.Missed, trial, attempt=self._attempt)
+        self._say(f"missed: {self.name(trial)}, no answer in time")
+        self.next()
 
     def _repeat_faulty(self, trial: Trial, what: str) -> None:
         """Show the open trial again after a fault, if the protocol says so."""
