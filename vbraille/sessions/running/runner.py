@@ -514,7 +514,12 @@ class Runner:
                     self._say(f"display: {self._why}; the trial waits")
             if not self._why:
                 self._begin(trial)
-        elif self.phase is Phase.OPEN and presenter.taken and not presenter.read:
+        elif self.phase is not Phase.OPEN or presenter.read:
+            return
+        elif not presenter.taken:
+            if self.responses.typed:
+                self._say("too early: the display does not show it yet; read it, then Enter again")
+        else:
             self.log(events.Read, trial, attempt=self._attempt, stimulus=0)
             told = self.progress.record_of(trial)
             seconds = told.t_s["read"] - told.t_s["cue"] - told.unread_s
