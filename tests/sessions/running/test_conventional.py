@@ -41,13 +41,13 @@ class Waiting(Person):
 
     def lines(self, wait_s):
         time.sleep(wait_s)
-        early = sum(sentence.startswith("too early: ") for sentence in self.said)
-        if early > self.early:
-            self.early = early
-            return [""]
         if not self.script:
             return None
         pattern, line = self.script[0]
+        early = sum(sentence.startswith("too early: ") for sentence in self.said)
+        if pattern != "too early" and early > self.early:
+            self.early = early
+            return [""]
         new = enumerate(self.said[self.seen :], self.seen)
         found = next((n for n, sentence in new if pattern and re.search(pattern, sentence)), None)
         if found is not None or not pattern:
