@@ -276,7 +276,7 @@ class Choice(_Design, frozen=True, tag="choice"):
     Parameters
     ----------
     parameter
-        What is compared, one of `KNOBS`; ``dot_gap_mm`` is the gap between the two dots of a cell,
+        What is compared; ``dot_gap_mm`` is the gap between the two dots of a cell,
         from edge to edge.
     values
         Values of the parameter, in mm if it is a length; each is compared with each other one.

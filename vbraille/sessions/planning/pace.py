@@ -190,7 +190,7 @@ class SignalSound(Table, frozen=True):
     cue
         Sound which says that a trial begins.
     warning
-        Sound which says that the trial has gone on for `TrialPace.warning_s`.
+        Sound which says that the trial has gone on for ``warning_s`` of ``[trial]``.
     """
 
     cue: Tone = Tone(880.0, 150.0)

@@ -104,8 +104,8 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
     Parameters
     ----------
     step
-        Step from one value that may be asked to the next; None, where two are compared, for the
-        values of the design alone.
+        Step from one value that may be asked to the next; None for the values of the design alone,
+        where two are compared.
     furthest
         Largest difference between two values that are compared; None for any.
     scale
