@@ -46,6 +46,7 @@ from vbraille.sessions.planning.pace import (
     check_line,
 )
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
+from vbraille.sessions.planning.questionnaire import AnyItem
 from vbraille.sessions.planning.questions import AnyQuestion, CellSpelling, usual_question
 from vbraille.sessions.planning.spellings import SpellingKeys, WrittenText, cells_of
 from vbraille.sessions.planning.stimuli import Stimulus, with_value
@@ -96,6 +97,7 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     faults: FaultRules = FaultRules()
     sound: SignalSound = SignalSound()
     fields: tuple[ParticipantField, ...] = ()
+    questionnaire: tuple[AnyItem, ...] = ()
     analysis: PlannedAnalysis | None = None
 
 
@@ -145,6 +147,8 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         Sounds that the participant hears.
     fields
         Questions about the participant.
+    questionnaire
+        Questions beside the trials.
     analysis
         Analysis that is planned; None for the usual one of the task.
     text

@@ -268,13 +268,21 @@ def check_protocol(protocol: Protocol, *, planned: bool = False) -> None:
         If values contradict each other.
     """
     check_factors(protocol.factors, protocol.cross, listed=bool(protocol.listed))
-    for table, named in (("conditions", protocol.conditions), ("fields", protocol.fields)):
+    tables = (
+        ("conditions", protocol.conditions),
+        ("fields", protocol.fields),
+        ("questionnaire", protocol.questionnaire),
+    )
+    for table, named in tables:
         names = [value.name for value in named]
         for number, name in enumerate(names, 1):
             if name in names[: number - 1]:
                 raise ValueError(
                     f"[[{table}]] number {number} name is {name!r} again; give each its own"
                 )
+    for number, item in enumerate(protocol.questionnaire, 1):
+        with _naming(f"[[questionnaire]] number {number}"):
+            item.check(protocol.item_columns)
     _check_names(protocol)
     _check_styles(protocol)
     _check_procedure(protocol)

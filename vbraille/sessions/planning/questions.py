@@ -278,6 +278,57 @@ def check_scale(least: int, most: int) -> None:
         raise ValueError(f"the scale has more than {_MOST_STEPS} steps; make it shorter")
 
 
+def check_labels(labels: tuple[str, ...], least: int, most: int) -> None:
+    """Check the words for the steps of a scale.
+
+    Raises
+    ------
+    ValueError
+        If they are not one for each step or for each end, or two are alike.
+    """
+    steps = most - least + 1
+    if len(labels) not in (0, 2, steps):
+        raise ValueError(
+            f"labels are {len(labels)}; give 2 for the ends of the scale, {steps} for all its "
+            f"steps, or none"
+        )
+    known: set[str] = set()
+    for label in labels:
+        check_line("labels: one", label)
+        if label.strip().lower() in known:
+            raise ValueError(f"labels have {label!r} twice; give each step its own")
+        if is_whole(label.strip()):
+            raise ValueError(f"labels have {label!r}, which is a number; give words")
+        known.add(label.strip().lower())
+
+
+def labels_of(labels: tuple[str, ...], least: int, most: int) -> dict[int, str]:
+    """Words of the steps that have some."""
+    if len(labels) == 2:
+        return dict(zip((least, most), labels, strict=True))
+    return dict(enumerate(labels, least))
+
+
+def say_scale(least: int, most: int, named: dict[int, str], what: str = "") -> str:
+    """Name the numbers of a scale, what they are for, and the words of its ends."""
+    said = f"{least} to {most}{what}"
+    return f"{said}: {least} is {named[least]}, {most} is {named[most]}" if named else said
+
+
+def read_label(text: str, least: int, most: int, named: dict[int, str]) -> int:
+    """Read a step of a scale: its number, or its words.
+
+    Raises
+    ------
+    ValueError
+        If the text is neither.
+    """
+    for step, label in named.items():
+        if text.strip().lower() == label.strip().lower():
+            return step
+    return read_step(text, least, most)
+
+
 def read_step(text: str, least: int, most: int) -> int:
     """Read a step of a scale.
 
@@ -581,42 +632,20 @@ class RatingQuestion(QuestionTable, frozen=True, kw_only=True, tag="rating"):
         super().__post_init__()
         check_line("scale", self.scale)
         check_scale(self.least, self.most)
-        steps = self.most - self.least + 1
-        if len(self.labels) not in (0, 2, steps):
-            raise ValueError(
-                f"labels are {len(self.labels)}; give 2 for the ends of the scale, "
-                f"{steps} for all its steps, or none"
-            )
-        known: set[str] = set()
-        for label in self.labels:
-            check_line("labels: one", label)
-            if label.strip().lower() in known:
-                raise ValueError(f"labels have {label!r} twice; give each step its own")
-            if is_whole(label.strip()):
-                raise ValueError(f"labels have {label!r}, which is a number; give words")
-            known.add(label.strip().lower())
+        check_labels(self.labels, self.least, self.most)
 
     @property
     def named(self) -> dict[int, str]:
         """Labels of the steps that have one."""
-        if len(self.labels) == 2:
-            return dict(zip((self.least, self.most), self.labels, strict=True))
-        return dict(enumerate(self.labels, self.least))
+        return labels_of(self.labels, self.least, self.most)
 
     def prompt(self) -> str:
         """Name the numbers of the scale, with the labels of its ends."""
-        named = self.named
-        if not named:
-            return f"{self.least} to {self.most} for {self.scale}"
-        ends = f"{self.least} is {named[self.least]}, {self.most} is {named[self.most]}"
-        return f"{self.least} to {self.most} for {self.scale}: {ends}"
+        return say_scale(self.least, self.most, self.named, f" for {self.scale}")
 
     def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
         """Read a step of the scale: its number, or its label."""
-        for step, label in self.named.items():
-            if text.strip().lower() == label.strip().lower():
-                return str(step)
-        return str(read_step(text, self.least, self.most))
+        return str(read_label(text, self.least, self.most, self.named))
 
     def said(self, answer: str, _keys: dict[str, int], /) -> str:
         """Words for a step: its number, and its label if it has one."""

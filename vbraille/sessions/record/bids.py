@@ -20,8 +20,8 @@ import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.files import missing, write_file
-from vbraille.sessions.record.codebook import CodebookEntry, describe_design, entry_of
-from vbraille.sessions.record.events import AnyTime, JournalEvent, Note, Run
+from vbraille.sessions.record.codebook import CodebookEntry, asked_in, describe_design, entry_of
+from vbraille.sessions.record.events import AnyTime, End, JournalEvent, Note, Reply, Run
 from vbraille.sessions.record.export import (
     PlacedNote,
     Traces,
@@ -85,13 +85,14 @@ class BidsRun:
             Time of the first tick of the run's trace; None if there is none, and times count
             from the event that the run began with.
         without_times
-            Whether notes, and words that may be paths, are left out.
+            Whether notes, answers to the questionnaire, reasons, and words that may be paths, are
+            left out.
         """
         begun_s = self._begun_s(first_ns)
         rows = [
             self._row(event, begun_s, without_times)
             for event in self.events
-            if event.exported and not (without_times and isinstance(event, Note))
+            if event.exported and not (without_times and isinstance(event, Note | Reply))
         ]
         # The journal may have an event a little later than one that happened after it.
         rows.sort(key=lambda row: row["onset"])
@@ -109,7 +110,7 @@ class BidsRun:
 
     def _row(self, event: JournalEvent, begun_s: float, without_times: bool) -> dict[str, Any]:
         note = self.notes.get(event.n)
-        text = event.said
+        text = event.why if without_times and isinstance(event, End) else event.said
         return {
             "onset": round(event.t_s - begun_s, 6),
             "duration": "",
@@ -235,7 +236,7 @@ def _beh(record: Record, table: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "TaskName": record.protocol.name,  # which the task in the files' names is made from
         "TaskDescription": f"{record.protocol.title} ({record.protocol.source})",
     }
-    asked = {field.name: field.ask for field in record.protocol.fields}
+    asked = asked_in(record.protocol)
     for name in table[0]:
         entry = entry_of(name, asked)
         if entry.unit and any(" " in str(row[name]) for row in table):

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.questionnaire import AnyItem
     from vbraille.sessions.planning.stimuli import Trial
 
 
@@ -104,6 +105,9 @@ class Console:
         if runner.pending is not None:
             self._take_confidence(line, runner.pending)
             return
+        if runner.asking is not None and correcting is None:
+            self._reply(line, runner.asking[0])
+            return
         trial = correcting or runner.open_trial
         if trial is None:
             self._say("no answer is waited for now; help says what there is to type")
@@ -145,6 +149,8 @@ class Console:
         if (pending := self._runner.pending) is not None:
             self._runner.pending = None
             self._say(f"undo: {self._runner.name(pending.trial)}; type its answer")
+            return
+        if self._progress.correcting is None and self._runner.ask_before():
             return
         trial = self._progress.last_answered
         if trial is None or self._progress.correcting is not None:
@@ -241,8 +247,17 @@ class Console:
         """Stop the session, so that it can be resumed later."""
         self._runner.stop()
 
+    def quit(self, reason: str) -> None:
+        """End the session for good, since the participant stops."""
+        if not reason:
+            self._say("quit: type the reason after it; stop ends for now alone")
+            return
+        self._runner.end("the participant stopped", reason)
+
     def help(self, _: str = "") -> None:
         """Say what may be typed."""
+        if (asking := self._runner.asking) is not None:
+            self._say(f"asked: {asking[0].asked(self._runner.item_columns)}")
         question = self._runner.protocol.asks
         if question.ask:
             self._say(f"question: {question.ask}")
@@ -259,6 +274,14 @@ class Console:
         self._say("Enter: go on after a pause or a break")
         for command in COMMANDS:
             self._say(f"{command.word}: {command.help}")
+
+    def _reply(self, line: str, item: AnyItem) -> None:
+        try:
+            answer = item.parse(line, self._runner.item_columns)
+        except ValueError as error:
+            self._refuse("no answer", error)
+            return
+        self._runner.reply(answer)
 
     def _take_confidence(self, line: str, pending: PendingAnswer) -> None:
         scale = self._runner.protocol.asks.confidence
@@ -285,7 +308,8 @@ class Console:
             if said:
                 self._say(f"practice: {said}")
         # If the next trial depends on the answers, a corrected answer may lead to one more trial.
-        if correcting is None or runner.trial is None or runner.phase is Phase.LAST:
+        late = runner.phase in (Phase.LAST, Phase.ASKING)
+        if correcting is None or runner.trial is None or late:
             runner.paused = False
             runner.next()
 
@@ -334,6 +358,12 @@ COMMANDS = (
         "texture", Console.texture, "set the texture, 0 to 1, unless the plan does", takes=True
     ),
     TypedCommand("stop", Console.stop, "end for now; session resume goes on"),
+    TypedCommand(
+        "quit",
+        Console.quit,
+        "end for good, since the participant stops; the reason after it",
+        takes=True,
+    ),
     TypedCommand("help", Console.help, "say what there is to type"),
 )
 _BY_WORD = {command.word: command for command in COMMANDS}
