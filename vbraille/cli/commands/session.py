@@ -181,7 +181,31 @@ def _pilot(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _withdraw(arguments: argparse.Namespace) -> int:
+    from vbraille.sessions.record.withdrawal import withdrawal
+
+    rooms = [Path(name) for name in arguments.paths or ["."]]
+    told = withdrawal(rooms, arguments.participant)
+    left = [f"left: {path} names {told.participant}; look at it yourself" for path in told.left]
+    if not told.found:
+        for sentence in left:
+            _say(sentence)
+        names = ", ".join(map(str, rooms))
+        raise InputError(f"there is nothing of {arguments.participant} to remove in {names}")
+    if not arguments.yes:
+        for sentence in told.sentences():
+            _say(f"found: {sentence}")
+        _say(f"remove all of {arguments.participant} for good? (yes or no):")
+        if (Typed().line() or "").strip().lower() not in ("y", "yes"):
+            raise InputError("nothing was removed; answer yes, or give --yes")
+    told.remove()
+    for sentence in [*(f"removed: {each}" for each in told.sentences()), *left]:
+        _say(sentence)
+    return 1 if left else 0
+
+
 _ACTIONS = {
+    "withdraw": _withdraw,
     "pilot": _pilot,
     "protocols": _protocols,
     "plan": _plan,

@@ -141,6 +141,15 @@ def session_methods(parser: CommandParser) -> None:
     )
 
 
+def session_withdraw(parser: CommandParser) -> None:
+    """Add the options of ``vbraille session withdraw``."""
+    parser.add_argument("participant", metavar="P07", help="Remove the data of this participant.")
+    parser.add_argument(
+        "paths", nargs="*", metavar="DIR", help="Look in these directories (default: here)."
+    )
+    parser.flag("--yes", "Remove all of it without asking before.")
+
+
 def session_check(parser: CommandParser) -> None:
     """Add the options of ``vbraille session check``."""
     _folder(parser)

@@ -270,11 +270,11 @@ def _recording(ticks: NDArray[np.void]) -> bytes:
 
 
 _BIDS = "1.9.0"
-_ABOUT, _README = "dataset_description.json", "README"
-_PEOPLE, _PEOPLE_COLUMNS = "participants.tsv", "participants.json"
-_ID, _PSEUDONYM = "participant_id", "pseudonym"
+DATASET, _README = "dataset_description.json", "README"
+PEOPLE, PEOPLE_COLUMNS = "participants.tsv", "participants.json"
+_ID, PSEUDONYM = "participant_id", "pseudonym"
 _DESCRIBED = CodebookEntry(
-    _PSEUDONYM, "as the laboratory has it; participant_id has letters and digits"
+    PSEUDONYM, "as the laboratory has it; participant_id has letters and digits"
 )
 _README_TEXT = """\
 Legibility sessions of vbraille, as behavioural data.
@@ -342,16 +342,16 @@ def write(
         )
     new = {folder / path: content for path, content in made.items()}
     for path, content in (
-        (_ABOUT, _json(_about(record))),
+        (DATASET, _json(_about(record))),
         (_README, _README_TEXT.encode()),
-        (_PEOPLE_COLUMNS, _json({_PSEUDONYM: _DESCRIBED.to_bids()})),
+        (PEOPLE_COLUMNS, _json({PSEUDONYM: _DESCRIBED.to_bids()})),
     ):
         if not (folder / path).exists():
             new[folder / path] = content
     people.setdefault(label, pseudonym)
-    rows = [{_ID: f"sub-{of}", _PSEUDONYM: name} for of, name in people.items()]
-    _write(folder, new, _PEOPLE, encode(to_csv(rows, "\t", "n/a")))
-    return [*new, folder / _PEOPLE]
+    rows = [{_ID: f"sub-{of}", PSEUDONYM: name} for of, name in people.items()]
+    _write(folder, new, PEOPLE, encode(to_csv(rows, "\t", "n/a")))
+    return [*new, folder / PEOPLE]
 
 
 def _read_people(folder: Path) -> dict[str, str]:
@@ -362,16 +362,16 @@ def _read_people(folder: Path) -> dict[str, str]:
     InputError
         If the table cannot be read, or has columns of others.
     """
-    path = folder / _PEOPLE
+    path = folder / PEOPLE
     try:
         rows = list(csv.reader(io.StringIO(path.read_text("utf-8")), delimiter="\t"))
     except (FileNotFoundError, NotADirectoryError):
         return {}  # a dataset that is no directory is refused when it is written
     except (OSError, ValueError, csv.Error):
         rows = []
-    if not rows or rows[0] != [_ID, _PSEUDONYM] or any(len(row) != 2 for row in rows):
+    if not rows or rows[0] != [_ID, PSEUDONYM] or any(len(row) != 2 for row in rows):
         raise InputError(
-            f"{path} is no table of {_ID} and {_PSEUDONYM} alone, to which participants could be "
+            f"{path} is no table of {_ID} and {PSEUDONYM} alone, to which participants could be "
             f"added; give another directory with {setting('out')}, and put the tables together"
         )
     return {label.removeprefix("sub-"): pseudonym for label, pseudonym in rows[1:]}
