@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from vbraille.reading.frames import RenderedPage as RenderedPage
     from vbraille.reading.frames import render_page as render_page
     from vbraille.reading.frames import render_text as render_text
+    from vbraille.recording import Recording as Recording
     from vbraille.render.braille.mappings import MAPPINGS as MAPPINGS
     from vbraille.render.braille.models import LATERO as LATERO
     from vbraille.render.braille.models import STRESS2 as STRESS2
@@ -61,6 +62,7 @@ _PLACES = {
     "Model": "vbraille.render.braille.models",
     "OpenDevice": "vbraille.reading.device",
     "Pose": "vbraille.pose",
+    "Recording": "vbraille.recording",
     "RenderedLine": "vbraille.reading.frames",
     "RenderedPage": "vbraille.reading.frames",
     "Results": "vbraille.analysis.results",
@@ -96,6 +98,7 @@ __all__ = [
     "Model",
     "OpenDevice",
     "Pose",
+    "Recording",
     "RenderedLine",
     "RenderedPage",
     "Results",
