@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import vbraille
+from tests.tiers import heavy
 from vbraille.testing import ManualClock
 
 PAGE = Path(__file__).parents[1] / "docs" / "api.md"
@@ -75,6 +76,18 @@ def test_a_whole_program_of_the_page_prints_what_stands_below_it(
     with contextlib.redirect_stdout(said):
         exec(compile(program, str(PAGE), "exec"), {"__name__": "__main__"})
     assert said.getvalue() == printed
+
+
+@heavy  # pyright takes seconds
+def test_the_driver_of_the_page_has_types(tmp_path):
+    program = next(param.values[0] for param in PROGRAMS if param.id.startswith("A device"))
+    (tmp_path / "bench.py").write_text(f"# pyright: strict\n{program}")
+    told = ("--pythonpath", sys.executable, "bench.py")
+    done = subprocess.run(
+        [Path(sys.executable).with_name("pyright"), *told],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout
 
 
 def test_there_are_three_whole_programs():

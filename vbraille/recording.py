@@ -351,8 +351,8 @@ def model_in(file: h5py.File) -> Model:
     Returns
     -------
     Model
-        Its name is empty where the file names no model, or no mapping, of this program: the style
-        is then one that such a display is usually read in.
+        Model without a name where the file names none, or no mapping, of this program: the style is
+        then one that such a display is usually read in.
 
     Raises
     ------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from html import escape
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,7 @@ from vbraille.wording import count
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
     from vbraille.braille.cells import Cells
@@ -93,6 +95,41 @@ class RenderedLine:
         return _recorded(
             model, [self.line], self.frames, (self.positions_mm, middle_mm, 0.0 * middle_mm), lines
         )
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the deflections over the places of the array, an actuator a row.
+
+        Parameters
+        ----------
+        axes
+            Axes of matplotlib to draw on; None for new ones.
+
+        Returns
+        -------
+        Axes
+            They have the title, labels and scale; rest is white and full swing is black.
+        """
+        if axes is None:
+            from matplotlib import pyplot
+
+            axes = pyplot.subplots(figsize=(8, 3), layout="constrained")[1]
+        actuators = self.frames.reshape(len(self), -1)
+        first_mm, last_mm = self.positions_mm[[0, -1]]
+        axes.imshow(
+            actuators.T,
+            cmap="gray_r",
+            vmin=0.0,
+            vmax=1.0,
+            aspect="auto",
+            interpolation="nearest",
+            extent=(first_mm, last_mm, actuators.shape[1] + 0.5, 0.5),
+        )
+        axes.set(title=self.text, xlabel="centre of the array (mm)", ylabel="actuator")
+        return axes
+
+    def _repr_html_(self) -> str:
+        """Line for a notebook: its text, and its cells in Unicode."""
+        return f"<p>{escape(self.text)}<br>{self.cells.to_unicode()}</p>"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
