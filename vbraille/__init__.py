@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from vbraille.errors import DeviceError as DeviceError
     from vbraille.errors import InputError as InputError
     from vbraille.errors import VbrailleError as VbrailleError
-    from vbraille.feeling.composing import open_framed as open_scene
     from vbraille.layout.texts import translate_text as translate_text
+    from vbraille.pictures.framed import open_framed as open_scene
     from vbraille.pose import Pose as Pose
     from vbraille.reading.device import OpenDevice as OpenDevice
     from vbraille.reading.device import open_to_read as open  # noqa: A004
@@ -76,7 +76,7 @@ _PLACES = {
     "VbrailleError": "vbraille.errors",
     "analyse": "vbraille.analysis",
     "open": "vbraille.reading.device:open_to_read",
-    "open_scene": "vbraille.feeling.composing:open_framed",
+    "open_scene": "vbraille.pictures.framed:open_framed",
     "render_page": "vbraille.reading.frames",
     "render_text": "vbraille.reading.frames",
     "translate_text": "vbraille.layout.texts",

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from html import escape
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +19,6 @@ from vbraille.wording import count
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
     from vbraille.braille.cells import Cells
@@ -96,36 +95,22 @@ class RenderedLine:
             model, [self.line], self.frames, (self.positions_mm, middle_mm, 0.0 * middle_mm), lines
         )
 
-    def plot(self, axes: Axes | None = None) -> Axes:
+    def plot(self, axes: Any = None) -> Any:
         """Draw the deflections over the places of the array, an actuator a row.
 
         Parameters
         ----------
-        axes
-            Axes of matplotlib to draw on; None for new ones.
+        axes : matplotlib.axes.Axes
+            Axes to draw on; None for new ones.
 
         Returns
         -------
-        Axes
+        matplotlib.axes.Axes
             They have the title, labels and scale; rest is white and full swing is black.
         """
-        if axes is None:
-            from matplotlib import pyplot
+        from vbraille.pictures.draw import plot_frames  # loads matplotlib
 
-            axes = pyplot.subplots(figsize=(8, 3), layout="constrained")[1]
-        actuators = self.frames.reshape(len(self), -1)
-        first_mm, last_mm = self.positions_mm[[0, -1]]
-        axes.imshow(
-            actuators.T,
-            cmap="gray_r",
-            vmin=0.0,
-            vmax=1.0,
-            aspect="auto",
-            interpolation="nearest",
-            extent=(first_mm, last_mm, actuators.shape[1] + 0.5, 0.5),
-        )
-        axes.set(title=self.text, xlabel="centre of the array (mm)", ylabel="actuator")
-        return axes
+        return plot_frames(self.positions_mm, self.frames, self.text, axes)
 
     def _repr_html_(self) -> str:
         """Line for a notebook: its text, and its cells in Unicode."""
