@@ -51,6 +51,8 @@ def _plan(arguments: argparse.Namespace) -> int:
     protocol, plan = plan_session(arguments.protocol, arguments.participant, **_chances(arguments))
     if arguments.brf and protocol.task == "choice":
         raise InputError(f"{protocol.name} compares dots, which cannot be embossed")
+    if arguments.brf and protocol.pictures:
+        raise InputError(f"{protocol.name} shows pictures, which are no braille; leave --brf out")
     if arguments.seed is None:
         say_line(f"seed: {plan.seed}", aside=True)
     if arguments.brf:
@@ -224,7 +226,10 @@ def _describe(protocol: Protocol, trial: Trial) -> str:
             return f"{trial.condition}, the {'lower' if first < second else 'higher'} value first"
         values = [stimulus.value or 0.0 for stimulus in trial.stimuli]
         return ", then ".join(said_value(value, protocol.parameter) for value in values)
-    text = trial.stimuli[0].text
+    stimulus = trial.stimuli[0]
+    if stimulus.picture is not None:
+        return f"{trial.condition}, {stimulus.picture}"
+    text = stimulus.text
     written = "" if text is None else f"{text}, "
     cells = f"{_cells(trial).to_unicode()}, dots {_cells(trial).to_dots()}"
     return f"{trial.condition}, {written}{cells}"

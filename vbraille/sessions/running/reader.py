@@ -59,7 +59,7 @@ def pair_of(
 
 
 MOST_NOISE = 100.0
-_INSTEAD = "type the answers, or give a file of them"
+INSTEAD = "type the answers, or give a file of them"
 
 
 class Simulated(TrialResponses):
@@ -90,12 +90,12 @@ class Simulated(TrialResponses):
         if protocol.medium == "paper":
             raise InputError(
                 f"{protocol.name} is read on paper, which the simulated reader cannot feel; "
-                f"{_INSTEAD}"
+                f"{INSTEAD}"
             )
         if any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions):
             raise InputError(
                 f"{protocol.name} is read on a conventional display too, which the simulated "
-                f"reader cannot feel; {_INSTEAD}"
+                f"reader cannot feel; {INSTEAD}"
             )
         if not 0 <= noise <= MOST_NOISE:
             raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
@@ -117,7 +117,7 @@ class Simulated(TrialResponses):
         if not self._question.simulated or (pairs and 1 in self._question.stimuli):
             raise InputError(
                 f"{protocol.name} asks a question of the kind {self._question.name!r}, which the "
-                f"simulated reader cannot answer; {_INSTEAD}"
+                f"simulated reader cannot answer; {INSTEAD}"
             )
         self._check_feels(protocol)
         self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"
@@ -153,13 +153,13 @@ class Simulated(TrialResponses):
         if parameter == "texture_cycles":
             raise InputError(
                 f"{protocol.name} compares {parameter}, and the simulated reader does not feel "
-                f"which texture is finer; {_INSTEAD}"
+                f"which texture is finer; {INSTEAD}"
             )
         if question.right == "nearest" and parameter not in LENGTHS:
             raise InputError(
                 f"{protocol.name} asks which of two is nearest to a {parameter} of "
                 f"{question.reference:g}, and the simulated reader feels how strong a dot is, not "
-                f"its {parameter}; {_INSTEAD}"
+                f"its {parameter}; {INSTEAD}"
             )
 
 
