@@ -106,6 +106,9 @@ def test_frames_sent_are_the_frames_replayed_bit_for_bit(tmp_path):
             sent[trial.number] = felt[-1].frames
             return trial.presented, 0
 
+        def reply(self, *_):
+            return None
+
     session = begun(tmp_path)
     session.run(Heard())
     remade = {line: deflections for line, _, deflections in frames(session.record)}

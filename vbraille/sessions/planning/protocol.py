@@ -14,7 +14,7 @@ import numpy as np
 from msgspec import field, structs
 
 from vbraille.render import MODELS
-from vbraille.sessions.planning.analysis import CONDITION, PlannedAnalysis, Task
+from vbraille.sessions.planning.analysis import CONDITION, ITEM, PlannedAnalysis, Task
 from vbraille.sessions.planning.design import (
     BlockOrder,
     Choice,
@@ -325,6 +325,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
             adaptive=self.adaptive,
             catch=self.design.catch is not None,
             factors=factors,
+            items=tuple(f"{ITEM}{name}" for name in self.item_columns),
         )
         return (self.analysis or PlannedAnalysis()).resolved(task)
 

@@ -45,20 +45,27 @@ def builtin_names() -> list[str]:
 
 
 def builtin_text(name: str) -> str:
-    """TOML text of a protocol that comes with the program.
+    """TOML text of a protocol that comes with the program, or text of a file beside it by its name.
 
     Raises
     ------
     InputError
-        If there is no protocol of that name; the message suggests the nearest name.
+        If there is no such protocol or file; the message suggests the nearest name.
     """
     names = builtin_names()
+    if name in {file.name for file in _FOLDER.iterdir()}:
+        return shipped_text(name)
     if name not in names:
         raise InputError(
             f"there is no protocol {name!r}{which(name, names)}; "
             f"that of a file ends in .toml, or has a / in it"
         )
-    return _FOLDER.joinpath(f"{name}.toml").read_bytes().decode("utf-8")
+    return shipped_text(f"{name}.toml")
+
+
+def shipped_text(name: str) -> str:
+    """Text of a file that comes with the program's protocols, such as "shapes.csv"."""
+    return _FOLDER.joinpath(name).read_bytes().decode("utf-8")
 
 
 def load_protocol(spec: str) -> Protocol:
@@ -83,10 +90,7 @@ def load_protocol(spec: str) -> Protocol:
 
         return parse_protocol(read_text(spec, "protocol"), spec, beside=beside)
 
-    def shipped(name: str) -> str:
-        return _FOLDER.joinpath(name).read_bytes().decode("utf-8")
-
-    return parse_protocol(builtin_text(spec), f"{spec}.toml", beside=shipped)
+    return parse_protocol(builtin_text(spec), f"{spec}.toml", beside=shipped_text)
 
 
 def parse_protocol(

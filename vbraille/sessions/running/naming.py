@@ -5,12 +5,9 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from vbraille.errors import InputError
 from vbraille.sessions.planning.questions import NameQuestion
-from vbraille.sessions.running.reader import INSTEAD, MOST_NOISE, seed_of
-from vbraille.sessions.running.responses import TrialResponses
+from vbraille.sessions.running.reader import INSTEAD, SimulatedPerson
 from vbraille.sessions.simulated.matching import differences, name_one
 
 if TYPE_CHECKING:
@@ -21,7 +18,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.simulated.skin import FeltFrames
 
 
-class SimulatedNaming(TrialResponses):
+class SimulatedNaming(SimulatedPerson):
     """A simulated person who has learnt the pictures of each condition, and names the one felt.
 
     It is given the frames sent to the device and where the array was, and nothing of the trial but
@@ -41,18 +38,14 @@ class SimulatedNaming(TrialResponses):
         If the protocol asks for something else than names, or the noise is out of range.
     """
 
-    felt = True
-
     def __init__(self, protocol: Protocol, plan: Plan, noise: float = 0.0) -> None:
         if not isinstance(protocol.asks, NameQuestion):
             raise InputError(
                 f"{protocol.name} asks a question of the kind {protocol.asks.name!r} about "
                 f"pictures, which the simulated reader cannot answer; {INSTEAD}"
             )
-        if not 0 <= noise <= MOST_NOISE:
-            raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
-        self.name = f"simulated:{noise:g}"
-        self._protocol, self._plan, self._noise = protocol, plan, noise
+        super().__init__(plan, noise)
+        self._protocol, self._plan = protocol, plan
 
     @cached_property
     def _learnt(self) -> dict[str, dict[str, tuple[str, PictureFrames]]]:
@@ -71,9 +64,7 @@ class SimulatedNaming(TrialResponses):
 
     def next(self, trial: Trial, attempt: int, felt: list[FeltFrames], /) -> tuple[str, int]:
         """Answer to a trial, by what was felt of it."""
-        plan = self._plan
-        drawn = f"{plan.protocol} {plan.participant} {plan.seed} {trial.practice} {trial.number}"
-        random = np.random.default_rng(seed_of(f"{drawn} {attempt}"))
+        random = self._random(trial, attempt)
         answers, frames = zip(*self._learnt[trial.condition].values(), strict=True)
         scale = self._protocol.asks.confidence
         sure = "" if scale is None else f"; {(scale.least + scale.most) // 2}"
