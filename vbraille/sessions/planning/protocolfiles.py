@@ -125,7 +125,7 @@ def parse_protocol(
     with file.checking():
         protocol = _resolved(tables, text, files, keys, written=written)
         check_protocol(protocol, planned=planned)
-        if protocol.practice.trials and not protocol.practice.items:
+        if protocol.practice.trials and not protocol.practice.items(protocol.design):
             raise ValueError(
                 f"[practice] has no items of its own, and those of the test would be given away; "
                 f"give {'values' if protocol.parameter else 'strings'} that the test does not "
@@ -416,9 +416,9 @@ def _check_varies(protocol: Protocol) -> None:
 
 
 def _check_question(protocol: Protocol) -> None:
-    stimuli = 2 if protocol.task == "choice" else 1
+    form = protocol.design.form if isinstance(protocol.design, Choice) else ""
     with _naming("[question]"):
-        protocol.asks.check(stimuli, adaptive=protocol.adaptive)
+        protocol.asks.check(protocol.intervals, form, adaptive=protocol.adaptive)
     same = isinstance(protocol.design, Choice) and protocol.design.same
     if same and (protocol.asks.name != "same-different" or protocol.adaptive):
         raise ValueError(
