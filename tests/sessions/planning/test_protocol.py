@@ -142,7 +142,7 @@ class TestBuiltIns:
         assert (len(protocol.design.strings), protocol.trials) == (26, 78)
         assert all(len(set(string)) == 5 for string in protocol.design.strings)
         assert (protocol.design.blocks, protocol.design.reorder) == (2, True)
-        assert (protocol.practice.trials, len(protocol.practice.items)) == (6, 6)
+        assert (protocol.practice.trials, len(protocol.practice.items(protocol.design))) == (6, 6)
         assert (protocol.rules.each_letter, protocol.trial.warning_s) == (5, 30.0)
         assert '"epkgn"' in protocol.text
 

@@ -220,7 +220,7 @@ _ACTIONS = {
 
 
 def _describe(protocol: Protocol, trial: Trial) -> str:
-    if len(trial.stimuli) == 2:
+    if protocol.parameter is not None:
         if protocol.adaptive and not trial.practice:
             first, second = (stimulus.value or 0.0 for stimulus in trial.stimuli)
             return f"{trial.condition}, the {'lower' if first < second else 'higher'} value first"

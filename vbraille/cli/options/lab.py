@@ -193,14 +193,16 @@ def analyse(parser: CommandParser) -> None:
     parser.option(
         "--factors",
         "NAME,NAME",
-        "Compare trials by these columns, such as texture,contrast (default: condition).",
+        "Compare trials by these columns, such as texture,contrast (default: as the protocol "
+        "plans; condition without one).",
         names,
     )
     parser.choice(
         "--correction",
         ("none", "bonferroni", "holm", "fdr"),
-        "Correct the p-values of t-tests for their number in this way.",
-        default="holm",
+        "Correct p for the number of tests in this way (default: as the protocol plans; holm "
+        "without one).",
+        default=None,
     )
     parser.option(
         "--marks",

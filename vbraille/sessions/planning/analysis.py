@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal, NamedTuple
 
 from msgspec import structs
@@ -149,7 +150,7 @@ class PlannedAnalysis(Table, frozen=True, kw_only=True):
         check_range("too_slow_s", self.too_slow_s, 0, 86400, " s")
         check_range("catch_right", self.catch_right, 0, 1)
         check_range("participants", self.participants, 1, MOST_PEOPLE)
-        if None not in (self.too_fast_s, self.too_slow_s) and self.too_fast_s >= self.too_slow_s:
+        if (self.too_fast_s or 0.0) >= (self.too_slow_s or math.inf):
             raise ValueError("too_fast_s must be below too_slow_s")
         if self.stop:
             check_line("stop", self.stop)

@@ -303,7 +303,12 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
     @property
     def asks(self) -> AnyQuestion:
         """Question that is asked of each trial."""
-        return self.question or usual_question(2 if self.task == "choice" else 1)
+        return self.question or usual_question(self.intervals)
+
+    @property
+    def intervals(self) -> int:
+        """Number of stimuli in a trial."""
+        return self.design.stimuli if isinstance(self.design, Choice) else 1
 
     def cell_spelling(self, stimulus: Stimulus) -> CellSpelling:
         """Spelling of cells in answers about a stimulus."""

@@ -129,7 +129,7 @@ def parse_protocol(
     with file.checking():
         protocol = _resolved(tables, text, files, keys, written=written)
         check_protocol(protocol, planned=planned)
-        if protocol.practice.trials and not protocol.practice.items:
+        if protocol.practice.trials and not protocol.practice.items(protocol.design):
             raise ValueError(
                 f"[practice] has no items of its own, and those of the test would be given away; "
                 f"give {'values' if protocol.parameter else 'strings'} that the test does not "
@@ -224,7 +224,7 @@ def _resolved(
                 strings = items.draw(words)
         design = design.strings_of(strings)
     assert not isinstance(design, ItemList)
-    if practice.trials and not practice.items and practice.file is None and tables.pictures:
+    if tables.pictures and practice.trials and not practice.items(design) and not practice.file:
         # A picture is learnt before it is asked for; nothing of it is given away.
         practice = msgspec.structs.replace(practice, strings=tuple(dict.fromkeys(design.items())))
     if practice.file is not None:
@@ -466,17 +466,15 @@ def _check_varies(protocol: Protocol) -> None:
 
 
 def _check_question(protocol: Protocol) -> None:
-    stimuli = 2 if protocol.task == "choice" else 1
+    form = protocol.design.form if isinstance(protocol.design, Choice) else ""
     with _naming("[question]"):
-        protocol.asks.check(stimuli, adaptive=protocol.adaptive)
+        protocol.asks.check(protocol.intervals, form, adaptive=protocol.adaptive)
     if getattr(protocol.asks, "buttons", False) and protocol.trial.button is not None:
         raise ValueError("[trial] end is a button, and [question] buttons takes all; leave one out")
     columns = protocol.item_columns
     for choice in getattr(protocol.asks, "choices", ()):
         if choice.of is not None and choice.of not in columns:
-            raise ValueError(
-                f"[question] choices has of = {choice.of!r}{which(choice.of, columns)}"
-            )
+            raise ValueError(f"[question] choices of is {choice.of!r}{which(choice.of, columns)}")
         named = {row.columns[choice.of] for row in protocol.item_rows} if choice.of else set()
         if unknown := sorted(named - set(choice.names.values())):
             raise ValueError(

@@ -112,7 +112,7 @@ class Stimuli(tuple[Stimulus, ...]):
 
 
 class Trial(Struct, frozen=True, forbid_unknown_fields=True):
-    """A trial: a string to read, or two to compare. Files have its fields in the order given here.
+    """A trial: stimuli in the order in which they are shown. Files have its fields in this order.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
         Cells of the stimulus that are asked for: index of the first, and of the one after the
         last; both are 0 for a picture.
     stimuli
-        One stimulus to read, or two to compare.
+        One stimulus to read, or several to compare.
     catch
         Empty; or, for a trial that only keeps watch over the participant, what it shows: "blank"
         for cells without dots, "repeat" for what the trial before it has shown.
@@ -149,10 +149,8 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
             raise ValueError(f"a trial's number is {self.number}; it must be 1 or more")
         if self.block < 0:
             raise ValueError(f"trial {self.number} has block {self.block}; it must be 0 or more")
-        if len(self.stimuli) not in (1, 2):
-            raise ValueError(
-                f"trial {self.number} has {len(self.stimuli)} stimuli; it must have 1 or 2"
-            )
+        if not self.stimuli:
+            raise ValueError(f"trial {self.number} has no stimulus; it must have one or more")
         first, stop = self.asked
         if self.stimuli[0].picture is not None:
             return

@@ -286,7 +286,7 @@ def _asked(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     row = question.columns(trial, told.answer) | {"ended_by": told.ended_by}
     row["confidence"] = "" if told.confidence is None else told.confidence
     values = [f"{stimulus.value:g}" for stimulus in trial.stimuli if stimulus.value is not None]
-    if len(trial.stimuli) == 2:
+    if record.protocol.parameter is not None:
         row["parameter"] = record.protocol.parameter
         row |= _compared(trial, record.protocol.parameter)
         row["presented"] = " ".join(values)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from vbraille.braille.spelling import ordinal
 from vbraille.errors import InputError
 from vbraille.sessions.planning.pace import ENTER
 from vbraille.sessions.planning.questions import NameQuestion
@@ -124,8 +125,10 @@ class Console:
         if trial is None:
             self._say("no answer is waited for now; help says what there is to type")
             return
-        if correcting is None and runner.second_to_come:
-            self._say("the second has not been felt yet; repeat shows both again")
+        if correcting is None and runner.more_to_come:
+            both = "both" if len(trial.stimuli) == 2 else "all"
+            coming = ordinal(runner.stimulus + 1)
+            self._say(f"the {coming} has not been felt yet; repeat shows {both} again")
             return
         question = runner.protocol.asks
         try:

@@ -146,7 +146,7 @@ class Simulated(SimulatedPerson):
         self._parameter = protocol.parameter or ""
         self._question = protocol.asks
         self._pairs = {c.name: _dot_pair(protocol, c) for c in protocol.conditions}
-        pairs = protocol.task == "choice"
+        pairs = isinstance(protocol.design, Choice) and protocol.design.form == "pairs"
         if not self._question.simulated or (pairs and 1 in self._question.stimuli):
             raise InputError(
                 f"{protocol.name} asks a question of the kind {self._question.name!r}, which the "
