@@ -184,7 +184,7 @@ class Recorder:
         frames : float32[n, rows, columns]
             Deflections, 0 … 1.
         y_mm, theta_rad : float64[n]
-            The rest of the pose, see `vbraille.pose`.
+            The rest of the pose, see `vbraille.display`.
         part : int64[n]
             Which part of a picture that has several was under the array.
         """

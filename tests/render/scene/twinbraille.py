@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.braille.dots import PLACES, dots_of
+from vbraille.braille.cells import PLACES, dots_of
 from vbraille.render.braille.reference import SWINGS
 from vbraille.render.machine.labelplaces import FADE_MM
 from vbraille.render.scene.brailleplaces import size_mm
