@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.documents import DOCS, TABLES, with_table
+from tests.documents import DOCS, PARTS, TABLES, with_part, with_table
 from vbraille.cli.parser import parse
 
 ROOT = Path(__file__).parents[1]
@@ -161,3 +161,9 @@ def test_the_glossary_has_each_word_once():
 def test_each_table_is_what_the_program_has(name, rows):
     text = (DOCS / name).read_text(encoding="utf-8")
     assert with_table(text, rows) == text, "python -m tests.documents writes it"
+
+
+@pytest.mark.parametrize(("name", "part"), [(name, part) for name, *part in PARTS])
+def test_each_part_is_what_the_program_has(name, part):
+    text = (DOCS / name).read_text(encoding="utf-8")
+    assert with_part(text, *part) == text, "python -m tests.documents writes it"

@@ -24,14 +24,15 @@ if TYPE_CHECKING:
     from vbraille.errors import DeviceError as DeviceError
     from vbraille.errors import InputError as InputError
     from vbraille.errors import VbrailleError as VbrailleError
-    from vbraille.feeling.composing import open_framed as open_scene
     from vbraille.layout.texts import translate_text as translate_text
+    from vbraille.pictures.framed import open_framed as open_scene
     from vbraille.reading.device import OpenDevice as OpenDevice
     from vbraille.reading.device import open_to_read as open  # noqa: A004
     from vbraille.reading.frames import RenderedLine as RenderedLine
     from vbraille.reading.frames import RenderedPage as RenderedPage
     from vbraille.reading.frames import render_page as render_page
     from vbraille.reading.frames import render_text as render_text
+    from vbraille.recording import Recording as Recording
     from vbraille.render.braille.mappings import MAPPINGS as MAPPINGS
     from vbraille.render.braille.models import LATERO as LATERO
     from vbraille.render.braille.models import STRESS2 as STRESS2
@@ -61,6 +62,7 @@ _PLACES = {
     "Model": "vbraille.render.braille.models",
     "OpenDevice": "vbraille.reading.device",
     "Pose": "vbraille.display",
+    "Recording": "vbraille.recording",
     "RenderedLine": "vbraille.reading.frames",
     "RenderedPage": "vbraille.reading.frames",
     "Results": "vbraille.analysis.results",
@@ -74,7 +76,7 @@ _PLACES = {
     "VbrailleError": "vbraille.errors",
     "analyse": "vbraille.analysis",
     "open": "vbraille.reading.device:open_to_read",
-    "open_scene": "vbraille.feeling.composing:open_framed",
+    "open_scene": "vbraille.pictures.framed:open_framed",
     "render_page": "vbraille.reading.frames",
     "render_text": "vbraille.reading.frames",
     "translate_text": "vbraille.layout.texts",
@@ -96,6 +98,7 @@ __all__ = [
     "Model",
     "OpenDevice",
     "Pose",
+    "Recording",
     "RenderedLine",
     "RenderedPage",
     "Results",

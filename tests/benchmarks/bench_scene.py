@@ -25,9 +25,8 @@ from tests.benchmarks.timing import Result, ratio, seconds
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import Loop
 from vbraille.render.program import nothing
-from vbraille.render.scene.assets import Assets
-from vbraille.render.scene.canvas import SceneMap
-from vbraille.render.scene.compiling import compile_scene
+from vbraille.render.scene.compiling import SceneMap, compile_scene
+from vbraille.render.scene.labels import Assets
 from vbraille.scene.patterns import PathShape
 from vbraille.simulation.simulated import SimulatedDevice
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from tests.conftest import SEED
 from vbraille.display import Display
-from vbraille.render.scene.assets import Assets
+from vbraille.render.scene.labels import Assets
 from vbraille.scene.bitmap import Bitmap
 from vbraille.scene.patterns import (
     Circle,

@@ -232,7 +232,7 @@ def test_a_pdf_has_the_size_of_the_paper(scene, call, tmp_path):
         (("--out", "a"), "--out a has no suffix; end its name in one of .png, .svg"),
         (("--out", "a.png", "--resolution", "0"), "--resolution is 0 pixels a mm; it must be"),
         (("--out", "a.png", "--resolution", "nan"), "--resolution is nan pixels a mm"),
-        (("--out", "a.png", "--resolution", "400"), "there is room for 100 million; give --resol"),
+        (("--out", "a.png", "--resolution", "400"), "there is room for 16 million; give --resol"),
         (("--out", "a.csv", "--resolution", "100"), "there is room for 10 million; give --resol"),
         (("--out", "a.png", "--array", "2,15"), "the array is not on the canvas at 2,15"),
         (("--out", "a.png", "--array", "nan,15"), "the array is not on the canvas"),

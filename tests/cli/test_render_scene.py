@@ -14,7 +14,7 @@ from tests.render.scene.twin import deflections
 from vbraille.errors import InputError
 from vbraille.playback.rendered import Rendered
 from vbraille.recording import scene_of
-from vbraille.render.scene.assets import Assets
+from vbraille.render.scene.labels import Assets
 from vbraille.scene.reading import open_scene
 
 MOVING = (

@@ -96,7 +96,8 @@ def test_a_plan_is_a_line_a_trial(call):
     for number, line in enumerate(trials, 1):
         assert re.fullmatch(rf"trial {number}: (nominal|textured), ⠉[⠁⠉⠈⠀]{{2}}⠉, dots .+", line)
     assert len([line for line in lines if line.startswith("practice ")]) == 8
-    assert len(lines) == 1 + 160 + 8 + 3  # practice, two blocks
+    assert lines[1].startswith("analysis: legibility of strings by condition")
+    assert len(lines) == 2 + 160 + 8 + 3  # practice, two blocks
 
 
 def test_of_a_comparison_the_plan_tells_both_values(call, tmp_path):

@@ -100,3 +100,31 @@ def test_a_part_of_very_many_is_said(tmp_path):
 def test_a_canvas_of_ten_metres_is_looked_at(tmp_path):
     big = "{ width_mm = 10000, height_mm = 10000 }"
     assert any("hidden" in one for one in advice(tmp_path, circle(60, 60, 10), DISC, canvas=big))
+
+
+def test_the_box_of_a_label_is_that_of_its_dots(tmp_path):
+    path = tmp_path / "a.scene"
+    path.write_text(
+        f"canvas = {{width_mm = 200, height_mm = 60}}\nelements = [{label('moon', 20, 20)}]"
+    )
+    (box,) = load_scene(path, STYLE).boxes().values()
+    geometry = STYLE.geometry
+    assert (box.left, box.top) == (20, 20)
+    assert box.right == pytest.approx(20 + geometry.extent_mm(4))
+    assert box.bottom == pytest.approx(20 + 2 * geometry.row_spacing_mm + geometry.dot_width_mm)
+
+
+FLAT = "{ kind = 'uniform' }"
+NESTED = FLAT
+for _ in range(20):
+    NESTED = f"{{ kind = 'group', operation = 'blend', parts = [{FLAT}, {FLAT}], by = {NESTED} }}"
+FAST = "{ kind = 'linear-grating', ridge_mm = 1, velocity_mm_s = 900 }"
+
+
+@pytest.mark.parametrize(
+    ("element", "says"),
+    [(NESTED, "patterns stand in each other so deep"), (FAST, "moves at 900 Hz")],
+)
+def test_what_feel_would_refuse_is_said(tmp_path, element, says):
+    (remark,) = [one for one in advice(tmp_path, element) if "cannot be felt" in one]
+    assert says in remark

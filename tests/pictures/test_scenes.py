@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from vbraille.pictures.scenes import small_png
-from vbraille.render.scene.assets import Assets
+from vbraille.render.scene.labels import Assets
 from vbraille.scene.patterns import Circle, Fill, Group
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform

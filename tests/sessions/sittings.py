@@ -2,8 +2,10 @@
 
 import re
 import struct
+from copy import copy
 from dataclasses import dataclass, field
 from pathlib import Path
+from shutil import copytree
 
 from vbraille.devices import open_device
 from vbraille.engine.batch import BatchEngine
@@ -11,8 +13,9 @@ from vbraille.sessions import session as door
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
+from vbraille.sessions.record import events as kinds
 from vbraille.sessions.record.events import to_json
-from vbraille.sessions.record.folder import create
+from vbraille.sessions.record.folder import create, load
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.session import head_of
 
@@ -45,6 +48,9 @@ string = "a"
 """
 
 
+ANSWERING = kinds.Answer | kinds.Missed | kinds.Reply  # events that are no more asked for
+
+
 @dataclass
 class Person:
     """Types each line when what was said last matches its pattern."""
@@ -72,6 +78,9 @@ class Person:
         return []
 
     def next(self, *_):
+        return None
+
+    def reply(self, *_):
         return None
 
 
@@ -145,6 +154,37 @@ def crash(folder, size):
                 break
             end += length
         trace.write_bytes(content[:end])
+
+
+def gone_on(session, folder, size, *script, **given):
+    """What comes of a copy of a session whose journal is cut, as by a kill, and that is resumed.
+
+    Also gives the number of its trials and questions that had an answer before.
+    """
+    copytree(session.folder, folder)
+    crash(folder, size)
+    other = copy(session)
+    other.folder = folder
+    kept = [e for e in load(folder).journal.events if isinstance(e, ANSWERING)]
+    sat = other.sit(*script, **given)
+    assert [e for e in sat.events if isinstance(e, ANSWERING)][: len(kept)] == kept
+    return sat, len(kept)
+
+
+def kill_often(session, folder, *script, cuts=5, **given):
+    """Cut a session's journal at many places; each time none is lost, and none asked for again."""
+    journal = (session.folder / "journal.jsonl").read_bytes()
+    whole = journal.find(b"\n") + 1
+    for n in range(cuts):
+        size = whole + (len(journal) - whole) * (2 * n + 1) // (2 * cuts)
+        sat, _ = gone_on(session, folder / f"{n}", size, *script, **given)
+        assert sat.progress.ended
+        answers = [e for e in sat.events if isinstance(e, ANSWERING)]
+        asked = [
+            (e.kind, e.trial, e.practice, getattr(e, "name", ""), getattr(e, "block", 0))
+            for e in answers
+        ]
+        assert len(set(asked)) == len(asked)
 
 
 def of(events, name):

@@ -417,6 +417,11 @@ SESSION_ACTIONS: dict[str, tuple[str, Options, str]] = {
         lab.session_check,
         "vbraille session check P07-legibility-20261121-101500",
     ),
+    "withdraw": (
+        "Remove all data of a participant: sessions, rows of tables, plans, reports.",
+        lab.session_withdraw,
+        "vbraille session withdraw P07 study",
+    ),
 }
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 import numpy as np
 
-from vbraille.render.scene.canvas import SceneMap
+from vbraille.render.scene.compiling import SceneMap
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.patterns import Circle, Group, Label, PathShape, Polygon, Shape
 from vbraille.scene.scene import Scene
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.render.scene.assets import Assets
+    from vbraille.render.scene.labels import Assets
     from vbraille.scene.patterns import AnyPattern, Image
 
 # Ours: an element is felt where it hides half of what it stands on, or does anything if it is the

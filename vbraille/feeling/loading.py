@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 from vbraille.errors import InputError
 from vbraille.labelling import label_warnings, write_labels
-from vbraille.render.scene.assets import Assets
-from vbraille.render.scene.brailleplaces import box_of
-from vbraille.scene.bounds import Box
+from vbraille.render.scene.labels import Assets, corners_mm
+from vbraille.scene.bounds import Box, around
 from vbraille.scene.images import load_bitmaps
 from vbraille.scene.patterns import Image, Label
 from vbraille.scene.reading import open_scene
@@ -59,7 +58,8 @@ class LoadedScene:
     def boxes(self) -> Mapping[Image | Label, Box]:
         """Boxes of its images and labels, which `vbraille.scene.bounds` cannot know."""
         found: dict[Image | Label, Box] = {
-            label: box_of(label, written) for label, written in self.assets.written.items()
+            label: around(corners_mm(label, written))
+            for label, written in self.assets.written.items()
         }
         for image, bitmap in self.assets.bitmaps.items():
             if not bitmap.outside:

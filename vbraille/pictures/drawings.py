@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.display import Display
-    from vbraille.render.scene.assets import Assets
+    from vbraille.render.scene.labels import Assets
     from vbraille.scene.scene import Canvas, Scene
 
 
@@ -44,7 +44,7 @@ _HAIR_MM = 0.15
 # How far a bar is drawn from the middle of its place to either side, as a share of the pitch: as
 # far as bars can go without touching; true deflections would be too small to be seen.
 _SHIFT = 0.3
-_OUTLINE_PER_MM, _OUTLINE_PIXELS = 8.0, 9_000_000
+_OUTLINE_PER_MM, _OUTLINE_PIXELS = 8.0, 4_200_000
 # Times over a swing of 50 Hz, the fastest that there is: what vibrates is up at one of them.
 _UP_S = (0.0, 0.005, 0.01, 0.015)
 
@@ -121,7 +121,7 @@ def show_array(
     time_s
         Time for what vibrates or moves.
     """
-    from vbraille.render.scene.canvas import SceneMap  # loads the kernels
+    from vbraille.render.scene.compiling import SceneMap  # loads the kernels
 
     drawn = SceneMap(scene, assets)
     places, frame = actuators_mm(display, place), np.empty(display.shape)
@@ -186,10 +186,7 @@ def map_figure(
     if axes:
         place.set_xlabel("mm", fontsize=7, loc="right", labelpad=1)
     place.imshow(
-        grays(deflections),
-        cmap="gray",
-        vmin=0,
-        vmax=255,
+        np.repeat(grays(deflections)[..., None], 3, axis=2),  # which is drawn as it is
         extent=(0, canvas.width_mm, canvas.height_mm, 0),
         interpolation="none",
         aspect="auto",
@@ -230,7 +227,7 @@ def felt_contours(scene: Scene, assets: Assets) -> list[NDArray[np.float64]]:
     """
     from contourpy import FillType, contour_generator
 
-    from vbraille.render.scene.canvas import SceneMap  # loads the kernels
+    from vbraille.render.scene.compiling import SceneMap  # loads the kernels
 
     canvas = scene.canvas
     area = canvas.width_mm * canvas.height_mm
@@ -238,16 +235,17 @@ def felt_contours(scene: Scene, assets: Assets) -> list[NDArray[np.float64]]:
     x, y = map_places(canvas, per_mm)
     drawn = SceneMap(scene, assets)
     vibrates = any(True for element in scene.elements for _ in vibrations(element))
-    felt = np.zeros((y.size, x.size), np.float32)
+    # A rim at rest closes what goes beyond the canvas, at its edge.
+    rimmed = np.zeros((y.size + 2, x.size + 2), np.float32)
+    felt = rimmed[1:-1, 1:-1]
     for time_s in _UP_S if vibrates else _UP_S[:1]:
         np.maximum(felt, drawn.deflections(x, y, time_s=time_s, parity=0), out=felt)
     strongest = float(felt.max())
     if strongest <= 0:
         return []
     step = 1 / per_mm
-    # A rim at rest closes what goes beyond the canvas, at its edge.
     x, y = (np.concatenate([[at[0] - step], at, [at[-1] + step]]) for at in (x, y))
-    lines = contour_generator(x, y, np.pad(felt, 1), fill_type=FillType.OuterOffset)
+    lines = contour_generator(x, y, rimmed, fill_type=FillType.OuterOffset)
     # A plateau at exactly the half would be all steps of rounding.
     found = cast("tuple[list[NDArray], list[NDArray]]", lines.filled(0.51 * strongest, math.inf))
     edge = np.array([canvas.width_mm, canvas.height_mm])

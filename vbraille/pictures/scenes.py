@@ -26,11 +26,13 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.render.scene.assets import Assets
+    from vbraille.render.scene.labels import Assets
     from vbraille.scene.scene import Canvas, Scene
 
 PIXELS_PER_MM = 4.0
-MOST_PIXELS = 100_000_000
+# A map of so many is made within 300 MB; a sheet A3 has 12 million at 10 a mm.
+MOST_PIXELS = 16_000_000
+MOST_PLACED_PIXELS = 5_000_000  # of a map in an SVG or a PDF, which takes more
 MOST_CSV_ROWS = 10_000_000  # of a CSV
 _FRAME_MS = 100  # how long an animation shows each map: eyes see no 50 Hz
 _MM_PER_INCH = 25.4
@@ -156,11 +158,11 @@ def map_deflections(
     InputError
         As `map_places` has it.
     """
-    from vbraille.render.scene.canvas import SceneMap  # loads the kernels
+    from vbraille.render.scene.compiling import SceneMap  # loads the kernels
 
     x_mm, y_mm = map_places(scene.canvas, pixels_per_mm)
     drawn = SceneMap(scene, assets)
-    if noise_seed is not None:
+    if noise_seed is not None and any(map(vibrations, scene.elements)):
         return drawn.deflections(x_mm, y_mm, noise_seed=noise_seed)
     return drawn.deflections(x_mm, y_mm, time_s=time_s, parity=parity)
 
@@ -178,7 +180,10 @@ def grays(deflections: NDArray[np.floating]) -> NDArray[np.uint8]:
     uint8[…]
         Gray levels, in the same shape.
     """
-    return (255.0 * (1.0 - deflections) + 0.5).astype(np.uint8)
+    levels = np.empty(deflections.shape, np.uint8)
+    for row, from_there in zip(np.atleast_2d(levels), np.atleast_2d(deflections), strict=True):
+        row[...] = 255.0 * (1.0 - from_there) + 0.5
+    return levels
 
 
 def small_png(scene: Scene, assets: Assets) -> bytes:

@@ -16,7 +16,7 @@ from vbraille.braille.spelling import to_braille
 from vbraille.errors import InputError, VbrailleError
 from vbraille.live.messages import PlayedEvent, ViewState
 from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
-from vbraille.playback.recorded import PLAYED, Piece, Recording
+from vbraille.playback.recorded import PLAYED, Piece, Playback
 from vbraille.render import work
 from vbraille.render.program import Program, nothing
 from vbraille.sessions.record import events, journal
@@ -73,7 +73,7 @@ class _PlayedRun:
         return self.begun_s + (time_ns - self.first_ns) / 1e9
 
 
-class SessionRecording(Recording):
+class SessionRecording(Playback):
     """Frames of a session, or of one of its traces.
 
     Parameters

@@ -23,10 +23,10 @@ import numpy as np
 from vbraille.render.frames import copy
 from vbraille.render.machine.showkernels import show as _show_scene
 from vbraille.render.machine.showkernels import show_all as _show_scenes
+from vbraille.render.waves import HALF_SINE
 from vbraille.render.waves import compiled as _compiled
-from vbraille.render.waves import cos_pi as _cos_pi
+from vbraille.render.waves import dot_swing as _dot_swing
 from vbraille.render.waves import inlined as _inlined
-from vbraille.render.waves import sin_pi as _sin_pi
 from vbraille.render.work import (
     AMPLITUDE,
     ANCHOR,
@@ -66,7 +66,6 @@ _PAGE = 1.0
 _DOT_ROWS = 4
 # An array that was turned too far shows braille again once it is upright by so much more.
 _UPRIGHT = 0.85
-_HALF_SINE = 0.0
 
 
 @_compiled
@@ -83,7 +82,7 @@ def _swings(numbers, scratch, count, which):
     dots_per_mm = numbers[DOTS_PER_MM]
     e0, e1, e2 = numbers[SHAPE], numbers[SHAPE + 1], numbers[SHAPE + 2]
     e3, e4, e5 = numbers[SHAPE + 3], numbers[SHAPE + 4], numbers[SHAPE + 5]
-    half_sine = numbers[PROFILE] == _HALF_SINE
+    half_sine = numbers[PROFILE] == HALF_SINE
     before = 1.0 if which == 2 else 0.0
     is_right = 1.0 if which in (1, 2) else 0.0
     choose = which == 3
@@ -98,21 +97,9 @@ def _swings(numbers, scratch, count, which):
         d = (t - spacing * right + pitch * before) * dots_per_mm - 0.5
         q = d * d
         q = q if q < 0.25 else 0.25
-        sine = _cos_pi(q)  # sin(πu/W), u from the dot's left edge
-        y = sine * sine
-        if half_sine:
-            # Lévesque 2009, 3.2, with sin 8θ = 8 sin θ cos θ (1 - 10y + 24y² - 16y³)
-            d = d if d < 0.5 else 0.5
-            d = d if d > -0.5 else -0.5
-            cosine = -_sin_pi(d, q)
-            value = sine * (e0 + e1 * cosine * (1.0 + y * (-10.0 + y * (24.0 - 16.0 * y))))
-        else:
-            # eqs. 4.1-4.3 on [0, 1]: c = cos πp, and cos kπp = T_k(c), which is odd
-            c = 2.0 * y - 1.0
-            z = c * c
-            value = 0.5 + c * (e0 + z * (e1 + z * (e2 + z * (e3 + z * (e4 + z * e5)))))
-        value = value if value > 0.0 else 0.0
-        value = value if value < 1.0 else 1.0
+        d = d if d < 0.5 else 0.5
+        d = d if d > -0.5 else -0.5
+        value = _dot_swing(half_sine, e0, e1, e2, e3, e4, e5, d, q)
         scratch[SWING, n] = value if q < 0.25 else 0.0
         slot = 2.0 * (cell + 1.0 - before) + right
         scratch[SLOT, n] = slot if slot > 0.0 else 0.0
@@ -219,29 +206,6 @@ def too_far(numbers, theta, before):
 
 
 @_compiled
-def _dot(numbers, table, slot, row, across_mm, q):
-    """Swing of one dot, which is round, at q = (distance from its centre / its width)²."""
-    if table[slot] >> row & 1 == 0:
-        return 0.0
-    y = _cos_pi(q)
-    value = y
-    if numbers[PROFILE] == _HALF_SINE:
-        d = math.copysign(math.sqrt(q), across_mm)
-        y *= y
-        cosine = -_sin_pi(d, q)
-        wave = 1.0 + y * (-10.0 + y * (24.0 - 16.0 * y))
-        value *= numbers[SHAPE] + numbers[SHAPE + 1] * cosine * wave
-    else:
-        c = 2.0 * y * y - 1.0
-        z = c * c
-        value = numbers[SHAPE + 5]
-        for n in range(4, -1, -1):
-            value = numbers[SHAPE + n] + z * value
-        value = 0.5 + c * value
-    return min(max(value, 0.0), 1.0)
-
-
-@_compiled
 def _free(numbers, table, at, out):
     """Fill a frame with what lies under each actuator: the dots of a page are round there.
 
@@ -252,6 +216,9 @@ def _free(numbers, table, at, out):
     cells = int(numbers[SLOTS]) // 2 - 2
     cosine, sine = math.cos(at[THETA]), math.sin(at[THETA])
     radius = 0.5 / numbers[DOTS_PER_MM]
+    e0, e1, e2 = numbers[SHAPE], numbers[SHAPE + 1], numbers[SHAPE + 2]
+    e3, e4, e5 = numbers[SHAPE + 3], numbers[SHAPE + 4], numbers[SHAPE + 5]
+    half_sine = numbers[PROFILE] == HALF_SINE
     for row in range(rows):
         idle, gain = numbers[IDLE + row], numbers[IDLE + rows + row]
         down = (row - 0.5 * (rows - 1)) * numbers[ROW_PITCH]
@@ -281,8 +248,10 @@ def _free(numbers, table, at, out):
                         edge -= pitch if which < 0 else 0.0
                         dx = x - edge - radius
                         q = (dx * dx + dy * dy) * numbers[DOTS_PER_MM] ** 2
-                        if q < 0.25 and slot >= 0:
-                            swing = max(swing, _dot(numbers, table, base + slot, dot_row, dx, q))
+                        if q < 0.25 and slot >= 0 and table[base + slot] >> dot_row & 1:
+                            d = math.copysign(math.sqrt(q), dx)
+                            value = _dot_swing(half_sine, e0, e1, e2, e3, e4, e5, d, q)
+                            swing = max(swing, value)
             out[row, column] = idle + gain * swing
 
 

@@ -88,3 +88,24 @@ def angle(x, y):
     value = _HALF_PI - value if b > a else value
     value = math.pi - value if x < 0.0 else value
     return -value if y < 0.0 else value
+
+
+HALF_SINE = 0.0  # of `Profile`; of the other profiles 1 - 6 of eqs. 4.1-4.3
+
+
+@inlined
+def dot_swing(half_sine, e0, e1, e2, e3, e4, e5, d, q):
+    """Compute the swing of a dot at d = (place - its middle) / its width, q = d² ≤ 1/4."""
+    sine = cos_pi(q)  # sin(πu/W), u from the dot's left edge
+    y = sine * sine
+    if half_sine:
+        # Lévesque 2009, 3.2, with sin 8θ = 8 sin θ cos θ (1 - 10y + 24y² - 16y³)
+        cosine = -sin_pi(d, q)
+        value = sine * (e0 + e1 * cosine * (1.0 + y * (-10.0 + y * (24.0 - 16.0 * y))))
+    else:
+        # eqs. 4.1-4.3 on [0, 1]: c = cos πp, and cos kπp = T_k(c), which is odd
+        c = 2.0 * y - 1.0
+        z = c * c
+        value = 0.5 + c * (e0 + z * (e1 + z * (e2 + z * (e3 + z * (e4 + z * e5)))))
+    value = value if value > 0.0 else 0.0
+    return value if value < 1.0 else 1.0

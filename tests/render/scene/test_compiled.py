@@ -6,9 +6,8 @@ from hypothesis import given
 from tests.render.scene import twin as reference
 from tests.render.scene.scenes import examples, patterns, scenes, seeds
 from tests.render.scene.showing import STRESS2_8X8_ARRAY, assets_of, poses, scene_of
-from vbraille.render.scene.assets import Assets
-from vbraille.render.scene.canvas import SceneMap
-from vbraille.render.scene.compiling import compile_scene
+from vbraille.render.scene.compiling import SceneMap, compile_scene
+from vbraille.render.scene.labels import Assets
 
 
 def frame(program, pose):

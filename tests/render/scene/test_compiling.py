@@ -11,8 +11,8 @@ import pytest
 from vbraille.display import Display
 from vbraille.render import kernels, work
 from vbraille.render.machine import words
-from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import compile_scene
+from vbraille.render.scene.labels import Assets
 from vbraille.scene.bitmap import Bitmap
 from vbraille.scene.patterns import Circle, Group, Image, StraightLine, Tile
 from vbraille.scene.scene import Canvas, Scene

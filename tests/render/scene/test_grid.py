@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tests.benchmarks.scenes import DISPLAY, nested, shapes, short_lines
-from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import compile_scene
+from vbraille.render.scene.labels import Assets
 from vbraille.scene.patterns import Circle, Fill, Group, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke

@@ -14,9 +14,9 @@ from vbraille.braille.geometry import PRESETS
 from vbraille.render import STRESS2_8X8, VBD, Tuning
 from vbraille.render.braille.style import Profile
 from vbraille.render.machine import braillekernel
-from vbraille.render.machine.labelplaces import FADE_MM, TABLE
-from vbraille.render.scene.assets import Written
-from vbraille.render.scene.brailleplaces import (
+from vbraille.render.machine.braillekernel import FADE_MM, TABLE
+from vbraille.render.scene.labels import (
+    Written,
     corners_mm,
     pack_label,
     size_mm,

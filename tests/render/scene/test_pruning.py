@@ -14,8 +14,8 @@ from tests.render.scene.showing import assets_of
 from tests.render.scenes import JIT
 from vbraille.render import STRESS2_8X8
 from vbraille.render.machine import words
-from vbraille.render.scene.assets import Assets, Written
 from vbraille.render.scene.compiling import compile_scene
+from vbraille.render.scene.labels import Assets, Written
 from vbraille.scene.bitmap import Bitmap
 from vbraille.scene.patterns import (
     Circle,

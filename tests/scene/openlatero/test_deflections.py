@@ -19,7 +19,7 @@ from tests.scene.openlatero.files import (
     texture,
     waves,
 )
-from vbraille.render.scene.assets import Assets
+from vbraille.render.scene.labels import Assets
 from vbraille.scene.openlatero import read_gen
 
 SQUARE = ("20,20", "70,20", "70,60", "20,60")

@@ -172,6 +172,10 @@ SHAPES = {
     '<text x="50" y="30" text-anchor="end" transform="rotate(-90 50 30)">ab</text>': Label(
         text="ab", place_mm=(41, 52.2), angle_deg=-90
     ),
+    '<defs><path id="way" d="M30 40 L60 40"/></defs>'
+    '<text><textPath href="#way">along</textPath></text>': Label(
+        text="along", place_mm=(30, 31)
+    ),
     '<svg x="10" y="10" width="20" height="10" viewBox="0 0 2 1"><circle r="1"/></svg>': Circle(
         center_mm=(10, 10), radius_mm=10, fill=Fill(texture=Use(name="stock:linear-0"))
     ),

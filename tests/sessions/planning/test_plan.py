@@ -82,25 +82,25 @@ class TestPlans:
             for name in builtin_names()
         }
         assert sums == {
-            "detection": "f101f50ae51eec1b98bd80a4c015cca3c722409bfaadd911170d5751c1ae21c7",
-            "rating": "8e5393e0578af44119202f3bb8c848469f4f5332a4c5f6d4fd304edda20825c9",
-            "same-different": "394444f09bbcb3dc95dae4ddb6959bb2a3f248a5debe48376f8d89f3c0b7d926",
-            "control": "b2be1cb36397f5c2f0a1b0e245666e58cae18af33561335afa91b25087d54436",
-            "control-display": "b321c83ad80741a285dde3c9414e6bbb0380f21b79823f8c57ec62bbba11011d",
-            "tuning-spacing-reference": "eb7d64bf2d27121e37e0927a8df7b0a0"
-            "a822eab4a51c5435d4cc92a86f7bfc58",
-            "tuning-width-reference": "a08248f39997f81270dbb411caa589db"
-            "d6fb1112b5fb80bcaf72083f180cf524",
-            "factors": "7c3c7558ecc2561506bea34b60685a67b9030c763604fc40af07150a0a2c138b",
-            "legibility": "fbe7e40e52c2606d68605b6377bf79ef5eee646756c83ed906c05775ccb6c713",
-            "letters": "65ec34cb91de467edbef7b22f9dbb7a6c7c6f9dfca213eab9d94267b4752dabd",
-            "tuning-spacing": "4a5b1ed88a95202731d735744f3758a157faef4be2811b5f2590074a1953991c",
-            "tuning-spacing-adaptive": "3821d9bb7c556f447dd31ed0eb70a54f"
-            "3f1b01f78f29bd2adaff6fc0740b584f",
-            "tuning-width": "e45e7b4e3f18bb90e58a2b716adc9e220a459dd803242bbf7268ad0ac34cab7a",
-            "tuning-width-adaptive": "b26190b9e0345fc1e707cf889bf0c191"
-            "e7c064d8e6606c53d8dfaf787aee1590",
-            "words": "b16b3cc68f5161937e6c724723e728b9464f7231f63801202b098c7d237899a7",
+            "detection": "ac57006bbb13fa19a26c9ba8b0eaacd64c50662c7067552421ba5321defc42a4",
+            "rating": "d0665fcca862bd4c09e7fcc3db28ce9a736ed934de2e32ff26a8fe1018e365d9",
+            "same-different": "8efb4231c15aea56a3cb5f78ecd7cbba69e16b6c3b50d0d14ae761aeb6df9b58",
+            "control": "3a90a266ad2771b5de36d2f6ca510a380dcada194c3fa9a57b8aacf85de83ac4",
+            "control-display": "078005997e544a65ed48e518acbe8e7b53df6e418c6c5b0cbb905cdbf7dd6859",
+            "tuning-spacing-reference": "e2b35a63a4ab63aa5e382497008b52a7"
+            "98c80cd4e9ea3590107509c6bff54823",
+            "tuning-width-reference": "6dc0a1aff6774baacee27e772ed15847"
+            "6c0f1de1d7b01eaef057e0fe3f748cf9",
+            "factors": "65e622ea510c31ac0e836f94d9ed48d7696b62b301b43813b70095b18de40258",
+            "legibility": "818a1e26278d19fd94195c493f87996d0f2369407d8d9b32c05b0f156213846a",
+            "letters": "2bc469fe082ca8e589eb1287d6b2694ca78c78dfcbed9d4df921a889c70da1e9",
+            "tuning-spacing": "0e6355cb9f8a81dc60fdc9dedd49c10707075cf907b782cd9e2730bc09b6a303",
+            "tuning-spacing-adaptive": "60b62ad1cbf99bcf91a2e432ed0cf1e7"
+            "c229f2dd4aac70dd6911b1c24164b767",
+            "tuning-width": "341474636ec9ff4a6bc9742ba075b4c83dfef18e056b4e4a44f18a908b9718ea",
+            "tuning-width-adaptive": "fa65d6413547aae0c4236be0459452f4"
+            "e5cb27daf09e92130175e74a4a8a354c",
+            "words": "73bd4b764d538bddaeb08b762bd42ef5176127f74709f203cc4738e587442bcf",
         }
 
     def test_protocols_of_one_design_have_orders_of_their_own(self):

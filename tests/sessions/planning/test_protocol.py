@@ -15,7 +15,9 @@ from vbraille.errors import InputError
 from vbraille.render import MAPPINGS, Tuning
 from vbraille.sessions import planning
 from vbraille.sessions.planning.design import Practice
+from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.pace import ParticipantField, Tone
+from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import (
     builtin_names,
     builtin_text,
@@ -131,7 +133,7 @@ class TestBuiltIns:
         assert (len(protocol.design.strings), protocol.trials) == (26, 78)
         assert all(len(set(string)) == 5 for string in protocol.design.strings)
         assert (protocol.design.blocks, protocol.design.reorder) == (2, True)
-        assert (protocol.practice.trials, len(protocol.practice.items)) == (6, 6)
+        assert (protocol.practice.trials, len(protocol.practice.items(protocol.design))) == (6, 6)
         assert (protocol.rules.each_letter, protocol.trial.warning_s) == (5, 30.0)
         assert '"epkgn"' in protocol.text
 
@@ -285,3 +287,54 @@ class TestLoading:
 def _geometry(protocol, value):
     """Distances at a value of what is compared."""
     return protocol.shown(protocol.conditions[0], (1,), value).geometry
+
+
+class TestPlannedAnalysis:
+    """What a study asks is fixed in its plan."""
+
+    @pytest.mark.parametrize("name", builtin_names())
+    def test_each_shipped_protocol_plans_one(self, name):
+        protocol = load_protocol(name)
+        assert protocol.analysis is not None
+        planned = make_plan(protocol, "P01", 1).analysis
+        assert planned == protocol.planned_analysis
+        assert planned.measure == protocol.analysis.measure
+        assert planned.participants is not None
+        assert planned.stop
+
+    def test_it_changes_the_plan_and_comes_back(self):
+        protocol = load_protocol("letters")
+        other = structs.replace(
+            protocol, analysis=structs.replace(protocol.analysis, participants=7)
+        )
+        plans = [make_plan(each, "P01", 1) for each in (protocol, other)]
+        assert plans[0].trials == plans[1].trials
+        assert plans[0].to_json() != plans[1].to_json()
+        assert Plan.from_json(plans[1].to_json()) == plans[1]
+
+    def test_without_the_table_the_usual_one_is_planned(self):
+        for name in builtin_names():
+            protocol = load_protocol(name)
+            usual = structs.replace(protocol, analysis=None).planned_analysis
+            assert usual.measure == protocol.planned_analysis.measure
+            assert usual.factors == protocol.planned_analysis.factors
+            assert usual.model in ("trials", "means")
+
+    @pytest.mark.parametrize(
+        ("table", "named"),
+        [
+            ('measure = "speed"', "speed"),
+            ('measure = "rating"', "rating"),
+            ('measure = "threshold"', "procedure"),
+            ('factors = ["hue"]', "hue"),
+            ('factors = ["condition", "condition"]', "twice"),
+            ('measure = "duration"\nmodel = "trials"', "duration"),
+            ("too_fast_s = 3\ntoo_slow_s = 2", "too_fast_s"),
+            ("catch_right = 0.5", "catch_right"),
+            ("participants = 0", "participants"),
+        ],
+    )
+    def test_one_that_does_not_suit_is_refused(self, table, named):
+        text = builtin_text("letters").partition("[analysis]")[0]
+        with pytest.raises(InputError, match=named):
+            parse_protocol(f"{text}[analysis]\n{table}\n", "mine.toml")

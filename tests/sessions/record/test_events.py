@@ -1,19 +1,18 @@
 """The kinds of events: what one has, and what none may have."""
 
-import inspect
 import re
 from pathlib import Path
 from typing import get_args
 
 import pytest
 
+from tests.documents import described, members
 from tests.sessions.sittings import Session as Sitting
 from vbraille.errors import VbrailleError
 from vbraille.sessions.record import events, journal
 from vbraille.sessions.record.events import (
     AnyEvent,
     AnyTime,
-    InTrial,
     JournalEvent,
     Lost,
     WithStimulus,
@@ -27,33 +26,6 @@ KINDS = get_args(AnyEvent)
 COMMON = (JournalEvent, AnyTime, WithStimulus)
 
 
-def described(kind):
-    """First sentence of a class's docstring, and what it says of each field of its own."""
-    text = inspect.cleandoc(kind.__doc__)
-    said, _, fields = text.partition("\n\nParameters\n----------\n")
-    found = re.findall(r"^(\w.*)\n((?:    .*\n?)+)", fields, re.MULTILINE)
-    return " ".join(said.split()), {names: " ".join(told.split()) for names, told in found}
-
-
-def members(fields):
-    """Say fields in a cell of a table."""
-    return " ".join(f"`{names.replace(', ', '`, `')}`: {told}" for names, told in fields.items())
-
-
-def table():
-    """The document's table, made of the classes."""
-    lines = ["| event | what happened | other members |", "|---|---|---|"]
-    for kind in KINDS:
-        said, fields = described(kind)
-        given = "with a stimulus" if issubclass(kind, WithStimulus) else ""
-        given = given or ("in a trial" if issubclass(kind, InTrial) else "")
-        given = given or ("at any time" if issubclass(kind, AnyTime) else "")
-        name = f"`{kind.__struct_config__.tag}`" + (" *" if kind.durable else "")
-        cells = (name, said + (f" ({given})" if given else ""), members(fields))
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines)
-
-
 def leaves(kind):
     """All classes that follow from one, and that none follows from."""
     below = kind.__subclasses__()
@@ -64,9 +36,8 @@ def test_every_class_is_a_kind_that_a_journal_may_have():
     assert set(KINDS) == leaves(JournalEvent) - {Lost}
 
 
-def test_the_document_has_the_table_of_the_classes():
+def test_the_document_has_the_members_of_all_kinds():
     text = DOCUMENT.read_text()
-    assert table() in text
     for kind in COMMON:
         assert members(described(kind)[1]) in text
 

@@ -4,7 +4,6 @@ import csv
 import os
 import sys
 import tty
-from pathlib import Path
 from queue import Queue
 from threading import Event
 
@@ -271,10 +270,3 @@ def test_a_port_that_is_not_there_is_told_before_anything_begins(tmp_path):
     with pytest.raises(InputError, match="markers cannot be sent to /dev/none: No such file"):
         sit(tmp_path / "s", "serial:/dev/none")
     assert not (tmp_path / "s" / "markers-001.csv").exists()
-
-
-def test_the_page_has_each_byte():
-    page = (Path(__file__).parents[3] / "docs" / "session-format.md").read_text(encoding="utf-8")
-    part = page.split("<!-- bytes: begin -->\n")[1].split("\n<!-- bytes: end -->")[0]
-    told = [f"`{kind.__struct_config__.tag}` {kind.code}" for kind in KINDS]
-    assert " ".join(part.split()).split(", ") == [*told, f"any other {events.OTHER}"]

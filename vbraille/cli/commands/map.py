@@ -249,7 +249,8 @@ class _Drawing:
 
     def _check_room(self, maps: int = 1) -> None:
         """Refuse maps of too many pixels before the first is made."""
-        most = scenes.MOST_CSV_ROWS if self._kind == "csv" else scenes.MOST_PIXELS
+        most = {"csv": scenes.MOST_CSV_ROWS, "png": scenes.MOST_PIXELS, "gif": scenes.MOST_PIXELS}
+        most = most.get(self._kind, scenes.MOST_PLACED_PIXELS)
         scenes.check_pixels(self._scene.canvas, self._per_mm, maps, most)
 
     @property

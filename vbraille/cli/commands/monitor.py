@@ -20,7 +20,7 @@ from vbraille.wording import setting
 if TYPE_CHECKING:
     import argparse
 
-    from vbraille.playback.recorded import Recording
+    from vbraille.playback.recorded import Playback
 
 # So long a signal may wait to be heard.
 _HEED_S = 0.1
@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-async def _serve(source: Recording, host: str | None, port: int | None) -> None:
+async def _serve(source: Playback, host: str | None, port: int | None) -> None:
     server = LiveServer(source, host=host, port=port, steers=False)
     async with server:
         address = server.admission.watching_address

@@ -63,6 +63,7 @@ def _plan(arguments: argparse.Namespace) -> int:
     )
     if plan.group:
         _say(f"group: {plan.group}")
+    _say(f"analysis: {protocol.planned_analysis.described()}")
     if protocol.adaptive:
         from vbraille.sessions.planning.nexttrial import describe
 
@@ -180,7 +181,31 @@ def _pilot(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _withdraw(arguments: argparse.Namespace) -> int:
+    from vbraille.sessions.record.withdrawal import withdrawal
+
+    rooms = [Path(name) for name in arguments.paths or ["."]]
+    told = withdrawal(rooms, arguments.participant)
+    left = [f"left: {path} names {told.participant}; look at it yourself" for path in told.left]
+    if not told.found:
+        for sentence in left:
+            _say(sentence)
+        names = ", ".join(map(str, rooms))
+        raise InputError(f"there is nothing of {arguments.participant} to remove in {names}")
+    if not arguments.yes:
+        for sentence in told.sentences():
+            _say(f"found: {sentence}")
+        _say(f"remove all of {arguments.participant} for good? (yes or no):")
+        if (Typed().line() or "").strip().lower() not in ("y", "yes"):
+            raise InputError("nothing was removed; answer yes, or give --yes")
+    told.remove()
+    for sentence in [*(f"removed: {each}" for each in told.sentences()), *left]:
+        _say(sentence)
+    return 1 if left else 0
+
+
 _ACTIONS = {
+    "withdraw": _withdraw,
     "pilot": _pilot,
     "protocols": _protocols,
     "plan": _plan,
@@ -193,7 +218,7 @@ _ACTIONS = {
 
 
 def _describe(protocol: Protocol, trial: Trial) -> str:
-    if len(trial.stimuli) == 2:
+    if protocol.parameter is not None:
         if protocol.adaptive and not trial.practice:
             first, second = (stimulus.value or 0.0 for stimulus in trial.stimuli)
             return f"{trial.condition}, the {'lower' if first < second else 'higher'} value first"

@@ -80,7 +80,7 @@ class SerialDevice(Device):
         assert conversation.display is not None
         self.port = port
         self.conversation = conversation
-        self._display = conversation.display
+        self.display = conversation.display
         self._now_ns = now_ns
         self._pause = pause
         self._losses = port.losses
@@ -88,11 +88,6 @@ class SerialDevice(Device):
         self._steady = SteadyConversation()
         self._left_over = b""  # bytes that came while the conversation was steady
         self._copy()
-
-    @property
-    def display(self) -> Display:
-        """Display that the device described first."""
-        return self._display
 
     @property
     def has_own_gains(self) -> bool:

@@ -2,61 +2,50 @@
 
 Both take the places of many actuators at once, x and y of the canvas in mm, and fill a number for
 each. ``numbers`` is a whole program's; a label's run in it begins at ``first``, with the places
-that `vbraille.render.machine.labelplaces` names, and its words are in the program's ``table``.
+below, and its words are in the program's ``table``.
 """
 
 import math
 
 import numpy as np
 
-from vbraille.render.machine.labelplaces import (
-    APART,
+from vbraille.render.waves import HALF_SINE, compiled, dot_swing
+
+# Places of a label's numbers in their run.
+(
+    X0,  # corner of the first cell, mm
+    Y0,
+    COSINE,  # of the direction of its lines
+    SINE,
+    WIDTH,  # of the rectangle of its cells, mm
+    HEIGHT,
+    LINES,
+    LINE_PITCH,
+    LINES_PER_MM,
+    ROW_PITCH,
+    ROWS_PER_MM,
     CELL_PITCH,
     CELLS_PER_MM,
-    CONTRAST,
-    COSINE,
     DOT_SPACING,
     DOT_WIDTH,
     DOTS_PER_MM,
-    FADE_MM,
-    HEIGHT,
-    LINE_PITCH,
-    LINES,
-    LINES_PER_MM,
+    CONTRAST,
     PROFILE,
-    ROW_PITCH,
-    ROWS_PER_MM,
-    SHAPE,
-    SINE,
-    STRIDE,
-    TABLE,
-    WIDTH,
-    X0,
-    Y0,
-)
-from vbraille.render.waves import compiled, cos_pi, inlined, sin_pi
+    SHAPE,  # the 6 coefficients of the profile
+    _S1,
+    _S2,
+    _S3,
+    _S4,
+    _S5,
+    STRIDE,  # words of a line in the table: its cells, an empty one before them and one after
+    TABLE,  # first of its words in the table
+    APART,  # 1 if no two dots can be over one place
+    COUNT,  # how many numbers there are
+) = range(28)
 
-_HALF_SINE = 0.0
+FADE_MM = 1.0  # over which the opacity of a label ends
+
 _LAST_ROW = 3
-
-
-@inlined
-def _swing(numbers, shape, half_sine, q):
-    """Swing of a dot, which is round, at q = (distance from its middle / its width)² ≤ 1/4."""
-    sine = cos_pi(q)
-    y = sine * sine
-    if half_sine:
-        # Lévesque 2009, 3.2, with sin 8θ = 8 sin θ cos θ (1 - 10y + 24y² - 16y³)
-        wave = -sin_pi(math.sqrt(q), q) * (1.0 + y * (-10.0 + y * (24.0 - 16.0 * y)))
-        value = sine * (numbers[shape] + numbers[shape + 1] * wave)
-    else:
-        # eqs. 4.1-4.3 on [0, 1]: c = cos πp, and cos kπp = T_k(c), which is odd
-        c = 2.0 * y - 1.0
-        z = c * c
-        high = numbers[shape + 3] + z * (numbers[shape + 4] + z * numbers[shape + 5])
-        low = numbers[shape] + z * (numbers[shape + 1] + z * (numbers[shape + 2] + z * high))
-        value = 0.5 + c * low
-    return min(max(value, 0.0), 1.0)
 
 
 @compiled
@@ -81,7 +70,10 @@ def _apart(numbers, first, table, x, y, count, out):
     per_mm2 = numbers[first + DOTS_PER_MM] * numbers[first + DOTS_PER_MM]
     stride, start = int(numbers[first + STRIDE]), int(numbers[first + TABLE]) + 1
     lines = int(numbers[first + LINES])
-    half_sine = numbers[first + PROFILE] == _HALF_SINE
+    half_sine = numbers[first + PROFILE] == HALF_SINE
+    shape = first + SHAPE
+    e0, e1, e2 = numbers[shape], numbers[shape + 1], numbers[shape + 2]
+    e3, e4, e5 = numbers[shape + 3], numbers[shape + 4], numbers[shape + 5]
     contrast = numbers[first + CONTRAST]
     # How far each place is from the nearest dot, whether up or not: vector instructions.
     for n in range(count):
@@ -111,7 +103,7 @@ def _apart(numbers, first, table, x, y, count, out):
         row = row if row < _LAST_ROW else _LAST_ROW
         side = 4 if u - cell * cell_pitch >= spacing else 0
         if table[start + line * stride + cell] >> (row + side) & 1:
-            out[n] = contrast * _swing(numbers, first + SHAPE, half_sine, q)
+            out[n] = contrast * dot_swing(half_sine, e0, e1, e2, e3, e4, e5, math.sqrt(q), q)
 
 
 @compiled
@@ -126,7 +118,10 @@ def _close(numbers, first, table, x, y, count, out):
     radius, dots_per_mm = 0.5 * dot, numbers[first + DOTS_PER_MM]
     reach = _LAST_ROW * row_pitch + dot
     stride, start = int(numbers[first + STRIDE]), int(numbers[first + TABLE])
-    half_sine = numbers[first + PROFILE] == _HALF_SINE
+    half_sine = numbers[first + PROFILE] == HALF_SINE
+    shape = first + SHAPE
+    e0, e1, e2 = numbers[shape], numbers[shape + 1], numbers[shape + 2]
+    e3, e4, e5 = numbers[shape + 3], numbers[shape + 4], numbers[shape + 5]
     for n in range(count):
         right, down = x[n] - x0, y[n] - y0
         u = right * cosine + down * sine
@@ -156,7 +151,8 @@ def _close(numbers, first, table, x, y, count, out):
                     dx = left - (which - 1) * spacing if which else left - spacing + cell_pitch
                     q = (dx * dx + dy * dy) * dots_per_mm * dots_per_mm
                     if q < 0.25:
-                        most = max(most, _swing(numbers, first + SHAPE, half_sine, q))
+                        value = dot_swing(half_sine, e0, e1, e2, e3, e4, e5, math.sqrt(q), q)
+                        most = max(most, value)
         out[n] = numbers[first + CONTRAST] * most
 
 

@@ -179,7 +179,7 @@ def _round(numbers, corner, x, y):
 def inside(numbers, rows, block, first, parts, count):
     """Tell what is inside of closed lines by the even-odd rule.
 
-    What is to the right of all places is told by walls: `vbraille.render.scene.pathparts`.
+    What is to the right of all places is told by walls: `vbraille.render.scene.paths`.
     """
     for n in range(count):
         rows[INSIDE_ROW, n] = 0.0

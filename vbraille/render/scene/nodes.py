@@ -133,7 +133,7 @@ class LeafReach(IntEnum):
     BOX = 0  # left, top, right, bottom
     CAPSULE = 1  # start, end; all that is no farther from the line between them than the reach
     RING = 2  # centre, radius; all that is no farther from the circle than the reach
-    # Parts of filled shapes: see `vbraille.render.scene.pathparts`.
+    # Parts of filled shapes: see `vbraille.render.scene.paths`.
     EDGE = 3  # left, y of the start, right, y of the end of a segment
     WALL = 4  # where two segments meet: the lesser left of theirs, y, the greater left, y
     AROUND = 5  # left, top, right, bottom of all the segments

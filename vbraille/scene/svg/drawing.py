@@ -246,7 +246,9 @@ class SvgDrawing:
                     DrawnNode(
                         replace(label, amplitude=_rounded(place.strength)), one.sourceline or line
                     )
-                    for one, label in labels_of(element, place.matrix, place.style, self.sheet)
+                    for one, label in labels_of(
+                        element, place.matrix, place.style, self.sheet, self.ids
+                    )
                 ]
             return [DrawnNode(one, line) for one in self._shape(element, name, place)]
         return []

@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING
 
 from vbraille.scene.measures import MOST_MM
 from vbraille.scene.patterns import Label
-from vbraille.scene.svg.numbers import length_px
-from vbraille.scene.svg.outlines import TOO_FAR
+from vbraille.scene.svg.numbers import AffineMap, length_px
+from vbraille.scene.svg.outlines import TOO_FAR, contours_of_path
 from vbraille.scene.svg.style import styled
-from vbraille.scene.svg.tree import INKSCAPE, name_of, text_of
+from vbraille.scene.svg.tree import INKSCAPE, link_of, name_of, text_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from vbraille.scene.svg.numbers import AffineMap
     from vbraille.scene.svg.style import StyleSheet
     from vbraille.scene.svg.tree import Element
 
@@ -72,7 +71,11 @@ class _Line:
 
 
 def labels_of(
-    element: Element, matrix: AffineMap, style: Mapping[str, str], sheet: StyleSheet
+    element: Element,
+    matrix: AffineMap,
+    style: Mapping[str, str],
+    sheet: StyleSheet,
+    ids: Mapping[str, Element],
 ) -> Iterator[tuple[Element, Label]]:
     """Labels of an element ``text``, one for each of its lines.
 
@@ -90,6 +93,8 @@ def labels_of(
         Style of the element.
     sheet
         The drawing's style sheets.
+    ids
+        Elements of the drawing by their ids; a text along a path begins where that does.
 
     Raises
     ------
@@ -100,7 +105,7 @@ def labels_of(
     along = complex(math.cos(angle), math.sin(angle))
     down = along * 1j
     before: complex | None = None
-    for line in _lines(element, style, sheet):
+    for line in _lines(element, style, sheet, ids):
         text = plain(line.text, _LONGEST_TEXT)
         if not text:
             continue
@@ -119,7 +124,9 @@ def labels_of(
         yield line.element, Label(text=text, place_mm=place, angle_deg=degrees)
 
 
-def _lines(element: Element, style: Mapping[str, str], sheet: StyleSheet) -> Iterator[_Line]:
+def _lines(
+    element: Element, style: Mapping[str, str], sheet: StyleSheet, ids: Mapping[str, Element]
+) -> Iterator[_Line]:
     """Lines of a text, which begin anew wherever a part of it has a place of its own."""
     start = _place(element, style, complex(0, 0))
     line = _Line(start or 0j, style.get("text-anchor", "start"), "", element)
@@ -132,6 +139,8 @@ def _lines(element: Element, style: Mapping[str, str], sheet: StyleSheet) -> Ite
                 inner = styled(child, style, sheet)
                 if inner.get("display") != "none" and inner.get("visibility") != "hidden":
                     place = _place(child, inner, line.place)
+                    if name_of(child) == "textPath":
+                        place = _start_of(ids.get(link_of(child)[1:]), place)
                     if place is not None:
                         done.append(line)
                         line = _Line(place, inner.get("text-anchor", "start"), "", child)
@@ -155,6 +164,15 @@ def _place(element: Element, style: Mapping[str, str], before: complex) -> compl
         (before.real if x is None else x) + (dx or 0.0),
         (before.imag if y is None else y) + (dy or 0.0),
     )
+
+
+def _start_of(path: Element | None, otherwise: complex | None) -> complex | None:
+    """Place at which a path begins, in its own coordinates; ``otherwise`` if it has none."""
+    try:
+        found = contours_of_path("" if path is None else path.get("d") or "", AffineMap())
+    except ValueError:
+        return otherwise
+    return complex(*found[0].points_mm[0]) if found else otherwise
 
 
 def _first(text: str | None, font: float) -> float | None:

@@ -95,6 +95,7 @@ def make_plan(
         seed=seed,
         order=order,
         group=protocol.group,
+        analysis=protocol.planned_analysis,
         practice=_numbered(practice),
         trials=_numbered(trials),
     )
@@ -277,10 +278,11 @@ def _practice(protocol: Protocol, conditions: list[Condition], chance: Chance) -
     """Practice trials, in which each item, and each condition, is used about equally often."""
     practice, design = protocol.practice, protocol.design
     reorders = isinstance(design, StringList) and design.reorder
-    orders = {item: _reorderings(item, chance) for item in practice.items if reorders}
+    items = practice.items(design)
+    orders = {item: _reorderings(item, chance) for item in items if reorders}
     deck: list[Item] = []
-    while practice.items and len(deck) < practice.trials:
-        deck += chance.shuffled(practice.items)
+    while items and len(deck) < practice.trials:
+        deck += chance.shuffled(items)
     drawn = [
         (next(orders[item]) if reorders else item, condition)
         for item, condition in zip(deck[: practice.trials], cycle(conditions), strict=False)

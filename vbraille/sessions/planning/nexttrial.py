@@ -38,7 +38,8 @@ class Answered:
     trial
         The trial; as it was shown, if the answers choose what is shown.
     answer
-        The answer that counts; `vbraille.braille.spelling` says how it is written.
+        The answer that counts; `vbraille.braille.spelling` says how it is written. Empty if the
+        time for it was over.
     t_s
         Seconds of the session at the answer; if it was taken back, at the one given instead.
     """

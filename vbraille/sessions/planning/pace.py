@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Literal
 
 from vbraille.errors import check_range
 from vbraille.tomlfile import Table
@@ -76,6 +77,17 @@ class TrialPace(Table, frozen=True):
         What the participant ends reading by: "button:N" for button N of the device, from 1, or
         "key:NAME" for a key: "key:enter", "key:space", "key:tab", or the character of another one,
         as in "key:+"; None if the hand's way to the end and back ends it.
+    exposure_s
+        Seconds for which a stimulus can be felt; it then fades. None for no limit.
+    exposure_from
+        Event that the exposure counts from: the start signal, "cue", or the hand's first touch of
+        a dot, "contact".
+    answer_s
+        Seconds for an answer, from the end of the exposure, or from the start signal if there is
+        no limit to that; an answer after it is late. None for no limit.
+    late
+        Rule for an answer that has not come in time: "kept" takes it and marks it, "missed" ends
+        the trial without it.
 
     Raises
     ------
@@ -86,6 +98,10 @@ class TrialPace(Table, frozen=True):
     gap_s: float = 0.5
     warning_s: float | None = None
     end: str | None = None
+    exposure_s: float | None = None
+    exposure_from: Literal["cue", "contact"] = "cue"
+    answer_s: float | None = None
+    late: Literal["kept", "missed"] = "kept"
 
     def __post_init__(self) -> None:
         if self.end is not None and self.key is None and self.button is None:
@@ -96,6 +112,12 @@ class TrialPace(Table, frozen=True):
             )
         check_range("gap_s", self.gap_s, 0, 60, " s")
         check_range("warning_s", self.warning_s, 1, 3600, " s")
+        check_range("exposure_s", self.exposure_s, 0.05, 3600, " s")
+        check_range("answer_s", self.answer_s, 0.1, 3600, " s")
+        if self.exposure_s is None and self.exposure_from != "cue":
+            raise ValueError("exposure_from is of exposure_s; give that, or leave it out")
+        if self.answer_s is None and self.late != "kept":
+            raise ValueError("late is of answer_s; give that, or leave it out")
 
     @property
     def key(self) -> str | None:
@@ -168,7 +190,7 @@ class SignalSound(Table, frozen=True):
     cue
         Sound which says that a trial begins.
     warning
-        Sound which says that the trial has gone on for `TrialPace.warning_s`.
+        Sound which says that the trial has gone on for ``warning_s`` of ``[trial]``.
     """
 
     cue: Tone = Tone(880.0, 150.0)

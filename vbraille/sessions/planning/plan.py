@@ -13,6 +13,7 @@ from vbraille.braille.geometry import Geometry
 from vbraille.braille.spelling import spell, to_braille
 from vbraille.errors import InputError
 from vbraille.render import Tuning
+from vbraille.sessions.planning.analysis import PlannedAnalysis
 from vbraille.sessions.planning.stimuli import (
     Stimuli,
     Stimulus,
@@ -104,6 +105,8 @@ class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         there is only one order.
     group
         Name of the participant's group; empty if there are no groups.
+    analysis
+        Analysis that answers what the session is for.
     practice, trials
         Practice trials and trials of the test, each in the order in which they are shown.
 
@@ -119,6 +122,7 @@ class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     seed: int
     order: int
     group: str = ""
+    analysis: PlannedAnalysis
     practice: tuple[Trial, ...]
     trials: tuple[Trial, ...]
 
@@ -136,6 +140,7 @@ class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Plan as JSON with one trial on each line; the bytes are the same on every machine."""
         head = {n: getattr(self, n) for n in ("protocol", "participant", "seed", "order")}
         head |= {"group": self.group} if self.group else {}
+        head |= {"analysis": msgspec.structs.asdict(self.analysis)}
         lines = [f"{_json(n)}: {_json(v)}" for n, v in {"format": self.version, **head}.items()]
         for name in ("practice", "trials"):
             written = ",\n".join(map(_trial, getattr(self, name)))

@@ -14,6 +14,7 @@ import numpy as np
 from msgspec import field, structs
 
 from vbraille.render import MODELS
+from vbraille.sessions.planning.analysis import CONDITION, PlannedAnalysis, Task
 from vbraille.sessions.planning.design import (
     BlockOrder,
     Choice,
@@ -45,6 +46,7 @@ from vbraille.sessions.planning.pace import (
     check_line,
 )
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
+from vbraille.sessions.planning.questionnaire import AnyItem
 from vbraille.sessions.planning.questions import AnyQuestion, CellSpelling, usual_question
 from vbraille.sessions.planning.spellings import SpellingKeys, WrittenText, cells_of
 from vbraille.sessions.planning.stimuli import Stimulus, with_value
@@ -95,6 +97,8 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     faults: FaultRules = FaultRules()
     sound: SignalSound = SignalSound()
     fields: tuple[ParticipantField, ...] = ()
+    questionnaire: tuple[AnyItem, ...] = ()
+    analysis: PlannedAnalysis | None = None
 
 
 class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
@@ -143,6 +147,10 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         Sounds that the participant hears.
     fields
         Questions about the participant.
+    questionnaire
+        Questions beside the trials.
+    analysis
+        Analysis that is planned; None for the usual one of the task.
     text
         The file's TOML text, as it was read.
     files
@@ -288,13 +296,35 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
     @property
     def asks(self) -> AnyQuestion:
         """Question that is asked of each trial."""
-        return self.question or usual_question(2 if self.task == "choice" else 1)
+        return self.question or usual_question(self.intervals)
+
+    @property
+    def intervals(self) -> int:
+        """Number of stimuli in a trial."""
+        return self.design.stimuli if isinstance(self.design, Choice) else 1
 
     def cell_spelling(self, stimulus: Stimulus) -> CellSpelling:
         """Spelling of cells in answers about a stimulus."""
         if stimulus.conventional:
             return CellSpelling(self.keys, _ALL_DOTS)
         return CellSpelling(self.keys, self.mapping_of(stimulus).shown_dots())
+
+    @cached_property
+    def planned_analysis(self) -> PlannedAnalysis:
+        """Analysis that is planned, with the usual choices of the task where none is made."""
+        factors = {factor.name: frozenset(factor.changes) for factor in self.factors}
+        if not within(self.factors) and len(self.conditions) > 1:
+            changes = frozenset().union(*(each.changes for each in self.conditions))
+            factors = {CONDITION: changes, **factors}
+        right = getattr(self.asks, "right", None)
+        task = Task(
+            question=self.asks.name,
+            scored=right in ("more", "less"),
+            adaptive=self.adaptive,
+            catch=self.design.catch is not None,
+            factors=factors,
+        )
+        return (self.analysis or PlannedAnalysis()).resolved(task)
 
     @property
     def adaptive(self) -> bool:

@@ -125,7 +125,7 @@ def parse_protocol(
     with file.checking():
         protocol = _resolved(tables, text, files, keys, written=written)
         check_protocol(protocol, planned=planned)
-        if protocol.practice.trials and not protocol.practice.items:
+        if protocol.practice.trials and not protocol.practice.items(protocol.design):
             raise ValueError(
                 f"[practice] has no items of its own, and those of the test would be given away; "
                 f"give {'values' if protocol.parameter else 'strings'} that the test does not "
@@ -268,13 +268,21 @@ def check_protocol(protocol: Protocol, *, planned: bool = False) -> None:
         If values contradict each other.
     """
     check_factors(protocol.factors, protocol.cross, listed=bool(protocol.listed))
-    for table, named in (("conditions", protocol.conditions), ("fields", protocol.fields)):
+    tables = (
+        ("conditions", protocol.conditions),
+        ("fields", protocol.fields),
+        ("questionnaire", protocol.questionnaire),
+    )
+    for table, named in tables:
         names = [value.name for value in named]
         for number, name in enumerate(names, 1):
             if name in names[: number - 1]:
                 raise ValueError(
                     f"[[{table}]] number {number} name is {name!r} again; give each its own"
                 )
+    for number, item in enumerate(protocol.questionnaire, 1):
+        with _naming(f"[[questionnaire]] number {number}"):
+            item.check(protocol.item_columns)
     _check_names(protocol)
     _check_styles(protocol)
     _check_procedure(protocol)
@@ -291,6 +299,8 @@ def check_protocol(protocol: Protocol, *, planned: bool = False) -> None:
         check_lines(protocol)
     _check_letters(protocol)
     _check_rules(protocol)
+    with _naming("[analysis]"):
+        protocol.planned_analysis  # noqa: B018
     if not protocol.group:
         _check_groups(protocol, planned=planned)
 
@@ -406,9 +416,9 @@ def _check_varies(protocol: Protocol) -> None:
 
 
 def _check_question(protocol: Protocol) -> None:
-    stimuli = 2 if protocol.task == "choice" else 1
+    form = protocol.design.form if isinstance(protocol.design, Choice) else ""
     with _naming("[question]"):
-        protocol.asks.check(stimuli, adaptive=protocol.adaptive)
+        protocol.asks.check(protocol.intervals, form, adaptive=protocol.adaptive)
     same = isinstance(protocol.design, Choice) and protocol.design.same
     if same and (protocol.asks.name != "same-different" or protocol.adaptive):
         raise ValueError(
@@ -416,6 +426,12 @@ def _check_question(protocol: Protocol) -> None:
         )
     if protocol.trial.end is not None and protocol.medium == "paper":
         raise ValueError("[trial] end is of a device; on paper Enter ends reading, leave it out")
+    there = any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions)
+    if protocol.trial.exposure_s is not None and (there or protocol.medium == "paper"):
+        raise ValueError(
+            "[trial] exposure_s is of a device, and strings stand on paper or on a conventional "
+            "display; leave it out"
+        )
 
 
 def _check_procedure(protocol: Protocol) -> None:
@@ -428,6 +444,11 @@ def _check_procedure(protocol: Protocol) -> None:
         raise ValueError(
             "[procedure] guess is 0, and people say yes at nothing too; give the shares that may "
             "be, such as guess = [0.01, 0.05, 0.1, 0.2, 0.3, 0.4]"
+        )
+    if protocol.trial.late == "missed":
+        raise ValueError(
+            "[trial] late is 'missed', which leaves trials without an answer, and [procedure] goes "
+            "by the answers; give 'kept'"
         )
     if protocol.medium == "paper":
         raise ValueError(

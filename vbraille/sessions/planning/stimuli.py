@@ -105,7 +105,7 @@ class Stimuli(tuple[Stimulus, ...]):
 
 
 class Trial(Struct, frozen=True, forbid_unknown_fields=True):
-    """A trial: a string to read, or two to compare. Files have its fields in the order given here.
+    """A trial: stimuli in the order in which they are shown. Files have its fields in this order.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
         Cells of the stimulus that are asked for: index of the first, and of the one after the
         last.
     stimuli
-        One stimulus to read, or two to compare.
+        One stimulus to read, or several to compare.
     catch
         Empty; or, for a trial that only keeps watch over the participant, what it shows: "blank"
         for cells without dots, "repeat" for what the trial before it has shown.
@@ -142,10 +142,8 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
             raise ValueError(f"a trial's number is {self.number}; it must be 1 or more")
         if self.block < 0:
             raise ValueError(f"trial {self.number} has block {self.block}; it must be 0 or more")
-        if len(self.stimuli) not in (1, 2):
-            raise ValueError(
-                f"trial {self.number} has {len(self.stimuli)} stimuli; it must have 1 or 2"
-            )
+        if not self.stimuli:
+            raise ValueError(f"trial {self.number} has no stimulus; it must have one or more")
         first, stop = self.asked
         if not 0 <= first < stop <= min(len(stimulus.masks) for stimulus in self.stimuli):
             raise ValueError(
@@ -168,7 +166,7 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def presented(self) -> str:
-        """Cells asked for, in Unicode braille; those of the first stimulus, if there are two."""
+        """Cells asked for, in Unicode braille; of the first stimulus of several."""
         return to_braille(self.stimuli[0].masks[slice(*self.asked)])
 
 

@@ -71,8 +71,8 @@ COLUMNS = {
     "contact_s": "from the start signal to the first touch",
     "response_s": "from the start signal to the participant's key, or to the answer where there "
     "was none, pauses left out",
-    "ended_by": "what ended reading: button:N, key:NAME, or answer if the answer came before the "
-    "participant's key; empty if the protocol has no such key",
+    "ended_by": "what ended reading: button:N, key:NAME, exposure, or answer if the answer came "
+    "before these; empty if the protocol has no such key, and no limit of the exposure",
     "paused_s": "length of the pauses",
     "early": "1 if it was answered before it was read to its end: its duration does not count",
     "analysed": "1 if the analysis uses the trial; 0 for a catch trial, unless detecting is what "
@@ -87,10 +87,11 @@ COLUMNS = {
     "trace": "file of the trace of the last attempt",
 }
 
-# Columns of protocols whose strings are texts.
-WRITTEN = {
+# Columns that a protocol has only if it asks for what they hold.
+FURTHER = {
     "table": "braille table that made the cells of the text",
     "text": "text that the cells asked for stand for; empty for a blank catch trial",
+    "late": "1 if the answer came after the time that the protocol gives for it, or not at all",
 }
 
 
@@ -127,6 +128,7 @@ def describe_design(protocol: Protocol) -> dict[str, str]:
 
 HEAD = ("file", "column", "meaning", "unit", "values")
 FIELD = "field_"  # how columns begin that hold what a protocol asked about the participant
+ASKED, CORRECT = "asked_", "_correct"  # of answers to the questionnaire, and of their score
 _UNITS = {"_mm_s": "mm/s", "_mm": "mm", "_ms": "ms", "_hz": "Hz", "_s": "s"}
 # Values of columns that have a few, and what each means.
 _VALUES = {
@@ -134,6 +136,7 @@ _VALUES = {
     "returned": {"1": "the hand went back", "0": "it did not"},
     "early": {"1": "it does not count", "0": "it counts"},
     "analysed": {"1": "the analysis uses the trial", "0": "it does not"},
+    "late": {"1": "it came too late, or not at all", "0": "it came in time"},
     "warned": {"1": "the warning sounded", "0": "it did not"},
     "moved_by": {
         "person": "a person's hand",
@@ -179,6 +182,16 @@ def unit_of(name: str) -> str:
     return next((unit for end, unit in _UNITS.items() if name.endswith(end)), "")
 
 
+def asked_in(protocol: Protocol) -> dict[str, str]:
+    """Columns with answers of the participant beside the trials, each with its question."""
+    asked = {f"{FIELD}{field.name}": field.ask for field in protocol.fields}
+    for item in protocol.questionnaire:
+        asked[f"{ASKED}{item.name}"] = item.ask
+        if item.right:
+            asked[f"{ASKED}{item.name}{CORRECT}"] = f"1 if the answer is right to: {item.ask}"
+    return asked
+
+
 def entry_of(name: str, asked: Mapping[str, str] | None = None) -> CodebookEntry:
     """Entry of a column of exported trials.
 
@@ -187,13 +200,12 @@ def entry_of(name: str, asked: Mapping[str, str] | None = None) -> CodebookEntry
     name
         Name of the column.
     asked
-        What the protocol asks about the participant, by the names of its fields.
+        What the protocol asks beside the trials, by the columns of the answers; see `asked_in`.
     """
-    if name.startswith(FIELD):
-        question = (asked or {}).get(name.removeprefix(FIELD))
-        meaning = question or "answer to a question of the protocol about the participant"
+    if name.startswith((FIELD, ASKED)):
+        meaning = (asked or {}).get(name) or "answer to a question of the protocol"
         return CodebookEntry(name, meaning)
-    meaning = COLUMNS.get(name) or WRITTEN.get(name) or _designed(name) or "as it was given"
+    meaning = COLUMNS.get(name) or FURTHER.get(name) or _designed(name) or "as it was given"
     return CodebookEntry(name, meaning, unit_of(name), _VALUES.get(name, {}))
 
 

@@ -100,7 +100,7 @@ class WithStimulus(InTrial, frozen=True, kw_only=True):
     attempt
         Number of the attempt at the trial, from 1.
     stimulus
-        Which stimulus of the trial it is: 0, or 1 for the second of two.
+        Which stimulus of the trial it is, from 0.
     """
 
     attempt: int
@@ -310,12 +310,12 @@ class Read(WithStimulus, frozen=True, kw_only=True):
 
 
 class Ended(WithStimulus, frozen=True, kw_only=True):
-    """The participant's own key ended the reading of a stimulus.
+    """The participant's own key, or the limit of the exposure, ended the reading of a stimulus.
 
     Parameters
     ----------
     by
-        Which key it was: "button:N" of the device, or "key:NAME".
+        What it was: "button:N" of the device, "key:NAME", or "exposure".
     time_ns
         Time of it by the host's monotonic clock, as in the trace; left out if it is not known.
     """
@@ -356,8 +356,10 @@ class Answer(InTrial, frozen=True, kw_only=True):
     confidence_s
         Seconds from the answer to its confidence, with which it was written.
     ended_by
-        What ended reading: "button:N", "key:NAME", or "answer" if the answer came before the
-        participant's key; left out if the protocol has no such key.
+        What ended reading: "button:N", "key:NAME", "exposure", or "answer" if the answer came
+        before these; left out if the protocol has no such key and no limit of the exposure.
+    late
+        Whether the answer came after the time that the protocol gives for it.
     """
 
     code: ClassVar[int] = 7
@@ -370,11 +372,27 @@ class Answer(InTrial, frozen=True, kw_only=True):
     confidence: int | None = None
     confidence_s: float = 0.0
     ended_by: str = ""
+    late: bool = False
 
     @property
     def said(self) -> str:
         """Answer, with its confidence."""
         return self.answer + ("" if self.confidence is None else f"; {self.confidence}")
+
+
+class Missed(InTrial, frozen=True, kw_only=True):
+    """The time for an answer was over, and the trial ended without one.
+
+    Parameters
+    ----------
+    attempt
+        Number of the attempt at the trial that was not answered.
+    """
+
+    code: ClassVar[int] = 28
+    durable: ClassVar[bool] = True
+
+    attempt: int
 
 
 class Undo(InTrial, frozen=True):
@@ -401,7 +419,7 @@ class Fault(InTrial, frozen=True, kw_only=True):
     attempt
         Number of the attempt at the trial in which it went wrong.
     stimulus
-        Which stimulus of the trial it is: 0, or 1 for the second of two; left out if the engine
+        Which stimulus of the trial it is, from 0; left out if the engine
         died.
     tick, time_ns
         Number and time of the first tick that was not felt, as in the trace; left out if the
@@ -542,6 +560,32 @@ class Note(AnyTime, frozen=True, kw_only=True):
         return self.text
 
 
+class Reply(AnyTime, frozen=True, kw_only=True):
+    """A question of the questionnaire was answered; of several answers to one the last counts.
+
+    Parameters
+    ----------
+    name
+        Name of the question.
+    answer
+        The answer.
+    block
+        Number of the block after which it was asked; left out at other times.
+    """
+
+    code: ClassVar[int] = 29
+    durable: ClassVar[bool] = True
+
+    name: str
+    answer: str
+    block: int = 0
+
+    @property
+    def said(self) -> str:
+        """Name and answer."""
+        return f"{self.name}: {self.answer}"
+
+
 class Stop(JournalEvent, frozen=True):
     """The session was stopped, and can be resumed."""
 
@@ -556,17 +600,20 @@ class End(JournalEvent, frozen=True, kw_only=True):
     ----------
     why
         Reason for the end, in words for people.
+    reason
+        Reason for which the participant stopped for good; left out if all trials are done.
     """
 
     code: ClassVar[int] = 20
     durable: ClassVar[bool] = True
 
     why: str
+    reason: str = ""
 
     @property
     def said(self) -> str:
         """Text of the event."""
-        return self.why
+        return f"{self.why}: {self.reason}" if self.reason else self.why
 
 
 class Closed(JournalEvent, frozen=True, kw_only=True):

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
     from vbraille.sessions.planning.protocol import Protocol
 
-FORMAT = 6
+FORMAT = 7
 HEAD, PLAN, PROTOCOL = "session.json", "plan.json", "protocol.toml"
 FILES = (HEAD, PLAN, PROTOCOL)
 _TOLD_VERSIONS = ("numpy", "numba", "pyserial", "cobs", "h5py")
@@ -422,7 +422,7 @@ def check(record: Record) -> Iterator[Finding]:
     progress = Progress(record.plan, contents.events, record.procedure)
     yield from _check_traces(record, progress)
     yield from _check_choices(record, progress)
-    state = "ended" if progress.ended else "not ended, session resume goes on"
+    state = f"ended, {progress.why}" if progress.ended else "not ended, session resume goes on"
     yield Finding(f"answers: {progress.of_all(progress.done)}; the session is {state}")
 
 

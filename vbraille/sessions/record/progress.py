@@ -16,6 +16,7 @@ from vbraille.sessions.record import events
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from vbraille.sessions.planning.questionnaire import AnyItem
     from vbraille.sessions.record.events import JournalEvent
 
 
@@ -62,8 +63,12 @@ class TrialRecord:
     confidence
         How sure the answer that counts is, on the protocol's scale; None if that was not asked.
     ended_by
-        What ended reading: the participant's key, or "answer" if the answer came before it; empty
-        if the protocol has no such key.
+        What ended reading: the participant's key, "exposure", or "answer" if the answer came before
+        these; empty if the protocol has no such key and no limit of the exposure.
+    late
+        Whether the answer came after the time for it, or not at all.
+    missed
+        Whether the trial ended without an answer, since the time for one was over.
     """
 
     trial: Trial
@@ -83,6 +88,13 @@ class TrialRecord:
     lost: list[int] = field(default_factory=list)
     confidence: int | None = None
     ended_by: str = ""
+    late: bool = False
+    missed: bool = False
+
+    @property
+    def over(self) -> bool:
+        """True if the trial is over, with an answer or without one."""
+        return self.answer is not None or self.missed
 
     @property
     def response_s(self) -> float | None:
@@ -90,7 +102,7 @@ class TrialRecord:
 
         Pauses are left out. None if there is no answer.
         """
-        by_key = self.ended_by not in ("", "answer") and "ended" in self.t_s
+        by_key = self.ended_by.startswith(("button:", "key:")) and "ended" in self.t_s
         end = "ended" if by_key else "answer"
         if "cue" not in self.t_s or end not in self.t_s or "answer" not in self.t_s:
             return None
@@ -164,6 +176,11 @@ class Progress:
         Whether a page of the live view is the hand.
     torn_bytes : int
         Length of all torn lines that were moved out of the journal.
+    replies : dict[tuple[str, int], str]
+        Answers to the questionnaire, by the question's name and the number of the trial or block
+        that it was asked after; 0 at the beginning and the end.
+    why : str
+        Reason for the end; empty before.
     """
 
     def __init__(
@@ -185,6 +202,8 @@ class Progress:
         self.ended = False
         self.pointed = False
         self.torn_bytes = 0
+        self.replies: dict[tuple[str, int], str] = {}
+        self.why = ""
         self._moved_by = ""
         self._answers = ""
         self._trial = 0
@@ -204,7 +223,7 @@ class Progress:
         """The trial that comes next, or is open; None after the last."""
         if not self.begun:
             for record in self.practice.values():
-                if record.answer is None:
+                if not record.over:
                     return record.trial
         return self._next
 
@@ -228,6 +247,31 @@ class Progress:
         """Number of trials in all, practice left out; None if it depends on the answers."""
         trials = self.procedure.trials
         return None if trials is None else len(trials)
+
+    def due(self, items: Iterable[AnyItem], *, over: bool = False) -> tuple[AnyItem, int] | None:
+        """Question that is to be asked now, and the number of its trial or block, or 0.
+
+        Parameters
+        ----------
+        items
+            The questionnaire.
+        over
+            Whether no further trial comes.
+        """
+        last, coming = self.last_answered, None if over else self.next_trial
+        times = {"begin": 0}
+        if last is not None:
+            if not last.catch and not self.record_of(last).missed:
+                times["trial"] = last.number
+            if coming is None or coming.block != last.block:
+                times["block"] = last.block
+        if coming is None:
+            times["end"] = 0
+        for time, number in times.items():
+            for item in items:
+                if item.when == time and (item.name, number) not in self.replies:
+                    return item, number
+        return None
 
     def of_all(self, number: int) -> str:
         """Text for a number of trials, with the number of all trials if that is known."""
@@ -315,6 +359,10 @@ class Progress:
                 self._take_presented(event, record)
             case events.Answer() if record:
                 self._take_answer(event, record)
+            case events.Missed() if record:
+                record.missed = record.late = True
+                self._end_pause(record, event)
+                self._go_on(event, Answered(record.trial, "", event.t_s))
             case events.Undo() if record:
                 self.correcting = self.last_answered
                 record.first_answer = record.first_answer or record.answer
@@ -346,8 +394,11 @@ class Progress:
                 self.broken = self.done
             case events.Begin():
                 self.begun = True
+            case events.Reply():
+                self.replies[event.name, event.trial or event.block] = event.answer
+                self._end_pause(record, event)
             case events.End():
-                self.ended = True
+                self.ended, self.why = True, event.said
             case events.Lost():
                 self._lost.append(event.n)
                 self._unasked = self.procedure.trials is None
@@ -372,6 +423,7 @@ class Progress:
     def _take_answer(self, event: events.Answer, record: TrialRecord) -> None:
         record.answer = event.answer
         record.confidence = event.confidence
+        record.missed = False
         record.source = self._answers
         # What goes by the answers goes by what was felt, whatever it would choose today.
         shown = record.trial if self.procedure.trials is not None else record.shown
@@ -384,7 +436,12 @@ class Progress:
             return
         record.early = event.early
         record.ended_by = event.ended_by
+        record.late = event.late
         self._end_pause(record, event)  # an answer ends a pause
+        self._go_on(event, answered)
+
+    def _go_on(self, event: events.InTrial, answered: Answered) -> None:
+        """Ask for the trial after one that is over."""
         if not event.practice:
             self.history.append(answered)
             self._next = self._ask()

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from vbraille.braille.spelling import ordinal
 from vbraille.errors import InputError
 from vbraille.sessions.planning.pace import ENTER
 from vbraille.sessions.record import events
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.questionnaire import AnyItem
     from vbraille.sessions.planning.stimuli import Trial
 
 
@@ -104,12 +106,17 @@ class Console:
         if runner.pending is not None:
             self._take_confidence(line, runner.pending)
             return
+        if runner.asking is not None and correcting is None:
+            self._reply(line, runner.asking[0])
+            return
         trial = correcting or runner.open_trial
         if trial is None:
             self._say("no answer is waited for now; help says what there is to type")
             return
-        if correcting is None and runner.second_to_come:
-            self._say("the second has not been felt yet; repeat shows both again")
+        if correcting is None and runner.more_to_come:
+            both = "both" if len(trial.stimuli) == 2 else "all"
+            coming = ordinal(runner.stimulus + 1)
+            self._say(f"the {coming} has not been felt yet; repeat shows {both} again")
             return
         try:
             answer, confidence = read_line(runner.protocol, trial, line)
@@ -127,7 +134,9 @@ class Console:
                 if self._asks_again(trial, answer):
                     return
                 told["early"] = True
-            if runner.protocol.trial.end is not None:
+            if runner.late:
+                told["late"] = True
+            if (runner.protocol.trial.end, runner.protocol.trial.exposure_s) != (None, None):
                 told["ended_by"] = runner.ended_by or "answer"
             runner.withdraw()
         scale = runner.protocol.asks.confidence
@@ -143,6 +152,8 @@ class Console:
         if (pending := self._runner.pending) is not None:
             self._runner.pending = None
             self._say(f"undo: {self._runner.name(pending.trial)}; type its answer")
+            return
+        if self._progress.correcting is None and self._runner.ask_before():
             return
         trial = self._progress.last_answered
         if trial is None or self._progress.correcting is not None:
@@ -239,8 +250,17 @@ class Console:
         """Stop the session, so that it can be resumed later."""
         self._runner.stop()
 
+    def quit(self, reason: str) -> None:
+        """End the session for good, since the participant stops."""
+        if not reason:
+            self._say("quit: type the reason after it; stop ends for now alone")
+            return
+        self._runner.end("the participant stopped", reason)
+
     def help(self, _: str = "") -> None:
         """Say what may be typed."""
+        if (asking := self._runner.asking) is not None:
+            self._say(f"asked: {asking[0].asked(self._runner.item_columns)}")
         question = self._runner.protocol.asks
         if question.ask:
             self._say(f"question: {question.ask}")
@@ -257,6 +277,14 @@ class Console:
         self._say("Enter: go on after a pause or a break")
         for command in COMMANDS:
             self._say(f"{command.word}: {command.help}")
+
+    def _reply(self, line: str, item: AnyItem) -> None:
+        try:
+            answer = item.parse(line, self._runner.item_columns)
+        except ValueError as error:
+            self._refuse("no answer", error)
+            return
+        self._runner.reply(answer)
 
     def _take_confidence(self, line: str, pending: PendingAnswer) -> None:
         scale = self._runner.protocol.asks.confidence
@@ -283,7 +311,8 @@ class Console:
             if said:
                 self._say(f"practice: {said}")
         # If the next trial depends on the answers, a corrected answer may lead to one more trial.
-        if correcting is None or runner.trial is None or runner.phase is Phase.LAST:
+        late = runner.phase in (Phase.LAST, Phase.ASKING)
+        if correcting is None or runner.trial is None or late:
             runner.paused = False
             runner.next()
 
@@ -332,6 +361,12 @@ COMMANDS = (
         "texture", Console.texture, "set the texture, 0 to 1, unless the plan does", takes=True
     ),
     TypedCommand("stop", Console.stop, "end for now; session resume goes on"),
+    TypedCommand(
+        "quit",
+        Console.quit,
+        "end for good, since the participant stops; the reason after it",
+        takes=True,
+    ),
     TypedCommand("help", Console.help, "say what there is to type"),
 )
 _BY_WORD = {command.word: command for command in COMMANDS}

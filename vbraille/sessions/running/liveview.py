@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 from msgspec import structs
 
-from vbraille.braille.spelling import say_cells, to_braille
+from vbraille.braille.spelling import ordinal, say_cells, to_braille
 from vbraille.config.settings import say_mapping
 from vbraille.devices.base import Placing
 from vbraille.engine.engine import placing_of
@@ -50,6 +50,8 @@ _SAFE: Final = frozenset(
         "go",
         "hand",
         "last",
+        "late",
+        "missed",
         "pause",
         "place",
         "read",
@@ -199,8 +201,8 @@ def _facts(runner: Runner) -> list[tuple[str, str]]:
         blocks = max((one.block for one in runner.plan.trials), default=0)
         if not practice and blocks > 1:
             facts.append(("block", f"{trial.block} of {blocks}"))
-        if len(trial.stimuli) == 2 and runner.phase is Phase.OPEN:
-            facts.append(("stimulus", "second of 2" if runner.stimulus else "first of 2"))
+        if (number := len(trial.stimuli)) > 1 and runner.phase is Phase.OPEN:
+            facts.append(("stimulus", f"{ordinal(runner.stimulus)} of {number}"))
         if (attempt := progress.record_of(trial).attempts) > 1:
             facts.append(("attempt", f"{attempt}"))
     facts.append(("answered", progress.of_all(progress.done)))

@@ -22,6 +22,7 @@ from vbraille.sessions.simulated.feeling import CELL_GAP, LENGTHS, DotPair, Felt
 from vbraille.sessions.simulated.observer import Observer
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping as Named
     from collections.abc import Sequence
 
     from vbraille.braille.geometry import Geometry
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from vbraille.render.braille.models import Model
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.questionnaire import AnyItem
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.simulated.skin import FeltFrames
 
@@ -111,7 +113,7 @@ class Simulated(TrialResponses):
         self._parameter = protocol.parameter or ""
         self._question = protocol.asks
         self._pairs = {c.name: _dot_pair(protocol, c) for c in protocol.conditions}
-        pairs = protocol.task == "choice"
+        pairs = isinstance(protocol.design, Choice) and protocol.design.form == "pairs"
         if not self._question.simulated or (pairs and 1 in self._question.stimuli):
             raise InputError(
                 f"{protocol.name} asks a question of the kind {self._question.name!r}, which the "
@@ -119,6 +121,7 @@ class Simulated(TrialResponses):
             )
         self._check_feels(protocol)
         self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"
+        self._replied = 0
 
     def next(self, trial: Trial, attempt: int, felt: list[FeltFrames], /) -> tuple[str, int]:
         """Answer to a trial, by what was felt of it."""
@@ -135,6 +138,12 @@ class Simulated(TrialResponses):
             self._pairs[trial.condition],
         )
         return self._question.simulate(told, self._noise, random) + sure, 0
+
+    def reply(self, item: AnyItem, columns: Named[str, str], /) -> tuple[str, int]:
+        """Answer to a question of the questionnaire: the right one, or any."""
+        self._replied += 1
+        random = np.random.default_rng(seed_of(f"{self._drawn} {item.name} {self._replied}"))
+        return item.simulate(columns, self._noise, random), 0
 
     def _check_feels(self, protocol: Protocol) -> None:
         """Raise InputError if the model cannot tell what the question is about."""

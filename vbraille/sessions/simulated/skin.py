@@ -214,7 +214,8 @@ class Rates:
     def _cut(row: NDArray[np.float64], first: int, count: int) -> NDArray[np.float64]:
         """Part of a row from an index on, with 0 where it reaches beyond the row."""
         cut = np.zeros(count)
-        low, high = max(first, 0), min(first + count, row.size)
+        low = max(first, 0)
+        high = max(min(first + count, row.size), low)  # all of it may be beyond the row
         cut[low - first : high - first] = row[low:high]
         return cut
 

@@ -1,4 +1,4 @@
-"""A label as plain numbers: where its dots stand, for kernel and twin alike.
+"""What a scene takes from elsewhere: bitmaps of images, and labels as cells, with their numbers.
 
 A label has a frame of its own: u along its lines and v down across them, in mm, from the top left
 corner of its first cell, which is where the square around dot 1 begins. With angle φ::
@@ -13,14 +13,14 @@ at rest, whatever the mapping of its style: in a picture what is inverted is sai
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vbraille.braille.cells import DOT_ROWS, PLACES
 from vbraille.render.braille.style import coefficients
-from vbraille.render.machine.labelplaces import (
+from vbraille.render.machine.braillekernel import (
     APART,
     CELL_PITCH,
     CELLS_PER_MM,
@@ -48,12 +48,48 @@ from vbraille.render.machine.labelplaces import (
 from vbraille.scene.bounds import around
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
-    from vbraille.render.scene.assets import Written
+    from vbraille.render.braille.style import BrailleStyle
+    from vbraille.scene.bitmap import Bitmap
     from vbraille.scene.bounds import Box
     from vbraille.scene.measures import Point
-    from vbraille.scene.patterns import Label
+    from vbraille.scene.patterns import Image, Label
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Written:
+    """A label as cells, and how they are shown.
+
+    Parameters
+    ----------
+    lines : tuple of uint8[n]
+        Dot masks of the cells of each line.
+    style
+        Distances, profile and tuning of its dots.
+    """
+
+    lines: tuple[NDArray[np.uint8], ...]
+    style: BrailleStyle
+
+
+@dataclass(frozen=True, slots=True)
+class Assets:
+    """What is needed beside a scene to compile it.
+
+    Parameters
+    ----------
+    bitmaps
+        Intensities of each image of the scene.
+    written
+        Cells of each label of the scene.
+    """
+
+    bitmaps: Mapping[Image, Bitmap] = field(default_factory=dict)
+    written: Mapping[Label, Written] = field(default_factory=dict)
+
 
 # By so much lines may reach into one another; a dot is less than 1e-9 up so near its edge.
 _SLACK_MM = 1e-6

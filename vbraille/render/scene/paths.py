@@ -19,7 +19,7 @@ import math
 from typing import TYPE_CHECKING
 
 from vbraille.render.machine import shapekernels as places
-from vbraille.render.scene.gridkernels import AROUND, CAPSULE, EDGE, RING, WALL
+from vbraille.render.scene.grid import AROUND, CAPSULE, EDGE, RING, WALL
 from vbraille.scene.bounds import around, drawn_radius_mm
 from vbraille.scene.dotting import dots_of
 from vbraille.scene.joints import (
