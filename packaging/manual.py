@@ -6,8 +6,7 @@ from contextlib import redirect_stdout, suppress
 from io import StringIO
 from pathlib import Path
 
-from vbraille.cli.options.commandparser import CommandParser
-from vbraille.cli.parser import ACTIONS, COMMANDS, GROUPS
+from vbraille.cli.parser import ACTIONS, COMMANDS, GROUPS, CommandParser
 from vbraille.version import __version__
 
 

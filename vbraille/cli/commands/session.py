@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vbraille.cli.options.exploring import check_live_options
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.planning.stimuli import said_value
 from vbraille.sessions.record.folder import nearly_same
 from vbraille.sessions.running.responses import Typed
+from vbraille.signals import EAR
 from vbraille.simulation.specs import refuse_hand
 from vbraille.wording import spelled
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 from msgspec import structs
 
 from vbraille.braille.spelling import ordinal, say_cells, to_braille
-from vbraille.config.knobs import say_mapping
+from vbraille.config.settings import say_mapping
 from vbraille.devices.base import Placing
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host

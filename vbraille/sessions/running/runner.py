@@ -20,13 +20,13 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.spelling import ordinal
 from vbraille.engine.host import HostDiedError
-from vbraille.engine.suspending import Suspension
 from vbraille.sessions.planning.pace import ENTER
 from vbraille.sessions.planning.plan import stimulus_to_json
 from vbraille.sessions.record import events
 from vbraille.sessions.record.folder import versions
 from vbraille.sessions.running.presenters import Paper, presentation_of
 from vbraille.sessions.running.responses import KeyPress, Typed
+from vbraille.signals import Suspension
 
 if TYPE_CHECKING:
     from collections.abc import Callable
