@@ -20,6 +20,7 @@ from vbraille.analysis.measures import (
     movement,
     preferences,
     rated,
+    scaling,
     trends,
 )
 from vbraille.analysis.methods import analysed_by, methods
@@ -503,6 +504,12 @@ def _of_judgements(study: Study, judgements: pd.DataFrame, plan: FollowedPlan) -
                 tuple(figures.rises(found, by_level)) if known else (),
             )
         )
+    points, means = scaling.equality(judgements)
+    apart, exponents = scaling.apart(judgements), scaling.exponents(judgements)
+    compared = [table for table in (points, means, apart, exponents) if len(table)]
+    if compared:
+        text = "Values against a standard, and how estimates grow."
+        told.append(Chapter("Scaling", text, tuple(compared)))
     if "rating" in asked:
         text = "Where on a scale things were put."
         told.append(Chapter("Ratings", text, rated.ratings(judgements, scales)))

@@ -341,7 +341,8 @@ def judged(sheet: Sheet, rows: pd.DataFrame) -> pd.Series:
                 f"{sheet.place(row)}: question is {kind!r}; it must be one of "
                 f"{', '.join(KINDS)}, or empty"
             )
-    return ~kinds.isin((*USUAL, ""))
+    of_two = rows["presented"].astype(str).str.split().map(len) <= 2
+    return ~kinds.isin((*USUAL, "")) | ((kinds == "which") & ~of_two)
 
 
 def read_judgements(sheet: Sheet, rows: pd.DataFrame, who: pd.DataFrame) -> pd.DataFrame | None:

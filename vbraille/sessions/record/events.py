@@ -100,7 +100,7 @@ class WithStimulus(InTrial, frozen=True, kw_only=True):
     attempt
         Number of the attempt at the trial, from 1.
     stimulus
-        Which stimulus of the trial it is: 0, or 1 for the second of two.
+        Which stimulus of the trial it is, from 0.
     """
 
     attempt: int
@@ -419,7 +419,7 @@ class Fault(InTrial, frozen=True, kw_only=True):
     attempt
         Number of the attempt at the trial in which it went wrong.
     stimulus
-        Which stimulus of the trial it is: 0, or 1 for the second of two; left out if the engine
+        Which stimulus of the trial it is, from 0; left out if the engine
         died.
     tick, time_ns
         Number and time of the first tick that was not felt, as in the trace; left out if the

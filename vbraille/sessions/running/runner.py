@@ -18,14 +18,15 @@ from dataclasses import asdict, dataclass, replace
 from enum import Enum, auto
 from typing import TYPE_CHECKING, Any
 
+from vbraille.braille.spelling import ordinal
 from vbraille.engine.host import HostDiedError
-from vbraille.engine.suspending import Suspension
 from vbraille.sessions.planning.pace import ENTER
 from vbraille.sessions.planning.plan import stimulus_to_json
 from vbraille.sessions.record import events
 from vbraille.sessions.record.folder import versions
 from vbraille.sessions.running.presenters import Paper, presentation_of
 from vbraille.sessions.running.responses import KeyPress, Typed
+from vbraille.signals import Suspension
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -136,7 +137,7 @@ class Runner:
     ended_by : str
         Key by which the participant has ended reading; empty before.
     stimulus : int
-        Which stimulus of the open trial is shown: 0, or 1 for the second of two.
+        Which stimulus of the open trial is shown, from 0.
     asking : tuple[AnyItem, int] or None
         Question of the questionnaire that is waited for, and the number of its trial or block.
     break_wanted : bool
@@ -230,10 +231,10 @@ class Runner:
     @property
     def read(self) -> bool:
         """True if the open trial has been read to its end."""
-        return self.open_trial is not None and not self.second_to_come and self.presenter.read
+        return self.open_trial is not None and not self.more_to_come and self.presenter.read
 
     @property
-    def second_to_come(self) -> bool:
+    def more_to_come(self) -> bool:
         """True if a stimulus of the open trial has not been shown yet."""
         trial = self.open_trial
         return trial is not None and self.stimulus + 1 < len(trial.stimuli)
@@ -364,6 +365,11 @@ class Runner:
             else:
                 take(line, 0)
         self.poll()
+        if self.device is not None:
+            pressed, self.device.pressed = self.device.pressed, []
+            for word in filter(None, map(self.protocol.asks.by_button, pressed)):
+                if self.open_trial is not None and not self.paused:
+                    take(f"answer {word}", 0)
         if not self.responses.typed:
             self._ask(take)
         return True
@@ -589,8 +595,8 @@ class Runner:
         self.presenter.end_reading()
         self._exposed = None
         key = by.replace(":", " ")
-        if self.second_to_come:
-            self._say(f"ended: the first, by {key}")
+        if self.more_to_come:
+            self._say(f"ended: the {ordinal(self.stimulus)}, by {key}")
             return
         if self.protocol.trial.exposure_s is not None:
             self._asked = self._point(trial, self._now_ns())
@@ -721,11 +727,11 @@ class Runner:
         limits = self.protocol.trial
         exposed = limits.exposure_s is not None and limits.exposure_from == "cue"
         self._exposed = self._cue if exposed else None
-        limited = limits.exposure_s is None and not self.second_to_come
+        limited = limits.exposure_s is None and not self.more_to_come
         self._asked = self._cue if limited else None
         self._play(self.protocol.sound.cue)
         self.log(events.Cue, trial)
-        self._say(f"cue: {self.name(trial)}" + (", second" if stimulus else ""))
+        self._say(f"cue: {self.name(trial)}" + (f", {ordinal(stimulus)}" if stimulus else ""))
 
     def _presentation(self, trial: Trial) -> Presentation:
         stimulus = trial.stimuli[self.stimulus]
@@ -751,7 +757,7 @@ class Runner:
                 self._repeat_faulty(trial, fields["what"])
 
     def _watch(self, trial: Trial) -> None:
-        """Do what is due by the time: a warning, an end of the exposure, the second stimulus."""
+        """Do what is due by the time: a warning, an end of the exposure, the next stimulus."""
         if self.pending is not None:
             return
         limits, told = self.protocol.trial, self.progress.record_of(trial)
@@ -778,7 +784,7 @@ class Runner:
             self._say(f"late: {self.name(trial)}, after {limits.answer_s:g} s")
         if self.by_key or not self.presenter.read:
             return
-        if self.second_to_come:
+        if self.more_to_come:
             if self.presenter.ready:
                 self._show(trial, self.stimulus + 1)
         elif not self._prompted and self.responses.typed:
