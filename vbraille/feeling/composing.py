@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.feeling.loading import with_assets
@@ -16,7 +17,6 @@ from vbraille.render.scene.compiling import compile_scene, highest_hz
 from vbraille.scene.locations import OpenedScene
 from vbraille.scene.patterns import Group
 from vbraille.scene.reading import open_scene
-from vbraille.scene.scene import Scene
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -61,7 +61,7 @@ def compose(
     whole = contrast == 1.0 and scene.operation in _COMPILED
     if not whole and scene.elements:
         group = Group(operation=scene.operation, parts=scene.elements, amplitude=contrast)
-        scene = Scene(canvas=scene.canvas, operation="maximum", elements=(group,))
+        scene = replace(scene, operation="maximum", elements=(group,))
     try:
         program = compile_scene(scene, display, loaded.assets, rate_hz=rate_hz)
     except ValueError as error:
