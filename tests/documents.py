@@ -1,14 +1,20 @@
 """Tables of documents that follow from the program; `python -m tests.documents` writes them."""
 
 import inspect
+import json
 import re
 import textwrap
 from pathlib import Path
 from typing import get_args
 
+from msgspec import inspect as info
+
+from vbraille.braille.geometry import Geometry
 from vbraille.config.options import BOOK, FILE, PROFILE, held_in
 from vbraille.reading.commands.scene import COMMANDS as FEELING
 from vbraille.reading.commands.table import COMMANDS as READING
+from vbraille.render import Tuning
+from vbraille.sessions.planning.protocol import Protocol, ProtocolFile
 from vbraille.sessions.record.events import OTHER, AnyEvent, AnyTime, InTrial, WithStimulus
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -73,6 +79,118 @@ def _events():
         yield "| " + " | ".join(cells) + " |"
 
 
+_KINDS = {
+    info.IntType: "whole number", info.FloatType: "number", info.StrType: "text",
+    info.BoolType: "`true` or `false`",
+}  # fmt: skip
+_CELLS = {"Mask": "cell", "Masks": "cells", "SpellingKeys": "table of cells"}
+
+
+def _kinds(kind):
+    """Words for what a key of a protocol may be."""
+    match kind:
+        case info.UnionType():
+            return " or ".join(filter(None, map(_kinds, kind.types)))
+        case info.NoneType():
+            return ""
+        case info.LiteralType():
+            return " or ".join(f'`"{value}"`' for value in kind.values)
+        case info.VarTupleType():
+            return f"list of {_kinds(kind.item_type)}"
+        case info.StructType():
+            return "list" if kind.array_like else "table"
+        case info.DictType():
+            return "table"
+        case info.CustomType():
+            return _CELLS[kind.cls.__name__]
+        case _:
+            return _KINDS[type(kind)]
+
+
+def _usual(field):
+    """Value of a key that is left out, as a file would have it."""
+    if field.required:
+        return "needed"
+    match field.default:
+        case bool() | int() | float():
+            return f"`{json.dumps(field.default)}`"
+        case str() if field.default:
+            return f'`"{field.default}"`'
+        case _:
+            return ""
+
+
+def _told(kind):
+    """What the docstrings say of the fields of a class, by their names."""
+    bases = [base for base in reversed(kind.__mro__) if "Parameters" in (base.__doc__ or "")]
+    texts = [pair for base in bases for pair in described(base)[1].items()]
+    own = {name: told for names, told in texts for name in names.split(", ")}
+    for name, told in own.items():
+        if found := re.match(r"These are described at `(\w+)`", told):
+            own[name] = _told({"Tuning": Tuning, "Geometry": Geometry}[found[1]])[name]
+    return own
+
+
+def _holds(told):
+    """Sentence on a key for people who write files, and not Python."""
+    told = told.replace("Dot masks of the ", "The ").replace("Dot masks of ", "Cells of ")
+    told = re.sub(r"[,;] or None for|[.;] None for", "; without it,", told)
+    told = re.sub(r"[.;] None if", "; left out if", told)
+    return re.sub(r"[.;] None where", "; left out where", told).replace("``", "`").rstrip(".")
+
+
+def _keys_of(title, kind, fields, given):
+    """Table of the keys of a table, without those that another one has alike."""
+    told, rows = _told(kind), {}
+    for field in fields:
+        cells = _kinds(field.type), _holds(told[field.name]), _usual(field)
+        if (field.encode_name, cells) not in given:
+            rows.setdefault(cells, []).append(f"`{field.encode_name}`")
+            given.add((field.encode_name, cells))
+    if rows:
+        yield _row(f"key of {title}", "may be", "holds", "usual")
+        for cells, names in rows.items():
+            yield _row(", ".join(names), *cells)
+
+
+def _structs(kind):
+    """Tables that a key may hold, or that its list has."""
+    if isinstance(kind, info.VarTupleType):
+        return _structs(kind.item_type)
+    parts = kind.types if isinstance(kind, info.UnionType) else [kind]
+    return [each for each in parts if isinstance(each, info.StructType) and not each.array_like]
+
+
+def _tables_of(title, kind, seen, given):
+    """Tables of a key: of what it holds, of that of each kind alone, and of tables within."""
+    kinds = [each for each in _structs(kind) if each.cls not in seen and each.fields]
+    if not kinds:
+        return
+    seen.update(each.cls for each in kinds)
+    everywhere = set.intersection(*({f.encode_name for f in each.fields} for each in kinds))
+    shared = [field for field in kinds[0].fields if field.encode_name in everywhere]
+    yield list(_keys_of(title, kinds[0].cls, shared, given))
+    for each in kinds:
+        own = [field for field in each.fields if field.encode_name not in everywhere]
+        yield list(_keys_of(f'{title} with `kind = "{each.tag}"`', each.cls, own, given))
+    for each in kinds:
+        for field in each.fields:
+            yield from _tables_of(f"`{field.encode_name}`", field.type, seen, given)
+
+
+def protocol_tables():
+    """Tables of the page of protocols: of the whole file, and of each of its tables."""
+    whole = info.type_info(ProtocolFile)
+    plain = [field for field in whole.fields if not _structs(field.type)]
+    others = [field for field in whole.fields if field.encode_name != "analysis"]  # by hand
+    seen, given = set(), set()
+    yield list(_keys_of("the whole file", Protocol, plain, given))
+    for field in others:
+        brackets = "[[{}]]" if isinstance(field.type, info.VarTupleType) else "[{}]"
+        title = f"`{brackets.format(field.encode_name)}`"
+        yield from filter(None, _tables_of(title, field.type, seen, given))
+
+
 def _bytes():
     told = [f"`{kind.__struct_config__.tag}` {kind.code}" for kind in get_args(AnyEvent)]
     said = ", ".join([*told, f"any other {OTHER}"])
@@ -86,6 +204,7 @@ TABLES = (
     ("keys.md", list(_keys(READING))),
     ("feeling.md", list(_keys(FEELING))),
     ("session-format.md", list(_events())),
+    *(("protocols.md", rows) for rows in protocol_tables()),
 )
 # Each document with its other parts: the words that stand around one, and the part itself.
 PARTS = (("session-format.md", "<!-- bytes: begin -->\n", "\n<!-- bytes: end -->", _bytes()),)

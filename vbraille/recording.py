@@ -6,25 +6,39 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import asdict, dataclass, replace
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, NamedTuple, Self
 
 import h5py
 import numpy as np
 
+from vbraille.braille.geometry import Geometry
+from vbraille.display import Display
 from vbraille.errors import InputError
+from vbraille.newfile import new_file
+from vbraille.render import MAPPINGS, MODELS, Model, Tuning, model_of, single_row
 from vbraille.version import __version__
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
-    from vbraille.display import Display
     from vbraille.newfile import NewFile
-    from vbraille.render.braille.models import Model
 
 FORMAT = 3
 CHUNK_FRAMES = 1024
 _CHUNK_LINES = 64
+_AXES: Final = ("column", "row")
+_MAPPINGS: Final = MAPPINGS | {m.name: m for m in map(single_row, (1, 2, 3))}
+NUMBERS: Final = ("t_s", "x_mm", "y_mm", "theta_rad", "line", "part")
+# What reading a file raises that is HDF5, but not as this module writes it.
+UNLIKE: Final = (
+    OSError, KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError,
+    RuntimeError, MemoryError,
+)  # fmt: skip
 
 
 class SceneRecorded(NamedTuple):
@@ -184,7 +198,7 @@ class Recorder:
         frames : float32[n, rows, columns]
             Deflections, 0 … 1.
         y_mm, theta_rad : float64[n]
-            The rest of the pose, see `vbraille.pose`.
+            The rest of the pose, see `vbraille.display`.
         part : int64[n]
             Which part of a picture that has several was under the array.
         """
@@ -200,6 +214,176 @@ class Recorder:
             dataset.resize(after, 0)
             dataset[before:after] = values
         self._file.check()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recording:
+    """Frames along a path, with their times and places, and the cells or the picture below.
+
+    Parameters
+    ----------
+    t_s : float64[n]
+        Times, which never go back.
+    x_mm, y_mm, theta_rad : float64[n]
+        Places of the array's centre and its angle, as `vbraille.display` has them.
+    frames : float32[n, rows, columns]
+        Deflections, 0 … 1.
+    model
+        Display, at the rate of the frames, and the style of the braille.
+    cells
+        Dot masks of each line.
+    line, part : int64[n]
+        Number in ``cells`` of the line that was under the array, and of the part of a page.
+    source
+        Name of what was rendered.
+    first_line
+        Number in the source of the first of ``cells``.
+    scene
+        Picture that was rendered; None if lines were.
+
+    Raises
+    ------
+    InputError
+        If the lengths do not fit each other, or a deflection is not in 0 … 1.
+    """
+
+    t_s: NDArray[np.float64]
+    x_mm: NDArray[np.float64]
+    y_mm: NDArray[np.float64]
+    theta_rad: NDArray[np.float64]
+    frames: NDArray[np.float32]
+    model: Model
+    cells: Sequence[NDArray[np.uint8]]
+    line: NDArray[np.int64]
+    part: NDArray[np.int64]
+    source: str = ""
+    first_line: int = 1
+    scene: SceneRecorded | None = None
+
+    def __post_init__(self) -> None:
+        size = len(self.t_s)
+        rows = (self.x_mm, self.y_mm, self.theta_rad, self.line, self.part)
+        if any(np.shape(row) != (size,) for row in rows) or not size:
+            raise InputError("a recording needs one place, line and part for each time, and a time")
+        if self.frames.shape != (size, *self.model.display.shape):
+            rows_columns = " × ".join(map(str, self.model.display.shape))
+            raise InputError(f"the frames must be {size} × {rows_columns}, one for each time")
+        if not ((self.frames >= 0) & (self.frames <= 1)).all():
+            raise InputError("a deflection is not from 0 to 1; a recording has none of those")
+        if not (np.diff(self.t_s) >= 0).all():
+            raise InputError("the times of a recording must increase")
+
+    @classmethod
+    def open(cls, path: Path | str) -> Self:
+        """Read a file that `write` or ``vbraille render`` wrote.
+
+        Raises
+        ------
+        InputError
+            If there is none, or it is something else.
+        """
+        try:
+            with h5py.File(Path(path), "r") as file:
+                return cls._read(file)
+        except FileNotFoundError:
+            raise InputError(f"there is no file {path}; check the name") from None
+        except UNLIKE as error:
+            raise InputError(f"{path} is no recording; give what vbraille render wrote") from error
+
+    @classmethod
+    def _read(cls, file: h5py.File) -> Self:
+        check_format(file)
+        model = model_in(file)
+        numbers = {name: dataset_in(file, name)[:] for name in NUMBERS}
+        lengths = dataset_in(file, "page/length")[:].tolist()
+        rows = dataset_in(file, "page/cells")[:]
+        return cls(
+            **numbers,
+            frames=dataset_in(file, "frames")[:],
+            model=model,
+            cells=[row[:length] for row, length in zip(rows, lengths, strict=True)],
+            source=str(file.attrs["source"]),
+            first_line=int(np.asarray(file.attrs["first_line"])),
+            scene=scene_of(file),
+        )
+
+    def write(self, path: Path | str, *, replace: bool = False) -> None:
+        """Write the file, which gets its name only once it is whole.
+
+        Parameters
+        ----------
+        path
+            Path of the file, which ends in ``.h5`` by custom.
+        replace
+            True if it may take the place of a file.
+
+        Raises
+        ------
+        InputError
+            If no file can be made there, or one is there.
+        VbrailleError
+            If writing fails, as on a full disk.
+        """
+        rate_hz = self.model.display.rate_hz
+        with new_file(path, replace=replace) as file:
+            recorder = Recorder(file, self.model.display, max(1, *map(len, self.cells), 1))
+            if self.scene is not None:
+                recorder.describe_scene(
+                    self.scene, model=self.model, rate_hz=rate_hz, source=self.source,
+                    sha256=sha256(self.scene.text).hexdigest(), path="",
+                )  # fmt: skip
+            else:
+                recorder.describe(
+                    model=self.model, rate_hz=rate_hz, first_line=self.first_line,
+                    source=self.source, sha256="",
+                )  # fmt: skip
+                for masks in self.cells:
+                    recorder.add_line(masks)
+            recorder.add_frames(
+                self.t_s, self.x_mm, self.line, self.frames, y_mm=self.y_mm,
+                theta_rad=self.theta_rad, part=self.part,
+            )  # fmt: skip
+
+
+def model_in(file: h5py.File) -> Model:
+    """Read what display a recording is of, and the style of its braille.
+
+    Returns
+    -------
+    Model
+        Model without a name where the file names none, or no mapping, of this program: the style is
+        then one that such a display is usually read in.
+
+    Raises
+    ------
+    ValueError
+        If the display is of another shape than the frames.
+    """
+    columns_mm, rows_mm = (np.asarray(file.attrs[f"{n}_offset_mm"], float) for n in _AXES)
+    if (rows_mm.size, columns_mm.size) != dataset_in(file, "frames").shape[1:]:
+        raise ValueError("the frames are of another display")
+    name = str(file.attrs.get("model", "not known"))
+    model = MODELS.get(name)
+    geometry = Geometry(**json.loads(str(file.attrs.get("geometry", "{}"))))
+    display = Display(
+        name,
+        rows_mm.size,
+        columns_mm.size,
+        float(columns_mm[1]) if columns_mm.size > 1 else 1.0,
+        float(rows_mm[1]) if rows_mm.size > 1 else 1.0,
+        rest_side="right" if model is None else model.display.rest_side,
+        travel_mm=geometry.travel_mm,
+        rate_hz=float(np.asarray(file.attrs["rate_hz"])),
+    )
+    mapping = _MAPPINGS.get(str(file.attrs.get("mapping", "")))
+    if model is None or (mapping is None and "scene" not in file):
+        return replace(model_of(display), name="", title=name, display=display)
+    style = model.style
+    if mapping is not None:
+        tuning = Tuning(**json.loads(str(file.attrs["tuning"])))
+        style = replace(style, mapping=mapping, geometry=geometry, tuning=tuning)
+        style.rows_on(display)
+    return replace(model, display=replace(display, name=model.title), style=style)
 
 
 def scene_of(file: h5py.File) -> SceneRecorded | None:
@@ -241,6 +425,22 @@ def check_format(file: h5py.File) -> None:
             f"{file.filename} is a recording of format {found}, and this vbraille reads format "
             f"{FORMAT}; play it with the vbraille that wrote it, or render it again"
         )
+
+
+def dataset_in(file: h5py.File, name: str) -> h5py.Dataset:
+    """Find a dataset of numbers.
+
+    Raises
+    ------
+    KeyError
+        If there is none.
+    TypeError
+        If it is something else.
+    """
+    found = file[name]
+    if not isinstance(found, h5py.Dataset) or found.dtype.kind not in "iuf":
+        raise TypeError
+    return found
 
 
 def _bytes(file: h5py.File, name: str) -> bytes:

@@ -3,17 +3,15 @@
 import pandas as pd
 
 from vbraille.analysis.input.parsing import parse
-from vbraille.analysis.input.scoretable import of_trials
 from vbraille.analysis.input.sheets import Sheet
 from vbraille.analysis.input.trials import Places
 from vbraille.analysis.measures import (
     confusion,
+    covariates,
     legibility,
     movement,
     trends,
-    trialsmodel,
 )
-from vbraille.analysis.measures import levels as compared
 from vbraille.analysis.results import Schema
 
 COLUMNS = "participant condition presented answered duration_s"
@@ -71,7 +69,6 @@ def record(table, **where):
 def all_tables(trials, places):
     """Every table of trials."""
     by_participant = legibility.legibility(trials, places)
-    measures = of_trials(trials, places, ["condition"])
     seen = movement.trajectories([])
     matrices = [
         (confusion.CONFUSION_CHARACTERS, confusion.of_characters(places)),
@@ -91,8 +88,5 @@ def all_tables(trials, places):
         seen,
         movement.patterns(seen),
         movement.correlations(trials),
-        compared.level_means(measures),
-        compared.t_tests(measures, "holm"),
-        compared.analyses(measures)[0],
-        *trialsmodel.trials_model(trials, ["condition"], "holm"),
+        covariates.covariates(trials, ["condition"]),
     ]

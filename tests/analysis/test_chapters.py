@@ -74,16 +74,19 @@ def test_sessions_of_all_kinds_together(sessions):
     results = analyse_study(study, Options())
     found = tables(results)
     assert [chapter.title for chapter in results.chapters] == [
+        "Other measures",
         "Legibility",
         "Characters and strings",
         "Confusions",
         "Errors",
         "Over time",
         "How strings were read",
-        "Levels compared",
-        "Trials modelled",
         "Which of two was chosen",
+        "Sources",
     ]
+    assert results.shown is None
+    assert "2 protocols" in results.question[1]
+    assert all(len(table) for table in results.result_tables())
     rows = [(row["participant"], row["condition"]) for row in found["legibility"].records()]
     assert rows == [("P2", "T0"), ("P2", "T100"), ("P10", "T0"), ("P10", "T100")]
     assert all(row["timed"] == row["trials"] for row in found["legibility"].records())
@@ -92,10 +95,10 @@ def test_sessions_of_all_kinds_together(sessions):
     about = dict(results.about)
     assert "seed 2, model vbd" in about["Session read-P10"]
     assert "numba" in about["Versions of compared, read-P2, read-P10"]
-    assert about["Excluded"] == "nothing"
+    assert results.excluded == ()
     assert any("no data about people" in warning for warning in results.warnings)
     names = [figure.name for figure in results.figures()]
-    assert len(names) == len(set(names)) == 8
+    assert len(names) == len(set(names)) >= 8
     assert all(figure.table in found for figure in results.figures())
 
 
@@ -136,10 +139,9 @@ def test_the_order_in_which_things_are_given_is_of_no_matter(sessions, table):
 def test_a_table_has_what_a_table_can_tell(table):
     results = analyse_study(load_study([table]), Options())
     found = tables(results)
-    assert not found["trajectories"].rows
-    assert found["trajectories"].notes == ("no trial has a trajectory",)
+    assert "trajectories" not in found  # there is none
     about = dict(results.about)
-    assert about["Excluded"] == "1 trial of trials.csv: no answer"
+    assert results.excluded == ("1 trial of trials.csv: no answer",)
     assert about["File trials.csv"].startswith("9 rows, SHA-256 ")
     json.loads("".join(to_json(results)))
 
@@ -151,7 +153,11 @@ def test_other_columns_are_kept_and_compared_by(table):
     assert lines[1] == "A,trials.csv,,T0,,1,⠁⠃,,⠁⠃,1,3.0,left"
     assert len(lines) == 1 + 8
     found = tables(analyse_study(study, Options(factors=("finger",))))
-    assert {row["level"] for row in found["level_means"].records()} == {"left", "right"}
+    assert {"left", "right"} <= {row["of"] for row in found["primary"].records()}
+    assert any(
+        "not as planned" in sentence
+        for sentence in analyse_study(study, Options(factors=("finger",))).question
+    )
     with pytest.raises(InputError, match=r"no column 'fingre' to compare by; there are condition"):
         analyse_study(study, Options(factors=("fingre",)))
 
@@ -161,7 +167,8 @@ def test_trials_written_are_trials_read(table, tmp_path):
     again = tmp_path / "again.csv"
     again.write_text(frame_to_csv(written(study.trials)))
     first, second = (analyse([path]).tables for path in (table, again))
-    for name, of in first.items():
+    for name in first.keys() - {"sources"}:
+        of = first[name]
         pd.testing.assert_frame_equal(of, second[name])
 
 
@@ -175,7 +182,7 @@ def test_from_python_tables_are_data_frames(table):
     ]  # fmt: skip
     assert results.trials is not None
     assert len(results.trials) == 6
-    with pytest.raises(InputError, match=r"there is no table 'legible'; there are legibility, av"):
+    with pytest.raises(InputError, match=r"there is no table 'legible'; there are primary, "):
         results.table("legible")
 
 
@@ -191,8 +198,9 @@ def test_from_python_scores_are_compared(tmp_path):
         "C,T1,2",
     ]
     path.write_text("\n".join(lines))
-    (test,) = analyse_scores(path, correction="none").table("t_tests").to_dict("records")
-    assert (test["participants"], test["mean_difference"]) == (3, pytest.approx(-4 / 3))
+    rows = analyse_scores(path, correction="none").table("primary").to_dict("records")
+    (test,) = [row for row in rows if row["kind"] == "difference"]
+    assert (test["participants"], test["value"]) == (3, pytest.approx(-4 / 3))
     with pytest.raises(ValueError, match="correction is 'tukey'"):
         analyse_scores(path, correction="tukey")
 
@@ -201,7 +209,7 @@ def test_who_is_left_out_is_named_with_the_reason(table):
     study = load_study([table], exclude={"C": "fell asleep"})
     results = analyse_study(study, Options())
     assert {row["participant"] for row in tables(results)["legibility"].records()} == {"A", "B"}
-    assert "participant C: fell asleep" in dict(results.about)["Excluded"]
+    assert "participant C: fell asleep" in results.excluded
     with pytest.raises(InputError, match="no participant 'D' with answered trials; there are A, B"):
         load_study([table], exclude={"D": "is not there"})
 
@@ -223,8 +231,10 @@ def test_only_one_protocol(sessions):
     assert study.trials is None
     assert [sitting.head["protocol"] for sitting in study.sessions] == ["widths"]
     results = analyse_study(study, Options())
-    assert [chapter.title for chapter in results.chapters] == ["Which of two was chosen"]
-    assert "protocols other than widths" in dict(results.about)["Excluded"]
+    assert [chapter.title for chapter in results.chapters] == [
+        "Primary analysis", "Which of two was chosen", "Sources"
+    ]  # fmt: skip
+    assert "protocols other than widths" in results.excluded[-1]
     with pytest.raises(InputError, match="no protocol 'letters'"):
         load_study(paths, protocol="letters")
 
@@ -300,17 +310,14 @@ def test_scores(tmp_path):
     )
     scores, about = load_scores(path)
     results = compare_scores(scores, about, Options(correction="holm"))
-    (chapter,) = results.chapters
-    names = [table.name for table in chapter.tables]
-    assert names == ["level_means", "level_scores", "t_tests", "anova"]
-    told = dict(results.about)
-    assert told["Excluded"] == "participant C, of the analysis of score: no 1"
-    assert told["Correction of t-tests"] == "Holm's step-down"
-    assert told["Compared by"] == "texture"
-    (effect,) = tables(results)["anova"].records()
-    (test,) = tables(results)["t_tests"].records()
-    assert effect["f"] == pytest.approx(test["t"] ** 2)  # two levels
-    assert test["note"] == "without C: a score is missing"
+    assert list(tables(results)) == ["primary", "sources"]
+    assert results.excluded == ("participant C, where it needs all: nothing in 1",)
+    assert "Holm's step-down" in results.methods
+    rows = tables(results)["primary"].records()
+    (effect,) = [row for row in rows if row["kind"] == "effect"]
+    (test,) = [row for row in rows if row["kind"] == "difference"]
+    assert effect["statistic"] == pytest.approx(test["statistic"] ** 2)  # two levels
+    assert test["participants"] == 3
 
 
 def test_options_check_themselves():
@@ -337,8 +344,7 @@ def test_the_same_input_gives_the_same_bytes(sessions, tmp_path):
         for out in (here, there)
     ]
     assert written[0] == written[1]
-    kinds = {".html", ".md", ".json", ".csv", ".svg", ".png", ".pdf"}
-    assert {path.suffix for path in written[0]} == kinds
+    assert {path.suffix for path in written[0]} == {".html", ".json", ".csv", ".svg"}
     assert Path("trials.csv") in written[0]
 
 

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from tests.analysis.making import from_rows, record
+from tests.analysis.making import from_rows
 from tests.analysis.published import EXACT, RECONSTRUCTED, TOLD, each
 from vbraille.analysis.input.scoretable import of_sheet
-from vbraille.analysis.measures.levels import analyses, level_means, t_tests
+from vbraille.analysis.input.trials import natural
+from vbraille.analysis.primary import arrange, compare
 from vbraille.analysis.results import Kind, round_half_up, to_print
+from vbraille.analysis.statistics.intervals import Interval
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import load_protocol
 
@@ -25,7 +27,9 @@ def table_of_scores(**columns):
         for level, values in columns.items()
         for n, value in enumerate(values, 2)
     ]
-    return of_sheet(from_rows("published", rows))
+    scores = of_sheet(from_rows("published", rows))
+    anything = Interval(-np.inf, np.inf)
+    return compare(arrange(scores, ["texture"], ("score", "score", ""), "linear", anything), "none")
 
 
 @each(*((EXACT, name, test) for name, test in LETTERS["t_tests_df5"].items() if "p" in test))
@@ -74,22 +78,23 @@ def scores_of_chapter_4():
 @each(*((EXACT, f"{a} and {b}", a, b) for a, b in combinations(LETTERS["mean_legibility_pct"], 2)))
 def test_4_scores_with_the_printed_means_and_t(told):
     scores, test = scores_of_chapter_4(), LETTERS["t_tests_df5"]["{}_vs_{}".format(*told)]
-    row = record(t_tests([scores], "none"), first=told[0], second=told[1])
-    assert (row["df"], f"{row['t']:.3f}") == (5, f"{test['t']:.3f}")
+    rows = {row["of"]: row for row in scores.rows()}
+    first, second = sorted(told, key=natural)
+    row = rows[f"texture: {first} less {second}"]
+    sign = 1 if first == told[0] else -1
+    assert (row["df2"], f"{sign * row['statistic']:.3f}") == (5, f"{test['t']:.3f}")
     assert to_print(row["p"], Kind.P) == f"{test['p']:.3f}"
-    means = level_means([scores])
     for level in told:
-        printed_mean = LETTERS["mean_legibility_pct"][level]
-        assert record(means, level=level)["mean"] == pytest.approx(printed_mean)
+        assert rows[level]["value"] == pytest.approx(LETTERS["mean_legibility_pct"][level])
 
 
 @each((RECONSTRUCTED, "F", LETTERS["consistency"]))
 def test_4_f_from_the_means_and_the_three_t(told):
     (consistency,) = told
-    table, left_out = analyses([scores_of_chapter_4()])
-    (row,) = table.records()
-    assert (row["df1"], row["df2"], left_out) == (2, 10, [])
-    assert round_half_up(row["f"], 2) == "10.66"
+    (effect,) = scores_of_chapter_4().effects
+    f = effect.test.f
+    assert effect.test.df2 / effect.test.df1 == pytest.approx(5)  # both times epsilon
+    assert round_half_up(f, 2) == "10.66"
     assert "= 10.66 (10.849 printed)" in consistency
     # Means are rounded to 1 %, differences thus by up to 1 %: F is the printed one within that.
     means, n = LETTERS["mean_legibility_pct"], LETTERS["design"]["analysed"]
@@ -100,7 +105,7 @@ def test_4_f_from_the_means_and_the_three_t(told):
         d = [m[a] - m[b] for a, b in combinations(range(3), 2)]
         error = n * sum((x / t) ** 2 for x, t in zip(d, ts, strict=True)) / 6
         found.append(n * m.var() * 3 / 2 / error)
-    assert found[2] == pytest.approx(row["f"])
+    assert found[2] == pytest.approx(f)
     assert min(found) < LETTERS["anova"]["legibility"]["F"] < max(found)
 
 
@@ -113,9 +118,9 @@ def test_4_overall_legibility(told):
 @each((EXACT, "words", LETTERS["words"]))
 def test_4_words(told):
     (words,) = told
-    (row,) = level_means([table_of_scores(words=words["per_subject_pct_ascending"])]).records()
-    assert row["participants"] == LETTERS["design"]["subjects"]
-    assert round_half_up(row["mean"], 0) == f"{words['mean_pct']}"
+    (mean,) = table_of_scores(words=words["per_subject_pct_ascending"]).means
+    assert mean.participants == LETTERS["design"]["subjects"]
+    assert round_half_up(mean.value, 0) == f"{words['mean_pct']}"
 
 
 @each((RECONSTRUCTED, "S4", LETTERS["words"]))

@@ -106,7 +106,7 @@ def intervals(people: int, share: float, sd: float, kind: str, what: str, studie
         if what == "odds ratio":
             (low, high), truth = combine(fit, [-1, 1]).ends(), logit(second) - logit(first)
         else:
-            (low, high), truth = difference(fit, [0, 1], [1, 0]), second - first
+            (low, high), truth = difference(fit, [-1, 1]), second - first
         if what == "difference of shares":
             low = np.where(tells_difference(made.correct, made.trials), low, np.nan)
     given = np.isfinite(low)
@@ -159,4 +159,4 @@ def _tested(correct: np.ndarray, trials: np.ndarray, kind: str) -> np.ndarray:
     fit = fit_trials(correct, trials, separate_cells(people, cells))
     if cells == 3:
         return compare_all(fit, [[-1, 1, 0], [-1, 0, 1]]).p
-    return compare(fit, [0, 1], [1, 0]).p_values()
+    return compare(fit, [-1, 1]).p_values()

@@ -186,7 +186,7 @@ def test_what_the_pointer_reads_is_marked(tmp_path, call):
     assert said.code == 0
     assert (
         "The pointer of a live view was the hand in 1 trial of s: that is no data about people."
-        in (tmp_path / "report" / "report.md").read_text()
+        in (tmp_path / "report" / "report.html").read_text()
     )
 
 

@@ -48,7 +48,7 @@ string = "a"
 """
 
 
-ANSWERING = kinds.Answer | kinds.Missed  # events that are no more asked for
+ANSWERING = kinds.Answer | kinds.Missed | kinds.Reply  # events that are no more asked for
 
 
 @dataclass
@@ -78,6 +78,9 @@ class Person:
         return []
 
     def next(self, *_):
+        return None
+
+    def reply(self, *_):
         return None
 
 
@@ -176,8 +179,11 @@ def kill_often(session, folder, *script, cuts=5, **given):
         size = whole + (len(journal) - whole) * (2 * n + 1) // (2 * cuts)
         sat, _ = gone_on(session, folder / f"{n}", size, *script, **given)
         assert sat.progress.ended
-        asked = [(type(e), e.trial, e.practice, getattr(e, "name", "")) for e in sat.events
-                 if isinstance(e, ANSWERING)]  # fmt: skip
+        answers = [e for e in sat.events if isinstance(e, ANSWERING)]
+        asked = [
+            (e.kind, e.trial, e.practice, getattr(e, "name", ""), getattr(e, "block", 0))
+            for e in answers
+        ]
         assert len(set(asked)) == len(asked)
 
 

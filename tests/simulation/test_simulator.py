@@ -181,9 +181,13 @@ def test_the_hand_sets_out_with_the_first_frame(bench):
 def test_a_watchdog_s_trip_is_said_once_it_has_come_to_rest(bench):
     bench.greet()
     bench.feel()
-    bench.run(lambda: bench.controller.trips, ticks(2))
-    assert bench.said == ["greeted by a host"]
-    bench.run(lambda: bench.controller.at_rest, ticks(20))
+    bench.run(lambda: bench.controller.trips)
+
+    def rested():
+        assert bench.said == ["greeted by a host"] or bench.controller.at_rest
+        return bench.controller.at_rest
+
+    bench.run(rested, ticks(20))
     assert bench.controller.levels.tolist() == REST
     after_ms = bench.controller.rest_after_us / 1000
     assert bench.said[1:] == [f"watchdog: trip 1, at rest {after_ms:.1f} ms after the last frame"]

@@ -13,9 +13,9 @@ r"""Sessions in, tables and figures out. Sees no device and no engine.
 0          P1        T0       2        1         0.5
 
 Inside, `input` reads and checks what is given. Each module of `measures` makes tables for one
-question, each of `figures` says what to draw of them, and `findings` puts them in words.
-`chapters` puts all together as `results`, which `report` writes. `statistics` knows plain
-numbers alone.
+question, and `figures` says what to draw of them. `primary` answers what the study asks, and
+`chapters` puts all together as `results`, which `report` writes. `statistics` knows plain numbers
+alone.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def analyse(
     exclude: Mapping[str, str] | None = None,
     protocol: str | None = None,
     factors: Sequence[str] | None = None,
-    correction: str = "holm",
+    correction: str | None = None,
     marks: Sequence[int] | None = None,
     seed: int | None = None,
 ) -> Results:
@@ -54,10 +54,11 @@ def analyse(
     protocol
         Name of the protocol whose trials are taken; None takes those of all.
     factors
-        Columns by which trials are compared; the column ``condition`` if not given.
+        Columns by which trials are compared; those that the protocol plans if not given, and
+        without a protocol the column ``condition``.
     correction
-        How the p-values of t-tests are corrected for their number: "none", "bonferroni", "holm"
-        or "fdr".
+        How p are corrected for their number: "none", "bonferroni", "holm" or "fdr"; as planned if
+        not given.
     marks
         Errors above these counts are marked in the report's confusion matrices; 4 and 9 if not
         given.
@@ -78,7 +79,12 @@ def analyse(
     from vbraille.analysis.chapters import analyse_study, options_of
     from vbraille.analysis.input.study import load_study
 
-    options = options_of(correction, factors=factors, marks=marks, seed=seed)
+    options = options_of(
+        correction=correction,
+        factors=None if factors is None else tuple(factors),
+        marks=marks,
+        seed=seed,
+    )
     given = [paths] if isinstance(paths, str | PathLike) else paths
     study = load_study(
         [Path(p) for p in given],
@@ -89,7 +95,7 @@ def analyse(
 
 
 def analyse_scores(
-    path: str | PathLike[str], *, correction: str = "holm", seed: int | None = None
+    path: str | PathLike[str], *, correction: str | None = None, seed: int | None = None
 ) -> Results:
     """Compare the levels of a table of scores.
 
@@ -111,4 +117,4 @@ def analyse_scores(
     from vbraille.analysis.chapters import compare_scores, options_of
     from vbraille.analysis.input.study import load_scores
 
-    return compare_scores(*load_scores(Path(path)), options_of(correction, seed=seed))
+    return compare_scores(*load_scores(Path(path)), options_of(correction=correction, seed=seed))

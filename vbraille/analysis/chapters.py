@@ -1,54 +1,74 @@
-"""All that is said of a study, and of a table of scores."""
+"""All that is said of a study, and of a table of scores: the primary analysis, then all else."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import pandas as pd
+from msgspec import structs
+
 from vbraille.analysis import figures
-from vbraille.analysis.findings import findings
-from vbraille.analysis.input.scoretable import of_trials
-from vbraille.analysis.input.trials import Places, written
+from vbraille.analysis.input.study import excluding
+from vbraille.analysis.input.trials import Places, comparable, written
 from vbraille.analysis.measures import (
     confusion,
+    covariates,
     discrimination,
     legibility,
-    levels,
     movement,
     preferences,
     rated,
+    scaling,
     trends,
-    trialsmodel,
 )
-from vbraille.analysis.methods import methods
-from vbraille.analysis.results import Chapter, Results
-from vbraille.analysis.statistics.intervals import METHODS
+from vbraille.analysis.methods import analysed_by, methods
+from vbraille.analysis.primary import (
+    EXPLORED,
+    PRIMARY,
+    ComparedMeasure,
+    arrange,
+    cells_of,
+    compare,
+)
+from vbraille.analysis.results import Chapter, Column, Kind, Results, Schema
+from vbraille.analysis.statistics.intervals import METHODS, Interval, adjust
+from vbraille.errors import InputError
+from vbraille.sessions.planning.analysis import CONDITION, MEASURES, PlannedAnalysis, Task
 from vbraille.sessions.planning.questions import RatingQuestion
+from vbraille.wording import count
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
-    import pandas as pd
-
-    from vbraille.analysis.input.scoretable import Scores
     from vbraille.analysis.input.study import Study
-    from vbraille.analysis.input.trials import LeftOut
     from vbraille.analysis.results import ReportFigure, ResultTable
 
 SEED = 20090618
-_MAIN = ("means_", "legibility", "choices_")  # beginnings of names, the first that is found first
+MOST_LEVELS = 50  # a factor with more levels was not varied by an experimenter
+MOST_CELLS = 1_000_000  # cells of all participants together
+SOURCES = Schema(
+    "sources",
+    "Data, sessions and versions",
+    "Where the numbers come from.",
+    (Column("what", "what", "what is told"), Column("told", "told", "in words")),
+)
+
+
+_BY_CONDITION = {CONDITION: frozenset[str]()}
 
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """Choices in an analysis.
+    """Choices in an analysis; None takes what was planned.
 
     Parameters
     ----------
     factors
         Columns by which trials are compared.
     correction
-        How the p-values of t-tests are corrected for their number, one of `METHODS`.
+        How p are corrected for their number, one of `METHODS`.
     marks
         Errors above these counts are marked in confusion matrices.
     seed
@@ -61,110 +81,323 @@ class Options:
         If there is no such correction.
     """
 
-    factors: tuple[str, ...] = ("condition",)
-    correction: str = "holm"
+    factors: tuple[str, ...] | None = None
+    correction: str | None = None
     marks: tuple[int, ...] = confusion.MARKS
     seed: int = SEED
 
     def __post_init__(self) -> None:
-        if self.correction not in METHODS:
+        if self.correction is not None and self.correction not in METHODS:
             raise ValueError(f"correction is {self.correction!r}; it must be one of {METHODS}")
 
-    def described(self) -> list[tuple[str, str]]:
-        """Describe the choices, as pairs of a word and a sentence, for the report's head."""
-        return [
-            ("Correction of t-tests", METHODS[self.correction]),
-            ("Compared by", ", ".join(self.factors)),
-            ("Intervals", f"95 %; random draws with seed {self.seed}"),
-        ]
 
-
-def options_of(correction: str, **chosen: Any) -> Options:
+def options_of(**chosen: Any) -> Options:
     """Options with what is chosen; what is chosen as None keeps its default."""
-    given = {name: value for name, value in chosen.items() if value is not None}
-    return Options(correction=correction, **given)
+    return Options(**{name: value for name, value in chosen.items() if value is not None})
+
+
+@dataclass(frozen=True, slots=True)
+class FollowedPlan:
+    """Analysis that is followed, and where it departs from what was planned."""
+
+    analysis: PlannedAnalysis
+    columns: tuple[str, ...]
+    departures: tuple[str, ...]
 
 
 def analyse_study(study: Study, options: Options) -> Results:
-    """Analyse trials and comparisons.
+    """Analyse trials, comparisons and judgements.
 
     Raises
     ------
     InputError
         If the trials have no such factor.
     """
-    chapters: list[Chapter] = []
-    left_out = list(study.left_out)
-    if study.trials is not None:
-        chapters += _of_trials(study, study.trials, options, left_out)
+    plan = plan_of(study, options)
+    study = excluding(study, plan.analysis)
+    places = None if study.trials is None else Places.of(study.trials)
+    measured = _measured(study, places, plan)
+    correction = plan.analysis.correction
+    primary = measured.pop(plan.analysis.measure or "", None)
+    compared = None if primary is None else compare(primary, correction)
+    others = [compare(cells, "none") for cells in measured.values()]
+    chapters = [_others(others)]
+    if study.trials is not None and places is not None:
+        chapters += _of_trials(study, study.trials, places, plan, options)
     if study.comparisons is not None:
         chapters.append(_of_comparisons(study, study.comparisons, options))
     if study.judgements is not None:
-        chapters += _of_judgements(study, study.judgements)
+        chapters += _of_judgements(study, study.judgements, plan)
     if any(session.notes for session in study.sessions):
         table = rated.notes(study.sessions)
         chapters.append(Chapter("Notes", "What the experimenter wrote down.", (table,)))
-    told = methods(study)
+    chapters = _corrected([each for each in map(_filled, chapters) if each.tables], correction)
+    about = (*study.about, *_chosen(plan, options))
     return _told(
-        "Legibility sessions",
-        (
-            *([("Methods", told)] if told else ()),
-            *study.about,
-            *_excluded(left_out),
-            *options.described(),
-        ),
+        "Report of a study" if compared is None else compared.title(),
+        about,
         study.warnings,
+        compared,
         chapters,
-        None if study.trials is None else written(study.trials),
-        study.faults,
+        question=(f"Planned: {plan.analysis.described()}.", *plan.departures),
+        methods=" ".join(
+            filter(None, (methods(study, left_out=False), analysed_by(compared, plan.analysis)))
+        ),
+        excluded=tuple(f"{left.what}: {left.reason}" for left in study.left_out),
+        chance=_chance(study, plan.analysis),
+        trials=None if study.trials is None else written(study.trials),
+        faults=study.faults,
     )
 
 
-def compare_scores(scores: Scores, about: Sequence[tuple[str, str]], options: Options) -> Results:
+def compare_scores(
+    scores: pd.DataFrame, about: Sequence[tuple[str, str]], options: Options
+) -> Results:
     """Compare the levels of a table of scores.
 
     Parameters
     ----------
+    scores
+        The ``participant`` and ``value`` of each score, and a column for each factor.
     about
         Where the table comes from, as pairs of a word and a sentence.
     """
-    left_out: list[LeftOut] = []
-    chapter = _compared([scores], options, left_out)
-    told = [pair for pair in options.described() if pair[0] != "Compared by"]
-    compared = ("Compared by", ", ".join(scores.factors))
-    head = (*about, *_excluded(left_out), compared, *told)
-    return _told("Scores", head, (), [chapter])
+    frame = scores.dropna(subset="value")
+    if frame.empty:
+        raise InputError("the table has no scores to compare; add some")
+    columns = tuple(str(name) for name in scores if name not in ("participant", "value"))
+    _check_levels(frame, columns)
+    cells = arrange(frame, columns, ("score", "score", ""), "linear", Interval(-np.inf, np.inf))
+    analysis = structs.replace(
+        PlannedAnalysis(factors=columns, model="means", measure=None),
+        correction=options.correction or "holm",
+    )
+    compared = compare(cells, analysis.correction)
+    return _told(
+        compared.title(),
+        about,
+        (),
+        compared,
+        [],
+        question=("No analysis was planned: a table of scores has no protocol.",),
+        methods=analysed_by(compared, analysis),
+    )
+
+
+def plan_of(study: Study, options: Options) -> FollowedPlan:
+    """Analysis that was planned, and where the options and the data depart from it.
+
+    Raises
+    ------
+    InputError
+        If there is no such factor.
+    """
+    protocols = {session.protocol.name: session.protocol for session in study.sessions}
+    parts = (study.trials, study.comparisons, study.judgements)
+    names = {name for part in parts if part is not None for name in part["protocol"].unique()}
+    told: list[str] = []
+    several = len(names) > 1
+    if len(protocols) == 1 and not several:
+        (protocol,) = protocols.values()
+        analysis = protocol.planned_analysis
+        if protocol.analysis is None:
+            told.append("The protocol plans no analysis: this is the usual one of its task.")
+        if len({session.protocol.planned_analysis for session in study.sessions}) > 1:
+            told.append("Sessions plan different analyses; that of the first is followed.")
+        told += _departures(study, analysis)
+    else:
+        question = "free" if several else _question(study)
+        task = Task(question, scored=False, adaptive=False, catch=False, factors=_BY_CONDITION)
+        analysis = PlannedAnalysis().resolved(task)
+        told.append(
+            f"The data are of {len(names)} protocols, and a primary analysis is of one: take it by "
+            f"--protocol."
+            if several
+            else "No analysis was planned: a table of trials has no protocol. This is the usual "
+            "one of its question."
+        )
+    columns = tuple(analysis.column(name) for name in analysis.factors or ())
+    if options.factors is not None and options.factors != columns:
+        told.append(f"Compared by {', '.join(options.factors)}, as asked for, and not as planned.")
+        columns = options.factors
+    if options.correction not in (None, analysis.correction):
+        told.append(
+            f"p are corrected by {METHODS[options.correction or '']}, as asked for, and not by "
+            f"{METHODS[analysis.correction]}."
+        )
+        analysis = structs.replace(analysis, correction=options.correction)
+    whole = next(part for part in parts if part is not None)
+    for name in columns:
+        if name not in comparable(whole):
+            raise InputError(
+                f"there is no column {name!r} to compare by; "
+                f"there are {', '.join(comparable(whole))}"
+            )
+    if options.factors is None:
+        columns = tuple(name for name in columns if whole[name].nunique() > 1)
+    _check_levels(whole, columns)
+    return FollowedPlan(analysis, columns, tuple(told))
+
+
+def _question(study: Study) -> str:
+    """Kind of the question that most of a study's rows answer."""
+    if study.trials is not None:
+        return "identify"
+    if study.comparisons is not None:
+        return "which"
+    assert study.judgements is not None
+    return str(study.judgements["question"].mode().iloc[0])
+
+
+def _departures(study: Study, analysis: PlannedAnalysis) -> Iterator[str]:
+    """Sentences on people and sessions that are not as planned."""
+    people = len({session.head["participant"] for session in study.sessions})
+    if analysis.participants not in (None, people):
+        yield (
+            f"Planned were {count(analysis.participants or 0, 'participant')}, and here are "
+            f"{people}."
+        )
+    if unended := [session.name for session in study.sessions if session.state != "ended"]:
+        yield f"Not ended: {', '.join(unended)}."
+    if dropped := [one.what for one in study.left_out if one.what.startswith("participant ")]:
+        yield f"Left out, which was not planned: {', '.join(dropped)}."
+
+
+def _check_levels(whole: pd.DataFrame, columns: Sequence[str]) -> None:
+    cells = whole["participant"].nunique()
+    for name in columns:
+        many = whole[name].nunique()
+        cells *= many
+        if many > MOST_LEVELS:
+            raise InputError(
+                f"{name} has {many} levels, more than can be compared; "
+                f"give a factor of a few, such as condition"
+            )
+    if cells > MOST_CELLS:
+        raise InputError(f"{', '.join(columns)} have too many levels together; give fewer factors")
+
+
+def _measured(study: Study, places: Places | None, plan: FollowedPlan) -> dict[str, Any]:
+    """Each measure that there is something of, by its name."""
+    found = {}
+    for name, measure in MEASURES.items():
+        model = "trials" if measure.scale == "share" else "means"
+        chosen = (plan.analysis.model or model) if name == plan.analysis.measure else model
+        # A threshold is found along the levels that it would be compared by.
+        columns = plan.columns if name != "threshold" or plan.analysis.measure == name else ()
+        cells = cells_of(study, places, name, columns, chosen)
+        if cells is not None:
+            found[name] = cells
+    return found
+
+
+def _chance(study: Study, analysis: PlannedAnalysis) -> tuple[str, ...]:
+    """Sentence on what guessing would give, where a share is compared."""
+    if analysis.measure == "right":
+        return ("Guessing alone would give 50 % where both answers are right equally often.",)
+    if analysis.measure != "legibility" or study.trials is None:
+        return ()
+    shown = study.trials["presented"].nunique()
+    return (
+        f"Guessing among the {count(shown, 'string')} that were shown would give "
+        f"{100 / shown:.2g} %.",
+    )
 
 
 def _told(
     title: str,
     about: Sequence[tuple[str, str]],
     warnings: Sequence[str],
+    compared: ComparedMeasure | None,
     chapters: Sequence[Chapter],
-    trials: pd.DataFrame | None = None,
-    faults: tuple[str, ...] = (),
+    *,
+    chance: tuple[str, ...] = (),
+    excluded: tuple[str, ...] = (),
+    **more: Any,
 ) -> Results:
-    """Results with the sentences of what was found, and the figure that stands beside them."""
-    told = findings(table for chapter in chapters for table in chapter.tables)
-    names = [figure.name for chapter in chapters for figure in chapter.figures]
-    main = next(
-        (name for start in _MAIN for name in names if name.startswith(start)),
-        names[0] if names else "",
-    )
+    """Results with the primary analysis first."""
+    first: tuple[Chapter, ...] = ()
+    if compared is not None:
+        table = PRIMARY.fill(list(compared.rows()))
+        text = "The analysis that was planned."
+        first = (Chapter("Primary analysis", text, (table,), (compared.figure(),)),)
+        more |= {
+            "findings": (*compared.sentences(), *chance, *compared.extremes()),
+            "shown": compared.shown(),
+            "notes": tuple(compared.notes()),
+            "main": "primary",
+        }
+        excluded = (*excluded, *compared.incomplete())
+    sources = SOURCES.fill([{"what": word, "told": told} for word, told in about])
+    last = Chapter("Sources", "Where the numbers come from.", (sources,))
     return Results(
-        title, tuple(about), tuple(warnings), tuple(chapters), told, main, trials, faults
+        title,
+        tuple(about),
+        tuple(warnings),
+        (*first, *chapters, last),
+        excluded=excluded,
+        **more,
     )
 
 
-def _excluded(left_out: Sequence[LeftOut]) -> list[tuple[str, str]]:
-    told = "; ".join(f"{left.what}: {left.reason}" for left in left_out)
-    return [("Excluded", told or "nothing")]
+def _chosen(plan: FollowedPlan, options: Options) -> list[tuple[str, str]]:
+    return [
+        ("Compared by", ", ".join(plan.columns) or "nothing"),
+        ("Correction of p", METHODS[plan.analysis.correction]),
+        ("Intervals", f"95 %; random draws with seed {options.seed}"),
+    ]
+
+
+def _others(others: Sequence[ComparedMeasure]) -> Chapter:
+    rows = [row for each in others for row in each.rows(corrected=False)]
+    drawn = tuple(each.figure(f"means_{each.cells.measure}") for each in others)
+    return Chapter("Other measures", "What was not the question.", (EXPLORED.fill(rows),), drawn)
+
+
+def _filled(chapter: Chapter) -> Chapter:
+    """Chapter without tables that have no rows."""
+    tables = tuple(table for table in chapter.tables if len(table))
+    names = {table.name for table in tables}
+    drawn = tuple(figure for figure in chapter.figures if figure.table in names)
+    return replace(chapter, tables=tables, figures=drawn)
+
+
+def _corrected(chapters: Sequence[Chapter], correction: str) -> list[Chapter]:
+    """Chapters with each p corrected for all p of all of their tables."""
+    tested = [
+        (table, column)
+        for chapter in chapters
+        for table in chapter.tables
+        for column in table.columns
+        if column.kind is Kind.P
+    ]
+    known = [table.frame[column.name].dropna() for table, column in tested]
+    joined = np.concatenate([p.to_numpy() for p in known]) if known else np.empty(0)
+    every = iter(adjust(joined, correction).tolist() if joined.size else [])
+    made: dict[str, ResultTable] = {}
+    for (table, column), p in zip(tested, known, strict=True):
+        now = made.get(table.name, table)
+        own = Column(
+            f"{column.name}_corrected",
+            f"{column.heading} corrected",
+            f"for all {joined.size} exploratory tests of the report",
+            Kind.P,
+        )
+        at = now.columns.index(column) + 1
+        columns = (*now.columns[:at], own, *now.columns[at:])
+        corrected = pd.Series([next(every) for _ in range(len(p))], p.index, np.float64)
+        frame = now.frame.copy()
+        frame.insert(at, own.name, corrected.reindex(frame.index))
+        made[table.name] = replace(now, schema=replace(now.schema, columns=columns), frame=frame)
+    return [
+        replace(chapter, tables=tuple(made.get(table.name, table) for table in chapter.tables))
+        for chapter in chapters
+    ]
 
 
 def _of_trials(
-    study: Study, trials: pd.DataFrame, options: Options, left_out: list[LeftOut]
+    study: Study, trials: pd.DataFrame, places: Places, plan: FollowedPlan, options: Options
 ) -> list[Chapter]:
-    places = Places.of(trials)
     own = legibility.legibility(trials, places)
     averages = legibility.averages(own)
     by_dots, dots_own = legibility.dots(places), legibility.dots_of_participants(places)
@@ -205,14 +438,10 @@ def _of_trials(
             (movement.patterns(ways), movement.correlations(trials), ways, *tables),
             ways_drawn,
         ),
-        _compared(of_trials(trials, places, options.factors), options, left_out),
         Chapter(
             "Trials modelled",
-            "Conditions, and what else legibility goes with, by a logistic model of single trials.",
-            (
-                *trialsmodel.trials_model(trials, options.factors, options.correction),
-                trialsmodel.covariates(trials, options.factors),
-            ),
+            "What else legibility goes with, by a logistic model of single trials.",
+            (covariates.covariates(trials, plan.columns),),
         ),
     ]
 
@@ -240,18 +469,6 @@ def _confusions(trials: pd.DataFrame, places: Places, options: Options) -> Chapt
     return Chapter("Confusions", "What was taken for what.", tuple(tables), tuple(drawn))
 
 
-def _compared(scores: Sequence[Scores], options: Options, left_out: list[LeftOut]) -> Chapter:
-    means, own = levels.level_means(scores), levels.own_means(scores)
-    table, dropped = levels.analyses(scores)
-    left_out += dropped
-    return Chapter(
-        "Levels compared",
-        "Differences within participants.",
-        (means, own, levels.t_tests(scores, options.correction), table),
-        tuple(figures.level_means(means, own)),
-    )
-
-
 def _of_comparisons(study: Study, comparisons: pd.DataFrame, options: Options) -> Chapter:
     table, preferred = preferences.tuning(comparisons, seed=options.seed)
     own = preferences.choices_of_participants(comparisons)
@@ -264,7 +481,7 @@ def _of_comparisons(study: Study, comparisons: pd.DataFrame, options: Options) -
     )
 
 
-def _of_judgements(study: Study, judgements: pd.DataFrame) -> list[Chapter]:
+def _of_judgements(study: Study, judgements: pd.DataFrame, plan: FollowedPlan) -> list[Chapter]:
     """Chapters of the questions that were asked, beside which cells and which of two."""
     scales: dict[str, tuple[float, float]] = {}
     sure: dict[str, tuple[float, float]] = {}
@@ -277,7 +494,7 @@ def _of_judgements(study: Study, judgements: pd.DataFrame) -> list[Chapter]:
     asked = {*judgements["question"]}
     told: list[Chapter] = []
     if asked & {"detect", "same-different"} or (judgements["outcome"] != "").any():
-        found, by_level = discrimination.thresholds(judgements)
+        found, by_level = discrimination.thresholds(judgements, plan.columns)
         known = len(found) or "detect" in asked
         told.append(
             Chapter(
@@ -287,6 +504,12 @@ def _of_judgements(study: Study, judgements: pd.DataFrame) -> list[Chapter]:
                 tuple(figures.rises(found, by_level)) if known else (),
             )
         )
+    points, means = scaling.equality(judgements)
+    apart, exponents = scaling.apart(judgements), scaling.exponents(judgements)
+    compared = [table for table in (points, means, apart, exponents) if len(table)]
+    if compared:
+        text = "Values against a standard, and how estimates grow."
+        told.append(Chapter("Scaling", text, tuple(compared)))
     if "rating" in asked:
         text = "Where on a scale things were put."
         told.append(Chapter("Ratings", text, rated.ratings(judgements, scales)))

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille.analysis.findings import extremes, interval_words, parameter_words
 from vbraille.analysis.input.trials import UNREAD, name_string, times
 from vbraille.analysis.measures.discrimination import SHAPE_OF
 from vbraille.analysis.results import (
@@ -18,6 +17,7 @@ from vbraille.analysis.results import (
     Kind,
     ReportFigure,
     Schema,
+    parameter_words,
     to_print,
 )
 from vbraille.analysis.statistics.psychometric import SHAPES
@@ -30,6 +30,15 @@ if TYPE_CHECKING:
     from vbraille.analysis.input.sessions import Example, SessionTrials
     from vbraille.analysis.results import ResultTable, Row
     from vbraille.pictures.charts import Chart, Numbers
+
+
+def interval_words(row: Row, kind: Kind, unit: str = "") -> str:
+    """Words for a row's 95 % interval."""
+    low, high = row.get("low"), row.get("high")
+    if low is None or high is None:
+        return "without an interval"
+    return f"95 % interval {to_print(low, kind)} to {to_print(high, kind)}{unit}"
+
 
 _SHARE = ("legibility", "low", "high")  # columns of a share with its interval
 MOST_ERRORS = 12  # kinds of errors that are drawn
@@ -55,7 +64,6 @@ def legibility(table: ResultTable, averages: ResultTable) -> ReportFigure:
         )
         for label, names, scale in panels
     )
-    known = [row for row in table.records() if row["trials"]]
     means = ", ".join(
         f"{row['condition']} {to_print(row['legibility'], Kind.PERCENT)} %"
         for row in averages.records()
@@ -63,7 +71,7 @@ def legibility(table: ResultTable, averages: ResultTable) -> ReportFigure:
     )
     text = (
         f"Bars for each participant in each condition, with 95 % intervals of legibility. "
-        f"{extremes(known)} Averages over participants: {means}."
+        f"Averages over participants: {means}."
     )
     return ReportFigure(
         "legibility",
@@ -148,46 +156,6 @@ def choices(table: ResultTable, preferred: ResultTable, own: ResultTable) -> Ite
         )
 
 
-def level_means(table: ResultTable, own: ResultTable) -> Iterator[ReportFigure]:
-    """Means of the levels with intervals and each participant's own, one figure for a factor."""
-    for factor in _distinct(table, "factor"):
-        rows = [row for row in table.records() if row["factor"] == factor]
-        whose = [row for row in own.records() if row["factor"] == factor]
-        levels = list(dict.fromkeys(row["level"] for row in rows))
-        panels = []
-        for measure in dict.fromkeys(row["measure"] for row in rows):
-            of = {row["level"]: row for row in rows if row["measure"] == measure}
-            share = measure.startswith("legibility")
-            scale = 100.0 if share else 1.0
-            points = _points(
-                [row for row in whose if row["measure"] == measure], "level", levels, "mean", scale
-            )
-            label = f"{measure} (%)" if share else measure
-            found = [of.get(level, {}) for level in levels]
-            series = _series("mean", found, ("mean", "low", "high"), scale, points)
-            panels.append((label, (series,)))
-        said = "; ".join(
-            f"{row['measure']}, {row['level']}: {_told(row)}"
-            for row in rows
-            if row["mean"] is not None
-        )
-        yield ReportFigure(
-            f"means_{_file_name(factor)}",
-            f"Means by {factor}",
-            f"Bars are means over participants with 95 % intervals, circles the participants' own "
-            f"means (table {own.title}), joined within each. {said}.",
-            table.name,
-            Bars(f"Means by {factor}", factor, tuple(levels), tuple(panels)),
-        )
-
-
-def _told(row: Row) -> str:
-    """Words for a mean with its interval."""
-    share = row["measure"].startswith("legibility")
-    kind, unit = (Kind.PERCENT, " %") if share else (Kind.NUMBER, "")
-    return f"{to_print(row['mean'], kind)}{unit} ({interval_words(row, kind, unit)})"
-
-
 def _points(
     records: Sequence[Row], group: str, groups: Sequence[object], value: str, scale: float
 ) -> tuple[Numbers, ...]:
@@ -256,7 +224,7 @@ def confusion(table: ResultTable) -> ReportFigure:
     if len(rows) > MOST_ROWS:
         rows, columns = _most_wrong(shown)
         part = (
-            f" Of {len(shown.rows)} rows the figure has the {len(rows)} with the most errors, and "
+            f" Of {len(shown)} rows the figure has the {len(rows)} with the most errors, and "
             f"the {len(columns)} most frequent answers to them."
         )
     names = [headings[at] for at in columns]
@@ -282,12 +250,13 @@ def confusion(table: ResultTable) -> ReportFigure:
 
 def _most_wrong(table: ResultTable) -> tuple[list[tuple], list[int]]:
     """Rows of a matrix with the most errors, in their order, and the columns they use most."""
+    every = table.rows
     wrong = [
         sum(_whole(count) for at, count in enumerate(row) if at and not table.is_right(row, at))
-        for row in table.rows
+        for row in every
     ]
     chosen = sorted(sorted(range(len(wrong)), key=lambda n: -wrong[n])[:MOST_ROWS])
-    rows = [table.rows[n] for n in chosen]
+    rows = [every[n] for n in chosen]
     used = [sum(_whole(row[at]) for row in rows) for at in range(1, len(table.columns))]
     columns = sorted(sorted(range(len(used)), key=lambda at: -used[at])[:MOST_ROWS])
     return rows, columns

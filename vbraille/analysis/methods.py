@@ -12,6 +12,8 @@ from string import Formatter
 from typing import TYPE_CHECKING, Any
 
 from vbraille.analysis.input.trials import natural
+from vbraille.analysis.statistics.comparisons import CellShares
+from vbraille.analysis.statistics.intervals import METHODS
 from vbraille.braille.spelling import to_braille
 from vbraille.render.braille.models import MODELS
 from vbraille.sessions.planning.chance import balanced_orders
@@ -31,6 +33,8 @@ if TYPE_CHECKING:
 
     from vbraille.analysis.input.sessions import SessionTrials
     from vbraille.analysis.input.study import Study
+    from vbraille.analysis.primary import ComparedMeasure
+    from vbraille.sessions.planning.analysis import PlannedAnalysis
     from vbraille.sessions.planning.protocol import Protocol
 
 _DISTANCES = {
@@ -81,8 +85,13 @@ _LOOKS = {
 }
 
 
-def methods(study: Study) -> str:
+def methods(study: Study, *, left_out: bool = True) -> str:
     """Paragraph on the sessions of a study; empty if it has none, but tables alone.
+
+    Parameters
+    ----------
+    left_out
+        Whether it says what was left out of the analysis.
 
     Examples
     --------
@@ -95,16 +104,52 @@ def methods(study: Study) -> str:
     if not of:
         return ""
     sentences = [line for sessions in of.values() for line in filled(TEMPLATE, facts_of(sessions))]
-    dropped = "; ".join(f"{left.what} ({left.reason})" for left in study.left_out)
+    if left_out:
+        dropped = "; ".join(f"{left.what} ({left.reason})" for left in study.left_out)
+        told = f"Left out of the analysis: {dropped}"
+        sentences.append(told if dropped else "Nothing was left out of the analysis")
     versions = dict.fromkeys(each.versions.get("vbraille", "unknown") for each in study.sessions)
     sentences += [
-        f"Left out of the analysis: {dropped}"
-        if dropped
-        else "Nothing was left out of the analysis",
         f"Sessions were run with vbraille {', '.join(versions)}, and analysed with vbraille "
         f"{__version__}",
     ]
     return " ".join(f"{sentence}." for sentence in sentences)
+
+
+_SHARES = (
+    "Shares of right answers were compared by a logistic regression of single trials with "
+    "participants as clusters (Firth's penalty; the sandwich of participants' scores with "
+    "Kauermann and Carroll's correction; tests of 2 asin √share, effects by Wald's test as F with "
+    "the degrees of freedom of Hotelling's T²); the interval of a mean share is of the "
+    "population's, by a logit-normal model of how people differ; effect sizes are odds ratios"
+)
+_MEANS = (
+    "Participants' own {what} were compared: two levels by t of the participants' differences, or "
+    "by Welch's t of groups, several by the analysis of variance with Greenhouse and Geisser's "
+    "correction; intervals are Student's; effect sizes are Hedges's g"
+)
+_FAMILY = (
+    "Effects were corrected together ({correction}); a difference of levels has at least the p of "
+    "its effect, and is corrected for the others of it"
+)
+_ITEMS = "Items were taken as they are: conclusions are about people, not about other items"
+
+
+def analysed_by(compared: ComparedMeasure | None, planned: PlannedAnalysis) -> str:
+    """Sentences on the model of the primary analysis; empty if there is none."""
+    if compared is None:
+        return ""
+    cells = compared.cells
+    plural = {"log": "logarithms", "linear": "values", "share": "shares"}[cells.scale]
+    shares = isinstance(cells.data, CellShares)
+    told = [_SHARES if shares else _MEANS.format(what=f"{plural} of the {cells.words}")]
+    if cells.scale == "log":
+        told.append("Differences are told as ratios")
+    if compared.effects:
+        told.append(_FAMILY.format(correction=METHODS[planned.correction]))
+    if shares:
+        told.append(_ITEMS)
+    return " ".join(f"{sentence}." for sentence in told)
 
 
 def filled(template: str, facts: Facts) -> Iterable[str]:

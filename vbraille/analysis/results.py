@@ -364,6 +364,19 @@ def _refuse_nan(table: str, rows: Sequence[Row]) -> None:
 
 
 @dataclass(frozen=True, slots=True)
+class ShownTable:
+    """A table of the report's first layer: headings, and rows of text."""
+
+    headings: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+def parameter_words(name: str) -> tuple[str, str]:
+    """Words for a parameter or a level, and its unit after a space."""
+    return name.removesuffix("_mm").replace("_", " "), " mm" if name.endswith("_mm") else ""
+
+
+@dataclass(frozen=True, slots=True)
 class ReportFigure:
     """A figure of the report.
 
@@ -421,11 +434,21 @@ class Results:
     warnings
         What the reader must know before all numbers: damage, what is simulated.
     chapters
-        Tables and figures, in the order of the report.
+        Tables and figures, the primary analysis first.
+    question
+        Primary analysis in a line, and sentences on where it departs from what was planned.
     findings
-        What was found, in sentences.
+        Result of the primary analysis, in sentences.
+    shown
+        Table of the result; None without a primary analysis.
+    notes
+        Reasons why something in that table is missing.
     main
         Name of the figure that is shown beside the findings; empty for none.
+    methods
+        Paragraph on what was done and how it was analysed.
+    excluded
+        What was left out, with the reasons, in clauses.
     trials
         Trials that were analysed, with all columns that were given; None if there were none.
     faults
@@ -436,8 +459,13 @@ class Results:
     about: tuple[tuple[str, str], ...]
     warnings: tuple[str, ...]
     chapters: tuple[Chapter, ...]
+    question: tuple[str, ...] = ()
     findings: tuple[str, ...] = ()
+    shown: ShownTable | None = None
+    notes: tuple[str, ...] = ()
     main: str = ""
+    methods: str = ""
+    excluded: tuple[str, ...] = ()
     trials: pd.DataFrame | None = None
     faults: tuple[str, ...] = ()
 

@@ -6,8 +6,7 @@ import re
 import string
 from typing import TYPE_CHECKING
 
-from vbraille.braille.cells import UNICODE_BLANK, Cells
-from vbraille.braille.dots import dots_of
+from vbraille.braille.cells import UNICODE_BLANK, Cells, dots_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -149,13 +148,27 @@ def parse_answer(text: str, *, places: int, keys: dict[str, int], shown_dots: in
     return to_answer(mask for _, mask in typed)
 
 
-def parse_choice(text: str) -> str:
-    """Answer to a comparison: "1" or "2".
+ORDINALS = ("first", "second", "third", "fourth", "fifth")
+
+
+def ordinal(place: int) -> str:
+    """Word for a place, from 0.
+
+    >>> ordinal(1), ordinal(11)
+    ('second', 'number 12')
+    """
+    return ORDINALS[place] if place < len(ORDINALS) else f"number {place + 1}"
+
+
+def parse_choice(text: str, of: int = 2) -> str:
+    """Answer to a comparison, such as "1" or "2".
 
     Parameters
     ----------
     text
         What was typed: 1 or 2, first or second, f or s, in either case.
+    of
+        Number of those compared, up to 5.
 
     Raises
     ------
@@ -163,12 +176,14 @@ def parse_choice(text: str) -> str:
         If the text is something else.
     """
     word = text.strip().lower()
-    if word in ("1", "f", "first"):
-        return "1"
-    if word in ("2", "s", "second"):
-        return "2"
-    said = f"{_quote(text)} is neither" if word else "nothing was typed"
-    raise ValueError(f"{said}; type 1 for the first or 2 for the second")
+    for number, name in enumerate(ORDINALS[:of], 1):
+        if word in (f"{number}", name) or (of < 4 and word == name[0]):
+            return f"{number}"
+    if of == 2:
+        said = f"{_quote(text)} is neither" if word else "nothing was typed"
+        raise ValueError(f"{said}; type 1 for the first or 2 for the second")
+    said = f"{_quote(text)} is none of them" if word else "nothing was typed"
+    raise ValueError(f"{said}; type 1 for the first, to {of} for the {ORDINALS[of - 1]}")
 
 
 def say_cells(answer: str, keys: dict[str, int]) -> str:

@@ -11,7 +11,7 @@ from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_file
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.bids import write
-from vbraille.sessions.record.codebook import entry_of, to_codebook
+from vbraille.sessions.record.codebook import asked_in, entry_of, to_codebook
 from vbraille.sessions.record.export import (
     Traces,
     anonymous,
@@ -140,7 +140,7 @@ def _to_table(
         if arguments.anonymous:
             exported = anonymous(one, exported)
         table += exported
-        asked |= {field.name: field.ask for field in one.protocol.fields}
+        asked |= asked_in(one.protocol)
         faults += traces.faults
     columns = dict.fromkeys(name for row in table for name in row)
     text = to_csv([{name: row.get(name, "") for name in columns} for row in table])

@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 
     from vbraille.devices.calibration import Calibration, Correction
     from vbraille.devices.events import Event
-    from vbraille.display import Display
-    from vbraille.pose import Pose
+    from vbraille.display import Display, Pose
 
 _DOUBLE = np.dtype(np.float64)
 
@@ -69,6 +68,8 @@ class Device(ABC):
 
     Attributes
     ----------
+    display : Display
+        Display that the device is, which stays the same as long as it is open.
     rested : int
         How often the actuators went to rest otherwise than by a frame of 0, after which the next
         frames must fade in.
@@ -95,6 +96,7 @@ class Device(ABC):
         How long before each tick `ask` is called; 0 if it never is.
     """
 
+    display: Display
     rested = 0
     placing = Placing.DONE
     taking = True
@@ -107,11 +109,6 @@ class Device(ABC):
     ahead_ns = 0
     _closed = False
     _correction: Correction | None = None
-
-    @property
-    @abstractmethod
-    def display(self) -> Display:
-        """Tell what the device says of itself; the same at every call."""
 
     @abstractmethod
     def read(self) -> Pose | None:

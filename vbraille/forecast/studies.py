@@ -151,7 +151,7 @@ def _p_values(
         asked = np.broadcast_to(trials, correct.shape)
         fit = fit_trials(correct, asked, separate_cells(*trials.shape))
         unit = np.eye(trials.shape[1])
-        tested = [compare(fit, unit[one], unit[two]).p_values() for one, two in plan.pairs]
+        tested = [compare(fit, unit[one] - unit[two]).p_values() for one, two in plan.pairs]
     else:
         shares = correct / trials
         if plan.test == "half":

@@ -217,6 +217,38 @@ DRAWINGS = {
 }
 
 
+def plot_frames(
+    positions_mm: NDArray[np.float64], frames: NDArray[np.floating], title: str, axes: Axes | None
+) -> Axes:
+    """Draw the deflections of frames along a line, an actuator a row.
+
+    Parameters
+    ----------
+    positions_mm : float64[n]
+        Places of the array's centre.
+    frames : float[n, rows, columns]
+        Deflections, 0 (white) … 1 (black).
+    title
+        Title of the axes.
+    axes
+        Axes to draw on; None for new ones.
+    """
+    if axes is None:
+        axes = Figure(figsize=(8, 3), layout="constrained").subplots()
+    actuators = frames.reshape(len(frames), -1)
+    axes.imshow(
+        actuators.T,
+        cmap="gray_r",
+        vmin=0.0,
+        vmax=1.0,
+        aspect="auto",
+        interpolation="nearest",
+        extent=(positions_mm[0], positions_mm[-1], actuators.shape[1] + 0.5, 0.5),
+    )
+    axes.set(title=title, xlabel="centre of the array (mm)", ylabel="actuator")
+    return axes
+
+
 def _curves(axes: Axes, x_mm: NDArray, series: NDArray) -> None:
     """Draw curves one below the other, each above a line of its own at deflection 0."""
     rest = -BAND * np.arange(len(series))

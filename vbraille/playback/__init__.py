@@ -13,14 +13,14 @@ from vbraille.errors import InputError
 from vbraille.wording import printable
 
 if TYPE_CHECKING:
-    from vbraille.playback.recorded import Recording
+    from vbraille.playback.recorded import Playback
 
 _HDF5: Final = b"\x89HDF\r\n\x1a\n"
 _GZIP: Final = b"\x1f\x8b"
 _GIVE: Final = "give what vbraille render wrote, or the directory of a session"
 
 
-def open_recording(path: Path | str) -> Recording:
+def open_recording(path: Path | str) -> Playback:
     """Open what `vbraille render` wrote, a session's directory, or a trace in one.
 
     Parameters
@@ -30,7 +30,7 @@ def open_recording(path: Path | str) -> Recording:
 
     Returns
     -------
-    Recording
+    Playback
         A source for `vbraille.live.server.LiveServer`.
 
     Raises
@@ -46,7 +46,7 @@ def open_recording(path: Path | str) -> Recording:
     return recording
 
 
-def _open(path: Path) -> Recording:
+def _open(path: Path) -> Playback:
     start = _start(path)
     if start == _HDF5:
         # It loads h5py, which nobody needs who plays a session.

@@ -78,7 +78,7 @@ class Piece:
         return int(np.searchsorted(self.ticks["time_s"][:stop], at_s, "right"))
 
 
-class Recording(ABC):
+class Playback(ABC):
     """Recorded frames, of which any can be asked for at any time; a `LiveSource`.
 
     Attributes
@@ -202,7 +202,7 @@ class RecordingViewer:
         The recording.
     """
 
-    def __init__(self, recording: Recording) -> None:
+    def __init__(self, recording: Playback) -> None:
         self._recording = recording
         self._at_s = 0.0
 

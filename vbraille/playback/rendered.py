@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import base64
-import json
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import h5py
 import numpy as np
 
-from vbraille.braille.geometry import Geometry
-from vbraille.display import Display
 from vbraille.errors import InputError
 from vbraille.live.messages import PlayedEvent, SceneShown, ViewState
 from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
-from vbraille.playback.recorded import PLAYED, Piece, Recording
-from vbraille.recording import check_format, scene_of
-from vbraille.render import MAPPINGS, MODELS, STRESS2, Tuning, single_row
+from vbraille.playback.recorded import PLAYED, Piece, Playback
+from vbraille.recording import NUMBERS, UNLIKE, check_format, dataset_in, model_in, scene_of
+from vbraille.render import STRESS2
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,7 +22,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.live.messages import LineShown
-    from vbraille.render import BrailleStyle
     from vbraille.render.program import Program
 
 _PIECE_FRAMES: Final = 1024
@@ -34,16 +30,9 @@ _AROUND: Final = 3
 _MOST_MOMENTS: Final = 4000
 # Numbers that are unpacked at once to find where they change.
 _BLOCK: Final = 1 << 18
-_MAPPINGS: Final = MAPPINGS | {m.name: m for m in map(single_row, (1, 2, 3))}
-_NUMBERS: Final = ("t_s", "x_mm", "y_mm", "theta_rad", "line", "part")
-# What reading a file raises that is HDF5, but not as `vbraille render` writes it.
-_UNLIKE: Final = (
-    OSError, KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError,
-    RuntimeError, MemoryError,
-)  # fmt: skip
 
 
-class Rendered(Recording):
+class Rendered(Playback):
     """Frames of a file that `vbraille render` wrote.
 
     Parameters
@@ -62,14 +51,14 @@ class Rendered(Recording):
         self._path = path
         try:
             self._file = h5py.File(path, "r")
-        except _UNLIKE as error:
+        except UNLIKE as error:
             raise InputError(_not_one(path, "it is damaged, or was not written whole")) from error
         try:
             self._open()
         except InputError:
             self._file.close()
             raise
-        except _UNLIKE as error:
+        except UNLIKE as error:
             self._file.close()
             raise InputError(_not_one(path, "it is HDF5 of something else")) from error
 
@@ -133,19 +122,18 @@ class Rendered(Recording):
     def _open(self) -> None:
         file = self._file
         check_format(file)
-        needed = (*_NUMBERS, "frames", "page/cells", "page/length")
-        self._numbers = found = {name: _dataset(file, name) for name in needed}
-        count, rows, columns = found["frames"].shape
-        if any(found[name].shape != (count,) for name in _NUMBERS):
+        needed = (*NUMBERS, "frames", "page/cells", "page/length")
+        self._numbers = found = {name: dataset_in(file, name) for name in needed}
+        count = found["frames"].shape[0]
+        if any(found[name].shape != (count,) for name in NUMBERS):
             raise ValueError
         if not count:
             raise InputError(f"{self._path} has no frame; there is nothing to play")
-        offsets_mm = [np.asarray(file.attrs[f"{n}_offset_mm"], float) for n in ("column", "row")]
-        if [offsets.shape for offsets in offsets_mm] != [(columns,), (rows,)]:
-            raise ValueError
         self._count, self.pieces = count, -(-count // _PIECE_FRAMES)
         self._rate_hz = float(self._told("rate_hz", "nan"))
-        self._style, self._display = self._describe(*offsets_mm)
+        model = model_in(file)
+        self._display = model.display
+        self._style = model.style if model.name and "scene" not in file else None
         self._picture = self._find_picture()
         self._first_line = max(int(self._told("first_line", "1")), 0)
         self._lengths = found["page/length"][:].astype(np.int64)
@@ -168,30 +156,6 @@ class Rendered(Recording):
             height_mm = self._style.geometry.line_pitch_mm * np.diff(self._page(0)).item()
             self._display = replace(self._display, height_mm=height_mm)
         self.moments = [] if self._picture else self._find_moments(starts, lines)
-
-    def _describe(
-        self, columns_mm: NDArray[np.float64], rows_mm: NDArray[np.float64]
-    ) -> tuple[BrailleStyle | None, Display]:
-        """Style of the braille, None if that cannot be told, and the display."""
-        file = self._file
-        model = MODELS.get(self._told("model", ""))
-        geometry = Geometry(**json.loads(self._told("geometry", "{}")))
-        display = Display(
-            self._told("model", "not known"),
-            rows_mm.size,
-            columns_mm.size,
-            float(columns_mm[1]) if columns_mm.size > 1 else 1.0,
-            float(rows_mm[1]) if rows_mm.size > 1 else 1.0,
-            rest_side="right" if model is None else model.display.rest_side,
-            travel_mm=geometry.travel_mm,
-            rate_hz=self._rate_hz,
-        )
-        if model is None or (mapping := _MAPPINGS.get(self._told("mapping", ""))) is None:
-            return None, display
-        tuning = Tuning(**json.loads(str(file.attrs["tuning"])))
-        style = replace(model.style, mapping=mapping, geometry=geometry, tuning=tuning)
-        style.rows_on(display)
-        return style, replace(display, name=model.title)
 
     def _find_picture(self) -> SceneShown | None:
         """Tactile picture that was recorded; None where lines were. The carriage goes over it."""
@@ -297,13 +261,6 @@ def _changes(dataset: h5py.Dataset) -> tuple[NDArray[np.int64], NDArray[np.int64
         starts += (at + first).tolist()
         values += numbers[at].tolist()
     return np.array(starts), np.array(values)
-
-
-def _dataset(file: h5py.File, name: str) -> h5py.Dataset:
-    found = file[name]
-    if not isinstance(found, h5py.Dataset) or found.dtype.kind not in "iuf":
-        raise TypeError
-    return found
 
 
 def _not_one(path: Path, why: str) -> str:

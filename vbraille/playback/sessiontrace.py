@@ -16,7 +16,7 @@ from vbraille.braille.spelling import to_braille
 from vbraille.errors import InputError, VbrailleError
 from vbraille.live.messages import PlayedEvent, ViewState
 from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
-from vbraille.playback.recorded import PLAYED, Piece, Recording
+from vbraille.playback.recorded import PLAYED, Piece, Playback
 from vbraille.render import work
 from vbraille.render.program import Program, nothing
 from vbraille.sessions.record import events, journal
@@ -73,7 +73,7 @@ class _PlayedRun:
         return self.begun_s + (time_ns - self.first_ns) / 1e9
 
 
-class SessionRecording(Recording):
+class SessionRecording(Playback):
     """Frames of a session, or of one of its traces.
 
     Parameters
@@ -171,7 +171,7 @@ class SessionRecording(Recording):
             *plain.facts,
             ("trial", _name(trial)),
             ("condition", trial.condition),
-            ("shown", to_braille(stimulus.masks[slice(*trial.asked)])),
+            ("shown", stimulus.picture or to_braille(stimulus.masks[slice(*trial.asked)])),
             ("answer", "none" if told.answer is None else told.answer),
         ]
         if len(trial.stimuli) > 1:
@@ -183,7 +183,9 @@ class SessionRecording(Recording):
             geometry=geometry_shown(stimulus.geometry),
             mapping=f"mapping: {mapping.name}",
             rows_shown=rows_shown(style, self._display),
-            lines=[cells_shown(scene, protocol.line(stimulus.masks), under=True)],
+            lines=[]
+            if stimulus.picture is not None
+            else [cells_shown(scene, protocol.line(stimulus.masks), under=True)],
             place=_name(trial),
             facts=facts,
         )

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
+from html import escape
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vbraille.display import check_rate
 from vbraille.errors import InputError
 from vbraille.layout.texts import cells_per_line, check_text, choose_table, lay_out_text
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.wording import count
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from vbraille.braille.cells import Cells
     from vbraille.display import Display
     from vbraille.layout.pages import Layout, Line
+    from vbraille.recording import Recording
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
 
@@ -71,6 +77,45 @@ class RenderedLine:
         """
         return self.frames[np.abs(self.positions_mm - x_mm).argmin()]
 
+    def recording(self, speed_mm_s: float = 60.0) -> Recording:
+        """Make what a hand feels that goes along the line once at a steady speed, in mm/s.
+
+        Raises
+        ------
+        InputError
+            If the speed is not above 0.
+        """
+        if not 0 < speed_mm_s < math.inf:
+            raise InputError(f"speed_mm_s is {speed_mm_s:g}; it must be above 0")
+        step_mm = float(self.positions_mm[1] - self.positions_mm[0])
+        model = _shown(self.display, self.style, speed_mm_s / step_mm)
+        lines = np.zeros(len(self), np.int64)
+        middle_mm = np.full(len(self), self.style.geometry.line_pitch_mm / 2)
+        return _recorded(
+            model, [self.line], self.frames, (self.positions_mm, middle_mm, 0.0 * middle_mm), lines
+        )
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draw the deflections over the places of the array, an actuator a row.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes
+            Axes to draw on; None for new ones.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            They have the title, labels and scale; rest is white and full swing is black.
+        """
+        from vbraille.pictures.draw import plot_frames  # loads matplotlib
+
+        return plot_frames(self.positions_mm, self.frames, self.text, axes)
+
+    def _repr_html_(self) -> str:
+        """Line for a notebook: its text, and its cells in Unicode."""
+        return f"<p>{escape(self.text)}<br>{self.cells.to_unicode()}</p>"
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RenderedPage:
@@ -117,11 +162,37 @@ class RenderedPage:
         ValueError
             If the places are not of one length, or not finite.
         """
-        poses = [np.atleast_1d(np.asarray(of, np.float64)) for of in (x_mm, y_mm, theta_rad)]
-        x, y, theta = (np.ascontiguousarray(of) for of in np.broadcast_arrays(*poses))
-        if x.ndim != 1 or not all(np.isfinite(of).all() for of in (x, y, theta)):
-            raise ValueError("places of a path must be finite numbers, in arrays of one dimension")
-        return self.program.poses(x, y, theta)[1].astype(np.float64)
+        return self.program.poses(*_path(x_mm, y_mm, theta_rad))[1].astype(np.float64)
+
+    def recording(
+        self,
+        x_mm: ArrayLike,
+        y_mm: ArrayLike,
+        theta_rad: ArrayLike = 0.0,
+        *,
+        rate_hz: float = 1000.0,
+    ) -> Recording:
+        """Make what a hand feels on a path over the page, whose places are 1 / rate_hz apart.
+
+        Parameters
+        ----------
+        x_mm, y_mm, theta_rad : float[n]
+            Path, as of `frames`.
+        rate_hz
+            Number of places a second.
+
+        Raises
+        ------
+        ValueError
+            If the places are not of one length, or not finite.
+        InputError
+            If the rate cannot be.
+        """
+        path = _path(x_mm, y_mm, theta_rad)
+        part, frames = self.program.poses(*path)
+        line = part.clip(0, len(self.lines) - 1)
+        model = _shown(self.display, self.style, rate_hz)
+        return _recorded(model, self.lines, frames, path, line, part)
 
 
 def render_text(
@@ -241,6 +312,46 @@ def render_page(
     except ValueError as error:
         raise InputError(str(error)) from None
     return RenderedPage(lines, model.display, style, program)
+
+
+def _path(
+    x_mm: ArrayLike, y_mm: ArrayLike, theta_rad: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Places and angles of a path, checked, in arrays of one length; float64[n] each."""
+    poses = [np.atleast_1d(np.asarray(of, np.float64)) for of in (x_mm, y_mm, theta_rad)]
+    x, y, theta = (np.ascontiguousarray(of) for of in np.broadcast_arrays(*poses))
+    if x.ndim != 1 or not all(np.isfinite(of).all() for of in (x, y, theta)):
+        raise ValueError("places of a path must be finite numbers, in arrays of one dimension")
+    return x, y, theta
+
+
+def _shown(display: Display, style: BrailleStyle, rate_hz: float) -> Model:
+    """Model that frames of a rate are rendered for."""
+    return replace(
+        model_of(display), display=replace(display, rate_hz=check_rate(rate_hz)), style=style
+    )
+
+
+def _recorded(
+    model: Model,
+    lines: Sequence[Line],
+    frames: NDArray[np.floating],
+    path: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    line: NDArray[np.int64],
+    part: NDArray[np.int64] | None = None,
+) -> Recording:
+    from vbraille.recording import Recording  # loads h5py
+
+    return Recording(
+        np.arange(len(frames)) / model.display.rate_hz,
+        *path,
+        frames.astype(np.float32),
+        model,
+        [each.masks for each in lines],
+        line.astype(np.int64),
+        np.zeros(len(frames), np.int64) if part is None else part.astype(np.int64),
+        first_line=lines[0].number,
+    )
 
 
 def _laid_out(

@@ -10,12 +10,11 @@ import numpy as np
 
 from vbraille.devices.base import Device
 from vbraille.devices.events import Button, HandHeld, Knob
+from vbraille.display import Pose
 from vbraille.errors import InputError, check_range
-from vbraille.pose import Pose
 from vbraille.simulation.controls import MOST_BUTTONS, held, parse_presses
-from vbraille.simulation.hand import STILL_S, Still
+from vbraille.simulation.hand import STILL_S, Area, Still
 from vbraille.simulation.motion import Course
-from vbraille.simulation.paging import Area
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.steering import BeAt, GlideTo, Pointer, ReadLine, ReadPage, Steering
@@ -84,7 +83,7 @@ class SimulatedDevice(Device):
         presses: Sequence[Press] = (),
         pointer: Pointer | None = None,
     ) -> None:
-        self._info = info
+        self.display = info
         self._presses = presses
         self._opened_ns = now_ns()
         self._held = 0  # bits of the buttons that are held by plan
@@ -104,11 +103,6 @@ class SimulatedDevice(Device):
         self._course = Course(
             -info.span_mm, free_y=info.height_mm > 0, turns=info.turns, now_ns=now_ns()
         )
-
-    @property
-    def display(self) -> Display:
-        """Properties of the device, as it tells them."""
-        return self._info
 
     @property
     def hand(self) -> Hand | Recorded | None:
@@ -176,7 +170,7 @@ class SimulatedDevice(Device):
         steering = self._steering
         if steering is None:
             if self.frames and not self.moving:
-                self._do(ReadLine(self._info.travel_mm - self._info.span_mm))
+                self._do(ReadLine(self.display.travel_mm - self.display.span_mm))
             return
         order = steering.take()
         if order is None and was_held and self._ordered:
@@ -200,7 +194,7 @@ class SimulatedDevice(Device):
         self._at = at
         if at is None:
             return False
-        info = self._info
+        info = self.display
         left_mm, right_mm = -info.span_mm, info.travel_mm - info.span_mm
         to = (
             min(max(at.x_mm - info.span_mm / 2, left_mm), right_mm),
@@ -225,14 +219,14 @@ class SimulatedDevice(Device):
 
     def _do(self, order: HandOrder) -> None:
         """Have the hand follow an order; a recorded hand sets out with the first and goes on."""
-        hand, home_mm = self._hand, -self._info.span_mm
+        hand, home_mm = self._hand, -self.display.span_mm
         course, now_ns = self._course, self._now_ns()
         if isinstance(order, BeAt):
-            x_mm = order.x_mm - self._info.span_mm / 2
+            x_mm = order.x_mm - self.display.span_mm / 2
             course.go_to([x_mm, order.y_mm, order.theta_rad], now_ns, HELD_MM_S)
         elif isinstance(order, GlideTo):
             *_, theta_rad = course.at(now_ns)
-            x_mm = order.x_mm - self._info.span_mm / 2
+            x_mm = order.x_mm - self.display.span_mm / 2
             course.go_to([x_mm, order.y_mm, theta_rad], now_ns, order.speed_mm_s)
         elif isinstance(hand, Still):
             course.go_to(course.at(now_ns), now_ns, HELD_MM_S, STILL_S)
@@ -254,7 +248,7 @@ class SimulatedDevice(Device):
         """Pose of the carriage now, to the nearest count of its encoders."""
         self.obey()
         now_ns = self._now_ns()
-        info = self._info
+        info = self.display
         hand_mm, y_mm, theta_rad = self._course.at(now_ns)
         way = min(max(hand_mm + info.span_mm, 0.0), info.travel_mm)
         counts = round(way * info.counts_per_mm)
@@ -267,7 +261,7 @@ class SimulatedDevice(Device):
     def places_mm(self, times_ns: NDArray[np.int64]) -> NDArray[np.float64]:
         """Places of the centre that `read` would find at these times, undisturbed; float64[n]."""
         # The same as in `read`, where arrays for a single place would take several times as long.
-        info, course = self._info, self._course
+        info, course = self.display, self._course
         hand_mm = np.interp((times_ns - course.begun_ns) / NS_PER_S, course.t_s, course.ways[0])
         way = np.clip(hand_mm + info.span_mm, 0.0, info.travel_mm)
         return np.rint(way * info.counts_per_mm) / info.counts_per_mm - info.span_mm / 2
@@ -280,7 +274,7 @@ class SimulatedDevice(Device):
         float64[3, n]
             x and y in mm, and θ in radians, as of `Pose`.
         """
-        info, course = self._info, self._course
+        info, course = self.display, self._course
         t_s = (times_ns - course.begun_ns) / NS_PER_S
         poses = np.zeros((3, times_ns.size))
         poses[0] = self.places_mm(times_ns)
@@ -292,7 +286,7 @@ class SimulatedDevice(Device):
         return poses
 
     def _send(self, frame: NDArray[np.float64]) -> None:
-        np.rint(frame * (self._info.levels - 1), out=self.levels, casting="unsafe")
+        np.rint(frame * (self.display.levels - 1), out=self.levels, casting="unsafe")
         self.frames += 1
 
     def _release(self) -> None:

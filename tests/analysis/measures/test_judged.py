@@ -365,9 +365,10 @@ def test_the_report_has_a_chapter_for_each():
     study = Study(None, None, (), (), (), (), (), judgements(*lines))
     results = analyse_study(study, Options())
     assert [chapter.title for chapter in results.chapters] == [
-        "Telling apart", "Ratings", "Magnitudes", "Confidence", "Words",
+        "Other measures", "Telling apart", "Ratings", "Magnitudes", "Confidence",
+        "Words", "Sources",
     ]  # fmt: skip
-    assert set(results.tables) == {
-        "sensitivity", "thresholds", "threshold_levels", "ratings", "rating_pairs", "magnitudes",
-        "confidence", "words",
+    assert set(results.tables) == {  # none without rows
+        "exploratory", "sensitivity", "ratings", "magnitudes", "confidence", "words",
+        "sources",
     }  # fmt: skip

@@ -4,7 +4,15 @@ from dataclasses import replace
 
 from tests.analysis.making import table_of
 from tests.pictures.charts import bars, matrix, runs
-from vbraille.analysis.results import NOTE_COLUMN, Chapter, Column, Kind, ReportFigure, Results
+from vbraille.analysis.results import (
+    NOTE_COLUMN,
+    Chapter,
+    Column,
+    Kind,
+    ReportFigure,
+    Results,
+    ShownTable,
+)
 
 SCRIPT = "<script>alert('1')</script>"
 NASTY = (
@@ -65,7 +73,7 @@ NOTHING = table_of(
 
 RESULTS = Results(
     f"Legibility of {SCRIPT}",
-    (("data", "2 sessions of “a & b”"), ("versions", "vbraille 0.1"), ("left out", NASTY[2])),
+    (("Data", "2 sessions of “a & b”"), ("versions", "vbraille 0.1"), ("left out", NASTY[2])),
     ("The device was simulated.", SCRIPT),
     (
         Chapter(
@@ -92,8 +100,16 @@ RESULTS = Results(
             (ReportFigure("runs", "Over time", "It falls.", "trials", runs()),),
         ),
     ),
-    ("Participants read right 86.3 % of strings.", f"The least was {NASTY[0]}."),
-    "legibility",
+    question=("Planned: legibility.", f"Not ended: {NASTY[1]}."),
+    findings=("Participants read right 86.3 % of strings.", f"The least was {NASTY[0]}."),
+    shown=ShownTable(
+        ("what", "people", "legibility (95 % interval)", "corrected p"),
+        ((NASTY[0], "4", "86.3 % (80 % to 90 %)", ""), ("é", "4", "80 %", "< 0.001")),
+    ),
+    notes=(f"no interval: {NASTY[2]}",),
+    main="legibility",
+    methods=f"4 participants read. {SCRIPT}",
+    excluded=(f"participant {NASTY[3]}: slept",),
 )
 BARE = Results("Nothing", (), (), (Chapter("Patterns", "None.", (NOTHING,)),))
 ONE_MARK = replace(CONFUSIONS, marks=(4,))

@@ -133,7 +133,7 @@ def test_a_group_of_one_has_no_error_and_the_other_has():
     correct = np.array([[15, 0], [0, 12], [0, 17], [0, 9]])
     fit = fit_trials(correct, trials, separate_cells(4, 2))
     assert np.isnan(combine(fit, [-1, 1]).errors[0])
-    assert np.isnan(compare(fit, [0, 1], [1, 0]).p_values()[0])
+    assert np.isnan(compare(fit, [-1, 1]).p_values()[0])
     low, high = combine(fit, [0, 1]).ends()
     assert low[0] < logit(38.5 / 61) < high[0]
 
@@ -156,10 +156,10 @@ def test_false_positives_and_coverage(people, sd):
     own = expit(random.normal(1.0, sd, (STUDIES, people, 1)))
     correct = random.binomial(39, np.broadcast_to(own, (STUDIES, people, 2)))
     fit = fit_trials(correct, np.full(correct.shape, 39), separate_cells(people, 2))
-    for p in (combine(fit, [-1, 1]).p_values(), compare(fit, [0, 1], [1, 0]).p_values()):
+    for p in (combine(fit, [-1, 1]).p_values(), compare(fit, [-1, 1]).p_values()):
         assert np.mean(p < 0.05) < 0.06 + 2 * np.sqrt(0.05 / STUDIES)
         assert np.mean(p < 0.05) > 0.02
-    for low, high in (combine(fit, [1, -1]).ends(), difference(fit, [1, 0], [0, 1])):
+    for low, high in (combine(fit, [1, -1]).ends(), difference(fit, [1, -1])):
         assert 0.92 < np.mean((low <= 0) & (high >= 0)) < 0.99
 
 
@@ -182,7 +182,7 @@ def test_in_the_middle_shares_are_compared_as_by_student(people):
     correct[:, 1] += 160 - (correct.sum() - correct[:, 0].sum() + correct[:, 0].sum()) // people
     fit = fit_trials(correct, np.full((people, 2), 160), separate_cells(people, 2))
     apart = (correct[:, 1] - correct[:, 0]) / 160
-    found = compare(fit, [0, 1], [1, 0])
+    found = compare(fit, [-1, 1])
     assert found.estimates[0] / found.errors[0] == pytest.approx(
         apart.mean() / (apart.std(ddof=1) / np.sqrt(people)), rel=2e-2
     )
@@ -202,7 +202,7 @@ def test_a_large_study_is_fitted_as_a_small_one(counts):
 def test_a_difference_of_shares_goes_with_its_odds_ratio():
     correct = np.array([[30, 20], [28, 22], [35, 19], [31, 27]])
     fit = fit_trials(correct, np.full((4, 2), 40), separate_cells(4, 2))
-    (least,), (most,) = difference(fit, [1, 0], [0, 1])
+    (least,), (most,) = difference(fit, [1, -1])
     low, high = combine(fit, [1, -1]).ends()
     assert low[0] > 0
     assert least > 0

@@ -33,7 +33,7 @@ def fitted(correct, asked):
 
 def test_of_one_contrast_it_is_the_square_of_t():
     fit = fitted(*studies(6, 2, many=20))
-    t, found = compare(fit, [1, 0], [0, 1]), compare_all(fit, [[1, -1]])
+    t, found = compare(fit, [1, -1]), compare_all(fit, [[1, -1]])
     np.testing.assert_allclose(found.f, (t.estimates / t.errors) ** 2, rtol=1e-9)
     np.testing.assert_allclose(found.df2, t.degrees, rtol=1e-9)
     np.testing.assert_allclose(found.p, t.p_values(), rtol=1e-9)

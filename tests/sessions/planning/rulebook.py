@@ -22,7 +22,7 @@ def broken_rules(protocol, participant, seed):
         runs.pop()  # the answers choose the values; the plan says which of two comes first
     if any(one == other for run in runs for one, other in pairwise(run)):
         problems.append("twice running")
-    if set(practised) & set(tested):
+    if not protocol.pictures and set(practised) & set(tested):  # pictures are learnt first
         problems.append("practice of what is tested")
     if (len(practised), len(plan.trials)) != (protocol.practice.trials, protocol.trials):
         problems.append("trials missing")
@@ -39,7 +39,9 @@ def broken_rules(protocol, participant, seed):
 
 
 def _shows(protocol, trial):
-    """Braille asked for, in any order if it is reordered; or the values compared."""
+    """Picture, braille asked for, in any order if it is reordered; or the values compared."""
+    if protocol.pictures:
+        return trial.stimuli[0].picture
     if protocol.task == "choice":
         return tuple(stimulus.value for stimulus in trial.stimuli)
     reorders = getattr(protocol.design, "reorder", False)
@@ -59,7 +61,8 @@ def check_rules(protocol, plan):
         raise ValueError(f"it is of the protocol {plan.protocol}")
     protocol = protocol.assigned(plan.group)
     tested = [trial for trial in plan.trials if not trial.catch]
-    practised = set(map(protocol.design.content, protocol.practice.items))
+    shown = protocol.practice.items(protocol.design)
+    practised = set(map(protocol.design.content, shown))
     if len(plan.practice) != protocol.practice.trials:
         raise ValueError(
             f"{len(plan.practice)} trials are practice, and {protocol.practice.trials} must be"
@@ -84,7 +87,9 @@ def check_rules(protocol, plan):
 
 
 def _check_practice(protocol, plan):
-    """Check that practice shows no item of the test."""
+    """Check that practice shows no item of the test, unless it is a picture, which is learnt."""
+    if protocol.pictures:
+        return
     shown = {_content(protocol, trial) for trial in plan.trials if not trial.catch}
     for trial in plan.practice:
         if _content(protocol, trial) in shown:
@@ -107,10 +112,31 @@ def _wanted(protocol):
     if isinstance(design, Combinations):
         things = product(design.characters, repeat=design.length)
     elif isinstance(design, Choice):
-        things = design.pairs()
+        things = _arranged(design)
     else:
         things = (tuple(sorted(s)) if design.reorder else s for s in design.strings)
     return Counter({thing: n * design.repeats for thing, n in Counter(things).items()})
+
+
+def _arranged(design):
+    """Values of the stimuli of each trial, counted out by the words of the page."""
+    r, values = design.reference, design.values
+    if design.form == "single":
+        return [(v,) for v in values]
+    if design.form == "standard":
+        return [(r, v) for v in values]
+    if design.form == "one":
+        return [t for t in product((r, *values), repeat=design.intervals)
+                if t.count(r) == design.intervals - 1]  # fmt: skip
+    if design.form == "triangle":
+        pairs = [(a, b) for v in values for a, b in ((r, v), (v, r))]
+        return [t for a, b in pairs for t in ((a, a, b), (a, b, a), (b, a, a))]
+    if design.form == "abx":
+        return [(a, b, x) for v in values for a, b in ((r, v), (v, r)) for x in (r, v)]
+    others = values if r is None else ()
+    pairs = [*permutations(others, 2), *([(r, v) for v in values] if r is not None else ())]
+    pairs += [(v, r) for v in values] if r is not None else []
+    return [*pairs, *((v, v) for v in values for _ in range(design.same))]
 
 
 def _content(protocol, trial):

@@ -3,7 +3,6 @@
 import re
 from collections import Counter
 from itertools import groupby, pairwise
-from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -16,7 +15,7 @@ from vbraille.errors import InputError
 from vbraille.sessions.planning.chance import balanced_orders
 from vbraille.sessions.planning.making import check_plan, make_plan
 from vbraille.sessions.planning.plan import Plan
-from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol
+from vbraille.sessions.planning.protocolfiles import parse_protocol
 
 ITEMS = "string,kind\nac,word\nca,word\ncc,non\naa,non\n"
 TEXTURE = (
@@ -349,15 +348,3 @@ def test_what_no_search_finds_is_refused_before_anything_is_written():
         assert "no order of its trials was found" in str(error)  # noqa: PT017
     else:
         check_rules(protocol, plan)
-
-
-def test_the_examples_of_the_page_are_protocols():
-    page = Path(__file__).parents[3] / "docs" / "protocols.md"
-    examples = re.findall(r"```toml\n(.*?)```", page.read_text(), re.DOTALL)
-    trials = []
-    for example in examples:
-        protocol = parse_protocol(example, "page.toml")
-        trials.append(len(make_plan(protocol, "P01", 1).trials))
-        assert trials[-1] == protocol.trials
-    assert trials == [54, 8]
-    assert load_protocol("factors").trials == 68

@@ -28,11 +28,11 @@ def test_every_column_of_an_export_has_a_meaning_its_unit_and_its_values():
 
 def test_what_a_protocol_asks_is_its_own_words(tmp_path):
     record = Session(tmp_path / "s", ASKS).sit().record
-    assert entry_of("field_hand", {"hand": "Reading hand"}).meaning == "Reading hand"
+    assert entry_of("field_hand", {"field_hand": "Reading hand"}).meaning == "Reading hand"
     assert entry_of("field_hand").meaning.startswith("answer to a question")
     (beh,) = [json.loads(v) for k, v in bids.files(record).items() if k.endswith("_beh.json")]
     for name in rows(record)[0]:  # the JSON beside a table says what the codebook says
-        assert beh[name] == entry_of(name, {"hand": "Reading hand"}).to_bids()
+        assert beh[name] == entry_of(name, {"field_hand": "Reading hand"}).to_bids()
     assert beh["early"]["Levels"]["1"] == "it does not count"
 
 

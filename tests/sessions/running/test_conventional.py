@@ -19,6 +19,7 @@ from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record import events
 from vbraille.sessions.record.export import rows
 from vbraille.sessions.record.folder import check
+from vbraille.sessions.running.conventional import OnConventional
 from vbraille.sessions.session import Session
 from vbraille.wording import spelled
 
@@ -31,13 +32,22 @@ PATIENCE_S = 20.0
 
 @dataclass
 class Waiting(Person):
-    """A person who does something, or types a line, when what was said matches, or at once."""
+    """A person who does something, or types a line, when what was said matches, or at once.
+
+    An Enter that came too early is typed again.
+    """
+
+    early: int = 0
 
     def lines(self, wait_s):
         time.sleep(wait_s)
         if not self.script:
             return None
         pattern, line = self.script[0]
+        early = sum(sentence.startswith("too early: ") for sentence in self.said)
+        if pattern != "too early" and early > self.early:
+            self.early = early
+            return [""]
         new = enumerate(self.said[self.seen :], self.seen)
         found = next((n for n, sentence in new if pattern and re.search(pattern, sentence)), None)
         if found is not None or not pattern:
@@ -144,6 +154,26 @@ def test_a_display_that_goes_away_in_a_trial_has_it_shown_again(tmp_path):
     assert row["faults"].endswith("drives no display; plug one in")
     assert len(told(session, events.Fault)) == 1
     assert [event.columns for event in told(session, events.DisplayBeside)] == [40, 20, 40]
+
+
+def test_an_enter_before_the_display_shows_it_is_too_early(tmp_path, monkeypatch):
+    one = STRINGS.replace(', "cac"', "") + ALL
+    poll, slow = OnConventional.poll, []
+    monkeypatch.setattr(OnConventional, "poll", lambda self: [] if slow else poll(self))
+    with Brltty(tmp_path) as brltty:
+        session, said = sit(
+            tmp_path / "s",
+            PAPER + one,
+            brltty,
+            ("ready", lambda: slow.append(True)),
+            (None, ""),
+            ("cue", ""),
+            ("too early", slow.clear),
+            ("read: ", "ca"),
+            ("last: ", ""),
+        )
+    assert "read it, then Enter again" in next(each for each in said if "too early" in each)
+    assert [row["attempt"] for row in rows(session.record)] == [1]
 
 
 @heavy  # it starts an engine

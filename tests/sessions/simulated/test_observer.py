@@ -280,7 +280,7 @@ def stimuli(parameter, hand):
 def compare(observer, first, second, parameter, rng):
     """Choose which of two is nearer to the nominal length, as the reader of sessions does."""
     felt = [felt_mm(observer, parameter, each, None) for each in (first, second)]
-    return nearer(*felt, nominal_mm(parameter, observer.geometry), observer.noise, rng)
+    return nearer(felt, nominal_mm(parameter, observer.geometry), observer.noise, rng)
 
 
 @pytest.mark.parametrize("hand", ["sweep:20", "device", "fluent"] if JIT else ["sweep:40"])

@@ -34,7 +34,7 @@ from vbraille.analysis.input.sheets import (
     parse_seconds,
     parse_whole,
 )
-from vbraille.analysis.input.trials import TRIAL_COLUMNS, LeftOut, factor, name_string
+from vbraille.analysis.input.trials import ALL, TRIAL_COLUMNS, LeftOut, factor, name_string
 from vbraille.analysis.statistics.intervals import LARGEST
 from vbraille.errors import InputError
 from vbraille.sessions.planning.questions import KINDS, OneOfTwo
@@ -58,7 +58,11 @@ _UNTIMED = {
     "early": "it was answered before it was read to its end",
 }
 CATCH, _CATCHES = "catch", ("blank", "repeat")
-ALL = "all"  # name of the condition in a protocol that compares none
+# Columns of typed values, in which nothing is filled in.
+_OWN = (
+    *TRIAL_COLUMNS, "first", "second", "chosen", "parameter", "question", "number", "outcome",
+    "confidence",
+)  # fmt: skip
 
 
 class Parsed(NamedTuple):
@@ -109,7 +113,7 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
             answered = answered[~caught]
         told = read_judgements(sheet, answered, _who(sheet, answered))
         if told is not None:
-            judgements[number] = told
+            judgements[number] = _with_others(told, answered)
         answered = answered[~judged(sheet, answered)]
         if answered.empty:
             continue
@@ -121,9 +125,9 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
             read = _strings(sheet, rows)
             warnings += _scored_otherwise(sheet, rows, read)
             left_out += _forget_durations(sheet, rows, read)
-            strings[number] = read.join(rows.drop(columns=_KNOWN, errors="ignore"))
+            strings[number] = _with_others(read, rows)
         if paired.any():
-            pairs[number] = _pairs(sheet, answered[paired])
+            pairs[number] = _with_others(_pairs(sheet, answered[paired]), answered)
     return Parsed(
         _joined(strings, sheets, _trials),
         _joined(pairs, sheets, lambda whole: whole.assign(parameter=factor(whole["parameter"]))),
@@ -131,6 +135,12 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
         tuple(warnings),
         _joined(judgements, sheets, lambda whole: whole.assign(condition=_conditions(whole))),
     )
+
+
+def _with_others(read: pd.DataFrame, rows: pd.DataFrame) -> pd.DataFrame:
+    """Typed columns of some rows, with those that were given beside them."""
+    others = [name for name in rows if name == "duration_s" or name not in _KNOWN]
+    return read.join(rows[[name for name in others if name not in read]])
 
 
 def _joined(
@@ -142,6 +152,8 @@ def _joined(
     if not parts:
         return None
     whole = pd.concat(parts)
+    others = whole.columns.difference([*_OWN]).difference(whole.select_dtypes("float64").columns)
+    whole[others] = whole[others].fillna("")  # empty where a sheet has no such column
     _check_once(whole, sheets)
     names = ("participant", "session", "protocol", "condition")
     whole = typed(whole)
@@ -302,8 +314,6 @@ def _trials(whole: pd.DataFrame) -> pd.DataFrame:
     listed, shown = whole["string_set"], whole["presented"]
     whole = whole.assign(string_set=listed.mask(listed == "", shown), condition=_conditions(whole))
     strings = {name: factor(whole[name], None) for name in ("presented", "string_set", "answered")}
-    others = whole.columns.difference(list(TRIAL_COLUMNS))
-    whole[others] = whole[others].fillna("")  # empty where a sheet has no such column
     return whole.assign(**strings)
 
 
@@ -331,7 +341,8 @@ def judged(sheet: Sheet, rows: pd.DataFrame) -> pd.Series:
                 f"{sheet.place(row)}: question is {kind!r}; it must be one of "
                 f"{', '.join(KINDS)}, or empty"
             )
-    return ~kinds.isin((*USUAL, ""))
+    of_two = rows["presented"].astype(str).str.split().map(len) <= 2
+    return ~kinds.isin((*USUAL, "")) | ((kinds == "which") & ~of_two)
 
 
 def read_judgements(sheet: Sheet, rows: pd.DataFrame, who: pd.DataFrame) -> pd.DataFrame | None:

@@ -9,6 +9,9 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
+import numpy as np
+import pandas as pd
+
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.scoretable import of_sheet
 from vbraille.analysis.input.sessions import read_session
@@ -23,11 +26,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    import pandas as pd
-
-    from vbraille.analysis.input.scoretable import Scores
     from vbraille.analysis.input.sessions import SessionTrials
+    from vbraille.sessions.planning.analysis import PlannedAnalysis
 
+_NOUNS = ("trial", "comparison", "judgement")
 _TOLD_VERSIONS = ("numpy", "scipy", "matplotlib")  # numbers and bytes hang on them
 
 
@@ -133,7 +135,63 @@ def load_study(
     )
 
 
-def load_scores(path: Path) -> tuple[Scores, list[tuple[str, str]]]:
+def excluding(study: Study, planned: PlannedAnalysis) -> Study:
+    """Study without what its planned analysis excludes.
+
+    Trials that took too little or too long are left out, and participants who failed too many
+    catch trials.
+
+    Raises
+    ------
+    InputError
+        If nothing is left.
+    """
+    parts = [study.trials, study.comparisons, study.judgements]
+    left_out, sessions = list(study.left_out), list(study.sessions)
+    for at, (noun, part) in enumerate(zip(_NOUNS, parts, strict=True)):
+        if part is None or "duration_s" not in part:
+            continue
+        taken = pd.to_numeric(part["duration_s"], errors="coerce")
+        fast = taken < (planned.too_fast_s or 0.0)
+        slow = taken > (planned.too_slow_s or np.inf)
+        for wrong, words, limit in (
+            (fast, "less", planned.too_fast_s),
+            (slow, "more", planned.too_slow_s),
+        ):
+            if wrong.any():
+                what = count(int(wrong.sum()), noun)
+                left_out.append(LeftOut(what, f"planned: they took {words} than {limit:g} s"))
+        kept = ~(fast | slow)
+        parts[at] = chosen(part, kept) if kept.any() else None
+    for who, right, asked in _caught(sessions) if planned.catch_right is not None else ():
+        if right < (planned.catch_right or 0.0) * asked:
+            parts, sessions = _kept(parts, sessions, "participant", who, keeps=False)
+            why = f"planned: {right} of {asked} catch trials right"
+            left_out.append(LeftOut(f"participant {who}", why))
+    if all(part is None for part in parts):
+        raise InputError("the planned analysis excludes all trials; see [analysis] of the protocol")
+    return replace(
+        study,
+        trials=parts[0],
+        comparisons=parts[1],
+        judgements=parts[2],
+        sessions=tuple(sessions),
+        left_out=tuple(left_out),
+    )
+
+
+def _caught(sessions: Sequence[SessionTrials]) -> list[tuple[str, int, int]]:
+    """Participants with catch trials, how many they had right, and how many they answered."""
+    found: dict[str, list[bool]] = {}
+    for session in sessions:
+        for row in session.rows:
+            if row.get("catch") and row["answered"] != "":
+                own = found.setdefault(session.head["participant"], [])
+                own.append(row["correct"] == 1)
+    return [(who, sum(right), len(right)) for who, right in found.items()]
+
+
+def load_scores(path: Path) -> tuple[pd.DataFrame, list[tuple[str, str]]]:
     """Read a table of scores, and say where it comes from.
 
     Raises
@@ -143,7 +201,7 @@ def load_scores(path: Path) -> tuple[Scores, list[tuple[str, str]]]:
     """
     sheet = read_csv(path)
     scores = of_sheet(sheet)
-    people = count(len(set(scores.participants)), "participant")
+    people = count(scores["participant"].nunique(), "participant")
     about = [
         ("Data", f"{count(len(sheet), 'score')} of {people}"),
         (f"File {path.name}", f"{count(len(sheet), 'row')}, SHA-256 {_sum(path)}"),
@@ -213,7 +271,7 @@ def _read(paths: Sequence[Path]) -> tuple[list[SessionTrials], dict[Path, Sheet]
 
 def _describe(parts: Sequence[pd.DataFrame | None]) -> str:
     told = []
-    for noun, part in zip(("trial", "comparison", "judgement"), parts, strict=True):
+    for noun, part in zip(_NOUNS, parts, strict=True):
         if part is None:
             continue
         people = count(part["participant"].nunique(), "participant")

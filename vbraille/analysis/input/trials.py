@@ -33,11 +33,12 @@ from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.braille.spelling import LETTERS, UNREAD
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
     from typing import Any
 
     from numpy.typing import NDArray
 
+ALL = "all"  # name of the condition in a protocol that compares none
 TRIAL_COLUMNS = (
     "participant", "session", "protocol", "condition", "block", "trial", "presented", "string_set",
     "answered", "correct", "duration_s",
@@ -149,6 +150,17 @@ def groups(
     """
     grouped: Any = frame.groupby(list(names), observed=observed)
     return iter(grouped)
+
+
+def cells(frame: pd.DataFrame, columns: Sequence[str]) -> Iterator[tuple[str, pd.DataFrame]]:
+    """Rows of each combination of the levels of some columns, named by them; "all" without any."""
+    if not columns:
+        yield ALL, frame
+        return
+    for levels, part in frame.assign(**{n: factor(frame[n]) for n in columns}).groupby(
+        list(columns), observed=True
+    ):
+        yield ", ".join(map(str, levels)), part
 
 
 def written(trials: pd.DataFrame) -> pd.DataFrame:

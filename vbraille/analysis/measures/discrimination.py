@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from vbraille.analysis.input.parsing import LEVELS
-from vbraille.analysis.input.trials import groups
+from vbraille.analysis.input.trials import cells, groups
 from vbraille.analysis.results import (
     CONDITION,
     NOTE_COLUMN,
@@ -25,7 +25,7 @@ from vbraille.analysis.statistics.intervals import Unanswerable
 from vbraille.analysis.statistics.psychometric import fit_psychometric
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -60,20 +60,20 @@ SENSITIVITY = Schema(
 _DETECTIONS = {"detect": yes_no, "same-different": same_different, "which": two_alternatives}
 
 
-def sensitivity(judgements: pd.DataFrame) -> ResultTable:
-    """Sensitivity and criterion of each participant in each condition."""
+def sensitivity(judgements: pd.DataFrame, columns: Sequence[str] = ("condition",)) -> ResultTable:
+    """Sensitivity and criterion of each participant in each cell of some columns."""
     rows: list[Row] = []
     for question, detection in _DETECTIONS.items():
         asked = judgements[(judgements["question"] == question) & (judgements["outcome"] != "")]
         for (participant, _), own in groups(asked, "participant", "protocol"):
-            for (condition,), part in groups(own, "condition"):
+            for cell, part in cells(own, columns):
                 counts = _counts(question, part, own)
                 if not counts[1] and question != "which":
                     continue  # a condition of blank trials alone
                 row: Row = dict(
                     zip(("hits", "signals", "false_alarms", "noises"), counts, strict=True)
                 )
-                row |= {"question": question, "participant": participant, "condition": condition}
+                row |= {"question": question, "participant": participant, "condition": cell}
                 try:
                     rows.append(row | _told(detection(*counts)))
                 except Unanswerable as reason:
@@ -114,6 +114,7 @@ _WHOSE = (
     Column("question", "question", "detect or which"),
     PARTICIPANT,
     PROTOCOL,
+    Column("condition", "condition", "levels of what it is found for; all if that is all"),
     Column("level", "level", "what varies, with its unit: of which, the difference of the two"),
 )
 _NONE = "no level of what was detected or told apart varies"
@@ -174,11 +175,19 @@ class LevelAnswers(NamedTuple):
     blanks: tuple[int, int] = (0, 0)  # answers yes, and all
 
 
-def thresholds(judgements: pd.DataFrame) -> tuple[ResultTable, ResultTable]:
-    """Threshold of each participant for each level that varies, and the answers by level."""
+def thresholds(
+    judgements: pd.DataFrame, columns: Sequence[str] = ()
+) -> tuple[ResultTable, ResultTable]:
+    """Threshold of each participant for each level that varies, and the answers by level.
+
+    Parameters
+    ----------
+    columns
+        Columns in each combination of whose levels there is a threshold of its own.
+    """
     rows: list[Row] = []
     shares: list[Row] = []
-    for asked in (*_detected(judgements), *_told_apart(judgements)):
+    for asked in (*_detected(judgements, columns), *_told_apart(judgements, columns)):
         if isinstance(asked, dict):
             rows.append(asked)
             continue
@@ -202,7 +211,7 @@ def thresholds(judgements: pd.DataFrame) -> tuple[ResultTable, ResultTable]:
     return THRESHOLDS.fill(rows), THRESHOLD_LEVELS.fill(shares)
 
 
-def _detected(judgements: pd.DataFrame) -> Iterator[LevelAnswers]:
+def _detected(judgements: pd.DataFrame, columns: Sequence[str]) -> Iterator[LevelAnswers]:
     """Answers yes by level and at nothing, for each level that varies in what was detected.
 
     Blank trials are at no level, whatever their dots or their contrast would have been.
@@ -211,17 +220,19 @@ def _detected(judgements: pd.DataFrame) -> Iterator[LevelAnswers]:
     for (participant, protocol), own in groups(asked, "participant", "protocol"):
         blank = own["outcome"].isin(_BLANK)
         blanks = int((own["outcome"] == "false alarm").sum()), int(blank.sum())
-        for level in LEVELS:
-            known = own[level].notna()
-            part = own[known & ~blank]
-            if own[known][level].nunique() < 2 or part.empty:
-                continue
-            whose: Row = {"question": "detect", "participant": participant, "protocol": protocol}
-            counted = _counted(whose | {"level": level}, part[level], part["outcome"] == "hit")
-            yield counted._replace(blanks=blanks)
+        for cell, shown in cells(own[~blank], columns):
+            for level in (name for name in LEVELS if name not in columns):
+                part = shown[shown[level].notna()]
+                # A blank trial of no contrast is a level, too.
+                if own[own[level].notna()][level].nunique() < 2 or part.empty:
+                    continue
+                whose: Row = {"question": "detect", "participant": participant}
+                whose |= {"protocol": protocol, "condition": cell, "level": level}
+                counted = _counted(whose, part[level], part["outcome"] == "hit")
+                yield counted._replace(blanks=blanks)
 
 
-def _told_apart(judgements: pd.DataFrame) -> Iterator[LevelAnswers | Row]:
+def _told_apart(judgements: pd.DataFrame, columns: Sequence[str]) -> Iterator[LevelAnswers | Row]:
     """Right answers by difference, for each parameter of which one of two was right.
 
     A row with a note stands for what can have no threshold.
@@ -232,9 +243,14 @@ def _told_apart(judgements: pd.DataFrame) -> Iterator[LevelAnswers | Row]:
     known = which.assign(apart=second - first, first=values[0] == which["answered"])
     known = known[known["apart"].notna() & (known["apart"] != 0)]
     for (participant, protocol), own in groups(known, "participant", "protocol"):
-        for parameter, part in own.groupby("parameter", sort=True):
+        each = (
+            (cell, parameter, part)
+            for cell, shown in cells(own, columns)
+            for parameter, part in shown.groupby("parameter", sort=True)
+        )
+        for cell, parameter, part in each:
             whose: Row = {"question": "which", "participant": participant, "protocol": protocol}
-            whose |= {"level": str(parameter) or "value"}
+            whose |= {"condition": cell, "level": str(parameter) or "value"}
             right = part["outcome"] == "right"
             # The second is right if it was chosen rightly, or the first wrongly.
             more = (part["apart"] > 0) == (right != part["first"])

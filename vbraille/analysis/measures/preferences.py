@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from vbraille.adaptive.questplus import GridAxis, geometric, nearer_quest, steps
-from vbraille.analysis.input.trials import chosen, codes
+from vbraille.analysis.input.trials import cells, chosen, codes
 from vbraille.analysis.results import (
     NOTE_COLUMN,
     PARTICIPANT,
@@ -24,7 +24,7 @@ from vbraille.sessions.planning.procedures import PREFERRED as CENTRE
 from vbraille.sessions.planning.procedures import QuestProcedure
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -166,6 +166,7 @@ LIKED = Schema(
     (
         _PARAMETER,
         PARTICIPANT,
+        Column("condition", "condition", "levels of what it is found for; all if that is all"),
         Column("comparisons", "comparisons", "how many", Kind.COUNT),
         Column("preferred", "preferred", "value of the parameter", Kind.NUMBER),
         *ends(of="95 % credible interval"),
@@ -175,7 +176,9 @@ LIKED = Schema(
 _STEPS, _SPREADS, _LAPSES = 50, 9, 0.03
 
 
-def own_values(comparisons: pd.DataFrame, protocols: Iterable[Protocol]) -> ResultTable:
+def own_values(
+    comparisons: pd.DataFrame, protocols: Iterable[Protocol], columns: Sequence[str] = ()
+) -> ResultTable:
     """Preferred value of each participant: a row for each parameter and participant.
 
     Parameters
@@ -184,6 +187,8 @@ def own_values(comparisons: pd.DataFrame, protocols: Iterable[Protocol]) -> Resu
         Which of two was chosen, a row for each comparison.
     protocols
         Protocols of the sessions; none where the comparisons come from elsewhere.
+    columns
+        Columns in each combination of whose levels there is a value of its own.
     """
     known = _axes_of(protocols)
     rows: list[Row] = []
@@ -194,8 +199,9 @@ def own_values(comparisons: pd.DataFrame, protocols: Iterable[Protocol]) -> Resu
             continue
         axes = known.get(parameter) or _usual(float(shown.min()), float(shown.max()))
         for participant, own in part.groupby("participant", observed=True, sort=True):
-            row = _row(own, axes)
-            rows.append({"parameter": parameter, "participant": participant} | row)
+            for cell, answers in cells(own, columns):
+                whose: Row = {"parameter": parameter, "participant": participant}
+                rows.append(whose | {"condition": cell} | _row(answers, axes))
     return LIKED.fill(rows)
 
 

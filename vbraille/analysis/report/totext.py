@@ -6,7 +6,6 @@ import json
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from vbraille.analysis.report.tohtml import ROWS
 from vbraille.analysis.results import NOTE, to_print
 from vbraille.wording import setting
 
@@ -15,6 +14,7 @@ if TYPE_CHECKING:
 
     from vbraille.analysis.results import Column, Results, ResultTable, Value
 
+ROWS = 60  # rows of a table that a terminal shows: more is too long to listen to
 # One value a line, so that two files can be compared; json's own indenting takes ten times as long.
 _SEPARATOR = ",\n"
 _ENCODE = json.JSONEncoder(
@@ -28,7 +28,10 @@ def to_json(results: Results) -> Iterator[str]:
     head = {
         "title": results.title,
         "warnings": results.warnings,
+        "question": results.question,
         "findings": results.findings,
+        "methods": results.methods,
+        "excluded": results.excluded,
         "about": dict(results.about),
         "main_figure": results.main or None,
         "figures": {
@@ -67,10 +70,14 @@ def to_lines(results: Results) -> Iterator[str]:
     yield results.title
     for warning in results.warnings:
         yield f"warning: {warning}"
-    for finding in results.findings:
-        yield f"found: {finding}"
-    for word, sentence in results.about:
-        yield f"{word}: {sentence}"
+    for word, sentences in (
+        ("question", results.question),
+        ("found", results.findings),
+        ("methods", (results.methods,) if results.methods else ()),
+        ("left out", results.excluded),
+    ):
+        for sentence in sentences:
+            yield f"{word}: {sentence}"
     for chapter in results.chapters:
         for table in chapter.tables:
             yield f"table {table.name}: {table.title}"

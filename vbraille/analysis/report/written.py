@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.analysis.report.tohtml import KINDS, csv_name, figure_name, to_html
-from vbraille.analysis.report.tomarkdown import to_markdown
 from vbraille.analysis.report.totext import to_json
 from vbraille.analysis.results import Kind, to_csv
 from vbraille.files import check_free, write_folder
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 
     from vbraille.analysis.results import Column, Results, ResultTable
 
-PAGE, TEXT, NUMBERS = "report.html", "report.md", "results.json"
+PAGE, NUMBERS = "report.html", "results.json"
 TRIALS = "trials.csv"
 CODEBOOK = "codebook.csv"
 _UNITS = {Kind.PERCENT: "share, 1 = 100 %", Kind.COUNT: "count"}
@@ -68,12 +67,13 @@ def _files(results: Results) -> dict[str, bytes]:
     svgs: dict[str, bytes] = {}
     for figure in results.figures():
         drawing = draw_chart(figure.chart)
-        for kind in KINDS:
+        # That of the result is for a paper; the others are to be looked at.
+        for kind in KINDS if figure.name == results.main else KINDS[:1]:
             drawn[figure_name(figure, kind)] = to_bytes(drawing, kind, _DPI)
-        svgs[figure.name] = drawn[figure_name(figure, "svg")]
+        if figure.name == results.main:
+            svgs[figure.name] = drawn[figure_name(figure, "svg")]
     return {
-        PAGE: encode(to_html(results, svgs, (TEXT, NUMBERS, *trials, CODEBOOK))),
-        TEXT: encode(to_markdown(results, (PAGE, NUMBERS, *trials, CODEBOOK))),
+        PAGE: encode(to_html(results, svgs, (NUMBERS, *trials, CODEBOOK))),
         NUMBERS: b"".join(encode(part) for part in to_json(results)),
         **trials,
         CODEBOOK: encode(codebook(results, TRIALS)),

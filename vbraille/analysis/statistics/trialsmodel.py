@@ -331,9 +331,9 @@ def separate_cells(participants: int, cells: int) -> NDArray[np.float64]:
 
 
 def difference(
-    fit: TrialsFit, first: ArrayLike, second: ArrayLike
+    fit: TrialsFit, weights: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Ends of the interval of a difference of two shares of right answers, first less second.
+    """Ends of the interval of a difference of shares of right answers.
 
     It is that of the inverse hyperbolic tangent of the difference, by the slope along
     the coefficients (delta method) and t with the degrees of freedom of the difference itself.
@@ -343,18 +343,20 @@ def difference(
     Parameters
     ----------
     fit
-        A fitted model.
-    first, second : float[p]
-        Values of the design's columns at each.
+        A model whose columns are cells of their own, as `separate_cells` makes them.
+    weights : float[cells]
+        What the shares are multiplied by before they are added up; those above 0 add up to 1, and
+        those below to -1.
 
     Returns
     -------
     low, high : float64[studies]
         From -1 to 1; NaN where there is no interval.
     """
-    (one, up), (two, down) = (_share(fit, of) for of in (first, second))
-    value = one - two
-    apart = combine(fit, up - down)
+    row = np.asarray(weights, np.float64)
+    share = expit(fit.coefficients)
+    value = share @ row
+    apart = combine(fit, share * (1 - share) * row)
     half = student.ppf(1 - TAIL, apart.degrees) * apart.errors / (1 - value**2)
     middle = np.arctanh(value)
     return np.tanh(middle - half), np.tanh(middle + half)
@@ -380,8 +382,8 @@ def tells_difference(correct: ArrayLike, trials: ArrayLike) -> NDArray[np.bool_]
     return some[0] & some[1]
 
 
-def compare(fit: TrialsFit, first: ArrayLike, second: ArrayLike) -> Contrasts:
-    """Test that two shares of right answers are the same.
+def compare(fit: TrialsFit, weights: ArrayLike) -> Contrasts:
+    """Test that a difference of shares of right answers is 0.
 
     They are compared as 2 asin √share, by the slope along the coefficients: the errors of this do
     not depend on the share. Log odds find too much in two groups of twenty people near the ceiling
@@ -389,18 +391,17 @@ def compare(fit: TrialsFit, first: ArrayLike, second: ArrayLike) -> Contrasts:
 
     Parameters
     ----------
-    fit
-        A fitted model.
-    first, second : float[p]
-        Values of the design's columns at each.
+    fit, weights
+        As for `difference`.
 
     Returns
     -------
     Contrasts
-        Difference of the two, first less second, with its error and degrees of freedom of t.
+        The difference with its error and degrees of freedom of t.
     """
-    (one, up), (two, down) = (_even(fit, of) for of in (first, second))
-    return replace(combine(fit, up - down), estimates=one - two)
+    row = np.asarray(weights, np.float64)
+    even, slope = _even(fit)
+    return replace(combine(fit, slope * row), estimates=even @ row)
 
 
 def compare_all(fit: TrialsFit, contrasts: ArrayLike) -> JointTest:
@@ -419,24 +420,14 @@ def compare_all(fit: TrialsFit, contrasts: ArrayLike) -> JointTest:
         If there are no more participants than contrasts.
     """
     rows = np.asarray(contrasts, np.float64)
-    values, slopes = zip(*(_even(fit, cell) for cell in np.eye(rows.shape[-1])), strict=True)
-    # The slope of a cell is along its own coefficient alone.
-    weights = rows[None] * np.sum(slopes, axis=0)[:, None]
-    return _try_jointly(fit, weights, np.stack(values, axis=-1) @ rows.T)
+    even, slope = _even(fit)
+    return _try_jointly(fit, rows[None] * slope[:, None], even @ rows.T)
 
 
-def _share(fit: TrialsFit, at: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Share at values of the design's columns, and its slope along the coefficients."""
-    columns = np.asarray(at, np.float64)
-    share = expit(fit.coefficients @ columns)
-    return share, (share * (1 - share))[:, None] * columns
-
-
-def _even(fit: TrialsFit, at: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The same of 2 asin √share."""
-    columns = np.asarray(at, np.float64)
-    share = expit(fit.coefficients @ columns)
-    return 2 * np.arcsin(np.sqrt(share)), np.sqrt(share * (1 - share))[:, None] * columns
+def _even(fit: TrialsFit) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """2 asin √share of each cell, float64[studies, cells], and its slope along the coefficient."""
+    share = expit(fit.coefficients)
+    return 2 * np.arcsin(np.sqrt(share)), np.sqrt(share * (1 - share))
 
 
 def _try_jointly(fit: TrialsFit, rows: NDArray[np.float64], d: NDArray[np.float64]) -> JointTest:

@@ -9,18 +9,18 @@ import webbrowser
 from typing import TYPE_CHECKING
 
 from vbraille.cli.options.exploring import check_live_options
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.live.monitor import has_desktop
 from vbraille.live.server import LiveServer
 from vbraille.playback import open_recording
+from vbraille.signals import EAR
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
     import argparse
 
-    from vbraille.playback.recorded import Recording
+    from vbraille.playback.recorded import Playback
 
 # So long a signal may wait to be heard.
 _HEED_S = 0.1
@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-async def _serve(source: Recording, host: str | None, port: int | None) -> None:
+async def _serve(source: Playback, host: str | None, port: int | None) -> None:
     server = LiveServer(source, host=host, port=port, steers=False)
     async with server:
         address = server.admission.watching_address

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vbraille.cli.options.exploring import check_live_options
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.planning.stimuli import said_value
 from vbraille.sessions.record.folder import nearly_same
 from vbraille.sessions.running.responses import Typed
+from vbraille.signals import EAR
 from vbraille.simulation.specs import refuse_hand
 from vbraille.wording import spelled
 
@@ -51,6 +51,8 @@ def _plan(arguments: argparse.Namespace) -> int:
     protocol, plan = plan_session(arguments.protocol, arguments.participant, **_chances(arguments))
     if arguments.brf and protocol.task == "choice":
         raise InputError(f"{protocol.name} compares dots, which cannot be embossed")
+    if arguments.brf and protocol.pictures:
+        raise InputError(f"{protocol.name} shows pictures, which are no braille; leave --brf out")
     if arguments.seed is None:
         say_line(f"seed: {plan.seed}", aside=True)
     if arguments.brf:
@@ -181,7 +183,31 @@ def _pilot(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _withdraw(arguments: argparse.Namespace) -> int:
+    from vbraille.sessions.record.withdrawal import withdrawal
+
+    rooms = [Path(name) for name in arguments.paths or ["."]]
+    told = withdrawal(rooms, arguments.participant)
+    left = [f"left: {path} names {told.participant}; look at it yourself" for path in told.left]
+    if not told.found:
+        for sentence in left:
+            _say(sentence)
+        names = ", ".join(map(str, rooms))
+        raise InputError(f"there is nothing of {arguments.participant} to remove in {names}")
+    if not arguments.yes:
+        for sentence in told.sentences():
+            _say(f"found: {sentence}")
+        _say(f"remove all of {arguments.participant} for good? (yes or no):")
+        if (Typed().line() or "").strip().lower() not in ("y", "yes"):
+            raise InputError("nothing was removed; answer yes, or give --yes")
+    told.remove()
+    for sentence in [*(f"removed: {each}" for each in told.sentences()), *left]:
+        _say(sentence)
+    return 1 if left else 0
+
+
 _ACTIONS = {
+    "withdraw": _withdraw,
     "pilot": _pilot,
     "protocols": _protocols,
     "plan": _plan,
@@ -194,13 +220,16 @@ _ACTIONS = {
 
 
 def _describe(protocol: Protocol, trial: Trial) -> str:
-    if len(trial.stimuli) == 2:
+    if protocol.parameter is not None:
         if protocol.adaptive and not trial.practice:
             first, second = (stimulus.value or 0.0 for stimulus in trial.stimuli)
             return f"{trial.condition}, the {'lower' if first < second else 'higher'} value first"
         values = [stimulus.value or 0.0 for stimulus in trial.stimuli]
         return ", then ".join(said_value(value, protocol.parameter) for value in values)
-    text = trial.stimuli[0].text
+    stimulus = trial.stimuli[0]
+    if stimulus.picture is not None:
+        return f"{trial.condition}, {stimulus.picture}"
+    text = stimulus.text
     written = "" if text is None else f"{text}, "
     cells = f"{_cells(trial).to_unicode()}, dots {_cells(trial).to_dots()}"
     return f"{trial.condition}, {written}{cells}"

@@ -11,7 +11,7 @@ TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vbraille.cli.options.commandparser import CommandParser
+    from vbraille.cli.parser import CommandParser
 
 
 class Pairs(argparse.Action):
@@ -141,6 +141,15 @@ def session_methods(parser: CommandParser) -> None:
     )
 
 
+def session_withdraw(parser: CommandParser) -> None:
+    """Add the options of ``vbraille session withdraw``."""
+    parser.add_argument("participant", metavar="P07", help="Remove the data of this participant.")
+    parser.add_argument(
+        "paths", nargs="*", metavar="DIR", help="Look in these directories (default: here)."
+    )
+    parser.flag("--yes", "Remove all of it without asking before.")
+
+
 def session_check(parser: CommandParser) -> None:
     """Add the options of ``vbraille session check``."""
     _folder(parser)
@@ -184,14 +193,16 @@ def analyse(parser: CommandParser) -> None:
     parser.option(
         "--factors",
         "NAME,NAME",
-        "Compare trials by these columns, such as texture,contrast (default: condition).",
+        "Compare trials by these columns, such as texture,contrast (default: as the protocol "
+        "plans; condition without one).",
         names,
     )
     parser.choice(
         "--correction",
         ("none", "bonferroni", "holm", "fdr"),
-        "Correct the p-values of t-tests for their number in this way.",
-        default="holm",
+        "Correct p for the number of tests in this way (default: as the protocol plans; holm "
+        "without one).",
+        default=None,
     )
     parser.option(
         "--marks",

@@ -38,8 +38,7 @@ if TYPE_CHECKING:
 
     from vbraille.devices.events import Event
     from vbraille.devices.latero.wire import Answer
-    from vbraille.display import Display
-    from vbraille.pose import Pose
+    from vbraille.display import Display, Pose
 
 _U16, _U32 = 0xFFFF, 0xFFFF_FFFF
 _EXAMPLE: Final = "latero:192.168.1.111"
@@ -274,6 +273,7 @@ class LateroDevice(Device):
         Clock, and function that waits for a number of seconds.
     """
 
+    display = DISPLAY
     acknowledges = True
     ahead_ns = AHEAD_NS
 
@@ -298,11 +298,6 @@ class LateroDevice(Device):
         self._called_ns = now_ns()
         self._unsent = 0
         self._copy()
-
-    @property
-    def display(self) -> Display:
-        """The Latero's array, on its carrier."""
-        return DISPLAY
 
     def set_zero(self) -> None:
         """Take the place for the lower left corner with the third arm straight up."""

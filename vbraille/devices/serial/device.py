@@ -36,8 +36,7 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.devices.serial.port import Address
     from vbraille.devices.serial.wire import Info
-    from vbraille.display import Display
-    from vbraille.pose import Pose
+    from vbraille.display import Display, Pose
 
 
 # Number of reads that empty a line: a stopped host has left some kB unread at most.
@@ -81,7 +80,7 @@ class SerialDevice(Device):
         assert conversation.display is not None
         self.port = port
         self.conversation = conversation
-        self._display = conversation.display
+        self.display = conversation.display
         self._now_ns = now_ns
         self._pause = pause
         self._losses = port.losses
@@ -89,11 +88,6 @@ class SerialDevice(Device):
         self._steady = SteadyConversation()
         self._left_over = b""  # bytes that came while the conversation was steady
         self._copy()
-
-    @property
-    def display(self) -> Display:
-        """Display that the device described first."""
-        return self._display
 
     @property
     def has_own_gains(self) -> bool:

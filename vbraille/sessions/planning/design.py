@@ -94,6 +94,7 @@ class BlockOrder(Table, frozen=True, kw_only=True):
 
 
 MOST_TRIALS = 10_000
+MOST_INTERVALS = 5
 UNFELT = ("row_spacing_mm", "line_pitch_mm")  # lengths that change nothing in a single line
 
 # Dot masks of the cells asked for, or the values compared, or a `WrittenText`.
@@ -271,20 +272,28 @@ class StringList(_Design, frozen=True, tag="list"):
 
 
 class Choice(_Design, frozen=True, tag="choice"):
-    """A design that compares one string at two values of a parameter.
+    """A design that compares one string at values of a parameter.
 
     Parameters
     ----------
     parameter
-        What is compared, one of `KNOBS`; ``dot_gap_mm`` is the gap between the two dots of a cell,
+        What is compared; ``dot_gap_mm`` is the gap between the two dots of a cell,
         from edge to edge.
     values
-        Values of the parameter, in mm if it is a length; each is compared with each other one.
+        Values of the parameter, in mm if it is a length.
     string
-        Dot masks of the string that is shown at both values.
+        Dot masks of the string that is shown at all of them.
     reference
-        Value that each of the values is compared with, in both orders, instead of with each
-        other; None if there is none.
+        The standard, which each of the values is compared with; None if there is none.
+    form
+        Stimuli of a trial, whose places are balanced. "pairs": each value and each other one, or
+        the standard if there is one, in both orders. "single": each value alone. "standard": the
+        standard, and then a value. "one": a value at each place among as many standards as
+        ``intervals`` has room for. "triangle": three, one of which differs: a value among
+        standards, or the standard among values. "abx": the standard and a value in either order,
+        and one of the two again.
+    intervals
+        Number of stimuli in a trial of the form "one".
     same
         How often each value is compared with itself, in each of the repeats.
 
@@ -299,11 +308,23 @@ class Choice(_Design, frozen=True, tag="choice"):
     values: tuple[float, ...]
     string: Masks
     reference: float | None = None
+    form: Literal["pairs", "single", "standard", "one", "triangle", "abx"] = "pairs"
+    intervals: int = 2
     same: int = 0
 
     def __post_init__(self) -> None:
         super().__post_init__()
         check_range("same", self.same, 0, MOST_TRIALS)
+        check_range("intervals", self.intervals, 2, MOST_INTERVALS)
+        if self.intervals != 2 and self.form != "one":
+            raise ValueError("intervals are of form = 'one'; leave them out")
+        alone = self.form == "single"
+        if alone and self.reference is not None:
+            raise ValueError("reference is compared, and form is 'single'; leave one of them out")
+        if self.form not in ("pairs", "single") and self.reference is None:
+            raise ValueError(f"reference is missing, and form is {self.form!r}; add it")
+        if self.same and self.form != "pairs":
+            raise ValueError("same is of form = 'pairs'; leave it out")
         if len(self.values) < 2 and self.reference is None:
             raise ValueError(f"values are {len(self.values)}; give two or more to compare")
         if not self.values:
@@ -313,7 +334,7 @@ class Choice(_Design, frozen=True, tag="choice"):
         for value in self.values:
             check_range("values: one", value, *_bounds(knob), knob.unit)
         check_range("reference", self.reference, *_bounds(knob), knob.unit)
-        if self.reference in self.values:
+        if self.reference in self.values and self.form != "standard":
             raise ValueError(
                 f"reference is {self.reference:g}, which is one of values; leave it out there"
             )
@@ -341,16 +362,43 @@ class Choice(_Design, frozen=True, tag="choice"):
         return frozenset(self.string)
 
     def items(self) -> Sequence[Item]:
-        """Values of the first and the second stimulus in the trials of a condition."""
-        return self.pairs() * self.repeats
-
-    def pairs(self) -> list[Item]:
-        """Pairs of values that are compared in each of the repeats."""
+        """Values of the stimuli in the trials of a condition."""
         alike = [(value, value) for value in self.values] * self.same
-        if self.reference is None:
-            return [*permutations(self.values, 2), *alike]
-        compared = [(self.reference, value) for value in self.values]
-        return [*compared, *(pair[::-1] for pair in compared), *alike]
+        return [*self.of_values(self.values), *alike] * self.repeats
+
+    @property
+    def stimuli(self) -> int:
+        """Number of stimuli in a trial."""
+        return len(self.items()[0])
+
+    def of_values(self, values: tuple[float, ...]) -> list[Item]:
+        """Values of the stimuli of each trial in which some values are shown."""
+        standard = self.reference
+        if standard is None:
+            return [(v,) for v in values] if self.form == "single" else [*permutations(values, 2)]
+        first = [(standard, value) for value in values]
+        match self.form:
+            case "standard":
+                return first
+            case "one":
+                places = range(self.intervals)
+                return [
+                    tuple(value if place == at else standard for place in places)
+                    for at in places
+                    for value in values
+                ]
+            case "triangle":
+                odd = [pair for one, other in first for pair in ((one, other), (other, one))]
+                return [
+                    tuple(other if place == at else one for place in range(3))
+                    for at in range(3)
+                    for one, other in odd
+                ]
+            case "abx":
+                pairs = [*first, *(pair[::-1] for pair in first)]
+                return [(*pair, again) for pair in pairs for again in pair]
+            case _:
+                return [*first, *(pair[::-1] for pair in first)]
 
 
 class ItemList(_Design, frozen=True, tag="items"):
@@ -487,18 +535,21 @@ class Practice(Table, frozen=True):
                 raise ValueError("file has the strings; leave strings and values out")
         check_range("trials", self.trials, 0, MOST_TRIALS)
 
-    @property
-    def items(self) -> tuple[Item, ...]:
-        """Items of practice: the strings, or all pairs of two different values in both orders."""
-        return self.strings or tuple(permutations(self.values, 2))
+    def items(self, design: Design) -> tuple[Item, ...]:
+        """Items of practice: the strings, or the values as the design arranges its own."""
+        if isinstance(design, Choice):
+            return tuple(design.of_values(self.values)) if self.values else ()
+        return self.strings
 
     def lines(self, design: Design) -> list[tuple[int, ...]]:
         """Cells of all strings practised, with delimiters; empty if values are compared."""
         before, after = design.around
         return [(*before, *string, *after) for string in self.strings]
 
-    def check(self, design: Design) -> None:
+    def check(self, design: Design, *, pictures: bool = False) -> None:
         """Check that this practice goes with a test of a design, and gives nothing of it away.
+
+        Pictures are learnt before they are asked for, and may be those of the test.
 
         Raises
         ------
@@ -519,7 +570,7 @@ class Practice(Table, frozen=True):
         for string, line in zip(self.strings, self.lines(design), strict=True):
             if not any(line):
                 raise ValueError("strings have one without dots, and nothing can be felt of it")
-            if _is_shown(design, string):
+            if not pictures and _is_shown(design, string):
                 raise ValueError(
                     f"strings have {name_item(string)}, which the test shows; give another"
                 )

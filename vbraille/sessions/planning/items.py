@@ -37,7 +37,7 @@ class Items(Table, frozen=True, kw_only=True):
     length
         Number of cells of each string that a rule draws; of characters, if strings are texts.
     count
-        Number of strings that a rule draws; None, for words, for all that have the length.
+        Number of strings that a rule draws; None for all words that have the length.
     characters
         Cells that drawn strings may have; empty, for words, for all.
     distinct

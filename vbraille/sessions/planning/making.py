@@ -278,10 +278,11 @@ def _practice(protocol: Protocol, conditions: list[Condition], chance: Chance) -
     """Practice trials, in which each item, and each condition, is used about equally often."""
     practice, design = protocol.practice, protocol.design
     reorders = isinstance(design, StringList) and design.reorder
-    orders = {item: _reorderings(item, chance) for item in practice.items if reorders}
+    items = practice.items(design)
+    orders = {item: _reorderings(item, chance) for item in items if reorders}
     deck: list[Item] = []
-    while practice.items and len(deck) < practice.trials:
-        deck += chance.shuffled(practice.items)
+    while items and len(deck) < practice.trials:
+        deck += chance.shuffled(items)
     drawn = [
         (next(orders[item]) if reorders else item, condition)
         for item, condition in zip(deck[: practice.trials], cycle(conditions), strict=False)
@@ -302,7 +303,7 @@ def _trial(protocol: Protocol, item: Item, condition: Condition, block: int) -> 
         shown = [(item if text else (*before, *map(int, item), *after), None)]
         asked = (len(before), len(before) + len(item))
     stimuli = Stimuli(protocol.shown(condition, masks, value) for masks, value in shown)
-    if stimuli[0].text is not None:
+    if stimuli[0].text is not None or stimuli[0].picture is not None:
         asked = (0, len(stimuli[0].masks))
     return Trial(1, block, condition.name, asked, stimuli)
 

@@ -104,8 +104,8 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
     Parameters
     ----------
     step
-        Step from one value that may be asked to the next; None, where two are compared, for the
-        values of the design alone.
+        Step from one value that may be asked to the next; None for the values of the design alone,
+        where two are compared.
     furthest
         Largest difference between two values that are compared; None for any.
     scale
@@ -164,8 +164,10 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
             If it does not.
         """
         if isinstance(design, Choice):
-            if design.reference is not None:
-                raise ValueError("chooses both values of a pair; leave reference out of [design]")
+            if design.reference is not None or design.form != "pairs":
+                raise ValueError(
+                    "chooses both values of a pair; leave reference and form out of [design]"
+                )
             if self.parameter is not None or self.least is not None or self.most is not None:
                 raise ValueError("parameter, least and most are those of [design]; leave them out")
         else:

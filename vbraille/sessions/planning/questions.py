@@ -18,9 +18,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from statistics import median
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 from vbraille.braille.spelling import (
+    ORDINALS,
     UNREAD,
     parse_answer,
     parse_choice,
@@ -29,7 +31,7 @@ from vbraille.braille.spelling import (
     to_braille,
 )
 from vbraille.errors import check_range
-from vbraille.sessions.planning.pace import LONGEST_LINE, check_line
+from vbraille.sessions.planning.pace import LONGEST_LINE, MOST_BUTTONS, check_line, check_name
 from vbraille.sessions.planning.spellings import parse_text
 from vbraille.sessions.planning.stimuli import KNOBS, said_value
 from vbraille.sessions.simulated.feeling import nearer
@@ -47,6 +49,7 @@ if TYPE_CHECKING:
 
 RIGHT, WRONG = "right", "wrong"
 HIT, MISS, FALSE_ALARM, REJECTION = "hit", "miss", "false alarm", "correct rejection"
+_NUMBERS = ("", "one", "two", "three", "four", "five")
 GOOD = frozenset((RIGHT, HIT, REJECTION))  # outcomes of right answers
 _MOST_STEPS = 101
 LARGEST = 1e9
@@ -129,6 +132,7 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
     """
 
     stimuli: ClassVar[tuple[int, ...]] = (1, 2)  # how many stimuli a trial may have
+    forms: ClassVar[tuple[str, ...]] = ()  # forms of a choice that it can be asked of; none for any
     outcomes: ClassVar[frozenset[str]] = frozenset()  # how answers may be scored
     words: ClassVar[tuple[str, ...]] = ()  # all answers, the one that is looked for first
     numeric: ClassVar[bool] = False  # whether answers are numbers on a scale
@@ -152,13 +156,15 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
         """Say what may be typed as an answer."""
         return self.typed
 
-    def check(self, stimuli: int, *, adaptive: bool) -> None:
+    def check(self, stimuli: int, form: str, *, adaptive: bool) -> None:
         """Check that this question can be asked of trials.
 
         Parameters
         ----------
         stimuli
-            Number of stimuli in a trial, 1 or 2.
+            Number of stimuli in a trial.
+        form
+            Form of a choice; empty if strings are read.
         adaptive
             Whether the answers choose what is shown.
 
@@ -168,10 +174,19 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
             If it cannot.
         """
         if stimuli not in self.stimuli:
-            wanted, given = ("two stimuli", "one") if stimuli == 1 else ("one stimulus", "two")
+            more = " or more" if len(self.stimuli) > 1 else ""
+            fewest = self.stimuli[0]
+            wanted = "one stimulus" if fewest == 1 else f"{_NUMBERS[fewest]} stimuli{more}"
+            given = _NUMBERS[stimuli]
             raise ValueError(
                 f"kind is {self.name!r}, which is asked of {wanted}, and each trial of [design] "
                 f"has {given}; choose another kind of question or of design"
+            )
+        if form and self.forms and form not in self.forms:
+            raise ValueError(
+                f"kind is {self.name!r}, which is asked of form = "
+                f"{' or '.join(map(repr, self.forms))}, and form of [design] is {form!r}; choose "
+                f"another"
             )
         if adaptive and not self.positive_known:
             raise ValueError(
@@ -182,6 +197,14 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
     def help(self, _keys: dict[str, int], _written: bool, /) -> str:
         """Say at the console what may be typed, where strings are written in print or in cells."""
         return self.prompt()
+
+    def right_of(self, _picture: str, _columns: dict[str, str], /) -> str | None:
+        """Right answer about a picture, by the columns of the file of items; None if none is."""
+        return None
+
+    def by_button(self, _number: int, /) -> str:
+        """Answer that a button of the device stands for; empty if it stands for none."""
+        return ""
 
     def parse(self, text: str, trial: Trial, spelling: CellSpelling, /) -> str:
         """Read an answer, and bring it into the spelling in which it is kept.
@@ -225,7 +248,7 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
         if was := self.was(trial, keys):
             return f"{'right' if self.good(trial, answer) else 'wrong'}, it was {was}"
         values = [said_value(s.value, knob) for s in trial.stimuli if s.value is not None]
-        return f"they were {values[0]} and {values[1]}" if len(values) == 2 else ""
+        return f"they were {', '.join(values[:-1])} and {values[-1]}" if len(values) > 1 else ""
 
     def cell(self, _trial: Trial, answer: str, /) -> str:
         """Text for an answer in tables."""
@@ -278,6 +301,57 @@ def check_scale(least: int, most: int) -> None:
         raise ValueError(f"the scale has more than {_MOST_STEPS} steps; make it shorter")
 
 
+def check_labels(labels: tuple[str, ...], least: int, most: int) -> None:
+    """Check the words for the steps of a scale.
+
+    Raises
+    ------
+    ValueError
+        If they are not one for each step or for each end, or two are alike.
+    """
+    steps = most - least + 1
+    if len(labels) not in (0, 2, steps):
+        raise ValueError(
+            f"labels are {len(labels)}; give 2 for the ends of the scale, {steps} for all its "
+            f"steps, or none"
+        )
+    known: set[str] = set()
+    for label in labels:
+        check_line("labels: one", label)
+        if label.strip().lower() in known:
+            raise ValueError(f"labels have {label!r} twice; give each step its own")
+        if is_whole(label.strip()):
+            raise ValueError(f"labels have {label!r}, which is a number; give words")
+        known.add(label.strip().lower())
+
+
+def labels_of(labels: tuple[str, ...], least: int, most: int) -> dict[int, str]:
+    """Words of the steps that have some."""
+    if len(labels) == 2:
+        return dict(zip((least, most), labels, strict=True))
+    return dict(enumerate(labels, least))
+
+
+def say_scale(least: int, most: int, named: dict[int, str], what: str = "") -> str:
+    """Name the numbers of a scale, what they are for, and the words of its ends."""
+    said = f"{least} to {most}{what}"
+    return f"{said}: {least} is {named[least]}, {most} is {named[most]}" if named else said
+
+
+def read_label(text: str, least: int, most: int, named: dict[int, str]) -> int:
+    """Read a step of a scale: its number, or its words.
+
+    Raises
+    ------
+    ValueError
+        If the text is neither.
+    """
+    for step, label in named.items():
+        if text.strip().lower() == label.strip().lower():
+            return step
+    return read_step(text, least, most)
+
+
 def read_step(text: str, least: int, most: int) -> int:
     """Read a step of a scale.
 
@@ -314,6 +388,7 @@ class IdentifyQuestion(QuestionTable, frozen=True, kw_only=True, tag="identify")
 
     positive_known: ClassVar[bool] = True
     stimuli: ClassVar[tuple[int, ...]] = (1,)
+    forms: ClassVar[tuple[str, ...]] = ("",)
     outcomes: ClassVar[frozenset[str]] = frozenset((RIGHT, WRONG))
 
     def help(self, keys: dict[str, int], written: bool, /) -> str:
@@ -353,12 +428,12 @@ class IdentifyQuestion(QuestionTable, frozen=True, kw_only=True, tag="identify")
 
 
 class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
-    """The question which of two stimuli it was: the one with more, or the one nearer to something.
+    """The question which of two or more stimuli it was: the one with most, or nearest to something.
 
     Parameters
     ----------
     right
-        Which of two values is right; None if it is what participants like, and nothing is right.
+        Which value is right; None if it is what participants like, and nothing is right.
     reference
         Value that the nearest one is nearest to.
 
@@ -369,7 +444,8 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
     """
 
     positive_known: ClassVar[bool] = True
-    stimuli: ClassVar[tuple[int, ...]] = (2,)
+    stimuli: ClassVar[tuple[int, ...]] = (2, 3, 4, 5)
+    forms: ClassVar[tuple[str, ...]] = ("pairs", "standard", "one")
     outcomes: ClassVar[frozenset[str]] = frozenset((RIGHT, WRONG))
     typed: ClassVar[str] = "1 or 2, for the first or the second"
 
@@ -384,15 +460,19 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
                 "right = 'nearest' and reference go together; give both, or neither of them"
             )
 
+    def check(self, stimuli: int, form: str, *, adaptive: bool) -> None:
+        """Check that this question can be asked of trials; see `QuestionTable.check`."""
+        super().check(stimuli, form, adaptive=adaptive)
+        if stimuli > 2 and self.right is None:
+            raise ValueError("right is missing, and there are more than two to choose from; add it")
+
     def right_one(self, trial: Trial) -> str:
-        """Right answer, "1" or "2"; empty if there is none."""
+        """Right answer, such as "1" or "2"; empty if there is none."""
         values = [stimulus.value for stimulus in trial.stimuli]
         if self.right is None or None in values:
             return ""
-        first, second = (self.worth(value or 0.0) for value in values)
-        if first == second:
-            return ""
-        return "1" if first > second else "2"
+        worth = [self.worth(value or 0.0) for value in values]
+        return f"{worth.index(max(worth)) + 1}" if worth.count(max(worth)) == 1 else ""
 
     def worth(self, value: float) -> float:
         """Number that is the higher, the more right a value is."""
@@ -406,29 +486,31 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
         return "" if not right else RIGHT if answer == right else WRONG
 
     def was(self, trial: Trial, _keys: dict[str, int], /) -> str:
-        """Words for the right one of two."""
+        """Words for the right one."""
         right = self.right_one(trial)
         return self.said(right, {}) if right else ""
 
-    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
+    def parse(self, text: str, trial: Trial, _spelling: CellSpelling, /) -> str:
         """Read a choice; see `vbraille.braille.spelling.parse_choice`."""
-        return parse_choice(text)
+        return parse_choice(text, len(trial.stimuli))
 
     def said(self, answer: str, _keys: dict[str, int], /) -> str:
         """Words for the one that was chosen."""
-        return "first" if answer == "1" else "second"
+        return ORDINALS[int(answer) - 1]
 
     def cell(self, trial: Trial, answer: str, /) -> str:
         """Value that was chosen."""
         return f"{trial.stimuli[int(answer) - 1].value:g}"
 
     def verdict(self, trial: Trial, answer: str, _keys: dict[str, int], knob: str | None, /) -> str:
-        """Words for the value that was chosen, of both."""
+        """Words for the value that was chosen, of all."""
         values = [said_value(stimulus.value or 0.0, knob) for stimulus in trial.stimuli]
-        return f"{values[int(answer) - 1]} of {values[0]} and {values[1]}"
+        return f"{values[int(answer) - 1]} of {', '.join(values[:-1])} and {values[-1]}"
 
-    def describe(self, _rows: Sequence[dict[str, Any]], knob: str | None, /) -> str:
+    def describe(self, rows: Sequence[dict[str, Any]], knob: str | None, /) -> str:
         """Sentence on the choice, and on which one was right."""
+        several = rows and len(str(rows[0]["presented"]).split()) > 2
+        of_what = "the stimuli of each trial" if several else "each pair"
         of = KNOBS[knob or "contrast"]
         if self.right is None:
             how = ", and neither was right or wrong"
@@ -436,18 +518,96 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
             how = f"; the one nearest to {self.reference:g}{of.unit} was right"
         else:
             how = f"; the one with {self.right} {of.words} was right"
-        return f"Of each pair one was chosen{how}"
+        return f"Of {of_what} one was chosen{how}"
 
     def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
-        """Choose the larger, the one nearer to the nominal length, or the one that is right."""
-        one, two, unit = felt.values()
+        """Choose the largest, the one nearest to the nominal length, or the one that is right."""
+        values, unit = felt.values()
         if self.right is None and felt.by_length:
-            return str(nearer(one, two, unit, noise, random))
-        if self.right is not None:
-            one, two = self.worth(one), self.worth(two)
-        drawn = noise * unit * random.standard_normal(2)
-        one, two = (-math.inf if math.isnan(value) else value for value in (one, two))
-        return "2" if two + drawn[1] > one + drawn[0] else "1"
+            return str(nearer(values, unit, noise, random))
+        worth = [value if self.right is None else self.worth(value) for value in values]
+        drawn = noise * unit * random.standard_normal(len(values))
+        felt_so = [-math.inf if math.isnan(w) else w + d for w, d in zip(worth, drawn, strict=True)]
+        return f"{felt_so.index(max(felt_so)) + 1}"
+
+
+class OddQuestion(QuestionTable, frozen=True, kw_only=True, tag="odd"):
+    """The question which of the stimuli differed from the others."""
+
+    stimuli: ClassVar[tuple[int, ...]] = (3, 4, 5)
+    forms: ClassVar[tuple[str, ...]] = ("one", "triangle")
+    outcomes: ClassVar[frozenset[str]] = frozenset((RIGHT, WRONG))
+    typed: ClassVar[str] = "1, 2 or 3, for the one that differs"
+
+    def right_one(self, trial: Trial) -> str:
+        """Right answer: the place of the value that is there once."""
+        values = [stimulus.value for stimulus in trial.stimuli]
+        return next(f"{n}" for n, value in enumerate(values, 1) if values.count(value) == 1)
+
+    def outcome(self, trial: Trial, answer: str, /) -> str:
+        """Right if it is the one that differs."""
+        return RIGHT if answer == self.right_one(trial) else WRONG
+
+    def was(self, trial: Trial, _keys: dict[str, int], /) -> str:
+        """Words for the right one."""
+        return ORDINALS[int(self.right_one(trial)) - 1]
+
+    def parse(self, text: str, trial: Trial, _spelling: CellSpelling, /) -> str:
+        """Read a choice; see `vbraille.braille.spelling.parse_choice`."""
+        return parse_choice(text, len(trial.stimuli))
+
+    def said(self, answer: str, _keys: dict[str, int], /) -> str:
+        """Words for the one that was chosen."""
+        return ORDINALS[int(answer) - 1]
+
+    def describe(self, _rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
+        """Sentence on what was asked."""
+        return "One stimulus of each trial differed from the others, and it was said which"
+
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
+        """Choose the one that is felt furthest from the middle one of all."""
+        values, unit = felt.values()
+        drawn = noise * unit * random.standard_normal(len(values))
+        so = [0.0 if math.isnan(v) else v + d for v, d in zip(values, drawn, strict=True)]
+        off = [abs(value - median(so)) for value in so]
+        return f"{off.index(max(off)) + 1}"
+
+
+class MatchQuestion(QuestionTable, frozen=True, kw_only=True, tag="match"):
+    """The question which of the first two stimuli the third one was (ABX)."""
+
+    stimuli: ClassVar[tuple[int, ...]] = (3,)
+    forms: ClassVar[tuple[str, ...]] = ("abx",)
+    outcomes: ClassVar[frozenset[str]] = frozenset((RIGHT, WRONG))
+    typed: ClassVar[str] = "1 or 2, for the one that the third was like"
+
+    def outcome(self, trial: Trial, answer: str, /) -> str:
+        """Right if the third has the value of the one that was chosen."""
+        values = [stimulus.value for stimulus in trial.stimuli]
+        return RIGHT if values[int(answer) - 1] == values[2] else WRONG
+
+    def was(self, trial: Trial, _keys: dict[str, int], /) -> str:
+        """Words for the right one."""
+        return ORDINALS[0 if self.good(trial, "1") else 1]
+
+    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
+        """Read a choice of two; see `vbraille.braille.spelling.parse_choice`."""
+        return parse_choice(text)
+
+    def said(self, answer: str, _keys: dict[str, int], /) -> str:
+        """Words for the one that was chosen."""
+        return ORDINALS[int(answer) - 1]
+
+    def describe(self, _rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
+        """Sentence on what was asked."""
+        return "It was said which of two stimuli a third one was"
+
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
+        """Choose the one that is felt nearer to the third."""
+        values, unit = felt.values()
+        drawn = noise * unit * random.standard_normal(3)
+        so = [0.0 if math.isnan(v) else v + d for v, d in zip(values, drawn, strict=True)]
+        return "2" if abs(so[1] - so[2]) < abs(so[0] - so[2]) else "1"
 
 
 class OneOfTwo(QuestionTable, frozen=True, kw_only=True):
@@ -496,6 +656,7 @@ class SameQuestion(OneOfTwo, frozen=True, kw_only=True, tag="same-different"):
     """The question whether two stimuli were different or the same."""
 
     stimuli: ClassVar[tuple[int, ...]] = (2,)
+    forms: ClassVar[tuple[str, ...]] = ("pairs",)
     words: ClassVar[tuple[str, ...]] = (DIFFERENT, SAME)
     noun: ClassVar[str] = "pair"
     clauses: ClassVar[tuple[str, str]] = (
@@ -513,7 +674,7 @@ class SameQuestion(OneOfTwo, frozen=True, kw_only=True, tag="same-different"):
 
     def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
         """Say that two differ if they are felt to, beyond the noise of both."""
-        one, two, unit = felt.values()
+        (one, two), unit = felt.values()
         if math.isnan(one) or math.isnan(two):
             return DIFFERENT if math.isnan(one) != math.isnan(two) else SAME
         apart = (one - two) / unit + noise * math.sqrt(2) * float(random.standard_normal())
@@ -581,42 +742,20 @@ class RatingQuestion(QuestionTable, frozen=True, kw_only=True, tag="rating"):
         super().__post_init__()
         check_line("scale", self.scale)
         check_scale(self.least, self.most)
-        steps = self.most - self.least + 1
-        if len(self.labels) not in (0, 2, steps):
-            raise ValueError(
-                f"labels are {len(self.labels)}; give 2 for the ends of the scale, "
-                f"{steps} for all its steps, or none"
-            )
-        known: set[str] = set()
-        for label in self.labels:
-            check_line("labels: one", label)
-            if label.strip().lower() in known:
-                raise ValueError(f"labels have {label!r} twice; give each step its own")
-            if is_whole(label.strip()):
-                raise ValueError(f"labels have {label!r}, which is a number; give words")
-            known.add(label.strip().lower())
+        check_labels(self.labels, self.least, self.most)
 
     @property
     def named(self) -> dict[int, str]:
         """Labels of the steps that have one."""
-        if len(self.labels) == 2:
-            return dict(zip((self.least, self.most), self.labels, strict=True))
-        return dict(enumerate(self.labels, self.least))
+        return labels_of(self.labels, self.least, self.most)
 
     def prompt(self) -> str:
         """Name the numbers of the scale, with the labels of its ends."""
-        named = self.named
-        if not named:
-            return f"{self.least} to {self.most} for {self.scale}"
-        ends = f"{self.least} is {named[self.least]}, {self.most} is {named[self.most]}"
-        return f"{self.least} to {self.most} for {self.scale}: {ends}"
+        return say_scale(self.least, self.most, self.named, f" for {self.scale}")
 
     def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
         """Read a step of the scale: its number, or its label."""
-        for step, label in self.named.items():
-            if text.strip().lower() == label.strip().lower():
-                return str(step)
-        return str(read_step(text, self.least, self.most))
+        return str(read_label(text, self.least, self.most, self.named))
 
     def said(self, answer: str, _keys: dict[str, int], /) -> str:
         """Words for a step: its number, and its label if it has one."""
@@ -633,7 +772,7 @@ class RatingQuestion(QuestionTable, frozen=True, kw_only=True, tag="rating"):
 
     def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
         """Put a strength of 0 to 1 evenly on the scale."""
-        share = felt.strength() + noise * float(random.standard_normal())
+        share = felt.strength(-1) + noise * float(random.standard_normal())
         return str(self.least + round(min(max(share, 0.0), 1.0) * (self.most - self.least)))
 
 
@@ -643,8 +782,8 @@ class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude
     Parameters
     ----------
     modulus
-        Number that the participant is told for the first or a standard stimulus; None if
-        participants choose.
+        Number that the participant is told for the standard, which is shown first in each trial
+        with ``form = "standard"`` of the design; None if participants choose.
 
     Raises
     ------
@@ -686,10 +825,153 @@ class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude
         return f"They estimated a magnitude, as a number above 0; {standard}"
 
     def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
-        """Give the strength times the modulus, with noise on its logarithm; above 0."""
-        share = max(felt.strength(), LEAST_MAGNITUDE)
+        """Give the share of the standard times the modulus, with noise on its logarithm."""
+        share = max(felt.share(), LEAST_MAGNITUDE)
         share *= math.exp(noise * float(random.standard_normal()))
         return f"{(self.modulus or 1.0) * max(share, LEAST_MAGNITUDE):.3g}"
+
+
+class Naming(Table, frozen=True, kw_only=True):
+    """One of the names that a picture is given.
+
+    Parameters
+    ----------
+    of
+        Column of the file of items that has the right name, such as "shape"; None if the picture's
+        own name is right.
+    names
+        Names that may be given, by the keys that stand for them, such as 1 or s.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two, a name is given twice, or one cannot be typed.
+    """
+
+    names: dict[str, str]
+    of: str | None = None
+
+    def __post_init__(self) -> None:
+        if len(self.names) < 2:
+            raise ValueError(f"names are {len(self.names)}; give two or more to choose from")
+        for key, name in self.names.items():
+            check_name("names: one", name)
+            if len(key) != 1 or not key.isprintable() or key.isspace():
+                raise ValueError(f"names have the key {key!r}; a key must be one character")
+            if [*self.names.values()].count(name) > 1:
+                raise ValueError(f"names have {name!r} twice; give each its own")
+
+    @property
+    def words(self) -> str:
+        """Words for the keys and their names."""
+        return ", ".join(f"{key} {name}" for key, name in self.names.items())
+
+
+class NameQuestion(QuestionTable, frozen=True, kw_only=True, tag="name"):
+    """The question which of some names a picture has; or several, such as its shape and its size.
+
+    Parameters
+    ----------
+    choices
+        The names to choose from, in the order in which answers keep them.
+    confirm
+        Whether a typed answer is said back, and counts only when it is typed again, or by Enter.
+        Until then another one takes its place.
+    buttons
+        Whether the buttons of the device stand for the keys, in their order.
+
+    Raises
+    ------
+    ValueError
+        If there is no choice, a key or a name is in two, or the device cannot have so many buttons.
+    """
+
+    stimuli: ClassVar[tuple[int, ...]] = (1,)
+    outcomes: ClassVar[frozenset[str]] = frozenset((RIGHT, WRONG))
+
+    choices: tuple[Naming, ...]
+    confirm: bool = True
+    buttons: bool = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.choices:
+            raise ValueError("choices are none; give one or more")
+        marks = [mark for each in self.choices for mark in (*each.names, *each.names.values())]
+        for mark in marks:
+            if sum(mark in (*one.names, *one.names.values()) for one in self.choices) > 1:
+                raise ValueError(f"choices have {mark!r} twice; give each its own")
+        if self.buttons and len(self.keys) > MOST_BUTTONS:
+            raise ValueError(
+                f"buttons would be {len(self.keys)}, and a device has up to {MOST_BUTTONS}; leave "
+                f"it out"
+            )
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """All keys, in their order."""
+        return tuple(key for each in self.choices for key in each.names)
+
+    def by_button(self, number: int, /) -> str:
+        """Key that a button stands for."""
+        return self.keys[number - 1] if self.buttons and number <= len(self.keys) else ""
+
+    def prompt(self) -> str:
+        """Name the keys of each choice."""
+        return "; ".join(each.words for each in self.choices)
+
+    def right_of(self, picture: str, columns: dict[str, str], /) -> str:
+        """Right answer about a picture, by the columns of the file of items."""
+        return " ".join(picture if each.of is None else columns[each.of] for each in self.choices)
+
+    def marked(self, text: str, before: Sequence[str | None] = ()) -> list[str | None]:
+        """Names that a line gives, in the order of the choices, over those given before.
+
+        Raises
+        ------
+        ValueError
+            If the line has something else.
+        """
+        found = list(before) or [None] * len(self.choices)
+        words = text.replace(",", " ").split()
+        if not words:
+            raise ValueError(f"nothing was typed; type {self.prompt()}")
+        for word in words:
+            known = any(word in (*one.names, *one.names.values()) for one in self.choices)
+            for mark in (word,) if known else word:  # keys may stand without a blank between them
+                for number, one in enumerate(self.choices):
+                    name = one.names.get(mark, mark)
+                    if name in one.names.values():
+                        found[number] = name
+                        break
+                else:
+                    raise ValueError(f"{quoted(word)}type {self.prompt()}")
+        return found
+
+    def missing(self, names: Sequence[str | None]) -> str:
+        """Words for the keys of the first choice that has no name yet; empty if all have one."""
+        return next((o.words for o, n in zip(self.choices, names, strict=True) if n is None), "")
+
+    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
+        """Read keys or names, one for each choice, in any order."""
+        names = self.marked(text)
+        if missing := self.missing(names):
+            raise ValueError(f"a name is missing; type one of {missing} as well")
+        return " ".join(map(str, names))
+
+    def outcome(self, trial: Trial, answer: str, /) -> str:
+        """Right if all names are."""
+        right = trial.stimuli[0].answer
+        return "" if right is None else RIGHT if answer == right else WRONG
+
+    def was(self, trial: Trial, _keys: dict[str, int], /) -> str:
+        """Words for the right names."""
+        return trial.stimuli[0].answer or ""
+
+    def describe(self, _rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
+        """Sentence on the names."""
+        many = " and ".join(str(len(each.names)) for each in self.choices)
+        return f"Of each picture it was said which of {many} names it has"
 
 
 class FreeQuestion(QuestionTable, frozen=True, kw_only=True, tag="free"):
@@ -715,10 +997,13 @@ class FreeQuestion(QuestionTable, frozen=True, kw_only=True, tag="free"):
 AnyQuestion = (
     IdentifyQuestion
     | WhichQuestion
+    | OddQuestion
+    | MatchQuestion
     | SameQuestion
     | DetectQuestion
     | RatingQuestion
     | MagnitudeQuestion
+    | NameQuestion
     | FreeQuestion
 )
 KINDS: dict[str, type[QuestionTable]] = {
@@ -727,5 +1012,5 @@ KINDS: dict[str, type[QuestionTable]] = {
 
 
 def usual_question(stimuli: int) -> AnyQuestion:
-    """Question of a protocol without the table, for trials with one stimulus or two."""
-    return WhichQuestion() if stimuli == 2 else IdentifyQuestion()
+    """Question of a protocol without the table, for trials with one stimulus or more."""
+    return WhichQuestion() if stimuli > 1 else IdentifyQuestion()

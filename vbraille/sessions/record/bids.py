@@ -20,8 +20,8 @@ import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.files import missing, write_file
-from vbraille.sessions.record.codebook import CodebookEntry, describe_design, entry_of
-from vbraille.sessions.record.events import AnyTime, JournalEvent, Note, Run
+from vbraille.sessions.record.codebook import CodebookEntry, asked_in, describe_design, entry_of
+from vbraille.sessions.record.events import AnyTime, End, JournalEvent, Note, Reply, Run
 from vbraille.sessions.record.export import (
     PlacedNote,
     Traces,
@@ -85,13 +85,14 @@ class BidsRun:
             Time of the first tick of the run's trace; None if there is none, and times count
             from the event that the run began with.
         without_times
-            Whether notes, and words that may be paths, are left out.
+            Whether notes, answers to the questionnaire, reasons, and words that may be paths, are
+            left out.
         """
         begun_s = self._begun_s(first_ns)
         rows = [
             self._row(event, begun_s, without_times)
             for event in self.events
-            if event.exported and not (without_times and isinstance(event, Note))
+            if event.exported and not (without_times and isinstance(event, Note | Reply))
         ]
         # The journal may have an event a little later than one that happened after it.
         rows.sort(key=lambda row: row["onset"])
@@ -109,7 +110,7 @@ class BidsRun:
 
     def _row(self, event: JournalEvent, begun_s: float, without_times: bool) -> dict[str, Any]:
         note = self.notes.get(event.n)
-        text = event.said
+        text = event.why if without_times and isinstance(event, End) else event.said
         return {
             "onset": round(event.t_s - begun_s, 6),
             "duration": "",
@@ -235,7 +236,7 @@ def _beh(record: Record, table: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "TaskName": record.protocol.name,  # which the task in the files' names is made from
         "TaskDescription": f"{record.protocol.title} ({record.protocol.source})",
     }
-    asked = {field.name: field.ask for field in record.protocol.fields}
+    asked = asked_in(record.protocol)
     for name in table[0]:
         entry = entry_of(name, asked)
         if entry.unit and any(" " in str(row[name]) for row in table):
@@ -269,11 +270,11 @@ def _recording(ticks: NDArray[np.void]) -> bytes:
 
 
 _BIDS = "1.9.0"
-_ABOUT, _README = "dataset_description.json", "README"
-_PEOPLE, _PEOPLE_COLUMNS = "participants.tsv", "participants.json"
-_ID, _PSEUDONYM = "participant_id", "pseudonym"
+DATASET, _README = "dataset_description.json", "README"
+PEOPLE, PEOPLE_COLUMNS = "participants.tsv", "participants.json"
+_ID, PSEUDONYM = "participant_id", "pseudonym"
 _DESCRIBED = CodebookEntry(
-    _PSEUDONYM, "as the laboratory has it; participant_id has letters and digits"
+    PSEUDONYM, "as the laboratory has it; participant_id has letters and digits"
 )
 _README_TEXT = """\
 Legibility sessions of vbraille, as behavioural data.
@@ -341,16 +342,16 @@ def write(
         )
     new = {folder / path: content for path, content in made.items()}
     for path, content in (
-        (_ABOUT, _json(_about(record))),
+        (DATASET, _json(_about(record))),
         (_README, _README_TEXT.encode()),
-        (_PEOPLE_COLUMNS, _json({_PSEUDONYM: _DESCRIBED.to_bids()})),
+        (PEOPLE_COLUMNS, _json({PSEUDONYM: _DESCRIBED.to_bids()})),
     ):
         if not (folder / path).exists():
             new[folder / path] = content
     people.setdefault(label, pseudonym)
-    rows = [{_ID: f"sub-{of}", _PSEUDONYM: name} for of, name in people.items()]
-    _write(folder, new, _PEOPLE, encode(to_csv(rows, "\t", "n/a")))
-    return [*new, folder / _PEOPLE]
+    rows = [{_ID: f"sub-{of}", PSEUDONYM: name} for of, name in people.items()]
+    _write(folder, new, PEOPLE, encode(to_csv(rows, "\t", "n/a")))
+    return [*new, folder / PEOPLE]
 
 
 def _read_people(folder: Path) -> dict[str, str]:
@@ -361,16 +362,16 @@ def _read_people(folder: Path) -> dict[str, str]:
     InputError
         If the table cannot be read, or has columns of others.
     """
-    path = folder / _PEOPLE
+    path = folder / PEOPLE
     try:
         rows = list(csv.reader(io.StringIO(path.read_text("utf-8")), delimiter="\t"))
     except (FileNotFoundError, NotADirectoryError):
         return {}  # a dataset that is no directory is refused when it is written
     except (OSError, ValueError, csv.Error):
         rows = []
-    if not rows or rows[0] != [_ID, _PSEUDONYM] or any(len(row) != 2 for row in rows):
+    if not rows or rows[0] != [_ID, PSEUDONYM] or any(len(row) != 2 for row in rows):
         raise InputError(
-            f"{path} is no table of {_ID} and {_PSEUDONYM} alone, to which participants could be "
+            f"{path} is no table of {_ID} and {PSEUDONYM} alone, to which participants could be "
             f"added; give another directory with {setting('out')}, and put the tables together"
         )
     return {label.removeprefix("sub-"): pseudonym for label, pseudonym in rows[1:]}

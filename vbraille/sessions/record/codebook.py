@@ -91,6 +91,8 @@ COLUMNS = {
 FURTHER = {
     "table": "braille table that made the cells of the text",
     "text": "text that the cells asked for stand for; empty for a blank catch trial",
+    "scene": "file of the scene that the picture is of",
+    "picture": "ids of the elements of the scene that were shown",
     "late": "1 if the answer came after the time that the protocol gives for it, or not at all",
 }
 
@@ -110,6 +112,8 @@ def designed(protocol: Protocol, trial: Trial) -> dict[str, str]:
         cells |= {f"item_{name}": value for name, value in own.items()}
     if protocol.design.catch is not None:
         cells["catch"] = trial.catch
+    if protocol.pictures:
+        cells |= {name: getattr(trial.stimuli[0], name) or "" for name in ("scene", "picture")}
     if protocol.written:
         cells |= {name: getattr(trial.stimuli[0], name) or "" for name in ("table", "text")}
     return cells
@@ -128,6 +132,7 @@ def describe_design(protocol: Protocol) -> dict[str, str]:
 
 HEAD = ("file", "column", "meaning", "unit", "values")
 FIELD = "field_"  # how columns begin that hold what a protocol asked about the participant
+ASKED, CORRECT = "asked_", "_correct"  # of answers to the questionnaire, and of their score
 _UNITS = {"_mm_s": "mm/s", "_mm": "mm", "_ms": "ms", "_hz": "Hz", "_s": "s"}
 # Values of columns that have a few, and what each means.
 _VALUES = {
@@ -181,6 +186,16 @@ def unit_of(name: str) -> str:
     return next((unit for end, unit in _UNITS.items() if name.endswith(end)), "")
 
 
+def asked_in(protocol: Protocol) -> dict[str, str]:
+    """Columns with answers of the participant beside the trials, each with its question."""
+    asked = {f"{FIELD}{field.name}": field.ask for field in protocol.fields}
+    for item in protocol.questionnaire:
+        asked[f"{ASKED}{item.name}"] = item.ask
+        if item.right:
+            asked[f"{ASKED}{item.name}{CORRECT}"] = f"1 if the answer is right to: {item.ask}"
+    return asked
+
+
 def entry_of(name: str, asked: Mapping[str, str] | None = None) -> CodebookEntry:
     """Entry of a column of exported trials.
 
@@ -189,11 +204,10 @@ def entry_of(name: str, asked: Mapping[str, str] | None = None) -> CodebookEntry
     name
         Name of the column.
     asked
-        What the protocol asks about the participant, by the names of its fields.
+        What the protocol asks beside the trials, by the columns of the answers; see `asked_in`.
     """
-    if name.startswith(FIELD):
-        question = (asked or {}).get(name.removeprefix(FIELD))
-        meaning = question or "answer to a question of the protocol about the participant"
+    if name.startswith((FIELD, ASKED)):
+        meaning = (asked or {}).get(name) or "answer to a question of the protocol"
         return CodebookEntry(name, meaning)
     meaning = COLUMNS.get(name) or FURTHER.get(name) or _designed(name) or "as it was given"
     return CodebookEntry(name, meaning, unit_of(name), _VALUES.get(name, {}))

@@ -100,7 +100,7 @@ class WithStimulus(InTrial, frozen=True, kw_only=True):
     attempt
         Number of the attempt at the trial, from 1.
     stimulus
-        Which stimulus of the trial it is: 0, or 1 for the second of two.
+        Which stimulus of the trial it is, from 0.
     """
 
     attempt: int
@@ -419,7 +419,7 @@ class Fault(InTrial, frozen=True, kw_only=True):
     attempt
         Number of the attempt at the trial in which it went wrong.
     stimulus
-        Which stimulus of the trial it is: 0, or 1 for the second of two; left out if the engine
+        Which stimulus of the trial it is, from 0; left out if the engine
         died.
     tick, time_ns
         Number and time of the first tick that was not felt, as in the trace; left out if the
@@ -560,6 +560,32 @@ class Note(AnyTime, frozen=True, kw_only=True):
         return self.text
 
 
+class Reply(AnyTime, frozen=True, kw_only=True):
+    """A question of the questionnaire was answered; of several answers to one the last counts.
+
+    Parameters
+    ----------
+    name
+        Name of the question.
+    answer
+        The answer.
+    block
+        Number of the block after which it was asked; left out at other times.
+    """
+
+    code: ClassVar[int] = 29
+    durable: ClassVar[bool] = True
+
+    name: str
+    answer: str
+    block: int = 0
+
+    @property
+    def said(self) -> str:
+        """Name and answer."""
+        return f"{self.name}: {self.answer}"
+
+
 class Stop(JournalEvent, frozen=True):
     """The session was stopped, and can be resumed."""
 
@@ -574,17 +600,20 @@ class End(JournalEvent, frozen=True, kw_only=True):
     ----------
     why
         Reason for the end, in words for people.
+    reason
+        Reason for which the participant stopped for good; left out if all trials are done.
     """
 
     code: ClassVar[int] = 20
     durable: ClassVar[bool] = True
 
     why: str
+    reason: str = ""
 
     @property
     def said(self) -> str:
         """Text of the event."""
-        return self.why
+        return f"{self.why}: {self.reason}" if self.reason else self.why
 
 
 class Closed(JournalEvent, frozen=True, kw_only=True):

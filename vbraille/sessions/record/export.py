@@ -17,7 +17,7 @@ from vbraille.engine.record import Flag
 from vbraille.files import no_formula
 from vbraille.sessions.planning.design import StringList
 from vbraille.sessions.planning.style import TUNED
-from vbraille.sessions.record.codebook import COLUMNS, designed
+from vbraille.sessions.record.codebook import ASKED, COLUMNS, CORRECT, designed
 from vbraille.sessions.record.events import AnyTime, JournalEvent, Note, Presented
 from vbraille.sessions.record.folder import Record, read_told_trace
 from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
@@ -218,8 +218,9 @@ def walk(
     for told in progress.trials.values():
         trial = told.shown
         row, seen = _row(record, trial, told), None
-        row |= _noted(notes, trial.number)
+        row |= _noted(notes, trial.number) | _replies(record, progress, trial)
         strings = shown_on(record.protocol, trial) == "device" and len(trial.stimuli) == 1
+        strings = strings and not record.protocol.pictures
         if strings and told.answer is not None:
             seen = _trajectory(record, trial, told, traces)
         if isinstance(seen, Trajectory):
@@ -268,6 +269,8 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
         "answer_time": told.wall.get("answer", ""),
         "trace": told.trace or "",
     }
+    if protocol.pictures:  # which have none of what cells have
+        row |= dict.fromkeys(("texture", "texture_cycles", "mapping", *BOUNDS_MM), "")
     if "cue" in t_s and "contact" in t_s and t_s["contact"] >= t_s["cue"]:
         row["contact_s"] = round(t_s["contact"] - t_s["cue"], 6)
     if protocol.trial.answer_s is not None:
@@ -283,7 +286,7 @@ def _asked(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     row = question.columns(trial, told.answer) | {"ended_by": told.ended_by}
     row["confidence"] = "" if told.confidence is None else told.confidence
     values = [f"{stimulus.value:g}" for stimulus in trial.stimuli if stimulus.value is not None]
-    if len(trial.stimuli) == 2:
+    if record.protocol.parameter is not None:
         row["parameter"] = record.protocol.parameter
         row |= _compared(trial, record.protocol.parameter)
         row["presented"] = " ".join(values)
@@ -317,6 +320,23 @@ def _string_set(record: Record, trial: Trial) -> str:
     masks = trial.stimuli[0].masks[slice(*trial.asked)]
     listed = design.listed(masks) if isinstance(design, StringList) else None
     return "" if listed is None else to_braille(listed)
+
+
+def _replies(record: Record, progress: Progress, trial: Trial) -> dict[str, Any]:
+    """Cells of a trial's row for the answers to the questionnaire that go with it."""
+    numbers = {"trial": trial.number, "block": trial.block}
+    columns = record.protocol.columns_of(trial.item)
+    cells: dict[str, Any] = {}
+    for item in record.protocol.questionnaire:
+        name, answer = (
+            f"{ASKED}{item.name}",
+            progress.replies.get((item.name, numbers.get(item.when, 0)), ""),
+        )
+        cells[name] = answer
+        if item.right:
+            good = item.good(answer, columns) if answer else None
+            cells[f"{name}{CORRECT}"] = "" if good is None else int(good)
+    return cells
 
 
 def _noted(notes: list[PlacedNote], trial: int) -> dict[str, str]:
@@ -422,10 +442,12 @@ def anonymous(record: Record, table: list[dict[str, Any]]) -> list[dict[str, Any
 
 
 def _without_times(record: Record, row: dict[str, Any]) -> dict[str, Any]:
+    words = [f"{ASKED}{item.name}" for item in record.protocol.questionnaire if item.words_only]
+    left_out = {*LEFT_OUT, *words}
     kept = {
         name: without_paths(value) if name == "faults" or name.startswith("field_") else value
         for name, value in row.items()
-        if name not in LEFT_OUT
+        if name not in left_out
     }
     kept["session"] = number_of(record)
     if kept["answers_from"] and kept["answers_from"].partition(":")[0] not in _SOURCES:

@@ -16,6 +16,7 @@ from vbraille.sessions.record import events
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from vbraille.sessions.planning.questionnaire import AnyItem
     from vbraille.sessions.record.events import JournalEvent
 
 
@@ -175,6 +176,11 @@ class Progress:
         Whether a page of the live view is the hand.
     torn_bytes : int
         Length of all torn lines that were moved out of the journal.
+    replies : dict[tuple[str, int], str]
+        Answers to the questionnaire, by the question's name and the number of the trial or block
+        that it was asked after; 0 at the beginning and the end.
+    why : str
+        Reason for the end; empty before.
     """
 
     def __init__(
@@ -196,6 +202,8 @@ class Progress:
         self.ended = False
         self.pointed = False
         self.torn_bytes = 0
+        self.replies: dict[tuple[str, int], str] = {}
+        self.why = ""
         self._moved_by = ""
         self._answers = ""
         self._trial = 0
@@ -239,6 +247,31 @@ class Progress:
         """Number of trials in all, practice left out; None if it depends on the answers."""
         trials = self.procedure.trials
         return None if trials is None else len(trials)
+
+    def due(self, items: Iterable[AnyItem], *, over: bool = False) -> tuple[AnyItem, int] | None:
+        """Question that is to be asked now, and the number of its trial or block, or 0.
+
+        Parameters
+        ----------
+        items
+            The questionnaire.
+        over
+            Whether no further trial comes.
+        """
+        last, coming = self.last_answered, None if over else self.next_trial
+        times = {"begin": 0}
+        if last is not None:
+            if not last.catch and not self.record_of(last).missed:
+                times["trial"] = last.number
+            if coming is None or coming.block != last.block:
+                times["block"] = last.block
+        if coming is None:
+            times["end"] = 0
+        for time, number in times.items():
+            for item in items:
+                if item.when == time and (item.name, number) not in self.replies:
+                    return item, number
+        return None
 
     def of_all(self, number: int) -> str:
         """Text for a number of trials, with the number of all trials if that is known."""
@@ -361,8 +394,11 @@ class Progress:
                 self.broken = self.done
             case events.Begin():
                 self.begun = True
+            case events.Reply():
+                self.replies[event.name, event.trial or event.block] = event.answer
+                self._end_pause(record, event)
             case events.End():
-                self.ended = True
+                self.ended, self.why = True, event.said
             case events.Lost():
                 self._lost.append(event.n)
                 self._unasked = self.procedure.trials is None

@@ -9,15 +9,18 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from vbraille.braille.spelling import ordinal
 from vbraille.errors import InputError
 from vbraille.sessions.planning.pace import ENTER
+from vbraille.sessions.planning.questions import NameQuestion
 from vbraille.sessions.record import events
 from vbraille.sessions.running.runner import PendingAnswer, Phase, Runner
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.questionnaire import AnyItem
     from vbraille.sessions.planning.stimuli import Trial
 
 
@@ -59,6 +62,8 @@ class Console:
         self._progress = runner.progress
         self._say = say
         self._early = ()  # the trial, attempt and answer that were asked about
+        # The trial and attempt, and the names that were chosen in it and are not taken yet.
+        self._chosen: tuple[tuple[bool, int, int] | None, Sequence[str | None]] = (None, ())
 
     def take(self, line: str, number: int = 0) -> None:
         """Do what a line says, which is a command, an answer, or empty for Enter.
@@ -86,6 +91,15 @@ class Console:
             command, rest = found
             command.handler(self, rest)
 
+    @property
+    def _draft(self) -> str:
+        """Names that wait for Enter; empty if none do."""
+        trial = self._progress.correcting or self._runner.open_trial
+        if trial is None:
+            return ""
+        of = trial.practice, trial.number, self._progress.record_of(trial).attempts
+        return " ".join(filter(None, self._chosen[1])) if self._chosen[0] == of else ""
+
     # The methods from here on do the commands.
 
     def answer(self, line: str) -> None:
@@ -104,14 +118,24 @@ class Console:
         if runner.pending is not None:
             self._take_confidence(line, runner.pending)
             return
+        if runner.asking is not None and correcting is None:
+            self._reply(line, runner.asking[0])
+            return
         trial = correcting or runner.open_trial
         if trial is None:
             self._say("no answer is waited for now; help says what there is to type")
             return
-        if correcting is None and runner.second_to_come:
-            self._say("the second has not been felt yet; repeat shows both again")
+        if correcting is None and runner.more_to_come:
+            both = "both" if len(trial.stimuli) == 2 else "all"
+            coming = ordinal(runner.stimulus + 1)
+            self._say(f"the {coming} has not been felt yet; repeat shows {both} again")
             return
+        question = runner.protocol.asks
         try:
+            if isinstance(question, NameQuestion) and question.confirm and runner.responses.typed:
+                line = self._confirmed(question, trial, line)
+                if not line:
+                    return
             answer, confidence = read_line(runner.protocol, trial, line)
         except ValueError as error:
             self._refuse("no answer", error)
@@ -140,11 +164,26 @@ class Console:
             return
         self._write(trial, told if confidence is None else told | {"confidence": confidence})
 
+    def _confirmed(self, question: NameQuestion, trial: Trial, line: str) -> str:
+        """Names that were said back and are typed again; empty, and they are said, if not yet."""
+        of = trial.practice, trial.number, self._progress.record_of(trial).attempts
+        before = self._chosen[1] if self._chosen[0] == of else ()
+        names = question.marked(line, before)
+        self._chosen = of, names
+        missing, said = question.missing(names), " ".join(filter(None, names))
+        if not missing and names == before:
+            return said
+        how = f"then one of {missing}" if missing else "Enter takes it, another key changes it"
+        self._say(f"chosen: {said}; {how}")
+        return ""
+
     def undo(self, _: str = "") -> None:
         """Take back the last answer, with its confidence."""
         if (pending := self._runner.pending) is not None:
             self._runner.pending = None
             self._say(f"undo: {self._runner.name(pending.trial)}; type its answer")
+            return
+        if self._progress.correcting is None and self._runner.ask_before():
             return
         trial = self._progress.last_answered
         if trial is None or self._progress.correcting is not None:
@@ -190,6 +229,8 @@ class Console:
         if runner.paused:
             runner.go_on()
             self._say("go: on")
+        elif self._draft:
+            self.answer(self._draft)
         elif runner.phase is Phase.BREAK:
             runner.log(events.Go)
             runner.next(gap=False)
@@ -241,8 +282,17 @@ class Console:
         """Stop the session, so that it can be resumed later."""
         self._runner.stop()
 
+    def quit(self, reason: str) -> None:
+        """End the session for good, since the participant stops."""
+        if not reason:
+            self._say("quit: type the reason after it; stop ends for now alone")
+            return
+        self._runner.end("the participant stopped", reason)
+
     def help(self, _: str = "") -> None:
         """Say what may be typed."""
+        if (asking := self._runner.asking) is not None:
+            self._say(f"asked: {asking[0].asked(self._runner.item_columns)}")
         question = self._runner.protocol.asks
         if question.ask:
             self._say(f"question: {question.ask}")
@@ -260,6 +310,14 @@ class Console:
         for command in COMMANDS:
             self._say(f"{command.word}: {command.help}")
 
+    def _reply(self, line: str, item: AnyItem) -> None:
+        try:
+            answer = item.parse(line, self._runner.item_columns)
+        except ValueError as error:
+            self._refuse("no answer", error)
+            return
+        self._runner.reply(answer)
+
     def _take_confidence(self, line: str, pending: PendingAnswer) -> None:
         scale = self._runner.protocol.asks.confidence
         assert scale is not None, "nothing waits for a confidence"
@@ -275,7 +333,7 @@ class Console:
     def _write(self, trial: Trial, told: dict[str, Any]) -> None:
         """Write an answer, say that it is in, and go on."""
         runner, correcting = self._runner, self._progress.correcting
-        runner.pending = None
+        runner.pending, self._chosen = None, (None, ())
         runner.log(events.Answer, trial, **told)
         sure = f", confidence {told['confidence']}" if "confidence" in told else ""
         self._say(f"answer: {runner.name(trial)}, {self._spoken(told['answer'])}{sure}")
@@ -285,7 +343,8 @@ class Console:
             if said:
                 self._say(f"practice: {said}")
         # If the next trial depends on the answers, a corrected answer may lead to one more trial.
-        if correcting is None or runner.trial is None or runner.phase is Phase.LAST:
+        late = runner.phase in (Phase.LAST, Phase.ASKING)
+        if correcting is None or runner.trial is None or late:
             runner.paused = False
             runner.next()
 
@@ -334,6 +393,12 @@ COMMANDS = (
         "texture", Console.texture, "set the texture, 0 to 1, unless the plan does", takes=True
     ),
     TypedCommand("stop", Console.stop, "end for now; session resume goes on"),
+    TypedCommand(
+        "quit",
+        Console.quit,
+        "end for good, since the participant stops; the reason after it",
+        takes=True,
+    ),
     TypedCommand("help", Console.help, "say what there is to type"),
 )
 _BY_WORD = {command.word: command for command in COMMANDS}

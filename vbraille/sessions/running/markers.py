@@ -48,7 +48,7 @@ class Marker:
     practice
         Whether that trial is practice.
     stimulus
-        Which stimulus of the trial it was: 0, or 1 for the second of two.
+        Which stimulus of the trial it was, from 0.
     code
         Byte of the event's kind, from 1 to 255.
     happened_ns
@@ -71,7 +71,7 @@ class Marker:
         'presented trial 3 stimulus 2'
         """
         where = f" {'practice' if self.practice else 'trial'} {self.trial}" if self.trial else ""
-        return f"{self.kind}{where}{' stimulus 2' if self.stimulus else ''}"
+        return f"{self.kind}{where}{f' stimulus {self.stimulus + 1}' if self.stimulus else ''}"
 
 
 @dataclass(frozen=True, slots=True)

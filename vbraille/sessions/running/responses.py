@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
+    from vbraille.sessions.planning.questionnaire import AnyItem
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.simulated.skin import FeltFrames
 
@@ -104,6 +106,18 @@ class Responses(Protocol):
         """
         ...
 
+    def reply(self, item: AnyItem, columns: Mapping[str, str], /) -> tuple[str, int] | None:
+        """Answer to a question of the questionnaire, as `next` gives one.
+
+        Parameters
+        ----------
+        item
+            The question.
+        columns
+            Columns of the item of the trial that it is asked beside; empty at other times.
+        """
+        ...
+
 
 class Typed:
     """Source of answers that reads lines from standard input, which may be a terminal."""
@@ -176,6 +190,10 @@ class Typed:
         """Return None: a person answers at any time, and is not asked."""
         return None
 
+    def reply(self, _item: AnyItem, _columns: Mapping[str, str], /) -> tuple[str, int] | None:
+        """Return None, too."""
+        return None
+
 
 class TrialResponses:
     """A source that answers a trial once it has been read, and says nothing else."""
@@ -227,6 +245,13 @@ class Scripted(TrialResponses):
     def next(
         self, _trial: Trial, _attempt: int, _felt: list[FeltFrames], /
     ) -> tuple[str, int] | None:
+        """Give the next line of the file."""
+        if self._given == len(self.left):
+            return None
+        self._given += 1
+        return self.left[self._given - 1]
+
+    def reply(self, _item: AnyItem, _columns: Mapping[str, str], /) -> tuple[str, int] | None:
         """Give the next line of the file."""
         if self._given == len(self.left):
             return None

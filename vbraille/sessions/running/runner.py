@@ -18,14 +18,15 @@ from dataclasses import asdict, dataclass, replace
 from enum import Enum, auto
 from typing import TYPE_CHECKING, Any
 
+from vbraille.braille.spelling import ordinal
 from vbraille.engine.host import HostDiedError
-from vbraille.engine.suspending import Suspension
 from vbraille.sessions.planning.pace import ENTER
 from vbraille.sessions.planning.plan import stimulus_to_json
 from vbraille.sessions.record import events
 from vbraille.sessions.record.folder import versions
 from vbraille.sessions.running.presenters import Paper, presentation_of
 from vbraille.sessions.running.responses import KeyPress, Typed
+from vbraille.signals import Suspension
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.pace import Tone
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.questionnaire import AnyItem
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.record.journal import Journal
@@ -49,6 +51,7 @@ class Phase(Enum):
     READY = auto()  # before a trial, until the slider is at the left; on paper, until Enter
     OPEN = auto()  # a trial, until its answer
     LAST = auto()  # all trials are done; Enter ends the session, an undo takes back an answer
+    ASKING = auto()  # an answer to the questionnaire
     OVER = auto()  # the session waits for nothing any more
 
 
@@ -134,7 +137,9 @@ class Runner:
     ended_by : str
         Key by which the participant has ended reading; empty before.
     stimulus : int
-        Which stimulus of the open trial is shown: 0, or 1 for the second of two.
+        Which stimulus of the open trial is shown, from 0.
+    asking : tuple[AnyItem, int] or None
+        Question of the questionnaire that is waited for, and the number of its trial or block.
     break_wanted : bool
         Whether the experimenter has asked for a break that has not begun.
     script_line : int
@@ -171,6 +176,8 @@ class Runner:
         self.key: Typed | None = None
         self.ended_by = ""
         self.stimulus = 0
+        self.asking: tuple[AnyItem, int] | None = None
+        self._replied: list[tuple[AnyItem, int]] = []  # questions of this time, the last one last
         self.break_wanted = False
         self.script_line = 0
         self.mark: Callable[[JournalEvent, int], None] = _unmarked
@@ -224,10 +231,10 @@ class Runner:
     @property
     def read(self) -> bool:
         """True if the open trial has been read to its end."""
-        return self.open_trial is not None and not self.second_to_come and self.presenter.read
+        return self.open_trial is not None and not self.more_to_come and self.presenter.read
 
     @property
-    def second_to_come(self) -> bool:
+    def more_to_come(self) -> bool:
         """True if a stimulus of the open trial has not been shown yet."""
         trial = self.open_trial
         return trial is not None and self.stimulus + 1 < len(trial.stimuli)
@@ -358,6 +365,11 @@ class Runner:
             else:
                 take(line, 0)
         self.poll()
+        if self.device is not None:
+            pressed, self.device.pressed = self.device.pressed, []
+            for word in filter(None, map(self.protocol.asks.by_button, pressed)):
+                if self.open_trial is not None and not self.paused:
+                    take(f"answer {word}", 0)
         if not self.responses.typed:
             self._ask(take)
         return True
@@ -383,6 +395,10 @@ class Runner:
         if self.by_key and not correcting and not self.read:
             self.press()  # answers that are not typed take no time to read paper
         last = self.phase is Phase.LAST
+        if self.asking is not None and not correcting:
+            given = self.responses.reply(self.asking[0], self.item_columns)
+            self._take_given(given, take)
+            return
         if not (correcting or self.pending or self.paused or self.read or last):
             return
         trial = correcting or self.trial or self.progress.last_answered
@@ -390,10 +406,15 @@ class Runner:
             return
         felt = self.presenter.explorations if self.responses.felt else []
         given = self.responses.next(trial, self.progress.record_of(trial).attempts, felt)
+        if given is None and last and not correcting:
+            self.end("all trials are done")
+        else:
+            self._take_given(given, take)
+
+    def _take_given(self, given: tuple[str, int] | None, take: Callable[[str, int], None]) -> None:
+        """Do what a line says that a source was asked for; stop if there is none."""
         if given is not None:
             take(*given)
-        elif last and not correcting:
-            self.end("all trials are done")
         else:
             self._say("answers: there are no more")
             self.leave()
@@ -448,22 +469,61 @@ class Runner:
 
     def next(self, *, gap: bool = True) -> None:
         """Get the next trial ready, begin a break, or end the session."""
-        self.pending = None
+        self.pending = self.asking = None
         trial, limit_s = self.trial, self.protocol.session.limit_s
+        over = limit_s is not None and self.progress.t_s >= limit_s
+        asking = self.progress.due(self.protocol.questionnaire, over=over)
+        if asking is not None:
+            self.pose(*asking)
+            return
+        self._replied.clear()
         gap_s = self.protocol.trial.gap_s if gap else 0.0
         self._ready_ns = self._now_ns() + round(gap_s * 1e9)
         if trial is None:
             self._wait_for_end()
-        elif limit_s is not None and self.progress.t_s >= limit_s:
+        elif over:
             self.end(f"the limit of {limit_s:g} s is over")
         elif self._break_due(trial):
             self._have_break()
         else:
             self._ready(trial)
 
-    def end(self, why: str) -> None:
-        """End the session for good."""
-        self.log(events.End, why=why)
+    @property
+    def item_columns(self) -> dict[str, str]:
+        """Columns of the item of the trial that a question is asked beside; else empty."""
+        asking, last = self.asking, self.progress.last_answered
+        if asking is None or asking[0].when != "trial" or last is None:
+            return {}
+        return self.protocol.columns_of(last.item)
+
+    def pose(self, item: AnyItem, number: int) -> None:
+        """Ask a question of the questionnaire."""
+        self.phase, self.asking = Phase.ASKING, (item, number)
+        self._say(f"asked: {item.asked(self.item_columns)}")
+
+    def reply(self, answer: str) -> None:
+        """Take an answer to the questionnaire, and go on."""
+        assert self.asking is not None, "nothing is asked"
+        item, number = self.asking
+        at = {"block": number} if item.when == "block" else {}
+        last = self.progress.last_answered if item.when == "trial" else None
+        self.log(events.Reply, last, name=item.name, answer=answer, **at)
+        self._say(f"reply: {item.name} is in")
+        self._replied.append(self.asking)
+        self.paused = False
+        self.next()
+
+    def ask_before(self) -> bool:
+        """Ask the question again that was answered before this one; False if there is none."""
+        if self.asking is None or not self._replied:
+            return False
+        self.pose(*self._replied.pop())
+        return True
+
+    def end(self, why: str, reason: str = "") -> None:
+        """End the session for good; a participant who stops may give a reason."""
+        self.withdraw()
+        self.log(events.End, why=why, reason=reason)
         self._say(f"end: {why}; {self.progress.of_all(self.progress.done)} have answers")
         for sentence in self.progress.found:
             self._say(sentence)
@@ -514,7 +574,12 @@ class Runner:
                     self._say(f"display: {self._why}; the trial waits")
             if not self._why:
                 self._begin(trial)
-        elif self.phase is Phase.OPEN and presenter.taken and not presenter.read:
+        elif self.phase is not Phase.OPEN or presenter.read:
+            return
+        elif not presenter.taken:
+            if self.responses.typed:
+                self._say("too early: the display does not show it yet; read it, then Enter again")
+        else:
             self.log(events.Read, trial, attempt=self._attempt, stimulus=0)
             told = self.progress.record_of(trial)
             seconds = told.t_s["read"] - told.t_s["cue"] - told.unread_s
@@ -530,8 +595,8 @@ class Runner:
         self.presenter.end_reading()
         self._exposed = None
         key = by.replace(":", " ")
-        if self.second_to_come:
-            self._say(f"ended: the first, by {key}")
+        if self.more_to_come:
+            self._say(f"ended: the {ordinal(self.stimulus)}, by {key}")
             return
         if self.protocol.trial.exposure_s is not None:
             self._asked = self._point(trial, self._now_ns())
@@ -662,11 +727,11 @@ class Runner:
         limits = self.protocol.trial
         exposed = limits.exposure_s is not None and limits.exposure_from == "cue"
         self._exposed = self._cue if exposed else None
-        limited = limits.exposure_s is None and not self.second_to_come
+        limited = limits.exposure_s is None and not self.more_to_come
         self._asked = self._cue if limited else None
         self._play(self.protocol.sound.cue)
         self.log(events.Cue, trial)
-        self._say(f"cue: {self.name(trial)}" + (", second" if stimulus else ""))
+        self._say(f"cue: {self.name(trial)}" + (f", {ordinal(stimulus)}" if stimulus else ""))
 
     def _presentation(self, trial: Trial) -> Presentation:
         stimulus = trial.stimuli[self.stimulus]
@@ -692,7 +757,7 @@ class Runner:
                 self._repeat_faulty(trial, fields["what"])
 
     def _watch(self, trial: Trial) -> None:
-        """Do what is due by the time: a warning, an end of the exposure, the second stimulus."""
+        """Do what is due by the time: a warning, an end of the exposure, the next stimulus."""
         if self.pending is not None:
             return
         limits, told = self.protocol.trial, self.progress.record_of(trial)
@@ -719,7 +784,7 @@ class Runner:
             self._say(f"late: {self.name(trial)}, after {limits.answer_s:g} s")
         if self.by_key or not self.presenter.read:
             return
-        if self.second_to_come:
+        if self.more_to_come:
             if self.presenter.ready:
                 self._show(trial, self.stimulus + 1)
         elif not self._prompted and self.responses.typed:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
 from vbraille.sessions.running.console import find_command, read_line
+from vbraille.sessions.running.naming import SimulatedNaming
 from vbraille.sessions.running.reader import Simulated
 from vbraille.sessions.running.responses import (
     PROGRAM,
@@ -18,17 +19,18 @@ from vbraille.sessions.running.responses import (
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.questionnaire import AnyItem
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.progress import Progress
     from vbraille.sessions.simulated.skin import FeltFrames
 
     # What answers may be taken from: a spec as in `Conditions`, a source that is made already, a
-    # line for each trial, or a function that gives the line for a trial.
-    Source = str | Responses | Iterable[str] | Callable[[Trial], str | None]
+    # line for each trial and each question, or a function that gives the line for one of them.
+    Source = str | Responses | Iterable[str] | Callable[[Any], str | None]
 
 
 class ProgramResponses(TrialResponses):
@@ -39,14 +41,15 @@ class ProgramResponses(TrialResponses):
     protocol
         Protocol that the answers are checked against.
     given
-        The lines, one for each trial, or a function that gives the line for a trial. If the
-        lines end, or the function gives None, the session stops and can be resumed.
+        The lines, one for each trial and each question of the questionnaire, or a function that
+        gives the line for a trial or a question. If the lines end, or the function gives None, the
+        session stops and can be resumed.
     """
 
     name = PROGRAM
 
     def __init__(
-        self, protocol: Protocol, given: Iterable[str] | Callable[[Trial], str | None]
+        self, protocol: Protocol, given: Iterable[str] | Callable[[Any], str | None]
     ) -> None:
         self._protocol = protocol
         if callable(given):
@@ -81,13 +84,41 @@ class ProgramResponses(TrialResponses):
             raise InputError(f"{line!r} for trial {trial.number}: {error}") from None
         return line, 0
 
+    def reply(self, item: AnyItem, _columns: Mapping[str, str], /) -> tuple[str, int] | None:
+        """Line of the program for a question of the questionnaire; None if there is none."""
+        line = self._give(item)
+        return None if line is None else (line, 0)
+
+
+def _expected(
+    protocol: Protocol, progress: Progress, trials: tuple[Trial, ...]
+) -> Iterator[Trial | tuple[AnyItem, Trial | None]]:
+    """Trials and questions that are to be answered from here on, in order."""
+    items, done = protocol.questionnaire, progress.done
+
+    def asked(when: str, number: int, trial: Trial | None = None) -> Iterator[Any]:
+        for item in items:
+            if item.when == when and (item.name, number) not in progress.replies:
+                yield item, trial
+
+    yield from asked("begin", 0)
+    for place, trial in enumerate(trials):
+        if place >= done:
+            yield trial
+        if place >= done - 1:
+            if not trial.catch:
+                yield from asked("trial", trial.number, trial)
+            if place + 1 == len(trials) or trials[place + 1].block != trial.block:
+                yield from asked("block", trial.block)
+    yield from asked("end", 0)
+
 
 def check_script(script: Scripted, protocol: Protocol, progress: Progress) -> None:
     """Raise InputError if a line of an answers file does not answer its trial."""
     planned = progress.procedure.trials
     if planned is None:  # it is not known yet which trials will come
         return
-    trials = iter(planned[progress.done :])
+    trials = _expected(protocol, progress, planned)
     correcting, answered = progress.correcting, progress.last_answered
     half = again = None  # a trial without a confidence yet, and one whose answer was dropped so
     for line, number in script.left:
@@ -103,6 +134,11 @@ def check_script(script: Scripted, protocol: Protocol, progress: Progress) -> No
         if trial is None:
             raise InputError(f"{script.path} line {number}: there is no trial left to answer")
         try:
+            if isinstance(trial, tuple):
+                item, beside = trial
+                columns = protocol.columns_of(beside.item) if beside else {}
+                item.parse(line if found is None else found[1], columns)
+                continue
             whole = half is not None or _is_whole(protocol, trial, line)
             if half is not None and protocol.asks.confidence is not None:
                 protocol.asks.confidence.parse(line if found is None else found[1])
@@ -156,7 +192,8 @@ def parse_responses(spec: str, protocol: Protocol, plan: Plan, after: int = 0) -
             loud = float(noise or 0.0)
         except ValueError:
             raise InputError(f"noise is {noise!r}; give a number, such as simulated:0.2") from None
-        answers = Simulated(protocol, plan, loud)
+        kind = SimulatedNaming if protocol.pictures else Simulated
+        answers = kind(protocol, plan, loud)
     else:
         from difflib import get_close_matches  # takes long to load
 

@@ -64,18 +64,21 @@ def felt_mm(
 
 
 def nearer(
-    first: float, second: float, nominal: float, noise: float, random: np.random.Generator
+    lengths: Sequence[float], nominal: float, noise: float, random: np.random.Generator
 ) -> int:
-    """Choose the one of two lengths that is felt nearer to a length: 1 or 2; 1 if they tie.
+    """Choose the one of some lengths that is felt nearest to a length, from 1; the first of a tie.
 
     Noise is in units of that length, and so is what counts as equal without noise.
     """
-    drawn = noise * nominal * random.standard_normal(2)
+    drawn = noise * nominal * random.standard_normal(len(lengths))
     off = [
         math.inf if math.isnan(felt) else abs(felt + more - nominal)
-        for felt, more in zip((first, second), drawn, strict=True)
+        for felt, more in zip(lengths, drawn, strict=True)
     ]
-    return 2 if off[1] < off[0] - (0.0 if noise else TIE * nominal) else 1
+    tie, best = 0.0 if noise else TIE * nominal, 0
+    for place, distance in enumerate(off):
+        best = place if distance < off[best] - tie else best
+    return best + 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +96,7 @@ class FeltTrial:
     asked
         Cells of these lines that are asked for.
     parameter
-        Number by which two stimuli are compared; empty if there is one stimulus.
+        Number in which stimuli differ; empty if strings are read.
     pair
         Dots by which a distance is told; None if there are none.
     """
@@ -107,7 +110,7 @@ class FeltTrial:
 
     @property
     def by_length(self) -> bool:
-        """True if two stimuli are compared by a length."""
+        """True if stimuli differ in a length."""
         return self.parameter in LENGTHS
 
     def cells(self, random: np.random.Generator) -> list[int | None]:
@@ -120,15 +123,23 @@ class FeltTrial:
         evidence = touch.evidence[self.asked]
         return 0.0 if np.isnan(evidence).all() else float(np.nanmax(evidence))
 
-    def values(self) -> tuple[float, float, float]:
-        """Give the value of each of two stimuli, NaN for one not felt, and the unit of noise.
+    def values(self) -> tuple[list[float], float]:
+        """Give the value of each stimulus, NaN for one not felt, and the unit of noise.
 
         Values are lengths in mm, and the unit is then the nominal length; or strengths in units of
         E₀, and the unit is 1.
         """
         if not self.by_length:
-            return self.strength(0), self.strength(1), 1.0
-        one, two = (
-            felt_mm(self.observer, self.parameter, each, self.pair) for each in self.felt[:2]
-        )
-        return one, two, nominal_mm(self.parameter, self.observer.geometry)
+            return [self.strength(place) for place in range(len(self.felt))], 1.0
+        lengths = [felt_mm(self.observer, self.parameter, each, self.pair) for each in self.felt]
+        return lengths, nominal_mm(self.parameter, self.observer.geometry)
+
+    def share(self) -> float:
+        """Value of the last stimulus as a share of the first; of a single one, of the unit.
+
+        It is 0 if one of them was not felt.
+        """
+        values, unit = self.values()
+        standard = unit if len(values) == 1 else values[0]
+        share = values[-1] / standard if standard > 0 else 0.0
+        return 0.0 if math.isnan(share) else share

@@ -1,0 +1,476 @@
+"""Cells of a design compared: means, effects, differences of levels, simple effects.
+
+A cell is a combination of levels of the factors. A participant has a score, or some answers, in
+the cells of the own group. Two models give the same kinds of numbers:
+
+- `CellShares`, by `trialsmodel`: a logistic regression of single trials, participants as clusters;
+- `CellScores`, of participants' own scores: each contrast of cells has its own error, from how the
+  participants of each group differ in it (Welch 1938; Satterthwaite 1946). Within participants
+  that is the t-test of their own contrasts, which supposes no sphericity. Effects of several
+  degrees of freedom are by the analysis of variance, corrected by Greenhouse and Geisser.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from itertools import combinations
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.special import expit
+from scipy.stats import t as student
+
+from vbraille.analysis.statistics.anova import anova, orthonormal_contrasts
+from vbraille.analysis.statistics.intervals import (
+    FEWEST_PARTICIPANTS,
+    ROUNDING,
+    TAIL,
+    Interval,
+    Unanswerable,
+    adjust,
+    mean_interval,
+    mean_share,
+    too_few,
+)
+from vbraille.analysis.statistics.paired import hedges_correction
+from vbraille.analysis.statistics.trialsmodel import (
+    compare,
+    compare_all,
+    difference,
+    fit_trials,
+    separate_cells,
+    tells_difference,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from vbraille.analysis.statistics.trialsmodel import TrialsFit
+
+    Floats = NDArray[np.float64]
+
+FEWEST_OF_GROUP = 2
+MOST_LEVELS = 12  # they make 66 pairs: more than should be compared
+_FEW_DIFFER = "fewer than three participants have anything wrong, or right"
+_ALIKE = "participants do not differ, or are too few to tell"
+
+
+class CellEstimate(NamedTuple):
+    """A mean or a difference, its interval and its test; None where there is none.
+
+    Parameters
+    ----------
+    value
+        In the measure's unit; of logarithms, a logarithm.
+    low, high
+        Ends of the 95 % interval.
+    size
+        ComparedEffect size of a difference: the odds ratio of shares, else Hedges's g.
+    t, df, p
+        Test that a difference is 0.
+    participants
+        How many tell of it.
+    note
+        Reason why there is no interval or test; or empty.
+    """
+
+    value: float | None = None
+    low: float | None = None
+    high: float | None = None
+    size: float | None = None
+    t: float | None = None
+    df: float | None = None
+    p: float | None = None
+    participants: int = 0
+    note: str = ""
+
+
+class JointEffect(NamedTuple):
+    """Test of an effect: F, both degrees of freedom and p; None where there is no test."""
+
+    f: float | None = None
+    df1: float | None = None
+    df2: float | None = None
+    p: float | None = None
+    note: str = ""
+
+
+class LevelPair(NamedTuple):
+    """Two levels of a factor, first less second.
+
+    Parameters
+    ----------
+    factor, first, second
+        Number of the factor, and of its levels.
+    weights : float64[cells]
+        Weights of the cells in the difference.
+    at
+        Factor and level at which the difference is a simple effect; None over all.
+    """
+
+    factor: int
+    first: int
+    second: int
+    weights: Floats
+    at: tuple[int, int] | None = None
+
+
+class CellDesign:
+    """Cells by their levels.
+
+    Parameters
+    ----------
+    levels : int64[cells, factors]
+        Number of each cell's level of each factor.
+    """
+
+    def __init__(self, levels: NDArray[np.int64]) -> None:
+        self.levels = levels
+
+    def effects(self) -> list[tuple[int, ...]]:
+        """Factors that act by themselves, then those that act together."""
+        many = range(self.levels.shape[1])
+        return [own for size in range(1, len(many) + 1) for own in combinations(many, size)]
+
+    def contrasts(self, own: tuple[int, ...]) -> Floats:
+        """Contrasts of cells that are 0 without an effect, float64[q, cells].
+
+        They are averages over those combinations of the other factors' levels at which there are
+        all levels of the effect's.
+
+        Raises
+        ------
+        Unanswerable
+            If a factor has one level, or there is no such combination.
+        """
+        sizes = [int(self.levels[:, at].max()) + 1 for at in own]
+        if 1 in sizes:
+            raise Unanswerable("a factor has one level")
+        whole, others = self._whole(own, math.prod(sizes))
+        apart = np.ones((1, 1))
+        for size in sizes:
+            apart = np.kron(apart, orthonormal_contrasts(size).T)
+        place = np.ravel_multi_index(tuple(self.levels[:, list(own)].T), tuple(sizes))
+        contrasts = apart[:, place] / others
+        contrasts[:, ~whole] = 0.0
+        return contrasts
+
+    def pairs(self, factor: int) -> list[LevelPair]:
+        """All pairs of a factor's levels, each averaged over those of the other factors."""
+        return list(self._pairs(factor, np.ones(len(self.levels), bool), None))
+
+    def simple_effects(self, own: tuple[int, ...]) -> list[LevelPair]:
+        """Pairs of the first factor's levels at each level of the second; of two factors alone."""
+        if len(own) != 2:
+            return []
+        factor, other = own
+        return [
+            pair
+            for level in range(int(self.levels[:, other].max()) + 1)
+            for pair in self._pairs(factor, self.levels[:, other] == level, (other, level))
+        ]
+
+    def _pairs(
+        self, factor: int, chosen: NDArray[np.bool_], at: tuple[int, int] | None
+    ) -> Iterator[LevelPair]:
+        mine = self.levels[:, factor]
+        rest = np.delete(self.levels, factor, axis=1)
+        for first, second in combinations(range(int(mine.max()) + 1), 2):
+            weights = np.zeros(len(mine))
+            both = [
+                (one, two)
+                for one in np.flatnonzero(chosen & (mine == first))
+                for two in np.flatnonzero(chosen & (mine == second))
+                if (rest[one] == rest[two]).all()
+            ]
+            for one, two in both:
+                weights[one] += 1 / len(both)
+                weights[two] -= 1 / len(both)
+            if both:
+                yield LevelPair(factor, first, second, weights, at)
+
+    def _whole(self, own: tuple[int, ...], size: int) -> tuple[NDArray[np.bool_], int]:
+        """Cells at whose other levels there are all of an effect, and how many of those."""
+        rest = np.delete(self.levels, list(own), axis=1)
+        _, which = np.unique(rest, axis=0, return_inverse=True)
+        which = which.ravel()
+        whole = np.flatnonzero(np.bincount(which) == size)
+        if not whole.size:
+            raise Unanswerable("no combination of the other factors has all of its levels")
+        return np.isin(which, whole), whole.size
+
+
+class CellShares:
+    """Right answers by participant and cell.
+
+    Parameters
+    ----------
+    correct, asked : int64[k, cells]
+        Right answers, and all answers.
+    design
+        The cells.
+    """
+
+    def __init__(
+        self, correct: NDArray[np.int64], asked: NDArray[np.int64], design: CellDesign
+    ) -> None:
+        self.correct, self.asked, self.design = correct, asked, design
+
+    @cached_property
+    def fit(self) -> TrialsFit:
+        """Model of all trials."""
+        return fit_trials(self.correct, self.asked, separate_cells(*self.asked.shape))
+
+    def mean(self, cell: int) -> CellEstimate:
+        """Mean over participants of their own shares in a cell."""
+        have = self.asked[:, cell] > 0
+        right, asked = self.correct[have, cell], self.asked[have, cell]
+        own = right / asked
+        if not own.size:
+            return CellEstimate(note="no trials")
+        value = float(own.mean())
+        try:
+            found = mean_share(own, asked)
+        except Unanswerable as reason:
+            return CellEstimate(value, participants=own.size, note=f"no interval: {reason}")
+        low, high = min(found.low, value), max(found.high, value)
+        return CellEstimate(value, low, high, participants=own.size)
+
+    def contrast(self, weights: Floats) -> CellEstimate:
+        """Difference of weighted shares."""
+        told = weights != 0
+        have = (self.asked[:, told] > 0).any(axis=1)
+        share = expit(self.fit.coefficients[0])
+        log_odds = float(self.fit.coefficients[0] @ weights)
+        made = CellEstimate(
+            value=float(share @ weights),
+            size=math.exp(min(max(log_odds, -600.0), 600.0)),
+            participants=int(have.sum()),
+        )
+        if made.participants < FEWEST_PARTICIPANTS:
+            return made._replace(note=f"no interval: {too_few(made.participants)}")
+        test = compare(self.fit, weights)
+        if np.isnan(test.errors[0]):
+            return made._replace(note=f"no interval: {_ALIKE}")
+        made = made._replace(
+            t=float(test.estimates[0] / test.errors[0]),
+            df=float(test.degrees[0]),
+            p=float(test.p_values()[0]),
+        )
+        if not tells_difference(self.correct[:, told], self.asked[:, told]):
+            return made._replace(note=f"no interval: {_FEW_DIFFER}")
+        low, high = difference(self.fit, weights)
+        return made._replace(low=float(low[0]), high=float(high[0]))
+
+    def joint(self, own: tuple[int, ...]) -> JointEffect:
+        """Test of an effect: Wald's, as F with the degrees of freedom of Hotelling's T²."""
+        try:
+            contrasts = self.design.contrasts(own)
+            if len(self.asked) < FEWEST_PARTICIPANTS:
+                raise Unanswerable(too_few(len(self.asked)))
+            found = compare_all(self.fit, contrasts)
+        except Unanswerable as reason:
+            return JointEffect(note=f"no test: {reason}")
+        if np.isnan(found.p[0]):
+            return JointEffect(note=f"no test: {_ALIKE}")
+        return JointEffect(float(found.f[0]), found.df1, float(found.df2[0]), float(found.p[0]))
+
+
+class CellScores:
+    """Scores by participant and cell.
+
+    Parameters
+    ----------
+    scores : float64[k, cells]
+        Each participant's score in each cell; NaN for none.
+    design
+        The cells.
+    group : int64[k]
+        Group of each participant.
+    groups : int64[cells]
+        Group that has each cell.
+    scale
+        Least and greatest score that there may be.
+    """
+
+    def __init__(
+        self,
+        scores: Floats,
+        design: CellDesign,
+        group: NDArray[np.int64],
+        groups: NDArray[np.int64],
+        scale: Interval = Interval(-math.inf, math.inf),  # noqa: B008 - a tuple never changes
+    ) -> None:
+        self.scores, self.design, self.scale = scores, design, scale
+        self.group, self.groups = group, groups
+
+    def mean(self, cell: int) -> CellEstimate:
+        """Mean over participants of their scores in a cell, with Student's interval."""
+        own = self.scores[:, cell]
+        own = own[~np.isnan(own)]
+        if not own.size:
+            return CellEstimate(note="no scores")
+        value = float(own.mean())
+        try:
+            low, high = mean_interval(own)
+        except Unanswerable as reason:
+            return CellEstimate(value, participants=own.size, note=f"no interval: {reason}")
+        ends = max(low, self.scale.low), min(high, self.scale.high)
+        return CellEstimate(value, *ends, participants=own.size)
+
+    def contrast(self, weights: Floats) -> CellEstimate:
+        """Difference of weighted scores, with an error of its own."""
+        terms, sizes = [], []
+        for group in np.unique(self.groups[weights != 0]):
+            mine = (self.groups == group) & (weights != 0)
+            own = self.scores[self.group == group][:, mine]
+            own = own[~np.isnan(own).any(axis=1)]
+            terms.append(own @ weights[mine])
+            sizes.append(max(weights[mine].clip(0).sum(), -weights[mine].clip(None, 0).sum()))
+        many = [term.size for term in terms]
+        made = CellEstimate(participants=sum(many))
+        if 0 in many:
+            return made._replace(note="no difference: a level has no complete participant")
+        value = float(sum(term.mean() for term in terms))
+        made = made._replace(value=value)
+        if made.participants < FEWEST_PARTICIPANTS:
+            return made._replace(note=f"no interval: {too_few(made.participants)}")
+        if min(many) < FEWEST_OF_GROUP:
+            return made._replace(note="no interval: a group has one participant")
+        variances = np.array([term.var(ddof=1) for term in terms])
+        parts, error_df = variances / many, np.array(many) - 1
+        largest = max(np.abs(term).max() for term in terms)
+        if parts.sum() <= (ROUNDING * largest) ** 2:
+            return made._replace(note=f"no interval: {_ALIKE}")
+        error = math.sqrt(parts.sum())
+        df = float(parts.sum() ** 2 / (parts**2 / error_df).sum())
+        pooled = float((variances / np.square(sizes) * error_df).sum() / error_df.sum())
+        half = float(student.ppf(1 - TAIL, df)) * error
+        most = self.scale.high - self.scale.low
+        return made._replace(
+            low=max(value - half, -most),
+            high=min(value + half, most),
+            size=value / math.sqrt(pooled) * hedges_correction(int(error_df.sum())),
+            t=value / error,
+            df=df,
+            p=float(2 * student.sf(abs(value) / error, df)),
+        )
+
+    def joint(self, own: tuple[int, ...]) -> JointEffect:
+        """Test of an effect: t² of one contrast, else by the analysis of variance."""
+        try:
+            contrasts = self.design.contrasts(own)
+        except Unanswerable as reason:
+            return JointEffect(note=f"no test: {reason}")
+        if len(contrasts) == 1:
+            found = self.contrast(contrasts[0])
+            if found.t is None or found.p is None:
+                return JointEffect(note=found.note.replace("no interval", "no test"))
+            return JointEffect(found.t**2, 1, found.df, found.p)
+        return self._varied(own) or self._smallest(own)
+
+    def _varied(self, own: tuple[int, ...]) -> JointEffect | None:
+        """Test by the analysis of variance; None where it is none of such a design."""
+        levels = self.design.levels
+        names = [str(at) for at in range(levels.shape[1])]
+        apart = [
+            at
+            for at in range(levels.shape[1])
+            if all(np.unique(levels[self.groups == group, at]).size == 1 for group in self.groups)
+        ]
+        within = [at for at in range(levels.shape[1]) if at not in apart]
+        crossed = math.prod(int(levels[:, at].max()) + 1 for at in range(levels.shape[1]))
+        if not within or crossed != len(levels):
+            return None
+        who, cell = np.nonzero(self.groups == self.group[:, None])
+        try:
+            found = anova(
+                [f"{one}" for one in who],
+                {names[at]: [f"{level}" for level in levels[cell, at]] for at in within},
+                self.scores[who, cell],
+                {names[at]: [f"{level}" for level in levels[cell, at]] for at in apart},
+            )
+        except Unanswerable as reason:
+            return JointEffect(note=f"no test: {reason}")
+        if len(found.participants) < FEWEST_PARTICIPANTS:
+            return JointEffect(note=f"no test: {too_few(len(found.participants))}")
+        wanted = {names[at] for at in own}
+        effect = next(one for one in found.effects if set(one.name.split(" × ")) == wanted)
+        if effect.p_corrected is None:
+            return JointEffect(note=f"no test: {effect.note or _ALIKE}")
+        epsilon = effect.epsilon or 1.0
+        return JointEffect(effect.f, effect.df1 * epsilon, effect.df2 * epsilon, effect.p_corrected)
+
+    def _smallest(self, own: tuple[int, ...]) -> JointEffect:
+        """Smallest p of the pairs of a factor, times their number."""
+        if len(own) > 1:
+            return JointEffect(note="no test: an interaction of groups alone has several parts")
+        (factor,) = own
+        known = [p for pair in self.design.pairs(factor) if (p := self.contrast(pair.weights).p)]
+        if not known:
+            return JointEffect(note=f"no test: {_ALIKE}")
+        return JointEffect(
+            p=min(1.0, min(known) * len(known)), note="by the smallest p of its pairs"
+        )
+
+
+class ComparedEffect(NamedTuple):
+    """An effect and what is in it.
+
+    Parameters
+    ----------
+    factors
+        Numbers of the factors that act together.
+    test
+        Test of the effect.
+    p
+        p corrected for all effects; None without a test.
+    pairs
+        Differences of levels, or simple effects of an interaction, each with its p corrected:
+        for the others of this effect, and at least that of the effect itself.
+    """
+
+    factors: tuple[int, ...]
+    test: JointEffect
+    p: float | None
+    pairs: tuple[tuple[LevelPair, CellEstimate, float | None], ...]
+
+
+def effects(data: CellShares | CellScores, correction: str) -> list[ComparedEffect]:
+    """Test all effects of a design and compare the levels in them.
+
+    The effects are one family, corrected together. The differences within an effect are corrected
+    among themselves, and count only as far as the effect does: their p is at least its. So the
+    chance of any wrong finding, where there is nothing to be found, is that of the effects.
+
+    Parameters
+    ----------
+    correction
+        A key of `intervals.METHODS`.
+    """
+    design = data.design
+    found = [(own, data.joint(own)) for own in design.effects()]
+    corrected = _adjusted([test.p for _, test in found], correction)
+    made = []
+    for (own, test), p in zip(found, corrected, strict=True):
+        pairs = design.pairs(own[0]) if len(own) == 1 else design.simple_effects(own)
+        if len(own) == 1 and int(design.levels[:, own[0]].max()) + 1 > MOST_LEVELS:
+            pairs = []
+        told = [data.contrast(pair.weights) for pair in pairs]
+        # Levels that are the effect itself are tested once.
+        single = len(own) == 1 and len(pairs) == 1
+        own_p = [test.p] if single else [each.p for each in told]
+        within = _adjusted(own_p, correction)
+        gated = [None if one is None or p is None else max(one, p) for one in within]
+        made.append(ComparedEffect(own, test, p, tuple(zip(pairs, told, gated, strict=True))))
+    return made
+
+
+def _adjusted(values: list[float | None], correction: str) -> list[float | None]:
+    """p-values corrected for those that there are."""
+    known = [p for p in values if p is not None]
+    corrected = iter(adjust(known, correction).tolist() if known else [])
+    return [None if p is None else next(corrected) for p in values]
