@@ -385,8 +385,8 @@ def feel(parser: CommandParser) -> None:
     parser.option(
         "--at",
         "MM",
-        "On a device of one axis: feel the picture at this height, from its top (default: its "
-        "middle).",
+        "On a device of one axis: feel the picture at this height, from its top "
+        "(default: where it is felt, near its middle).",
         number,
     )
     parser.flag("--say-entering", "Say the name of each element when the finger comes to it.")
