@@ -51,6 +51,8 @@ def _plan(arguments: argparse.Namespace) -> int:
     protocol, plan = plan_session(arguments.protocol, arguments.participant, **_chances(arguments))
     if arguments.brf and protocol.task == "choice":
         raise InputError(f"{protocol.name} compares dots, which cannot be embossed")
+    if arguments.brf and protocol.pictures:
+        raise InputError(f"{protocol.name} shows pictures, which are no braille; leave --brf out")
     if arguments.seed is None:
         say_line(f"seed: {plan.seed}", aside=True)
     if arguments.brf:
@@ -63,7 +65,11 @@ def _plan(arguments: argparse.Namespace) -> int:
     )
     if plan.group:
         _say(f"group: {plan.group}")
+    from vbraille.forecast.pilots import expected_minutes
+
+    minutes = expected_minutes(protocol, plan)
     _say(f"analysis: {protocol.planned_analysis.described()}")
+    _say(f"length: some {minutes:.0f} minutes, if people read as those of the source")
     if protocol.adaptive:
         from vbraille.sessions.planning.nexttrial import describe
 
@@ -224,7 +230,10 @@ def _describe(protocol: Protocol, trial: Trial) -> str:
             return f"{trial.condition}, the {'lower' if first < second else 'higher'} value first"
         values = [stimulus.value or 0.0 for stimulus in trial.stimuli]
         return ", then ".join(said_value(value, protocol.parameter) for value in values)
-    text = trial.stimuli[0].text
+    stimulus = trial.stimuli[0]
+    if stimulus.picture is not None:
+        return f"{trial.condition}, {stimulus.picture}"
+    text = stimulus.text
     written = "" if text is None else f"{text}, "
     cells = f"{_cells(trial).to_unicode()}, dots {_cells(trial).to_dots()}"
     return f"{trial.condition}, {written}{cells}"

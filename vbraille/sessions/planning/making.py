@@ -134,7 +134,7 @@ def check_plan(protocol: Protocol, plan: Plan) -> None:
 
 def _difference(plan: Plan, again: Plan) -> str:
     """Say where a plan differs from the one that was made again; empty if it does not."""
-    for name in ("protocol", "group", "order"):
+    for name in ("protocol", "group", "order", "analysis"):
         if (kept := getattr(plan, name)) != (made := getattr(again, name)):
             return f"{name} is {kept!r}, and must be {made!r}"
     for name, trials, made in (
@@ -303,7 +303,7 @@ def _trial(protocol: Protocol, item: Item, condition: Condition, block: int) -> 
         shown = [(item if text else (*before, *map(int, item), *after), None)]
         asked = (len(before), len(before) + len(item))
     stimuli = Stimuli(protocol.shown(condition, masks, value) for masks, value in shown)
-    if stimuli[0].text is not None:
+    if stimuli[0].text is not None or stimuli[0].picture is not None:
         asked = (0, len(stimuli[0].masks))
     return Trial(1, block, condition.name, asked, stimuli)
 

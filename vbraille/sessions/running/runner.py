@@ -365,6 +365,11 @@ class Runner:
             else:
                 take(line, 0)
         self.poll()
+        if self.device is not None:
+            pressed, self.device.pressed = self.device.pressed, []
+            for word in filter(None, map(self.protocol.asks.by_button, pressed)):
+                if self.open_trial is not None and not self.paused:
+                    take(f"answer {word}", 0)
         if not self.responses.typed:
             self._ask(take)
         return True
