@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from vbraille.braille.spelling import ordinal
 from vbraille.errors import InputError
 from vbraille.sessions.planning.pace import ENTER
+from vbraille.sessions.planning.questions import AdjustQuestion
 from vbraille.sessions.record import events
 from vbraille.sessions.running.runner import PendingAnswer, Phase, Runner
 
@@ -110,6 +111,8 @@ class Console:
             self._reply(line, runner.asking[0])
             return
         trial = correcting or runner.open_trial
+        if correcting is None and trial is not None and self._turn(line):
+            return
         if trial is None:
             self._say("no answer is waited for now; help says what there is to type")
             return
@@ -118,6 +121,8 @@ class Console:
             coming = ordinal(runner.stimulus + 1)
             self._say(f"the {coming} has not been felt yet; repeat shows {both} again")
             return
+        if runner.protocol.asks.turns:
+            trial = self._progress.record_of(trial).shown
         try:
             answer, confidence = read_line(runner.protocol, trial, line)
         except ValueError as error:
@@ -130,7 +135,7 @@ class Console:
         if correcting is not None:
             told["corrects"] = True
         else:
-            if not runner.presenter.reached:
+            if not (runner.presenter.reached or runner.protocol.asks.turns):
                 if self._asks_again(trial, answer):
                     return
                 told["early"] = True
@@ -146,6 +151,19 @@ class Console:
             self._say(f"confidence: {runner.name(trial)}, {spoken}; type {scale.typed}")
             return
         self._write(trial, told if confidence is None else told | {"confidence": confidence})
+
+    def _turn(self, line: str) -> bool:
+        """Turn the open trial's value, or show the standard again; True if the line says so."""
+        question, runner = self._runner.protocol.asks, self._runner
+        if not isinstance(question, AdjustQuestion):
+            return False
+        if line == "standard" and not runner.more_to_come:
+            runner.show_standard()
+        elif (steps := question.steps(line)) and not runner.more_to_come:
+            runner.turn(steps)
+        else:
+            return False
+        return True
 
     def undo(self, _: str = "") -> None:
         """Take back the last answer, with its confidence."""
