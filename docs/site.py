@@ -11,7 +11,11 @@ BESIDE = {
     "README.md": "index.md",
     **{name: name for name in ("CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")},
 }
-FILES = ("CITATION.cff",)
+FILES = (
+    "CITATION.cff",
+    "packaging/70-vbraille.rules",
+    "packaging/95-vbraille-rtprio.conf",
+)
 _LINK = re.compile(r"(\]\()(\.\./|docs/)?([^):#\s]+)")
 
 

@@ -3,6 +3,7 @@
 import contextlib
 import doctest
 import io
+import json
 import re
 import subprocess
 import sys
@@ -76,6 +77,18 @@ def test_a_whole_program_of_the_page_prints_what_stands_below_it(
     with contextlib.redirect_stdout(said):
         exec(compile(program, str(PAGE), "exec"), {"__name__": "__main__"})
     assert said.getvalue() == printed
+
+
+def test_the_notebook_runs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    notebook = json.loads(PAGE.with_name("notebook.ipynb").read_text(encoding="utf-8"))
+    cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+    known = {"__name__": "__main__"}
+    for cell in cells:
+        exec(compile(cell, "notebook.ipynb", "exec"), known)
+    assert known["recording"].frames.max() == pytest.approx(1.0, abs=0.05)
+    assert len(known["results"].table("legibility")) == 1
+    assert known["scene"]._repr_png_()[:4] == b"\x89PNG"
 
 
 @heavy  # pyright takes seconds

@@ -7,7 +7,7 @@ from importlib import import_module
 
 import pytest
 
-from vbraille.extras import EXTRAS, lacking, needing_extras
+from vbraille.errors import EXTRAS, lacking, needing_extras
 
 # Python reads it when it starts, in child processes, too: what stands there as None is not there.
 CUSTOMIZE = f"import sys\nsys.modules.update(dict.fromkeys({sorted(EXTRAS)}))\n"

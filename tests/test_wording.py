@@ -6,11 +6,11 @@ import pytest
 
 import vbraille
 from vbraille import errors, wording
-from vbraille.braille import dots
+from vbraille.braille import cells
 from vbraille.wording import count, printable, setting, spelled
 
 
-@pytest.mark.parametrize("module", [wording, errors, dots], ids=lambda module: module.__name__)
+@pytest.mark.parametrize("module", [wording, errors, cells], ids=lambda module: module.__name__)
 def test_the_examples(module):
     failed, attempted = doctest.testmod(module)
     assert failed == 0

@@ -42,8 +42,7 @@ from vbraille.devices.serial.wire import (
 )
 from vbraille.display import Display
 from vbraille.engine.loop import Loop
-from vbraille.engine.record import X
-from vbraille.engine.ring import Ring
+from vbraille.engine.record import Ring, X
 from vbraille.render import BrailleStyle, Mapping, Profile, Tuning
 from vbraille.simulation.firmware import Controller, describe
 from vbraille.simulation.simulator import split

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry as Geometry
     from vbraille.devices.base import Device as Device
     from vbraille.display import Display as Display
+    from vbraille.display import Pose as Pose
     from vbraille.errors import DeviceError as DeviceError
     from vbraille.errors import InputError as InputError
     from vbraille.errors import VbrailleError as VbrailleError
     from vbraille.layout.texts import translate_text as translate_text
     from vbraille.pictures.framed import open_framed as open_scene
-    from vbraille.pose import Pose as Pose
     from vbraille.reading.device import OpenDevice as OpenDevice
     from vbraille.reading.device import open_to_read as open  # noqa: A004
     from vbraille.reading.frames import RenderedLine as RenderedLine
@@ -39,9 +39,9 @@ if TYPE_CHECKING:
     from vbraille.render.braille.models import STRESS2_8X8 as STRESS2_8X8
     from vbraille.render.braille.models import VBD as VBD
     from vbraille.render.braille.models import Model as Model
-    from vbraille.render.braille.profiles import Tuning as Tuning
-    from vbraille.render.braille.straying import Straying as Straying
     from vbraille.render.braille.style import BrailleStyle as BrailleStyle
+    from vbraille.render.braille.style import Straying as Straying
+    from vbraille.render.braille.style import Tuning as Tuning
     from vbraille.scene.scene import Canvas as Canvas
     from vbraille.scene.scene import Scene as Scene
     from vbraille.sessions.conditions import Conditions as Conditions
@@ -61,7 +61,7 @@ _PLACES = {
     "MAPPINGS": "vbraille.render.braille.mappings",
     "Model": "vbraille.render.braille.models",
     "OpenDevice": "vbraille.reading.device",
-    "Pose": "vbraille.pose",
+    "Pose": "vbraille.display",
     "Recording": "vbraille.recording",
     "RenderedLine": "vbraille.reading.frames",
     "RenderedPage": "vbraille.reading.frames",
@@ -70,8 +70,8 @@ _PLACES = {
     "STRESS2_8X8": "vbraille.render.braille.models",
     "Scene": "vbraille.scene.scene",
     "Session": "vbraille.sessions.session",
-    "Straying": "vbraille.render.braille.straying",
-    "Tuning": "vbraille.render.braille.profiles",
+    "Straying": "vbraille.render.braille.style",
+    "Tuning": "vbraille.render.braille.style",
     "VBD": "vbraille.render.braille.models",
     "VbrailleError": "vbraille.errors",
     "analyse": "vbraille.analysis",
@@ -124,7 +124,7 @@ def __getattr__(name: str) -> object:
     if name not in _PLACES:
         raise AttributeError(f"module 'vbraille' has no attribute {name!r}")
     place, _, its_name = _PLACES[name].partition(":")
-    from vbraille.extras import needing_extras
+    from vbraille.errors import needing_extras
 
     with needing_extras():
         found = getattr(import_module(place), its_name or name)

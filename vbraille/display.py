@@ -1,13 +1,14 @@
 """What a laterotactile display is: its actuators, and the carriage that they stand on.
 
-A device offers its `Display`; pages are laid out for it, and pictures are compiled for it.
+A device offers its `Display` and gives a `Pose` at each tick. Pages are laid out for a display, and
+pictures are compiled for it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from numbers import Integral
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from vbraille.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
 
 # What the protocol and the kernels have room for.
 MOST_ROWS, MOST_COLUMNS = 16, 64
@@ -145,3 +147,24 @@ def check_rate(rate_hz: float) -> float:
     if not 1 <= rate_hz <= 10_000:
         raise InputError(f"rate is {rate_hz:g} Hz; it must be 1 to 10000 Hz")
     return rate_hz
+
+
+class Pose(NamedTuple):
+    """Where the array is, and when.
+
+    Parameters
+    ----------
+    time_ns
+        Time of the pose, in ns of the device's clock.
+    x_mm, y_mm
+        The array's centre on the canvas. At the left stop of a slider the whole array stands
+        before the line: x = -(columns - 1) / 2 · pitch. A slider measures no y: it says 0, and
+        the picture is shown where it has its dots.
+    theta_rad
+        Angle by which the array is turned, in radians; 0 where that is not measured.
+    """
+
+    time_ns: int
+    x_mm: float
+    y_mm: float = 0.0
+    theta_rad: float = 0.0

@@ -1,8 +1,16 @@
-"""Everything that vbraille tells a user it cannot do.
+"""Everything that vbraille tells a user it cannot do, a package of an extra that is missing too.
 
 The message is one sentence that says what to do. `main` prints it on stderr
 and leaves with ``exit_code``; a traceback reaches nobody.
 """
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+
+TYPE_CHECKING = False  # as in vbraille.cli
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 
 class VbrailleError(Exception):
@@ -35,3 +43,35 @@ def check_range(what: str, value: float | None, low: float, high: float, unit: s
     """
     if value is not None and not low <= value <= high:
         raise ValueError(f"{what} is {value:g}{unit}; it must be {low:g} to {high:g}{unit}")
+
+
+# Extras of pyproject.toml by the modules that they bring; scipy comes with two of them.
+EXTRAS = {
+    "contourpy": "pictures",
+    "joblib": "analysis",
+    "matplotlib": "pictures",
+    "pandas": "analysis",
+    "resvg_py": "pictures",
+    "scipy": "all",
+    "sounddevice": "sound",
+}
+
+
+@contextmanager
+def needing_extras() -> Iterator[None]:
+    """Raise InputError, which says how to install it, for a module of an extra that is missing."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        name = (error.name or "").partition(".")[0]
+        if name not in EXTRAS:
+            raise
+        raise InputError(f"this {lacking(name)}") from None
+
+
+def lacking(name: str) -> str:
+    """Say that a module of an extra is needed, and what installs it."""
+    return (
+        f"needs {name}, which is not installed: `make setup` installs it in a checkout, "
+        f"and `pip install 'vbraille[{EXTRAS[name]}]'` elsewhere"
+    )

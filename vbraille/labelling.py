@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.errors import InputError
-from vbraille.layout.wrapping import breaks_of, wrap
+from vbraille.layout.blocks import breaks_of, wrap
 from vbraille.render.scene.labels import Written, corners_mm
 from vbraille.scene.patterns import Label, Tile
 from vbraille.scene.traversal import each
 from vbraille.translate.languages import find_table
 from vbraille.translate.liblouis import BrailleTable
-from vbraille.translate.text import Text, to_codes
+from vbraille.translate.source import Text, to_codes
 from vbraille.wording import count, printable
 
 if TYPE_CHECKING:

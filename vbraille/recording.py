@@ -198,7 +198,7 @@ class Recorder:
         frames : float32[n, rows, columns]
             Deflections, 0 … 1.
         y_mm, theta_rad : float64[n]
-            The rest of the pose, see `vbraille.pose`.
+            The rest of the pose, see `vbraille.display`.
         part : int64[n]
             Which part of a picture that has several was under the array.
         """
@@ -225,7 +225,7 @@ class Recording:
     t_s : float64[n]
         Times, which never go back.
     x_mm, y_mm, theta_rad : float64[n]
-        Places of the array's centre and its angle, as `vbraille.pose` has them.
+        Places of the array's centre and its angle, as `vbraille.display` has them.
     frames : float32[n, rows, columns]
         Deflections, 0 … 1.
     model

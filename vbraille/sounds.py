@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from vbraille.extras import lacking
+from vbraille.errors import lacking
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -17,8 +17,7 @@ import numpy as np
 from tests.benchmarks.timing import Result
 from vbraille.engine.batch import BatchEngine
 from vbraille.render import STRESS2, STRESS2_8X8, Straying, Tuning
-from vbraille.simulation.hand import Sweep
-from vbraille.simulation.paging import Drift, read_lines
+from vbraille.simulation.hand import Drift, Sweep, read_lines
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.steering import ReadPage, Steering
 
@@ -28,8 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.render import Model
+    from vbraille.simulation.hand import Area
     from vbraille.simulation.motion import Motion
-    from vbraille.simulation.paging import Area
 
 LINES, CELLS, SEEDS = 8, 10, 6
 STRAYS = (0.15, 0.3, 0.45, 0.6)  # line pitches

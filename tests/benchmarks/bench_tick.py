@@ -38,7 +38,7 @@ _DRIVER = '''
 import time
 import numpy as np
 from vbraille.devices import Device
-from vbraille.pose import Pose
+from vbraille.display import Pose
 
 class Plain(Device):
     """A device in memory, as a driver from elsewhere is: four members, and no more."""

@@ -2,8 +2,7 @@
 
 import pytest
 
-from vbraille.braille.cells import Cells
-from vbraille.braille.dots import DOT_ROWS, PLACES, dots_of, mask_of
+from vbraille.braille.cells import DOT_ROWS, PLACES, Cells, dots_of, mask_of
 
 
 @pytest.mark.parametrize("mask", range(256))

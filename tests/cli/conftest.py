@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import pytest
 
 from vbraille.cli.main import main
-from vbraille.cli.stopping import SIGNALS
+from vbraille.signals import SIGNALS
 
 TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
 

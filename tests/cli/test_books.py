@@ -8,8 +8,7 @@ import pytest
 
 from tests.cli import program
 from vbraille.cli.commands.books import describe
-from vbraille.reading.library import KeptPlace, KeptPlaces, ListedBook
-from vbraille.reading.store import ENVIRONMENT
+from vbraille.reading.library import ENVIRONMENT, KeptPlace, KeptPlaces, ListedBook
 
 
 @pytest.fixture

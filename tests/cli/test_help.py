@@ -5,12 +5,12 @@ import shlex
 
 import pytest
 
-from vbraille.cli.options.commandparser import CommandParser
 from vbraille.cli.parser import (
     COMMANDS,
     DEVICE_ACTIONS,
     SCENE_ACTIONS,
     SESSION_ACTIONS,
+    CommandParser,
     parse,
 )
 

@@ -6,7 +6,7 @@ import time
 from tests.cli import program
 from tests.reading.ssipserver import SsipServer
 from vbraille.reading.cueing import MELODIES
-from vbraille.reading.cues import Cue
+from vbraille.reading.view import Cue
 
 # All that may be printed for a key beside what it says, which has no end of a line.
 MOST_BYTES = 40

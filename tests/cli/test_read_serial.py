@@ -204,7 +204,7 @@ def test_a_port_that_is_not_there(call, text):
 
 # Its carriage goes no further than 60 mm, whatever it says; its hand tries four times.
 SHORT = """
-from vbraille.pose import Pose
+from vbraille.display import Pose
 from vbraille.simulation.motion import Way
 from vbraille.simulation.simulated import SimulatedDevice
 

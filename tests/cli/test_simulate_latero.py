@@ -9,8 +9,8 @@ import pytest
 from tests.cli import program
 from tests.tiers import heavy
 from vbraille.cli.commands.simulate import LATERO_ONLY, SERIAL_ONLY
-from vbraille.cli.options.commandparser import CommandParser
 from vbraille.cli.options.exploring import simulate
+from vbraille.cli.parser import CommandParser
 
 
 class Simulated:

@@ -6,9 +6,14 @@ from pathlib import Path
 import pytest
 
 from vbraille.config import options
-from vbraille.config.knobs import kept_values
 from vbraille.config.options import OPTIONS, PROFILE, held_in, knobs
-from vbraille.config.settings import parse_settings, say_settings, say_tuning, with_profile
+from vbraille.config.settings import (
+    kept_values,
+    parse_settings,
+    say_settings,
+    say_tuning,
+    with_profile,
+)
 from vbraille.config.settingsfile import ProfileTable, ReadTable
 from vbraille.errors import InputError
 from vbraille.render import STRESS2, VBD, Straying

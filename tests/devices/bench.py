@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.devices.serial.device import SerialDevice
-    from vbraille.pose import Pose
+    from vbraille.display import Pose
 
 HOME_MM = -5.4  # of the centre of the array, which is 10.8 mm long, at the left stop
 HALF = np.full((6, 10), 0.5)

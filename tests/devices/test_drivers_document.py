@@ -11,9 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from vbraille.display import Display
+from vbraille.display import Display, Pose
 from vbraille.errors import InputError
-from vbraille.pose import Pose
 from vbraille.testing.conformance import CHECKS
 
 PAGE = Path(__file__).parents[2] / "docs" / "drivers.md"

@@ -3,10 +3,9 @@
 import numpy as np
 
 from vbraille.devices.base import Device
-from vbraille.display import Display
+from vbraille.display import Display, Pose
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import LocalEngine
-from vbraille.pose import Pose
 from vbraille.render import STRESS2
 
 PLANE = Display(

@@ -27,7 +27,7 @@ from vbraille.devices.serial.device import SerialDevice, greet
 from vbraille.devices.serial.port import Address, SerialLine
 from vbraille.devices.serial.wire import Decoder, Encoder, Frame, Levels, State, encode
 from vbraille.engine.loop import Loop
-from vbraille.engine.ring import Ring
+from vbraille.engine.record import Ring
 from vbraille.simulation.firmware import Controller, describe
 
 # A run does as many ticks as there are in 20 ms: one.

@@ -6,14 +6,12 @@ import numpy as np
 import pytest
 
 from tests.shown import rendered
-from vbraille.display import Display
+from vbraille.display import Display, Pose
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.constants import NS_PER_S
 from vbraille.engine.loop import Loop
-from vbraille.engine.record import Flag
-from vbraille.engine.ring import Ring, RingReader
+from vbraille.engine.record import Flag, Ring, RingReader
 from vbraille.errors import DeviceError
-from vbraille.pose import Pose
 from vbraille.render import MAPPINGS, STRESS2, Tuning
 from vbraille.simulation.hand import Hand
 from vbraille.simulation.motion import Motion

@@ -23,7 +23,7 @@ _PLACES = {0: (0, 0), 1: (0, 1), 2: (0, 2), 3: (1, 0), 4: (1, 1), 5: (1, 2)}
 
 
 def places(ticks, display):
-    """Where each actuator was along x, float64[n, rows, columns]; by `vbraille.pose`."""
+    """Where each actuator was along x, float64[n, rows, columns]; by `vbraille.display`."""
     right = display.column_offsets_mm() - display.span_mm / 2
     down = display.row_offsets_mm() - display.depth_mm / 2
     theta = ticks["theta_rad"][:, None, None]

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from vbraille.engine.mailbox import Extent, attach, divide, watch
-from vbraille.engine.record import FLOATS, INTS, Flag
-from vbraille.engine.ring import Ring, RingReader
+from vbraille.engine.record import FLOATS, INTS, Flag, Ring, RingReader
 
 SHAPE = (2, 3)
 # A reader in another process: it drains as soon as so many ticks are new, up to the last tick.

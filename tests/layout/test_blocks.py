@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.translate.blocks import BlockList, block_of
+from vbraille.layout.blocks import indents
 from vbraille.layout.pages import Layout
-from vbraille.layout.wrapping import indents
 from vbraille.translate import BlockKind, Book, BrailleTable, Cells
 
 FRENCH = BrailleTable("fr-bfu-comp6.utb")

@@ -13,8 +13,8 @@ from tests.conftest import SEED
 from tests.laid import cuts_inside, laid_out, rebuilt
 from tests.layout.pages import brf, lay_out
 from tests.tiers import examples, heavy
+from vbraille.layout.blocks import wrap
 from vbraille.layout.pages import Layout
-from vbraille.layout.wrapping import wrap
 from vbraille.translate import Book, BrailleTable, Document
 
 # Letters of several cells, symbols, hyphens, blanks of all kinds, and what tables do not know.

@@ -1,7 +1,7 @@
 """What cannot be shown is counted at its place, each thing once."""
 
 from vbraille.layout.pages import Layout
-from vbraille.layout.unshown import Unshown
+from vbraille.layout.texts import Unshown
 from vbraille.translate import Book, BrailleTable
 from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.source import Mark, MarkKind

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests.laid import cuts_inside
 from tests.layout.pages import brf, lay_out
 from tests.tiers import examples
-from vbraille.layout.wrapping import wrap
+from vbraille.layout.blocks import wrap
 from vbraille.translate import BrailleTable
 
 # Few values, so that blanks and long words both come.

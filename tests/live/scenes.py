@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import msgspec
 import numpy as np
 
-from vbraille.config.knobs import KNOBS, say_mapping
+from vbraille.config.settings import KNOBS, say_mapping
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
 from vbraille.live.framing import FrameHeader, frame_bytes
@@ -45,7 +45,7 @@ from vbraille.translate.liblouis import BrailleTable
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.layout.lines import Line
+    from vbraille.layout.blocks import Line
     from vbraille.live.sources import Steering
 
 RATE_HZ = 1000

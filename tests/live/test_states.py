@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tiers import examples
-from vbraille.config.knobs import KNOBS
+from vbraille.config.settings import KNOBS
 from vbraille.layout.pages import Layout
 from vbraille.live.states import (
     array_shown,

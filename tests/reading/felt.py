@@ -1,9 +1,9 @@
 """A picture that is felt on a device in memory, by the engine's own loop on a manual clock."""
 
 from tests.engine.planar import Bench
+from vbraille.display import Pose
 from vbraille.feeling.composing import compose
 from vbraille.feeling.loading import load_scene
-from vbraille.pose import Pose
 from vbraille.reading.commands.scene import BOUND
 from vbraille.reading.sceneview import SceneView
 from vbraille.render import MODELS

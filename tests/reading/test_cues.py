@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from vbraille.reading.cueing import MELODIES, give
-from vbraille.reading.cues import Cue, CueKind, choose_cues
-from vbraille.reading.outputs import Cues
+from vbraille.reading.outputs import CueKind, Cues, choose_cues
+from vbraille.reading.view import Cue
 from vbraille.sounds import melody
 from vbraille.workers import Incoming, Outgoing
 
@@ -87,7 +87,7 @@ def test_each_cue_is_another_melody_and_another_number_of_bells():
 
 def test_cues_are_played():
     speaker = Loudspeaker()
-    for cue in given([Cue.LIMIT, Cue.PAGE_END], CueKind.SOUND, speaker):
+    for cue in given([Cue.LIMIT, Cue.PAGE_END], "sound", speaker):
         end = time.monotonic() + 30.0
         while speaker.played[-1:] != [MELODIES[cue]]:
             assert time.monotonic() < end
@@ -100,7 +100,7 @@ def test_without_an_audio_output_or_when_it_goes_the_bell_rings(speaker):
     if speaker is not None:
         speaker.there = False
     with terminal() as bells:
-        for cue in given([Cue.PAGE_END, Cue.LINE_END], CueKind.SOUND, speaker):
+        for cue in given([Cue.PAGE_END, Cue.LINE_END], "sound", speaker):
             number = len(MELODIES[cue])
             assert bells(number) == b"\a" * number
 

@@ -14,7 +14,7 @@ from vbraille.layout.texts import choose_table
 from vbraille.reading.bookfigures import BookFigures
 from vbraille.reading.device import OpenDevice
 from vbraille.render import STRESS2, STRESS2_8X8, model_of
-from vbraille.render.braille.straying import Straying
+from vbraille.render.braille.style import Straying
 from vbraille.scene.reading import open_scene
 from vbraille.translate import Book
 from vbraille.translate.formats import open_source

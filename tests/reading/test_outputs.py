@@ -4,9 +4,17 @@ import pytest
 
 from tests.reading.ssipserver import SsipServer
 from vbraille.layout.pages import Layout
-from vbraille.reading.cues import Cue, CueKind
-from vbraille.reading.outputs import ConsoleOutput, Cues, Echo, Outputs, SpeechOutput, language_of
+from vbraille.reading.outputs import (
+    ConsoleOutput,
+    CueKind,
+    Cues,
+    Echo,
+    Outputs,
+    SpeechOutput,
+    language_of,
+)
 from vbraille.reading.speech import Speech
+from vbraille.reading.view import Cue
 from vbraille.translate import Book, BrailleTable, Document
 
 TABLE = BrailleTable("en-ueb-g2.ctb")

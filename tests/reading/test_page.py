@@ -14,12 +14,12 @@ from vbraille.engine.record import Flag
 from vbraille.layout.pages import Layout
 from vbraille.reading.advancing import STAY_S
 from vbraille.reading.commands.table import bound_by
-from vbraille.reading.cues import Cue
 from vbraille.reading.keys import Bindings
 from vbraille.reading.liveview import LastSentences, ReadState
 from vbraille.reading.outputs import Echo
+from vbraille.reading.view import Cue
 from vbraille.render import LATERO, STRESS2_8X8
-from vbraille.render.braille.straying import MOST_TILT_RAD
+from vbraille.render.braille.style import MOST_TILT_RAD
 from vbraille.translate import Book
 from vbraille.translate.braillefiles.lines import open_brf
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tiers import examples
-from vbraille.config.knobs import KNOBS
+from vbraille.config.settings import KNOBS
 from vbraille.errors import InputError
 from vbraille.reading.tuning_course import (
     CHOICES_PER_KNOB,

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tests.render.test_page import frame_of, swing
-from vbraille.braille.dots import PLACES
+from vbraille.braille.cells import PLACES
 from vbraille.render import LATERO, STRESS2, STRESS2_8X8, VBD, Straying
-from vbraille.render.braille.straying import BAND_BOUNDS, MOST_TILT_RAD
+from vbraille.render.braille.style import BAND_BOUNDS, MOST_TILT_RAD
 
 MODELS = {model.name: model for model in (STRESS2, STRESS2_8X8, LATERO, VBD)}
 BOTH = pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)

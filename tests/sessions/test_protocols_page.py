@@ -8,7 +8,7 @@ import pytest
 from tests.documents import DOCS, protocol_tables
 from tests.sessions.sittings import Session, of
 from vbraille.sessions.planning.making import make_plan
-from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol
+from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol, shipped_text
 from vbraille.sessions.record.folder import check_folder
 
 PAGE = (DOCS / "protocols.md").read_text(encoding="utf-8")
@@ -36,10 +36,15 @@ def examples():
 
 @pytest.mark.parametrize("toml", list(examples()))
 def test_an_example_is_a_protocol_that_a_session_follows(toml, tmp_path):
-    protocol = parse_protocol(toml, "page.toml")
+    protocol = parse_protocol(toml, "page.toml", beside=shipped_text)
     plan = make_plan(protocol, "P01", 1)
     assert len(plan.trials) == protocol.trials
-    if len(plan.trials) > _MOST_RUN or protocol.written or protocol.needs_conventional:
+    if (
+        len(plan.trials) > _MOST_RUN
+        or protocol.written
+        or protocol.pictures
+        or protocol.needs_conventional
+    ):
         return
     session = Session(tmp_path / "s", toml, participant="P01")
     sat = session.sit()

@@ -10,8 +10,15 @@ from hypothesis import strategies as st
 
 from vbraille.errors import InputError
 from vbraille.reading.advancing import STAY_S
-from vbraille.simulation.hand import CLEAR_MM, RETURN_MM_S
-from vbraille.simulation.paging import DRIFT_PITCHES, FOOT_S, TILT_RAD, Area, Drift
+from vbraille.simulation.hand import (
+    CLEAR_MM,
+    DRIFT_PITCHES,
+    FOOT_S,
+    RETURN_MM_S,
+    TILT_RAD,
+    Area,
+    Drift,
+)
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.wander import ARM_MM, TURN_RAD, Wander
 

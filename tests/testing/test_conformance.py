@@ -8,8 +8,8 @@ import pytest
 from tests.baddrivers import BAD, Good
 from tests.engine.test_loop import info
 from vbraille.devices import Device, open_device
+from vbraille.display import Pose
 from vbraille.errors import InputError
-from vbraille.pose import Pose
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.testing.conformance import (
     CHECKS,

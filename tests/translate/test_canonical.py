@@ -12,7 +12,7 @@ from tests.conftest import SEED
 from tests.tiers import by_tier, examples
 from vbraille.errors import InputError
 from vbraille.translate import BrailleTable, find_table, list_tables
-from vbraille.translate.text import Text, to_codes
+from vbraille.translate.source import Text, to_codes
 
 FORMS = ("NFC", "NFD")
 

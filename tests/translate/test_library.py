@@ -8,7 +8,7 @@ from threading import Thread
 import pytest
 
 from tests.translate.test_liblouis import translate
-from vbraille.layout.unshown import Unknown
+from vbraille.layout.texts import Unknown
 from vbraille.translate import Book, BrailleTable, Document, Undefined
 from vbraille.translate.library import call
 

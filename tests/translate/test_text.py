@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vbraille.translate import Document, Text
-from vbraille.translate.text import to_codes, to_text
+from vbraille.translate.source import to_codes, to_text
 
 
 def texts_of(string: str) -> list[Text]:

@@ -6,8 +6,7 @@ import re
 import string
 from typing import TYPE_CHECKING
 
-from vbraille.braille.cells import UNICODE_BLANK, Cells
-from vbraille.braille.dots import dots_of
+from vbraille.braille.cells import UNICODE_BLANK, Cells, dots_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Final
 
-from vbraille.carriers import latero, tactograph
 from vbraille.display import Display
 
 
@@ -46,11 +45,12 @@ class Carrier:
         )
 
 
-# Lévesque 2009, ch. 7: at worst 45.2 µm.
+# Lévesque 2009, ch. 7: "22 × 15 cm" were left of a letter page when the disc under the array had
+# grown; at worst 45.2 µm.
 TACTOGRAPH: Final = Carrier(
     "Tactograph",
-    tactograph.WIDTH_MM,
-    tactograph.HEIGHT_MM,
+    220.0,
+    150.0,
     turns=True,
     counts_per_mm=1 / 0.0452,
 )
@@ -63,11 +63,15 @@ PANTOGRAPH: Final = Carrier(
     turns=False,
     counts_per_mm=1 / 0.013,
 )
-# A count too many or too few in each of its three joints moves the array by 76.5 µm at worst.
+# Its tray, and the disc under the array, whose edge cannot leave it: the array's centre goes over
+# 281 × 217.5 mm. A count too many or too few in each of its three joints moves the array by 76.5 µm
+# at worst.
+LATERO_TRAY_MM: Final = (381.0, 317.5)
+LATERO_DISC_MM: Final = 100.0
 LATERO: Final = Carrier(
     "Latero",
-    latero.WIDTH_MM,
-    latero.HEIGHT_MM,
+    LATERO_TRAY_MM[0] - LATERO_DISC_MM,
+    LATERO_TRAY_MM[1] - LATERO_DISC_MM,
     turns=True,
     counts_per_mm=1 / 0.0766,
 )

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
+from vbraille.carriers.carrier import LATERO, LATERO_DISC_MM, LATERO_TRAY_MM
 from vbraille.carriers.planar import Arms, ThreeArms
 
 if TYPE_CHECKING:
@@ -19,15 +20,12 @@ if TYPE_CHECKING:
 
 ARMS: Final = ThreeArms(Arms(222.3, 245.6), 62.7)
 COUNTS_A_TURN: Final = 65_536
-# The tray, and the disc under the array, whose edge cannot leave it.
-TRAY_MM: Final = (381.0, 317.5)
-DISC_MM: Final = 100.0
-# How far the array's centre goes: 281 × 217.5 mm.
-WIDTH_MM: Final = TRAY_MM[0] - DISC_MM
-HEIGHT_MM: Final = TRAY_MM[1] - DISC_MM
+# How far the array's centre goes.
+WIDTH_MM: Final = LATERO.travel_mm
+HEIGHT_MM: Final = LATERO.height_mm
 # Place of the first joint in the tray's frame: 11.1 mm left of its right edge, 61.2 mm behind it.
-ROOT_X_MM: Final = TRAY_MM[0] - 11.1 - DISC_MM / 2
-ROOT_Y_MM: Final = -61.2 - DISC_MM / 2
+ROOT_X_MM: Final = LATERO_TRAY_MM[0] - 11.1 - LATERO_DISC_MM / 2
+ROOT_Y_MM: Final = -61.2 - LATERO_DISC_MM / 2
 # Where the array is put when the encoders are reset: the lower left corner, not turned. The third
 # arm stands straight up there: from the array it goes straight away from the reader.
 RESET: Final = (0.0, HEIGHT_MM, 0.0)

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from vbraille.carriers.carrier import TACTOGRAPH
 from vbraille.carriers.planar import Arms, ThreeArms
 
 # A.72 ff.: the lengths that were chosen, k = 0.81; the array turns about the arms' end.
@@ -21,10 +22,10 @@ COUNTS_A_TURN: Final = 65_536
 # from the first joint, and the joint is behind its middle.
 PAGE_MM: Final = (279.4, 215.9)
 NEAR_MM: Final = 120.0
-# What was left of it when the disc under the array had grown: "22 × 15 cm". Our choice is its
-# place, in the middle: there the resolution is from 23.6 to 45.2 µm, as the source says of it.
-WIDTH_MM: Final = 220.0
-HEIGHT_MM: Final = 150.0
+# What was left of it. Our choice is its place, in the middle: there the resolution is from 23.6 to
+# 45.2 µm, as the source says of it.
+WIDTH_MM: Final = TACTOGRAPH.travel_mm
+HEIGHT_MM: Final = TACTOGRAPH.height_mm
 # The array's own encoder: 0.072°, which is 4.32 minutes of arc.
 TURN_COUNTS: Final = 5000
 

@@ -10,13 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.geometry import PRESETS
 from vbraille.cli.terminal import say_line
-from vbraille.config.knobs import kept_values, with_values
 from vbraille.config.options import BOOK, CHOICE_OF_TABLE, OPTIONS, held_in
-from vbraille.config.settings import display_name, missing_profile
+from vbraille.config.settings import display_name, kept_values, missing_profile, with_values
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
-from vbraille.layout.texts import cells_per_line, choose_table
-from vbraille.layout.unshown import Unknown, Unshown
+from vbraille.layout.texts import Unknown, Unshown, cells_per_line, choose_table
 from vbraille.reading.library import book_options, book_to_open, last_book, resume
 from vbraille.reading.search.questions import BookOpening
 from vbraille.reading.search.seeker import Seeker

@@ -9,13 +9,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.registry import opened_device
 from vbraille.engine.host import OPEN_S, OPENING, too_slow
-from vbraille.reading.cues import choose_cues
 from vbraille.reading.device import OpenDevice
-from vbraille.reading.outputs import ConsoleOutput, Cues, Echo, Outputs, SpeechOutput
+from vbraille.reading.outputs import ConsoleOutput, Cues, Echo, Outputs, SpeechOutput, choose_cues
+from vbraille.signals import EAR
 from vbraille.simulation.specs import has_hand
 
 if TYPE_CHECKING:

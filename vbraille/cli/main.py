@@ -12,9 +12,8 @@ from contextlib import ExitStack, suppress
 from importlib import import_module
 from io import BufferedWriter, FileIO, RawIOBase, TextIOWrapper
 
-from vbraille.cli.stopping import EAR, EXIT_CODE, SAID, Stopped
-from vbraille.errors import VbrailleError
-from vbraille.extras import needing_extras
+from vbraille.errors import VbrailleError, needing_extras
+from vbraille.signals import EAR, EXIT_CODE, SAID, Stopped
 from vbraille.wording import printable, spelled
 
 TYPE_CHECKING = False  # importing typing, for its constant, takes as long as all the rest

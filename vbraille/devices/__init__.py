@@ -2,7 +2,6 @@
 
 from vbraille.devices.base import Device
 from vbraille.devices.registry import open_device, opened_device
-from vbraille.display import Display
-from vbraille.pose import Pose
+from vbraille.display import Display, Pose
 
 __all__ = ["Device", "Display", "Pose", "open_device", "opened_device"]

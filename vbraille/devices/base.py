@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 
     from vbraille.devices.calibration import Calibration, Correction
     from vbraille.devices.events import Event
-    from vbraille.display import Display
-    from vbraille.pose import Pose
+    from vbraille.display import Display, Pose
 
 _DOUBLE = np.dtype(np.float64)
 

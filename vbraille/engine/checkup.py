@@ -16,11 +16,11 @@ import numpy as np
 from vbraille.devices.events import Placing, WatchdogTripped
 from vbraille.devices.sentences import shown_place, told
 from vbraille.devices.serial.wire import RAMP_MS, WATCHDOG_MS
+from vbraille.display import Pose
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.constants import FADE_S, JUMP_MM_S, NS_PER_S
 from vbraille.engine.loop import LocalEngine
 from vbraille.errors import DeviceError
-from vbraille.pose import Pose
 from vbraille.render.program import vibration
 from vbraille.simulation.simulated import SimulatedDevice
 

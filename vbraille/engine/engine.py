@@ -13,7 +13,7 @@ import numpy as np
 
 from vbraille.devices.events import Placing
 from vbraille.engine.record import Flag
-from vbraille.render.braille.straying import MOST_TILT_RAD
+from vbraille.render.braille.style import MOST_TILT_RAD
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -17,8 +17,7 @@ from vbraille.devices.events import Back, Stalled, from_json
 from vbraille.display import Display
 from vbraille.engine.engine import place_of
 from vbraille.engine.mailbox import RING_S, Extent, attach, watch
-from vbraille.engine.record import Tally
-from vbraille.engine.ring import RingReader
+from vbraille.engine.record import RingReader, Tally
 from vbraille.engine.spawning import spawn
 from vbraille.errors import DeviceError, InputError, VbrailleError
 from vbraille.files import settings_path
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
 
     from vbraille.devices.events import Event
     from vbraille.engine.mailbox import Mailbox
-    from vbraille.engine.ring import RingReader
+    from vbraille.engine.record import RingReader
     from vbraille.engine.spawning import Spawned
     from vbraille.render.program import Program
 

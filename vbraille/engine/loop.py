@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from vbraille.devices.serial.kernels import example
+from vbraille.display import Pose
 from vbraille.engine import serialtick
 from vbraille.engine.constants import FADE_S, IDLE_S, NS_PER_S
-from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK, Flag, Tally
-from vbraille.engine.ring import Ring
+from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK, Flag, Ring, Tally
 from vbraille.engine.state import LoopState
 from vbraille.engine.ticks import POSE_THETA, POSE_X, POSE_Y, POSED
 from vbraille.errors import DeviceError
-from vbraille.pose import Pose
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

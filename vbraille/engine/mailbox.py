@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from vbraille.engine.ring import Ring, RingReader
+from vbraille.engine.record import Ring, RingReader
 from vbraille.render.program import Program
 
 if TYPE_CHECKING:

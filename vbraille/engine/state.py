@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.devices.serial.kernels import SteadyConversation
     from vbraille.display import Display
-    from vbraille.engine.ring import Ring
+    from vbraille.engine.record import Ring
     from vbraille.render.program import Program
 
     _Three = tuple[NDArray, NDArray, NDArray]

@@ -59,7 +59,7 @@ class PosedPath:
     Parameters
     ----------
     t_s, x_mm, y_mm, theta_rad : float64[n]
-        Times from 0 on, and the pose at each; see `vbraille.pose`.
+        Times from 0 on, and the pose at each; see `vbraille.display`.
     """
 
     t_s: NDArray[np.float64]

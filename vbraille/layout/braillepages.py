@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.braille.cells import Cells
-from vbraille.layout.wrapping import breaks_of, wrap
+from vbraille.layout.blocks import breaks_of, wrap
 from vbraille.translate.braillefiles.pef import DUBLIN_CORE, NAMESPACE
 from vbraille.translate.source import BlockKind
 from vbraille.wording import printable

@@ -18,8 +18,7 @@ import msgspec
 import numpy as np
 
 from vbraille.engine.mailbox import Extent, watch
-from vbraille.engine.record import FLOATS, INTS, tick_dtype
-from vbraille.engine.ring import Ring
+from vbraille.engine.record import FLOATS, INTS, Ring, tick_dtype
 from vbraille.errors import InputError
 from vbraille.live.framing import FrameHeader, frame_bytes, joined, thinned
 from vbraille.live.messages import MOST_SAMPLES, LetGo, PagePress, Point, Turn, ViewState

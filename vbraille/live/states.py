@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.config.knobs import KNOBS, fixed
+from vbraille.config.settings import KNOBS, fixed
 from vbraille.live.messages import ArrayShown, KnobShown, LineShown
 from vbraille.render.braille.mappings import NONE
 from vbraille.render.braille.models import swing_of
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from vbraille.braille.geometry import Geometry
     from vbraille.display import Display
-    from vbraille.layout.lines import Line
+    from vbraille.layout.blocks import Line
     from vbraille.render.braille.style import BrailleStyle
 
 _DISTANCES = ("dot_width_mm", "dot_spacing_mm", "cell_gap_mm", "row_spacing_mm", "line_pitch_mm")

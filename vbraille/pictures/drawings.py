@@ -52,7 +52,7 @@ _UP_S = (0.0, 0.005, 0.01, 0.015)
 class ArrayPlace(NamedTuple):
     """Where an array stands on a picture: its centre in mm, and how far it is turned, in degrees.
 
-    The angle turns it against the clock, as in `vbraille.pose`.
+    The angle turns it against the clock, as in `vbraille.display`.
     """
 
     x_mm: float
@@ -77,7 +77,7 @@ class ArrayOnMap(NamedTuple):
 
 
 def actuators_mm(display: Display, place: ArrayPlace) -> NDArray[np.float64]:
-    """Places of an array's actuators on the canvas, by the convention of `vbraille.pose`.
+    """Places of an array's actuators on the canvas, by the convention of `vbraille.display`.
 
     Returns
     -------

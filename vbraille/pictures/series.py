@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.braille.dots import PLACES, mask_of
+from vbraille.braille.cells import PLACES, mask_of
 from vbraille.braille.spelling import to_braille
 from vbraille.carriers import design, tactograph
 from vbraille.render.braille.mappings import MAPPINGS, NONE
 from vbraille.render.braille.models import STRESS2, VBD
-from vbraille.render.braille.profiles import Profile
 from vbraille.render.braille.reference import SWINGS, deflections
+from vbraille.render.braille.style import Profile
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -31,8 +31,7 @@ if TYPE_CHECKING:
     from vbraille.layout.pages import Line
     from vbraille.render.braille.mappings import Mapping
     from vbraille.render.braille.models import Model
-    from vbraille.render.braille.profiles import Tuning
-    from vbraille.render.braille.style import BrailleStyle
+    from vbraille.render.braille.style import BrailleStyle, Tuning
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -171,7 +171,7 @@ class SessionRecording(Playback):
             *plain.facts,
             ("trial", _name(trial)),
             ("condition", trial.condition),
-            ("shown", to_braille(stimulus.masks[slice(*trial.asked)])),
+            ("shown", stimulus.picture or to_braille(stimulus.masks[slice(*trial.asked)])),
             ("answer", "none" if told.answer is None else told.answer),
         ]
         if len(trial.stimuli) > 1:
@@ -183,7 +183,9 @@ class SessionRecording(Playback):
             geometry=geometry_shown(stimulus.geometry),
             mapping=f"mapping: {mapping.name}",
             rows_shown=rows_shown(style, self._display),
-            lines=[cells_shown(scene, protocol.line(stimulus.masks), under=True)],
+            lines=[]
+            if stimulus.picture is not None
+            else [cells_shown(scene, protocol.line(stimulus.masks), under=True)],
             place=_name(trial),
             facts=facts,
         )

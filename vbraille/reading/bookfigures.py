@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.feeling.index import SceneIndex
-    from vbraille.reading.cues import Cue
     from vbraille.reading.device import OpenDevice
     from vbraille.reading.sceneview import SceneView
+    from vbraille.reading.view import Cue
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
     from vbraille.translate.source import Source

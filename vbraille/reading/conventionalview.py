@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from vbraille.conventional.brlapi import DisplayAway, DisplayStands, KeyPressed, KeyTyped
-from vbraille.reading.commands.asking import say_cell
+from vbraille.reading.commands.reporting import say_cell
 from vbraille.reading.keys import Context
 from vbraille.reading.outputs import Output
 

@@ -11,7 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from vbraille.reading.cues import Cue, CueKind
+from vbraille.reading.view import Cue
 from vbraille.sounds import Bell, Tones
 from vbraille.workers import begin
 
@@ -40,7 +40,7 @@ MELODIES: Final = {
 }
 
 
-def give(orders: Incoming[Cue], kind: CueKind, open_tones: Callable[[], Tones] = Tones) -> None:
+def give(orders: Incoming[Cue], kind: str, open_tones: Callable[[], Tones] = Tones) -> None:
     """Give cues until the orders end.
 
     Parameters
@@ -48,12 +48,12 @@ def give(orders: Incoming[Cue], kind: CueKind, open_tones: Callable[[], Tones] =
     orders
         Cues that come.
     kind
-        What cues are given by.
+        "sound" or "bell", by which cues are given.
     open_tones
         Function that opens the audio output, or raises OSError.
     """
     tones = None
-    if kind is CueKind.SOUND:
+    if kind == "sound":
         with suppress(OSError):
             tones = open_tones()
     bell, rings = Bell(), 0
@@ -77,4 +77,4 @@ def give(orders: Incoming[Cue], kind: CueKind, open_tones: Callable[[], Tones] =
 
 
 if __name__ == "__main__":
-    give(begin(Cue)[0], CueKind(sys.argv[2]))
+    give(begin(Cue)[0], sys.argv[2])

@@ -10,13 +10,12 @@ from vbraille.devices.base import Device, Placing
 from vbraille.devices.events import Button, Knob, NotInTime
 from vbraille.devices.registry import check_actuators, check_travel, find_driver
 from vbraille.devices.sentences import told
-from vbraille.display import check_rate
+from vbraille.display import Pose, check_rate
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host
 from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError, InputError
 from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
-from vbraille.pose import Pose
 from vbraille.reading.commands.table import BOUND
 from vbraille.reading.keys import TURNED, Context
 from vbraille.reading.lineviews import MOST_CELLS

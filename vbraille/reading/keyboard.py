@@ -12,8 +12,8 @@ import tty
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Final, Self
 
-from vbraille.engine.suspending import Suspension
 from vbraille.reading.keys import PASTE_OFF, PASTE_ON, Keys
+from vbraille.signals import Suspension
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

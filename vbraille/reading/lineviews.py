@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.engine.engine import Engine
     from vbraille.layout.pages import Line
-    from vbraille.reading.cues import Cue
-    from vbraille.reading.view import View
+    from vbraille.reading.view import Cue, View
     from vbraille.reading.viewport import Surface, Window
     from vbraille.render import BrailleStyle, Model
     from vbraille.render.program import Program

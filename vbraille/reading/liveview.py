@@ -8,7 +8,7 @@ from abc import ABC, abstractmethod
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final, Self
 
-from vbraille.config.knobs import KNOBS, say_mapping
+from vbraille.config.settings import KNOBS, say_mapping
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Changed, Silent, Stalled, Stranger, Unplugged
 from vbraille.devices.sentences import say

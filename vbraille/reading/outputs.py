@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import time
-from enum import StrEnum
+from enum import Enum, StrEnum
 from typing import TYPE_CHECKING, Final, Self
 
-from vbraille.reading.cues import Cue, CueKind
 from vbraille.reading.position import place_sentence
 from vbraille.workers import Worker
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.layout.pages import Layout, Line
     from vbraille.reading.speech import Speech
+    from vbraille.reading.view import Cue
     from vbraille.translate import Book
 
 
@@ -196,6 +197,32 @@ class SpeechOutput(Output):
     def close(self) -> None:
         """End speech."""
         self.speech.close()
+
+
+class CueKind(Enum):
+    """Kinds of signals by which cues are given."""
+
+    SOUND = "sound"
+    BELL = "bell"
+    NONE = "none"
+
+
+def choose_cues(asked: str | None, *, attended: bool) -> CueKind:
+    """Choose what cues are given by.
+
+    Parameters
+    ----------
+    asked
+        Value of a `CueKind` that was asked for; None if none was.
+    attended
+        Whether somebody is at a terminal. Nobody else hears cues that were not asked for, and at
+        the end of a network the terminal's bell is the only sound that comes through.
+    """
+    if asked is not None:
+        return CueKind(asked)
+    if not attended:
+        return CueKind.NONE
+    return CueKind.BELL if "SSH_CONNECTION" in os.environ else CueKind.SOUND
 
 
 class Cues(Output):

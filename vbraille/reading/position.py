@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.search.structure import Reach, within, words_in
-from vbraille.translate.source import BlockKind, share_before
-from vbraille.translate.text import to_text
+from vbraille.translate.source import BlockKind, share_before, to_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

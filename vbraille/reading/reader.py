@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.engine import Upright
-from vbraille.reading.cues import Cue
 from vbraille.reading.keys import Context
 from vbraille.reading.lineviews import TextView
 from vbraille.reading.outputs import Echo
@@ -21,7 +20,7 @@ from vbraille.reading.position import (
 )
 from vbraille.reading.search.questions import CountLines
 from vbraille.reading.search.seeker import Search
-from vbraille.reading.view import Prompt, View
+from vbraille.reading.view import Cue, Prompt, View
 from vbraille.reading.viewport import LineRange, Surface, Window, around, turned
 from vbraille.translate.source import BlockKind
 

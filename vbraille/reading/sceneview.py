@@ -10,9 +10,8 @@ from vbraille.errors import InputError
 from vbraille.feeling.composing import at_height, compose
 from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import FileWatch, check_fits, load_scene
-from vbraille.reading.cues import Cue
 from vbraille.reading.keys import Context
-from vbraille.reading.view import Prompt, View
+from vbraille.reading.view import Cue, Prompt, View
 from vbraille.scene.checking import kind_of
 from vbraille.scene.traversal import each
 from vbraille.simulation.steering import GlideTo, ReadPage

@@ -15,7 +15,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from vbraille.adaptive.questplus import GridAxis, geometric, nearer_quest, ordered_pairs
-from vbraille.config.knobs import KNOBS, kept_values, obstacle, with_values
+from vbraille.config.settings import KNOBS, kept_values, obstacle, with_values
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:

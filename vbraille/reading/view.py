@@ -1,8 +1,9 @@
-"""A view under the hand: what keys, buttons and pages tell it, and what is typed meanwhile."""
+"""A view under the hand: what keys, buttons and pages tell it, and the signals that it gives."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import Enum
 from typing import TYPE_CHECKING, ClassVar
 
 from vbraille.reading.keys import LONGEST, PASTE, Context, pasted, spoken
@@ -14,10 +15,18 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.engine.engine import Engine
-    from vbraille.reading.cues import Cue
     from vbraille.reading.keys import Bound, Command
 
 _MOST_EARLIER = 50  # texts that are kept to be brought again
+
+
+class Cue(Enum):
+    """Something easily missed that a short signal stands for, beside the sentence that says it."""
+
+    LINE_END = "line end"
+    PAGE_END = "page end"
+    NOT_FOUND = "not found"
+    LIMIT = "limit reached"
 
 
 @dataclass(slots=True)

@@ -15,9 +15,7 @@ from vbraille.render.braille.models import (
     Model,
     model_of,
 )
-from vbraille.render.braille.profiles import Profile, Tuning
-from vbraille.render.braille.straying import Straying
-from vbraille.render.braille.style import BrailleStyle
+from vbraille.render.braille.style import BrailleStyle, Profile, Straying, Tuning
 
 __all__ = [
     "LATERO",

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
-from vbraille.errors import InputError
-from vbraille.extras import needing_extras
+from vbraille.errors import InputError, needing_extras
 from vbraille.scene.bitmap import WHOLE
 from vbraille.scene.imagefiles import intensities_of
 from vbraille.scene.images import MOST_PER_MM, named, naming, shape_of, size_mm

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.errors import InputError
-from vbraille.extras import needing_extras
+from vbraille.errors import InputError, needing_extras
 from vbraille.scene.bitmap import WHOLE, Bitmap
 from vbraille.scene.imagefiles import intensities_of
 from vbraille.scene.patterns import Image

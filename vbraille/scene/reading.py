@@ -183,7 +183,10 @@ class _Gathering:
         form = form_of(name)
         if form != "toml":
             return _foreign(name, form, classes or {})
-        text = read_text(name, "scene", MOST_BYTES)
+        return self.of_text(read_text(name, "scene", MOST_BYTES), name, (*way, real))
+
+    def of_text(self, text: str, name: Path, way: tuple[Path, ...]) -> Gathered:
+        """Read the text of a scene file in TOML, at the end of a way of files that ends with it."""
         if text.count("kind") > MOST_PATTERNS:  # each has one
             raise InputError(f"{name} has more than {MOST_PATTERNS} patterns; use fewer")
         file = TomlFile(text, str(name), several_lines=True)
@@ -195,7 +198,7 @@ class _Gathering:
             file.read(ClassLook, under=("classes", key))
         gathered = Gathered(file.read(SceneFile))
         for number, included in enumerate(gathered.form.include):
-            self._include(gathered, file, number, included, name, (*way, real))
+            self._include(gathered, file, number, included, name, way)
         elements = gathered.form.elements
         locations = _all_from(LocatedFile(file.where, file.lines, file.fail), elements, textures)
         gathered.add(elements, textures, locations, gathered.form.operation)
@@ -330,7 +333,22 @@ def open_scene(path: str | Path) -> OpenedScene:
         If it cannot be read, or is not right; one sentence says where.
     """
     path = Path(path)
-    gathered = gather(path)
+    return _opened(gather(path), path)
+
+
+def open_text(text: str, name: str) -> OpenedScene:
+    """Open the text of a scene file in TOML; files that it names are seen from its name's folder.
+
+    Raises
+    ------
+    InputError
+        If it is not right; one sentence says where.
+    """
+    path = Path(name)
+    return _opened(_Gathering().of_text(text, path, (path,)), path)
+
+
+def _opened(gathered: Gathered, path: Path) -> OpenedScene:
     scene = gathered.scene(path)
     return OpenedScene(
         path=path,

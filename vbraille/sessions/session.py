@@ -504,9 +504,17 @@ def usual_engine(
 
         return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
     find_driver(spec)  # before anything is compiled for what is not there
-    most = max(len(protocol.line(stimulus.masks)) for stimulus in plan.stimuli())
     inherited = [channel.descriptor for channel in channels]
-    return Host(spec, wanted, protocol.model.style.room(wanted, most), pass_fds=inherited)
+    return Host(spec, wanted, _room(protocol, plan, wanted), pass_fds=inherited)
+
+
+def _room(protocol: Protocol, plan: Plan, wanted: Display) -> int:
+    """Bytes of the largest program of a plan."""
+    if protocol.pictures:
+        different = {(s.scene, s.picture): s for s in plan.stimuli()}.values()
+        return max(protocol.program(s, s.tuning).nbytes for s in different)
+    most = max(len(protocol.line(stimulus.masks)) for stimulus in plan.stimuli())
+    return protocol.model.style.room(wanted, most)
 
 
 def usual_view(

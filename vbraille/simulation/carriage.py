@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from vbraille.simulation.hand import Area, area_on
 from vbraille.simulation.motion import APPROACH_MM_S, Course, Way
-from vbraille.simulation.paging import Area, area_on
 from vbraille.simulation.recorded import Recorded
 
 if TYPE_CHECKING:

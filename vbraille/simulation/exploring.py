@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.errors import check_range
-from vbraille.simulation.motion import RETURN_MM_S, SPEED_BOUNDS_MM_S, Motion, Way
-from vbraille.simulation.recorded import MOST_MM
+from vbraille.simulation.motion import MOST_MM, RETURN_MM_S, SPEED_BOUNDS_MM_S, Motion, Way
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.simulation.paging import Area
+    from vbraille.simulation.hand import Area
 
 _STEP_MM = 0.5  # from knot to knot of a path that is disturbed
 _MOST_KNOTS = 5_000_000

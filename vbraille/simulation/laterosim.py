@@ -21,8 +21,8 @@ from vbraille.devices.latero.wire import FULLR0, PORT, VERSION, Answer, pack_ans
 from vbraille.errors import InputError, check_range
 from vbraille.simulation.carriage import Carriage
 from vbraille.simulation.controls import Controls
+from vbraille.simulation.hand import area_on
 from vbraille.simulation.lateroboard import LateroBoard
-from vbraille.simulation.paging import area_on
 from vbraille.simulation.recorded import Recorded
 
 if TYPE_CHECKING:

@@ -17,6 +17,7 @@ LEAST_KNOT_S = 1e-6  # a shorter time is made as long, so that time always incre
 # Rounding error of ticks and samples at tenths or thousandths of a second.
 SLACK = 1e-9
 SPEED_BOUNDS_MM_S = (0.1, 1000.0)
+MOST_MM = 10_000.0  # as far as any carriage goes
 # Ours: a hand on its way back does not read, and crosses a carriage of 300 mm in little over 1 s.
 RETURN_MM_S = 250.0
 # Speeds at which a hand goes, and turns, to where its next motion begins.
@@ -39,7 +40,7 @@ class Motion:
     y_mm : float64[n] or None
         Places of the array's centre, from the top of the page; None if y does not change.
     theta_rad : float64[n] or None
-        Angles by which the array is turned, as in `vbraille.pose`; None if they do not change.
+        Angles by which the array is turned, as in `vbraille.display`; None if they do not change.
 
     Raises
     ------

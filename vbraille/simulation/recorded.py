@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.errors import InputError
-from vbraille.simulation.motion import SLACK, Motion
+from vbraille.simulation.motion import MOST_MM, SLACK, Motion
 from vbraille.wording import nearest, printable
 
 if TYPE_CHECKING:
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 # Ours: what a hand does in half a second cannot be told from its two ends.
 MAX_GAP_S = 0.5
-MOST_MM = 10_000.0  # as far as any carriage goes
 COLUMNS = ("t_s", "x_mm", "y_mm", "theta_deg")  # the last two may be left out
 _NEEDED = 2
 _MOST_DEG = 360_000.0

@@ -10,12 +10,11 @@ import numpy as np
 
 from vbraille.devices.base import Device
 from vbraille.devices.events import Button, HandHeld, Knob
+from vbraille.display import Pose
 from vbraille.errors import InputError, check_range
-from vbraille.pose import Pose
 from vbraille.simulation.controls import MOST_BUTTONS, held, parse_presses
-from vbraille.simulation.hand import STILL_S, Still
+from vbraille.simulation.hand import STILL_S, Area, Still
 from vbraille.simulation.motion import Course
-from vbraille.simulation.paging import Area
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.steering import BeAt, GlideTo, Pointer, ReadLine, ReadPage, Steering

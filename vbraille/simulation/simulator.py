@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from vbraille.devices.serial.wire import Info
-    from vbraille.simulation.hand import Hand
-    from vbraille.simulation.paging import Area
+    from vbraille.simulation.hand import Area, Hand
     from vbraille.simulation.pty import Port
     from vbraille.simulation.recorded import Recorded
 

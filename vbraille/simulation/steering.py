@@ -156,7 +156,7 @@ class BeAt:
     Parameters
     ----------
     x_mm, y_mm, theta_rad
-        Pose as in `vbraille.pose`: place of the array's centre, and angle by which it is turned.
+        Pose as in `vbraille.display`: place of the array's centre, and angle by which it is turned.
 
     Raises
     ------

@@ -14,7 +14,7 @@ from vbraille.simulation.motion import LEAST_KNOT_S, RETURN_MM_S, SPEED_BOUNDS_M
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.simulation.paging import Area
+    from vbraille.simulation.hand import Area
 
 # All ours.
 TURN_RAD = math.radians(30.0)

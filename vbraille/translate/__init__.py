@@ -5,9 +5,8 @@ from vbraille.translate.book import Book
 from vbraille.translate.documents.document import Document
 from vbraille.translate.languages import find_table, six_dot_table, tables_of
 from vbraille.translate.liblouis import BrailleTable, TableInfo, list_tables
-from vbraille.translate.source import Block, BlockKind, Source
+from vbraille.translate.source import Block, BlockKind, Source, Text
 from vbraille.translate.substitutes import Undefined
-from vbraille.translate.text import Text
 
 __all__ = [
     "Block",

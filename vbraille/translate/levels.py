@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.translate.source import Mark, MarkKind
-from vbraille.translate.text import SPACE, Text
+from vbraille.translate.source import SPACE, Mark, MarkKind, Text
 
 if TYPE_CHECKING:
     from collections.abc import Callable

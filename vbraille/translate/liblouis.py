@@ -16,9 +16,8 @@ from vbraille.errors import InputError, VbrailleError
 from vbraille.translate.levels import Superscripts
 from vbraille.translate.library import LIBRARY, EndlessError, call, limit_s
 from vbraille.translate.scripts import all_letters, native_letters
-from vbraille.translate.source import MarkKind
+from vbraille.translate.source import NO_BREAK_SPACE, SPACE, MarkKind, Text, to_codes, to_text
 from vbraille.translate.substitutes import Substitutes, Undefined
-from vbraille.translate.text import NO_BREAK_SPACE, SPACE, Text, to_codes, to_text
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:

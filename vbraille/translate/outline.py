@@ -6,8 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from vbraille.translate.source import BlockKind, MarkKind, share_before
-from vbraille.translate.text import to_text
+from vbraille.translate.source import BlockKind, MarkKind, share_before, to_text
 
 if TYPE_CHECKING:
     from vbraille.translate.source import Block, Source

@@ -13,7 +13,7 @@ import numpy as np
 
 from vbraille.translate.library import EndlessError, call, limit_s
 from vbraille.translate.scripts import script_of
-from vbraille.translate.text import SPACE, Text
+from vbraille.translate.source import SPACE, Text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator

@@ -16,8 +16,8 @@ from tests.engine.test_loop import info
 from vbraille.devices.sentences import told
 from vbraille.devices.serial.device import open_serial
 from vbraille.devices.serial.wire import Frame, Hello, Rest
+from vbraille.display import Pose
 from vbraille.errors import DeviceError
-from vbraille.pose import Pose
 from vbraille.simulation.firmware import Controller
 from vbraille.testing.conformance import CHECKS
 

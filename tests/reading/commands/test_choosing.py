@@ -6,7 +6,7 @@ import pytest
 
 from tests.reading.commands.test_moving import finger_at
 from tests.reading.test_reader import TEXT, Bench
-from vbraille.reading.cues import Cue
+from vbraille.reading.view import Cue
 from vbraille.translate import Book, BrailleTable
 from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.documents.html import HtmlBook

@@ -5,8 +5,8 @@ import pytest
 from tests.engine.test_loop import straight
 from tests.reading.test_reader import Bench
 from vbraille.layout.pages import Layout
-from vbraille.reading.cues import Cue
 from vbraille.reading.outputs import Echo
+from vbraille.reading.view import Cue
 from vbraille.render import STRESS2
 
 LONG = " ".join(f"w{n:02}" for n in range(40))  # many more cells than the hand can cross

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tests.reading.commands.test_turning import bench
 from tests.tiers import examples
-from vbraille.config.knobs import KNOBS
+from vbraille.config.settings import KNOBS
 from vbraille.live.messages import PagePress, Turn
 from vbraille.reading.commands.table import COMMANDS
 from vbraille.reading.keys import Context

@@ -3,7 +3,6 @@
 import pytest
 
 from tests.reading.test_reader import Bench
-from vbraille.reading.cues import Cue
 from vbraille.reading.keys import Context
 from vbraille.reading.outputs import Echo
 from vbraille.reading.search.questions import (
@@ -16,6 +15,7 @@ from vbraille.reading.search.questions import (
     Searched,
 )
 from vbraille.reading.search.seeker import look, look_everywhere
+from vbraille.reading.view import Cue
 from vbraille.translate import Document
 
 TEXT = "The Café is here.\n\nno\n\nA cafe, two\ncafés, and THE\nstreet Straße.\n"

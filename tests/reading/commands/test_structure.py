@@ -9,9 +9,9 @@ from tests.reading.commands.test_moving import finger_at
 from tests.reading.commands.test_searching import Seeker
 from tests.reading.test_reader import Bench
 from vbraille.layout.braillepages import Imprint, pef
-from vbraille.reading.cues import Cue
 from vbraille.reading.outputs import Echo
 from vbraille.reading.search.seeker import Answering
+from vbraille.reading.view import Cue
 from vbraille.translate import Book, BrailleTable, Cells
 from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.braillefiles.pef import PefBook

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tests.engine.test_loop import biggest_step, run, straight
 from tests.reading.test_reader import SPAN_MM, Bench
 from tests.tiers import examples
-from vbraille.config.knobs import KNOBS
+from vbraille.config.settings import KNOBS
 from vbraille.layout.texts import cells_per_line
 from vbraille.reading.commands.turning import (
     change_mapping,
@@ -18,7 +18,7 @@ from vbraille.reading.commands.turning import (
     turn,
     undo_turn,
 )
-from vbraille.reading.cues import Cue
+from vbraille.reading.view import Cue
 from vbraille.render import STRESS2, VBD, Tuning
 from vbraille.translate import Book, BrailleTable, Document
 

@@ -1,4 +1,4 @@
-"""Where the actuators of a display are on the canvas: by `vbraille.pose`, once more in numpy."""
+"""Where the actuators of a display are on the canvas: by `vbraille.display`, once more in numpy."""
 
 import math
 

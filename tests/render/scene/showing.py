@@ -88,7 +88,7 @@ def poses(rng, count):
 
 
 def actuators(display, pose):
-    """Places of the actuators, and their parities, as `vbraille.pose` says; row by row."""
+    """Places of the actuators, and their parities, as `vbraille.display` says; row by row."""
     right, down = np.meshgrid(display.column_offsets_mm(), display.row_offsets_mm())
     right, down = right - right.mean(), down - down.mean()
     cosine, sine = math.cos(pose.theta_rad), math.sin(pose.theta_rad)

@@ -39,7 +39,7 @@ def frame(program: Program, x=50.0, y=40.0, *, theta=0.0, time_s=0.0) -> np.ndar
 
 
 def actuators(x=50.0, y=40.0, theta=0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Places of the actuators: `vbraille.pose`."""
+    """Places of the actuators: `vbraille.display`."""
     row, column = np.mgrid[:8, :8]
     right, down = (column - 3.5) * 1.2, (row - 3.5) * 1.4
     cosine, sine = math.cos(theta), math.sin(theta)

@@ -12,7 +12,7 @@ from tests.render.scene.twinbraille import label_deflections, label_opacity
 from tests.tiers import examples
 from vbraille.braille.geometry import PRESETS
 from vbraille.render import STRESS2_8X8, VBD, Tuning
-from vbraille.render.braille.profiles import Profile
+from vbraille.render.braille.style import Profile
 from vbraille.render.machine import braillekernel
 from vbraille.render.machine.braillekernel import FADE_MM, TABLE
 from vbraille.render.scene.labels import (

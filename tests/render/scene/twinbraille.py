@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.braille.dots import PLACES, dots_of
+from vbraille.braille.cells import PLACES, dots_of
 from vbraille.render.braille.reference import SWINGS
 from vbraille.render.machine.braillekernel import FADE_MM
 from vbraille.render.scene.labels import size_mm

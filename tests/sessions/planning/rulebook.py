@@ -22,7 +22,7 @@ def broken_rules(protocol, participant, seed):
         runs.pop()  # the answers choose the values; the plan says which of two comes first
     if any(one == other for run in runs for one, other in pairwise(run)):
         problems.append("twice running")
-    if set(practised) & set(tested):
+    if not protocol.pictures and set(practised) & set(tested):  # pictures are learnt first
         problems.append("practice of what is tested")
     if (len(practised), len(plan.trials)) != (protocol.practice.trials, protocol.trials):
         problems.append("trials missing")
@@ -39,7 +39,9 @@ def broken_rules(protocol, participant, seed):
 
 
 def _shows(protocol, trial):
-    """Braille asked for, in any order if it is reordered; or the values compared."""
+    """Picture, braille asked for, in any order if it is reordered; or the values compared."""
+    if protocol.pictures:
+        return trial.stimuli[0].picture
     if protocol.task == "choice":
         return tuple(stimulus.value for stimulus in trial.stimuli)
     reorders = getattr(protocol.design, "reorder", False)
@@ -85,7 +87,9 @@ def check_rules(protocol, plan):
 
 
 def _check_practice(protocol, plan):
-    """Check that practice shows no item of the test."""
+    """Check that practice shows no item of the test, unless it is a picture, which is learnt."""
+    if protocol.pictures:
+        return
     shown = {_content(protocol, trial) for trial in plan.trials if not trial.catch}
     for trial in plan.practice:
         if _content(protocol, trial) in shown:

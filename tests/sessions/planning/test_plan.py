@@ -82,6 +82,12 @@ class TestPlans:
             for name in builtin_names()
         }
         assert sums == {
+            "icons": "1536d8708fc1862d7522b151a4769c5dd01221ec3363c71915ed9424f4277d43",
+            "orientation-coarse": "475f991de0e925c87bf42a0c4db3c182"
+            "eb47117a00cc3d5d697be7d14bb17ae0",
+            "orientation-fine": "4f4eabf2cc1183ab40c0e3c23e6c4474022f0963751fba908f3e0c4a74f9ab9e",
+            "shapes": "2b1ef4cdf2b9c9d3b863482282a032d89d247f697d9f57c17ca3c3df18556928",
+            "spatial-frequency": "d089fe2d9ae98de927e4e0d08e99ad392c61e7ec7d78163d4967a25182e1becd",
             "detection": "ac57006bbb13fa19a26c9ba8b0eaacd64c50662c7067552421ba5321defc42a4",
             "rating": "d0665fcca862bd4c09e7fcc3db28ce9a736ed934de2e32ff26a8fe1018e365d9",
             "same-different": "8efb4231c15aea56a3cb5f78ecd7cbba69e16b6c3b50d0d14ae761aeb6df9b58",

@@ -44,10 +44,15 @@ class TestBuiltIns:
             "control-display",
             "detection",
             "factors",
+            "icons",
             "legibility",
             "letters",
+            "orientation-coarse",
+            "orientation-fine",
             "rating",
             "same-different",
+            "shapes",
+            "spatial-frequency",
             "tuning-spacing",
             "tuning-spacing-adaptive",
             "tuning-spacing-reference",
@@ -63,7 +68,9 @@ class TestBuiltIns:
         assert protocol.name == name
         assert protocol.text == builtin_text(name)
         assert protocol.source == "ours" or protocol.source.startswith("Lévesque 2009, ")
-        assert [field.name for field in protocol.fields] == ["finger", "hand", "masking_noise"]
+        asked = [field.name for field in protocol.fields]
+        assert asked[:3] == ["finger", "hand", "masking_noise"]
+        assert asked[3:] == ["sight"] * protocol.pictures
 
     @pytest.mark.parametrize("name", builtin_names())
     def test_each_explains_its_tables_and_keys(self, name):
@@ -83,7 +90,9 @@ class TestBuiltIns:
 
     def test_they_are_beside_the_code(self):
         folder = Path(planning.__file__).parent / "protocols"
-        assert sorted(path.stem for path in folder.iterdir()) == builtin_names()
+        assert sorted(path.stem for path in folder.glob("*.toml")) == builtin_names()
+        named = {name for each in builtin_names() for name in load_protocol(each).files}
+        assert named == {path.name for path in folder.iterdir() if path.suffix != ".toml"}
 
     def test_tuning_of_the_width(self):
         protocol = load_protocol("tuning-width")
@@ -317,7 +326,8 @@ class TestPlannedAnalysis:
             protocol = load_protocol(name)
             usual = structs.replace(protocol, analysis=None).planned_analysis
             assert usual.measure == protocol.planned_analysis.measure
-            assert usual.factors == protocol.planned_analysis.factors
+            planned = protocol.planned_analysis.factors
+            assert usual.factors == tuple(f for f in planned if not f.startswith("item_"))
             assert usual.model in ("trials", "means")
 
     @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.sessions.sittings import Session, of
-from vbraille.engine.ring import tick_dtype
+from vbraille.engine.record import tick_dtype
 from vbraille.errors import VbrailleError
 from vbraille.sessions.record.journal import NAME, Tie
 from vbraille.sessions.record.traces import (

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from tests.sessions.sittings import COMPARED, MINI, Session, of
 from tests.tiers import by_tier
-from vbraille.config.knobs import say_mapping
+from vbraille.config.settings import say_mapping
 from vbraille.engine.batch import BatchEngine
 from vbraille.live.messages import PagePress, Turn
 from vbraille.render.braille.mappings import MAPPINGS

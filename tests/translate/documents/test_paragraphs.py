@@ -12,14 +12,13 @@ from hypothesis import strategies as st
 from tests.conftest import SEED
 from tests.tiers import examples
 from tests.translate.model import Piece, pieces_of
-from vbraille.translate.documents.codepoints import (
+from vbraille.translate.documents.document import PIECE_CHARACTERS, split_paragraphs
+from vbraille.translate.documents.encodings import (
     LONGEST_BLANK,
     Stretch,
     shorten_blanks,
 )
-from vbraille.translate.documents.paragraphs import PIECE_CHARACTERS, split_paragraphs
-from vbraille.translate.source import Block
-from vbraille.translate.text import to_codes, to_text
+from vbraille.translate.source import Block, to_codes, to_text
 
 # What the rules speak of, and a few letters.
 AWKWARD = list("aaé- \n\r\t\f\v\x85\xa0\xad\u2010\u2028\u2029\u202f\u0301\ufeff\0\ud800😀.")

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, Self
 
 from vbraille.cli.exploring import opened_in_time
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.calibration import LEAST_GAIN, Calibration, Tried
@@ -20,6 +19,7 @@ from vbraille.errors import DeviceError, InputError
 from vbraille.files import settings_path
 from vbraille.reading.keyboard import STOPPED, Keyboard
 from vbraille.reading.keys import spoken
+from vbraille.signals import EAR
 
 if TYPE_CHECKING:
     import argparse

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.cli.options.commandparser import CommandParser
-from vbraille.cli.parser import ACTIONS, COMMANDS
+from vbraille.cli.parser import ACTIONS, COMMANDS, CommandParser
 from vbraille.cli.terminal import say_line
 from vbraille.config.options import COMMON
 

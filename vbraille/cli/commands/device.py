@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli.commands.calibrate import calibrate, say_calibration
 from vbraille.cli.exploring import opened_in_time
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.registry import find_driver
 from vbraille.devices.sentences import say
@@ -15,6 +14,7 @@ from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time
 from vbraille.files import settings_path
 from vbraille.render import MODELS
+from vbraille.signals import EAR
 
 if TYPE_CHECKING:
     import argparse

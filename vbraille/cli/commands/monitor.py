@@ -9,12 +9,12 @@ import webbrowser
 from typing import TYPE_CHECKING
 
 from vbraille.cli.options.exploring import check_live_options
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.live.monitor import has_desktop
 from vbraille.live.server import LiveServer
 from vbraille.playback import open_recording
+from vbraille.signals import EAR
 from vbraille.wording import setting
 
 if TYPE_CHECKING:

@@ -21,7 +21,6 @@ from vbraille.cli.build import (
     note_unseen_dots,
 )
 from vbraille.cli.options.exploring import PATH_OPTIONS
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import WorkProgress
 from vbraille.config.options import CHOICE_OF_TABLE
 from vbraille.config.settings import settle
@@ -32,8 +31,9 @@ from vbraille.newfile import new_file
 from vbraille.reading.advancing import too_fast_note
 from vbraille.recording import Recorder
 from vbraille.render import MODELS
+from vbraille.signals import EAR
+from vbraille.simulation.hand import Area
 from vbraille.simulation.motion import SLACK
-from vbraille.simulation.paging import Area
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
 from vbraille.wording import count, duration

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.cli.options.exploring import PATH_OPTIONS
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import WorkProgress, say_line
 from vbraille.display import check_rate
 from vbraille.errors import InputError
@@ -19,6 +18,7 @@ from vbraille.newfile import new_file
 from vbraille.pictures.scenes import small_png
 from vbraille.recording import Recorder, SceneRecorded
 from vbraille.render import MODELS
+from vbraille.signals import EAR
 from vbraille.wording import count
 
 if TYPE_CHECKING:

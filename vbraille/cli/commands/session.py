@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vbraille.cli.options.exploring import check_live_options
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.planning.stimuli import said_value
 from vbraille.sessions.record.folder import nearly_same
 from vbraille.sessions.running.responses import Typed
+from vbraille.signals import EAR
 from vbraille.simulation.specs import refuse_hand
 from vbraille.wording import spelled
 
@@ -51,6 +51,8 @@ def _plan(arguments: argparse.Namespace) -> int:
     protocol, plan = plan_session(arguments.protocol, arguments.participant, **_chances(arguments))
     if arguments.brf and protocol.task == "choice":
         raise InputError(f"{protocol.name} compares dots, which cannot be embossed")
+    if arguments.brf and protocol.pictures:
+        raise InputError(f"{protocol.name} shows pictures, which are no braille; leave --brf out")
     if arguments.seed is None:
         say_line(f"seed: {plan.seed}", aside=True)
     if arguments.brf:
@@ -224,7 +226,10 @@ def _describe(protocol: Protocol, trial: Trial) -> str:
             return f"{trial.condition}, the {'lower' if first < second else 'higher'} value first"
         values = [stimulus.value or 0.0 for stimulus in trial.stimuli]
         return ", then ".join(said_value(value, protocol.parameter) for value in values)
-    text = trial.stimuli[0].text
+    stimulus = trial.stimuli[0]
+    if stimulus.picture is not None:
+        return f"{trial.condition}, {stimulus.picture}"
+    text = stimulus.text
     written = "" if text is None else f"{text}, "
     cells = f"{_cells(trial).to_unicode()}, dots {_cells(trial).to_dots()}"
     return f"{trial.condition}, {written}{cells}"

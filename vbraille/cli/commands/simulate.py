@@ -6,12 +6,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from vbraille.cli.controlkeys import ControlKeys
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.serial.wire import Encoder
 from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
 from vbraille.render.braille.models import MODELS
+from vbraille.signals import EAR
 from vbraille.simulation.carriage import area_of
 from vbraille.simulation.controls import Controls, load_script, parse_presses
 from vbraille.simulation.firmware import describe

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from vbraille.cli.controlkeys import ControlKeys
-from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.latero.device import DISPLAY
 from vbraille.devices.latero.wire import BUTTONS, PORT
 from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
 from vbraille.render.braille.models import LATERO
+from vbraille.signals import EAR
 from vbraille.simulation.controls import load_script, parse_presses
 from vbraille.simulation.laterosim import WAIT_S, LateroCarriage, LateroFaults, LateroSimulator
 from vbraille.simulation.specs import parse_hand

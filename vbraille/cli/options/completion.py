@@ -6,7 +6,7 @@ import argparse
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
-    from vbraille.cli.options.commandparser import CommandParser
+    from vbraille.cli.parser import CommandParser
 
 
 def completion(parser: CommandParser) -> None:

@@ -28,7 +28,7 @@ from vbraille.wording import setting
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
-    from vbraille.cli.options.commandparser import CommandParser
+    from vbraille.cli.parser import CommandParser
 
 PLOTS = ("profile", "mapping", "wave", "strain", "page", "resolution")
 

@@ -11,7 +11,7 @@ TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vbraille.cli.options.commandparser import CommandParser
+    from vbraille.cli.parser import CommandParser
 
 
 class Pairs(argparse.Action):

@@ -57,7 +57,7 @@ from vbraille.devices.latero.wire import (
     parse_answer,
     raw_request,
 )
-from vbraille.pose import Pose
+from vbraille.display import Pose
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -38,8 +38,7 @@ if TYPE_CHECKING:
 
     from vbraille.devices.events import Event
     from vbraille.devices.latero.wire import Answer
-    from vbraille.display import Display
-    from vbraille.pose import Pose
+    from vbraille.display import Display, Pose
 
 _U16, _U32 = 0xFFFF, 0xFFFF_FFFF
 _EXAMPLE: Final = "latero:192.168.1.111"

@@ -74,7 +74,7 @@ from vbraille.devices.serial.wire import (
     encode,
     unwrap,
 )
-from vbraille.pose import Pose
+from vbraille.display import Pose
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

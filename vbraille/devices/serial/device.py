@@ -36,8 +36,7 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.devices.serial.port import Address
     from vbraille.devices.serial.wire import Info
-    from vbraille.display import Display
-    from vbraille.pose import Pose
+    from vbraille.display import Display, Pose
 
 
 # Number of reads that empty a line: a stopped host has left some kB unread at most.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.reading.cues import Cue
 from vbraille.reading.library import Bookmark, place_in
+from vbraille.reading.view import Cue
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:

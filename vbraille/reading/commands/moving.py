@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.reading.cues import Cue
 from vbraille.reading.search.questions import FindShare
+from vbraille.reading.view import Cue
 
 if TYPE_CHECKING:
     from vbraille.reading.reader import Reader

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.reading.cues import Cue
 from vbraille.reading.position import first_character
 from vbraille.reading.search.questions import FindText
+from vbraille.reading.view import Cue
 
 if TYPE_CHECKING:
     from vbraille.reading.reader import Reader

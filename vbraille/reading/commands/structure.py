@@ -7,7 +7,6 @@ from bisect import bisect_right
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.reading.cues import Cue
 from vbraille.reading.keys import Context
 from vbraille.reading.lineviews import figure_of_block
 from vbraille.reading.position import (
@@ -27,6 +26,7 @@ from vbraille.reading.search.structure import (
     marks_of,
     within,
 )
+from vbraille.reading.view import Cue
 from vbraille.translate.source import BlockKind, MarkKind
 from vbraille.wording import count, spelled
 

@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 
     from vbraille.config.settings import Settings
     from vbraille.reading.commands import (
-        asking,
         control,
         marking,
         moving,
+        reporting,
         searching,
         structure,
         turning,
@@ -59,8 +59,9 @@ class Deferred:
 
 
 if not TYPE_CHECKING:
-    asking, control, marking, moving = map(Deferred, ("asking", "control", "marking", "moving"))
-    searching, structure, turning = map(Deferred, ("searching", "structure", "turning"))
+    control, marking, moving = map(Deferred, ("control", "marking", "moving"))
+    reporting, searching = map(Deferred, ("reporting", "searching"))
+    structure, turning = map(Deferred, ("structure", "turning"))
 
 # Kinds of blocks, and of what is in them.
 HEADING, LIST, TABLE, QUOTE = "heading", "item", "row", "quote"
@@ -240,12 +241,12 @@ COMMANDS = (
     Command("GOTOMARK", ("o",), "go to a bookmark", marking.ask_way),
     Command("SAY_MARKS", ("B",), "say the bookmarks", marking.say_marks),
     Command("DELMARK", ("delete", "X"), "delete a bookmark", marking.ask_deletion),
-    shared("INFO", ("i",), "say line, page, percent, heading, words left", asking.say_place),
-    shared("DESC_CURR_CHAR", ("u",), "say what is under the finger", asking.say_character),
-    shared("SPEAK_CURR_WORD", ("w",), "say the word under the finger", asking.say_word),
-    shared("SPELL_CURR_WORD", ("W",), "spell the word under the finger", asking.spell_word),
-    shared("SAY_LINE", ("V", "f5"), "say the line again", asking.say_line),
-    shared("SAY_HEADERS", ("H",), "say the headers of the table", asking.say_headers),
+    shared("INFO", ("i",), "say line, page, percent, heading, words left", reporting.say_place),
+    shared("DESC_CURR_CHAR", ("u",), "say what is under the finger", reporting.say_character),
+    shared("SPEAK_CURR_WORD", ("w",), "say the word under the finger", reporting.say_word),
+    shared("SPELL_CURR_WORD", ("W",), "spell the word under the finger", reporting.spell_word),
+    shared("SAY_LINE", ("V", "f5"), "say the line again", reporting.say_line),
+    shared("SAY_HEADERS", ("H",), "say the headers of the table", reporting.say_headers),
     shared("CONTRACTED", ("x",), "contracted braille, or uncontracted", turning.contracted),
     Command("LANGUAGE", ("y",), "translate by the table of a language", turning.ask_language),
     shared("SKPBLNKWINS", ("z",), "pass over blank lines, or read them", turning.skip_blank),

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
-from vbraille.config.knobs import KNOBS, fixed, next_mapping, obstacle, say_mapping
+from vbraille.config.settings import KNOBS, fixed, next_mapping, obstacle, say_mapping
 from vbraille.errors import InputError, VbrailleError
-from vbraille.reading.cues import Cue
-from vbraille.render.braille.straying import BAND_BOUNDS
+from vbraille.reading.view import Cue
+from vbraille.render.braille.style import BAND_BOUNDS
 from vbraille.translate import Book, BrailleTable, find_table
 from vbraille.wording import spelled
 
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from vbraille.config.options import StyleKnob
     from vbraille.reading.advancing import Scroll
     from vbraille.reading.reader import Reader
-    from vbraille.render.braille.straying import Straying
-    from vbraille.render.braille.style import BrailleStyle
+    from vbraille.render.braille.style import BrailleStyle, Straying
 
 
 def turn(name: str, steps: int) -> Callable[[Reader], None]:

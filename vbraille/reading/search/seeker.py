@@ -17,7 +17,7 @@ import msgspec
 
 from vbraille.errors import VbrailleError
 from vbraille.layout.blocks import LaidBlock
-from vbraille.layout.runs import LaidRun
+from vbraille.layout.pages import LaidRun
 from vbraille.layout.texts import choose_table
 from vbraille.reading.search.questions import (
     Ask,
@@ -50,7 +50,6 @@ from vbraille.reading.search.structure import (
     first_place,
     list_headings,
 )
-from vbraille.reading.search.text import find_text
 from vbraille.translate import Book, Undefined
 from vbraille.translate.formats import open_source
 from vbraille.workers import Worker, begin
@@ -88,6 +87,9 @@ def steps(source: Source, query: Place, *, near: bool = False) -> Iterator[Hit |
     """
     match query:
         case FindText():
+            # A reading in which no text is looked for does not load it.
+            from vbraille.reading.search.text import find_text
+
             return find_text(source, query, near=near)
         case FindKind():
             return find_kind(source, query)

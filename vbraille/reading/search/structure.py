@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.reading.search.questions import ListedHeading
 from vbraille.translate.documents.document import Document
-from vbraille.translate.source import BlockKind, MarkKind
-from vbraille.translate.text import to_text
+from vbraille.translate.source import BlockKind, MarkKind, to_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

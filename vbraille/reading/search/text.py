@@ -15,7 +15,7 @@ from vbraille.reading.search.structure import extend
 from vbraille.translate.documents.document import Document
 from vbraille.translate.documents.encodings import TextDecoder
 from vbraille.translate.levels import TYPED
-from vbraille.translate.text import to_codes, to_text
+from vbraille.translate.source import to_codes, to_text
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Iterator, Sequence

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.braille.dots import DOT_ROWS, PLACES, mask_of
+from vbraille.braille.cells import DOT_ROWS, PLACES, mask_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

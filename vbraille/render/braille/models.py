@@ -10,8 +10,7 @@ from vbraille.carriers import carrier
 from vbraille.display import Display
 from vbraille.errors import InputError
 from vbraille.render.braille.mappings import MAPPINGS, single_row
-from vbraille.render.braille.profiles import Profile, Tuning
-from vbraille.render.braille.style import BrailleStyle
+from vbraille.render.braille.style import BrailleStyle, Profile, Tuning
 
 if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry

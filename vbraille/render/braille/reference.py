@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.braille.dots import PLACES, dots_of
-from vbraille.render.braille.profiles import Profile, half_sine_peak
+from vbraille.braille.cells import PLACES, dots_of
+from vbraille.render.braille.style import Profile, half_sine_peak
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from vbraille.display import Display
-    from vbraille.render.braille.profiles import Tuning
-    from vbraille.render.braille.style import BrailleStyle
+    from vbraille.render.braille.style import BrailleStyle, Tuning
 
 
 def bump(p: ArrayLike) -> NDArray[np.float64]:

@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.braille.dots import DOT_ROWS, PLACES
-from vbraille.render.braille.profiles import coefficients
+from vbraille.braille.cells import DOT_ROWS, PLACES
+from vbraille.render.braille.style import coefficients
 from vbraille.render.machine.braillekernel import (
     APART,
     CELL_PITCH,

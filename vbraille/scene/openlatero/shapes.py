@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from vbraille.extras import needing_extras
+from vbraille.errors import needing_extras
 from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.joints import joints, rounding_radius_mm
 from vbraille.scene.measures import LEAST_MM, MOST_MM

@@ -11,8 +11,7 @@ import sys
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from vbraille.errors import InputError, VbrailleError
-from vbraille.extras import lacking
+from vbraille.errors import InputError, VbrailleError, lacking
 from vbraille.scene.svg.drawing import view_of
 from vbraille.scene.svg.numbers import PX_MM
 from vbraille.scene.svg.reading import size_px

@@ -13,6 +13,7 @@ from vbraille.tomlfile import Table, which
 from vbraille.wording import count
 
 MOST_PEOPLE = 10_000
+ITEM = "item_"  # beginning of the columns of results that have the file of items' own
 CONDITION = "condition"  # the factor of conditions that a protocol lists by name
 # What has levels on a scale, along which a threshold may be found.
 NUMBERS = frozenset(
@@ -46,7 +47,7 @@ MEASURES = {
     "legibility": Measure("legibility of strings", "%", "share", ("identify",)),
     "characters": Measure("legibility of characters", "%", "share", ("identify",)),
     "duration": Measure("duration of right answers", "s", "log", ("identify",)),
-    "right": Measure("right answers", "%", "share", ("which", "same-different", "detect")),
+    "right": Measure("right answers", "%", "share", ("which", "same-different", "detect", "name")),
     "threshold": Measure("threshold", "", "log", ("detect", "which", "identify")),
     "d_prime": Measure("d′", "", "linear", ("detect", "same-different", "which")),
     "preferred": Measure("preferred value", "", "linear", ("which",)),
@@ -68,6 +69,8 @@ class Task(NamedTuple):
         Whether there is a procedure, and whether there are catch trials.
     factors
         What each factor changes, by its name; "condition" for conditions that are listed.
+    items
+        Columns of the results that have the file of items' own, such as "item_size".
     """
 
     question: str
@@ -75,6 +78,7 @@ class Task(NamedTuple):
     adaptive: bool
     catch: bool
     factors: dict[str, frozenset[str]]
+    items: tuple[str, ...] = ()
 
     @property
     def levels(self) -> tuple[str, ...]:
@@ -106,8 +110,8 @@ class PlannedAnalysis(Table, frozen=True, kw_only=True):
     measure
         Primary measure, a key of `MEASURES`; None for the usual one of the question.
     factors
-        Names of the factors that it is compared by, or "condition" for conditions that are listed;
-        None for all that the plan has.
+        Names of the factors that it is compared by, "condition" for conditions that are listed,
+        or columns of the file of items, such as "item_size"; None for all factors.
     model
         "trials": logistic regression of single trials, with participants as clusters; "means":
         participants' own means. None for "trials" of shares, and "means" of all else.
@@ -170,8 +174,8 @@ class PlannedAnalysis(Table, frozen=True, kw_only=True):
             raise ValueError("measure is 'threshold', which strings have with [procedure] alone")
         factors = tuple(task.factors) if self.factors is None else self.factors
         for name in factors:
-            if name not in task.factors:
-                raise ValueError(f"factors has {name!r}{which(name, task.factors)}")
+            if name not in (known := (*task.factors, *task.items)):
+                raise ValueError(f"factors has {name!r}{which(name, known)}")
         if len(set(factors)) < len(factors):
             raise ValueError("factors has one twice; leave it out once")
         if measure == "threshold" and self.factors is None:
@@ -208,4 +212,4 @@ class PlannedAnalysis(Table, frozen=True, kw_only=True):
 
     def column(self, factor: str) -> str:
         """Column of trials that has the levels of a factor."""
-        return factor if factor == CONDITION else f"factor_{factor}"
+        return factor if factor == CONDITION or factor.startswith(ITEM) else f"factor_{factor}"

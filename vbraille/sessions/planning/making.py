@@ -303,7 +303,7 @@ def _trial(protocol: Protocol, item: Item, condition: Condition, block: int) -> 
         shown = [(item if text else (*before, *map(int, item), *after), None)]
         asked = (len(before), len(before) + len(item))
     stimuli = Stimuli(protocol.shown(condition, masks, value) for masks, value in shown)
-    if stimuli[0].text is not None:
+    if stimuli[0].text is not None or stimuli[0].picture is not None:
         asked = (0, len(stimuli[0].masks))
     return Trial(1, block, condition.name, asked, stimuli)
 

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from vbraille.errors import check_range
 from vbraille.tomlfile import Table
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
 # Form of the names of conditions and fields, which become columns of tables and parts of file
 # names.
 NAME = re.compile(r"[A-Za-z0-9_-]{1,40}")
-_FILE = re.compile(r"[A-Za-z0-9_-]{1,40}\.(csv|txt)")
+_FILE = re.compile(r"[A-Za-z0-9_-]{1,40}\.(\w+)")
 LONGEST_LINE = 200
 ENTER = "key:enter"
 # Keys with names, and what they type; other keys are called by the character that they type.
@@ -49,18 +52,19 @@ def check_line(what: str, text: str) -> None:
         )
 
 
-def check_file_name(name: str, what: str) -> None:
+def check_file_name(name: str, what: str, ends: Sequence[str] = ("csv", "txt")) -> None:
     """Check the name of a file that stands beside a protocol.
 
     Raises
     ------
     ValueError
-        If it is no plain name of a CSV or a text.
+        If it is no plain name, or does not end in one of ``ends``.
     """
-    if not _FILE.fullmatch(name):
+    found = _FILE.fullmatch(name)
+    if found is None or found[1] not in ends:
         raise ValueError(
             f"{what} is {name!r}; it must be the name of a file beside the protocol: 1 to 40 "
-            f"letters a to z, digits, hyphens or underscores, and .csv or .txt"
+            f"letters a to z, digits, hyphens or underscores, and .{' or .'.join(ends)}"
         )
 
 

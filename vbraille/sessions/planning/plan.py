@@ -25,8 +25,9 @@ from vbraille.sessions.planning.style import mapping_named
 
 VERSION = 2  # of the making of plans; what a seed makes may change with a higher one alone
 _OF_STIMULUS = {"cells", "value_mm", *(f.name for f in (*fields(Tuning), *fields(Geometry)))}
-# Left out where the display's mapping is used, where a protocol gives cells, and on the device.
-_OPTIONAL = ("mapping", "text", "table", "on")
+# Left out where the display's mapping is used, where a protocol gives cells, on the device, and
+# where no picture is shown.
+_OPTIONAL = ("mapping", "text", "table", "on", "scene", "picture", "answer")
 
 
 class _Version(msgspec.Struct):

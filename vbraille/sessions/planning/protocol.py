@@ -14,7 +14,7 @@ import numpy as np
 from msgspec import field, structs
 
 from vbraille.render import MODELS
-from vbraille.sessions.planning.analysis import CONDITION, PlannedAnalysis, Task
+from vbraille.sessions.planning.analysis import CONDITION, ITEM, PlannedAnalysis, Task
 from vbraille.sessions.planning.design import (
     BlockOrder,
     Choice,
@@ -45,6 +45,7 @@ from vbraille.sessions.planning.pace import (
     TrialPace,
     check_line,
 )
+from vbraille.sessions.planning.pictures import PictureScene, picture_scene
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
 from vbraille.sessions.planning.questionnaire import AnyItem
 from vbraille.sessions.planning.questions import AnyQuestion, CellSpelling, usual_question
@@ -99,6 +100,12 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     fields: tuple[ParticipantField, ...] = ()
     questionnaire: tuple[AnyItem, ...] = ()
     analysis: PlannedAnalysis | None = None
+
+    @property
+    def pictures(self) -> bool:
+        """True if elements of scenes are shown, and not cells."""
+        looks = (self.display, *self.listed, *(f.levels[0] for f in self.factors))
+        return any(look.scene is not None for look in looks)
 
 
 class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
@@ -323,6 +330,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
             adaptive=self.adaptive,
             catch=self.design.catch is not None,
             factors=factors,
+            items=tuple(f"{ITEM}{name}" for name in self.item_columns),
         )
         return (self.analysis or PlannedAnalysis()).resolved(task)
 
@@ -383,7 +391,8 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         Parameters
         ----------
         condition, masks
-            The condition, and the dot masks of all cells with their delimiters; or a text.
+            The condition, and the dot masks of all cells with their delimiters; or a text, or
+            the name of a picture.
         value
             Value of the parameter that is compared; None if none is.
 
@@ -395,6 +404,12 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         """
         style = self.style_of(condition)
         text = table = None
+        scene = condition.scene or self.display.scene
+        if scene is not None:
+            picture = str(masks)
+            right = self.asks.right_of(picture, self.columns_of(masks))
+            shown = {"scene": scene, "picture": picture, "answer": right}
+            return Stimulus((), style.tuning, style.geometry, **shown)
         if isinstance(masks, WrittenText):
             table = self.table_of(condition)
             if table is None:
@@ -418,8 +433,16 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         """Mapping of dots to the array's rows while a stimulus is felt."""
         return self.mapping if stimulus.mapping is None else mapping_named(stimulus.mapping)
 
+    def scene_of(self, stimulus: Stimulus) -> PictureScene:
+        """Scene that the picture of a stimulus is of."""
+        assert stimulus.scene is not None, "cells are of no scene"
+        return picture_scene(self.files[stimulus.scene], stimulus.scene)
+
     def program(self, stimulus: Stimulus, tuning: Tuning) -> Program:
         """Picture of a stimulus for the compiled code, by places of the array's centre."""
+        if stimulus.picture is not None:
+            scene = self.scene_of(stimulus)
+            return scene.compile(stimulus.picture, self.model.display, tuning.contrast)
         style = replace(
             self.model.style,
             mapping=self.mapping_of(stimulus),

@@ -45,20 +45,27 @@ def builtin_names() -> list[str]:
 
 
 def builtin_text(name: str) -> str:
-    """TOML text of a protocol that comes with the program.
+    """TOML text of a protocol that comes with the program, or text of a file beside it by its name.
 
     Raises
     ------
     InputError
-        If there is no protocol of that name; the message suggests the nearest name.
+        If there is no such protocol or file; the message suggests the nearest name.
     """
     names = builtin_names()
+    if name in {file.name for file in _FOLDER.iterdir()}:
+        return shipped_text(name)
     if name not in names:
         raise InputError(
             f"there is no protocol {name!r}{which(name, names)}; "
             f"that of a file ends in .toml, or has a / in it"
         )
-    return _FOLDER.joinpath(f"{name}.toml").read_bytes().decode("utf-8")
+    return shipped_text(f"{name}.toml")
+
+
+def shipped_text(name: str) -> str:
+    """Text of a file that comes with the program's protocols, such as "shapes.csv"."""
+    return _FOLDER.joinpath(name).read_bytes().decode("utf-8")
 
 
 def load_protocol(spec: str) -> Protocol:
@@ -83,10 +90,7 @@ def load_protocol(spec: str) -> Protocol:
 
         return parse_protocol(read_text(spec, "protocol"), spec, beside=beside)
 
-    def shipped(name: str) -> str:
-        return _FOLDER.joinpath(name).read_bytes().decode("utf-8")
-
-    return parse_protocol(builtin_text(spec), f"{spec}.toml", beside=shipped)
+    return parse_protocol(builtin_text(spec), f"{spec}.toml", beside=shipped_text)
 
 
 def parse_protocol(
@@ -119,7 +123,7 @@ def parse_protocol(
     file = TomlFile(text, where)
     file.read(_Format)  # this comes first, since another format may have other keys
     keys = file.read(_Keyed, read_keys).keys
-    written = _names_tables(file)
+    written = _names_texts(file)
     tables = file.read(ProtocolFile, spelled(keys, written=written))
     files = _files(file, tables, beside)
     with file.checking():
@@ -139,26 +143,37 @@ def _files(
 ) -> dict[str, str]:
     """Texts of all files that a protocol names, by their names."""
     texts: dict[str, str] = {}
-    for table in ("items", "practice", "order"):
-        name = getattr(getattr(tables, table), "file", None)
+    named = [((n, "file"), getattr(getattr(tables, n), "file", None)) for n in _WITH_FILES]
+    named += [(("display", "scene"), tables.display.scene)]
+    named += [(("conditions", n, "scene"), each.scene) for n, each in enumerate(tables.listed)]
+    named += [
+        (("factors", n, "levels", m, "scene"), level.scene)
+        for n, factor in enumerate(tables.factors)
+        for m, level in enumerate(factor.levels)
+    ]
+    for place, name in named:
         if name is None or name in texts:
             continue
         if beside is None:
-            file.fail((table, "file"), f"is {name!r}, and nothing stands beside this protocol")
+            file.fail(place, f"is {name!r}, and nothing stands beside this protocol")
         try:
             texts[name] = beside(name)
         except (InputError, FileNotFoundError) as error:
             why = error if isinstance(error, InputError) else "there is no such file"
-            file.fail((table, "file"), f"is {name!r}, which cannot be read: {why}")
+            file.fail(place, f"is {name!r}, which cannot be read: {why}")
     return texts
 
 
-def _names_tables(file: TomlFile) -> bool:
-    """True if a protocol names braille tables, so that its strings are texts."""
+_WITH_FILES = ("items", "practice", "order")  # tables that may name a file
+
+
+def _names_texts(file: TomlFile) -> bool:
+    """True if a protocol names braille tables or scenes, so that its strings are texts."""
     looks = file.read(_Looks)
     levels = [level for factor in _tables(looks.factors) for level in _tables(factor.get("levels"))]
     return any(
-        "table" in look for look in (*_tables([looks.display]), *_tables(looks.conditions), *levels)
+        not look.keys().isdisjoint(("table", "scene"))
+        for look in (*_tables([looks.display]), *_tables(looks.conditions), *levels)
     )
 
 
@@ -209,6 +224,9 @@ def _resolved(
                 strings = items.draw(words)
         design = design.strings_of(strings)
     assert not isinstance(design, ItemList)
+    if tables.pictures and practice.trials and not practice.items(design) and not practice.file:
+        # A picture is learnt before it is asked for; nothing of it is given away.
+        practice = msgspec.structs.replace(practice, strings=tuple(dict.fromkeys(design.items())))
     if practice.file is not None:
         practised = read_items(files[practice.file], practice.file, keys, written=written)
         own = tuple(row.masks for row in practised)
@@ -289,12 +307,14 @@ def check_protocol(protocol: Protocol, *, planned: bool = False) -> None:
     _check_conventional(protocol)
     _check_question(protocol)
     with _naming("[practice]"):
-        protocol.practice.check(protocol.design)
+        protocol.practice.check(protocol.design, pictures=protocol.pictures)
     _check_trials(protocol)
     _check_order(protocol)
     _check_tables(protocol, planned=planned)
     _check_varies(protocol)
-    if not protocol.written or not (planned or _ungrouped(protocol)):
+    if protocol.pictures:
+        _check_pictures(protocol)
+    elif not protocol.written or not (planned or _ungrouped(protocol)):
         check_cells(protocol)
         check_lines(protocol)
     _check_letters(protocol)
@@ -360,6 +380,36 @@ def _check_tables(protocol: Protocol, *, planned: bool) -> None:
             raise ValueError(f"{place} table: {problem}")
 
 
+def _check_pictures(protocol: Protocol) -> None:
+    """Check that a protocol which shows pictures can show them."""
+    design, display = protocol.design, protocol.model.display
+    if protocol.written or protocol.keys or protocol.medium == "paper":
+        raise ValueError(
+            "scene shows pictures on a device, and table, [keys] and medium = 'paper' are of "
+            "strings; leave one of the two out"
+        )
+    if not display.height_mm:
+        raise ValueError(
+            f"model is {protocol.model_name!r}, whose carriage goes along x only, and scene shows "
+            f"pictures; give 'pantograph' or 'stress2-8x8'"
+        )
+    if not isinstance(design, StringList) or design.reorder or design.catch or protocol.adaptive:
+        raise ValueError(
+            "scene shows pictures of [design] kind = 'list' or 'items' in a fixed order; leave "
+            "reorder, catch and [procedure] out"
+        )
+    if protocol.asks.name in ("identify", "detect"):
+        raise ValueError("scene shows pictures, which have no cells; give [question] kind = 'name'")
+    if protocol.trial.exposure_from != "cue":
+        raise ValueError("[trial] exposure_from is of dots; leave it out, as for all pictures")
+    for condition in protocol.conditions:
+        if protocol.display.scene is None and condition.scene is None:
+            raise ValueError(f"{_place(protocol, condition)} has no scene, and others have; add it")
+        for item in dict.fromkeys((*design.strings, *protocol.practice.strings)):
+            stimulus = protocol.shown(condition, item)
+            protocol.scene_of(stimulus).check(str(item), display)
+
+
 def _check_groups(protocol: Protocol, *, planned: bool) -> None:
     """Check the protocol as each group has it."""
     for group in protocol.groups:
@@ -419,6 +469,20 @@ def _check_question(protocol: Protocol) -> None:
     form = protocol.design.form if isinstance(protocol.design, Choice) else ""
     with _naming("[question]"):
         protocol.asks.check(protocol.intervals, form, adaptive=protocol.adaptive)
+    if getattr(protocol.asks, "buttons", False) and protocol.trial.button is not None:
+        raise ValueError("[trial] end is a button, and [question] buttons takes all; leave one out")
+    columns = protocol.item_columns
+    for choice in getattr(protocol.asks, "choices", ()):
+        if choice.of is not None and choice.of not in columns:
+            raise ValueError(f"[question] choices of is {choice.of!r}{which(choice.of, columns)}")
+        named = {row.columns[choice.of] for row in protocol.item_rows} if choice.of else set()
+        if unknown := sorted(named - set(choice.names.values())):
+            raise ValueError(
+                f"[question] choices of {choice.of} have no name {unknown[0]!r}, which an item "
+                f"has; add it"
+            )
+    if protocol.asks.name == "name" and not protocol.pictures:
+        raise ValueError("[question] kind is 'name', which is asked of pictures; give a scene")
     same = isinstance(protocol.design, Choice) and protocol.design.same
     if same and (protocol.asks.name != "same-different" or protocol.adaptive):
         raise ValueError(

@@ -214,7 +214,7 @@ def _translated(text: str, table: str) -> tuple[tuple[int, ...], str]:
     if all("⠀" <= character <= "⣿" for character in text):
         return spell(text, {}), ""
     # These imports stand here because liblouis takes a while to load, and few protocols need it.
-    from vbraille.translate.text import Text, to_codes
+    from vbraille.translate.source import Text, to_codes
 
     braille = _table(table)
     codes = to_codes(text)

@@ -51,14 +51,14 @@ def check_seed(seed: int) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Stimulus:
-    """A string that is put under the hand.
+    """A string, or a picture, that is put under the hand.
 
     Parameters
     ----------
     masks
-        Dot masks of all cells shown, delimiters included.
+        Dot masks of all cells shown, delimiters included; none for a picture.
     tuning, geometry
-        Tuning and distances that the cells are shown with.
+        Tuning and distances that the cells are shown with; of a picture only the contrast counts.
     value
         Value of the parameter that is compared, in mm if it is a length; None if none is compared.
     mapping
@@ -69,11 +69,15 @@ class Stimulus:
     on
         "brlapi" if it stands on the conventional display that BRLTTY drives; None if it is put
         under the hand on the device.
+    scene, picture
+        File of a scene, and the ids of its elements that are shown; None for cells.
+    answer
+        Right answer to what is asked about a picture; None where nothing is right.
 
     Raises
     ------
     ValueError
-        If there is no cell, or a dot mask is out of range.
+        If there is neither a cell nor a picture, or a dot mask is out of range.
     """
 
     masks: tuple[int, ...]
@@ -84,9 +88,12 @@ class Stimulus:
     text: str | None = None
     table: str | None = None
     on: str | None = None
+    scene: str | None = None
+    picture: str | None = None
+    answer: str | None = None
 
     def __post_init__(self) -> None:
-        if not self.masks:
+        if not self.masks and self.picture is None:
             raise ValueError("a stimulus has no cells; it must have one or more")
         for mask in self.masks:
             if not 0 <= mask <= 0xFF:
@@ -117,7 +124,7 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
         Name of the condition.
     asked
         Cells of the stimulus that are asked for: index of the first, and of the one after the
-        last.
+        last; both are 0 for a picture.
     stimuli
         One stimulus to read, or several to compare.
     catch
@@ -145,6 +152,8 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
         if not self.stimuli:
             raise ValueError(f"trial {self.number} has no stimulus; it must have one or more")
         first, stop = self.asked
+        if self.stimuli[0].picture is not None:
+            return
         if not 0 <= first < stop <= min(len(stimulus.masks) for stimulus in self.stimuli):
             raise ValueError(
                 f"trial {self.number} asks for the cells from {first} to {stop}; "
@@ -158,15 +167,20 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def item(self) -> tuple[int, ...]:
-        """Content, whatever the condition: dot masks of the cells asked for, or the text."""
+        """Content, whatever the condition: masks of cells asked for, text or picture's name."""
         stimulus = self.stimuli[0]
+        if stimulus.picture is not None:
+            return WrittenText.of(stimulus.picture)
         if stimulus.text is not None:
             return WrittenText.of(stimulus.text)
         return stimulus.masks[slice(*self.asked)]
 
     @property
     def presented(self) -> str:
-        """Cells asked for, in Unicode braille; of the first stimulus of several."""
+        """Cells asked for, in Unicode braille, of the first stimulus; of a picture its answer."""
+        stimulus = self.stimuli[0]
+        if stimulus.picture is not None:
+            return stimulus.answer or stimulus.picture
         return to_braille(self.stimuli[0].masks[slice(*self.asked)])
 
 

@@ -10,7 +10,7 @@ from msgspec import field
 from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.errors import check_range
 from vbraille.render import MAPPINGS, Profile, Tuning, single_row
-from vbraille.sessions.planning.pace import check_name
+from vbraille.sessions.planning.pace import check_file_name, check_name
 from vbraille.sessions.planning.spellings import Masks
 from vbraille.tomlfile import Table, which
 
@@ -57,7 +57,7 @@ MOST_LEAD = 20
 # Lengths that conditions may differ in; the travel is the device's, and the same for all.
 LENGTHS = tuple(name for name in BOUNDS_MM if name != "travel_mm")
 TUNED = ("texture", "contrast", "cycles")
-STYLE = (*TUNED, "dot_row", "mapping", "table", "on", *LENGTHS)
+STYLE = (*TUNED, "dot_row", "mapping", "table", "on", "scene", *LENGTHS)
 
 
 class Style(Table, frozen=True, kw_only=True):
@@ -76,6 +76,8 @@ class Style(Table, frozen=True, kw_only=True):
     on
         Where strings stand: on the "device", or on the conventional display that BRLTTY drives,
         "brlapi".
+    scene
+        File beside the protocol with the scene whose elements are shown as pictures.
     dot_width_mm, dot_spacing_mm, cell_gap_mm, row_spacing_mm, line_pitch_mm
         These are described at `Geometry`.
 
@@ -92,6 +94,7 @@ class Style(Table, frozen=True, kw_only=True):
     mapping: str | None = None
     table: str | None = None
     on: Where | None = None
+    scene: str | None = None
     dot_width_mm: float | None = None
     dot_spacing_mm: float | None = None
     cell_gap_mm: float | None = None
@@ -105,6 +108,8 @@ class Style(Table, frozen=True, kw_only=True):
                 f"table is {self.table!r}; it must be the name of a braille table that liblouis "
                 f"has, such as en-ueb-g2.ctb (vbraille tables lists all)"
             )
+        if self.scene is not None:
+            check_file_name(self.scene, "scene", ("scene",))
 
     @property
     def changes(self) -> dict[str, Any]:

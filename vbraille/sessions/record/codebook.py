@@ -91,6 +91,8 @@ COLUMNS = {
 FURTHER = {
     "table": "braille table that made the cells of the text",
     "text": "text that the cells asked for stand for; empty for a blank catch trial",
+    "scene": "file of the scene that the picture is of",
+    "picture": "ids of the elements of the scene that were shown",
     "late": "1 if the answer came after the time that the protocol gives for it, or not at all",
 }
 
@@ -110,6 +112,8 @@ def designed(protocol: Protocol, trial: Trial) -> dict[str, str]:
         cells |= {f"item_{name}": value for name, value in own.items()}
     if protocol.design.catch is not None:
         cells["catch"] = trial.catch
+    if protocol.pictures:
+        cells |= {name: getattr(trial.stimuli[0], name) or "" for name in ("scene", "picture")}
     if protocol.written:
         cells |= {name: getattr(trial.stimuli[0], name) or "" for name in ("table", "text")}
     return cells

@@ -220,6 +220,7 @@ def walk(
         row, seen = _row(record, trial, told), None
         row |= _noted(notes, trial.number) | _replies(record, progress, trial)
         strings = shown_on(record.protocol, trial) == "device" and len(trial.stimuli) == 1
+        strings = strings and not record.protocol.pictures
         if strings and told.answer is not None:
             seen = _trajectory(record, trial, told, traces)
         if isinstance(seen, Trajectory):
@@ -268,6 +269,8 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
         "answer_time": told.wall.get("answer", ""),
         "trace": told.trace or "",
     }
+    if protocol.pictures:  # which have none of what cells have
+        row |= dict.fromkeys(("texture", "texture_cycles", "mapping", *BOUNDS_MM), "")
     if "cue" in t_s and "contact" in t_s and t_s["contact"] >= t_s["cue"]:
         row["contact_s"] = round(t_s["contact"] - t_s["cue"], 6)
     if protocol.trial.answer_s is not None:

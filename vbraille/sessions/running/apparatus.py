@@ -179,6 +179,7 @@ class Apparatus:
             tie=lambda: book.durable,
             steering=self.steering,
             by_hand=not self.responses.typed or protocol.trial.end is None,
+            anywhere=protocol.pictures,
         )
 
     def _since(self, book: Journal, progress: Progress) -> dict[str, Any]:
@@ -236,6 +237,16 @@ def make_sound(wanted: str, responses: Responses, say: Callable[[str], None]) ->
 
 def check_room(info: Display, protocol: Protocol, plan: Plan) -> None:
     """Raise InputError if the device's carriage is too short for a stimulus of the plan."""
+    for stimulus in plan.stimuli() if protocol.pictures else ():
+        assert stimulus.picture is not None
+        protocol.scene_of(stimulus).check(stimulus.picture, info)
+        if not info.height_mm:
+            raise InputError(
+                f"{protocol.name} shows pictures, and the carriage of {info.name} goes along x "
+                f"only; choose another {setting('device')}"
+            )
+    if protocol.pictures:
+        return
     extent_mm = max(
         (
             stimulus.geometry.extent_mm(len(protocol.line(stimulus.masks)))

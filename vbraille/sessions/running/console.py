@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 from vbraille.braille.spelling import ordinal
 from vbraille.errors import InputError
 from vbraille.sessions.planning.pace import ENTER
-from vbraille.sessions.planning.questions import AdjustQuestion
+from vbraille.sessions.planning.questions import AdjustQuestion, NameQuestion
 from vbraille.sessions.record import events
 from vbraille.sessions.running.runner import PendingAnswer, Phase, Runner
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.questionnaire import AnyItem
@@ -62,6 +62,8 @@ class Console:
         self._progress = runner.progress
         self._say = say
         self._early = ()  # the trial, attempt and answer that were asked about
+        # The trial and attempt, and the names that were chosen in it and are not taken yet.
+        self._chosen: tuple[tuple[bool, int, int] | None, Sequence[str | None]] = (None, ())
 
     def take(self, line: str, number: int = 0) -> None:
         """Do what a line says, which is a command, an answer, or empty for Enter.
@@ -88,6 +90,15 @@ class Console:
         else:
             command, rest = found
             command.handler(self, rest)
+
+    @property
+    def _draft(self) -> str:
+        """Names that wait for Enter; empty if none do."""
+        trial = self._progress.correcting or self._runner.open_trial
+        if trial is None:
+            return ""
+        of = trial.practice, trial.number, self._progress.record_of(trial).attempts
+        return " ".join(filter(None, self._chosen[1])) if self._chosen[0] == of else ""
 
     # The methods from here on do the commands.
 
@@ -121,9 +132,14 @@ class Console:
             coming = ordinal(runner.stimulus + 1)
             self._say(f"the {coming} has not been felt yet; repeat shows {both} again")
             return
-        if runner.protocol.asks.turns:
+        question = runner.protocol.asks
+        if question.turns:
             trial = self._progress.record_of(trial).shown
         try:
+            if isinstance(question, NameQuestion) and question.confirm and runner.responses.typed:
+                line = self._confirmed(question, trial, line)
+                if not line:
+                    return
             answer, confidence = read_line(runner.protocol, trial, line)
         except ValueError as error:
             self._refuse("no answer", error)
@@ -151,6 +167,19 @@ class Console:
             self._say(f"confidence: {runner.name(trial)}, {spoken}; type {scale.typed}")
             return
         self._write(trial, told if confidence is None else told | {"confidence": confidence})
+
+    def _confirmed(self, question: NameQuestion, trial: Trial, line: str) -> str:
+        """Names that were said back and are typed again; empty, and they are said, if not yet."""
+        of = trial.practice, trial.number, self._progress.record_of(trial).attempts
+        before = self._chosen[1] if self._chosen[0] == of else ()
+        names = question.marked(line, before)
+        self._chosen = of, names
+        missing, said = question.missing(names), " ".join(filter(None, names))
+        if not missing and names == before:
+            return said
+        how = f"then one of {missing}" if missing else "Enter takes it, another key changes it"
+        self._say(f"chosen: {said}; {how}")
+        return ""
 
     def _turn(self, line: str) -> bool:
         """Turn the open trial's value, or show the standard again; True if the line says so."""
@@ -217,6 +246,8 @@ class Console:
         if runner.paused:
             runner.go_on()
             self._say("go: on")
+        elif self._draft:
+            self.answer(self._draft)
         elif runner.phase is Phase.BREAK:
             runner.log(events.Go)
             runner.next(gap=False)
@@ -319,7 +350,7 @@ class Console:
     def _write(self, trial: Trial, told: dict[str, Any]) -> None:
         """Write an answer, say that it is in, and go on."""
         runner, correcting = self._runner, self._progress.correcting
-        runner.pending = None
+        runner.pending, self._chosen = None, (None, ())
         runner.log(events.Answer, trial, **told)
         sure = f", confidence {told['confidence']}" if "confidence" in told else ""
         self._say(f"answer: {runner.name(trial)}, {self._spoken(told['answer'])}{sure}")

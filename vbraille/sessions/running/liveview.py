@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 from msgspec import structs
 
 from vbraille.braille.spelling import ordinal, say_cells, to_braille
-from vbraille.config.knobs import say_mapping
+from vbraille.config.settings import say_mapping
 from vbraille.devices.base import Placing
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host
@@ -172,7 +172,7 @@ def _unhidden(state: ViewState, runner: Runner) -> ViewState:
         geometry=geometry,
         mapping=say_mapping(style.mapping),
         rows_shown=rows_shown(style, runner.device.engine.display),
-        lines=[_line(runner, stimulus)],
+        lines=[] if stimulus.picture is not None else [_line(runner, stimulus)],
     )
 
 
@@ -185,6 +185,8 @@ def _line(runner: Runner, stimulus: Stimulus) -> LineShown:
 
 def _asked(protocol: Protocol, trial: Trial, stimulus: Stimulus) -> str:
     """Words for what the participant is to say about a stimulus."""
+    if stimulus.picture is not None:
+        return trial.presented
     if stimulus.value is not None:
         return said_value(stimulus.value, protocol.parameter)
     return say_cells(to_braille(stimulus.masks[slice(*trial.asked)]), protocol.keys)
@@ -235,7 +237,9 @@ def _place(runner: Runner) -> str:
     if runner.paused:
         return f"{name}: a pause; Enter at the console ends it"
     if runner.phase is Phase.READY:
-        return f"{name}: waits until the array is at the left stop"
+        pictures = runner.protocol.pictures
+        where = "the device works" if pictures else "the array is at the left stop"
+        return f"{name}: waits until {where}"
     if runner.read:
         return f"{name}: was read; waits for the answer"
     return f"{name}: is read"

@@ -20,7 +20,7 @@ from vbraille.sessions.record import events
 from vbraille.sessions.record.traces import TraceWriter
 from vbraille.sessions.record.trajectory import first_edge_mm
 from vbraille.sessions.simulated.skin import FeltFrames
-from vbraille.simulation.steering import ReadLine
+from vbraille.simulation.steering import ReadLine, ReadPage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.events import Event
-    from vbraille.render.braille.profiles import Tuning
+    from vbraille.render.braille.style import Tuning
     from vbraille.render.program import Program
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.planning.stimuli import Stimulus
@@ -53,16 +53,23 @@ class Presentation:
         Left edge of the first dot; None if none is shown.
     masks
         Dot masks for a display of pins.
+    canvas_mm
+        Width and height of a picture, which is felt all over and ends nowhere; None for a line.
     """
 
     program: Program
     end_mm: float | None = None
     edge_mm: float | None = None
     masks: tuple[int, ...] = ()
+    canvas_mm: tuple[float, float] | None = None
 
 
 def presentation_of(protocol: Design, stimulus: Stimulus, tuning: Tuning) -> Presentation:
-    """Make the presentation of a string, with blank cells before it, as a protocol has it."""
+    """Make the presentation of a picture, or of a string with blank cells before it."""
+    if stimulus.picture is not None:
+        canvas = protocol.scene_of(stimulus).canvas
+        size_mm = canvas.width_mm, canvas.height_mm
+        return Presentation(protocol.program(stimulus, tuning), canvas_mm=size_mm)
     line, geometry = protocol.line(stimulus.masks), stimulus.geometry
     return Presentation(
         protocol.program(stimulus, tuning),
@@ -186,6 +193,7 @@ _WHY_HELD = int(Flag.HELD | Flag.RESTED | Flag.SILENT)
 _TOLD_S = 1.0
 # A device that rests because the hand stands still may take so long to accept frames again.
 _WAKING_S = 0.1
+_LINE_MM = 10.0  # ours: between the lines that a simulated hand goes along over a picture
 
 
 class FaultWatch:
@@ -325,6 +333,8 @@ class OnDevice(Presenter):
     by_hand
         Whether the hand's way to the end and back ends reading, and not the participant's key
         alone.
+    anywhere
+        Whether a trial may begin wherever the hand is, as for pictures, and not at the left alone.
 
     Attributes
     ----------
@@ -334,6 +344,9 @@ class OnDevice(Presenter):
         Record of the newest tick that was polled; None before the first.
     ended : bool
         Whether the participant's key has ended the reading of this stimulus.
+    pressed : list[int]
+        Numbers of the buttons that were pressed while a stimulus was shown, but for the one that
+        ends reading; the runner takes them.
     """
 
     by_key = False
@@ -349,8 +362,10 @@ class OnDevice(Presenter):
         tie: Callable[[], Tie],
         steering: Steering | None = None,
         by_hand: bool = True,
+        anywhere: bool = False,
     ) -> None:
         super().__init__()
+        self._anywhere = anywhere
         self.engine = engine
         self.line = 0
         self._span_mm = span_mm
@@ -361,6 +376,7 @@ class OnDevice(Presenter):
         self._button = button
         self._by_hand = by_hand
         self.ended = False
+        self.pressed: list[int] = []
         self._trace: TraceWriter | None = None
         self.newest: np.void | None = None
         self._placing = Placing.DONE
@@ -403,19 +419,22 @@ class OnDevice(Presenter):
 
     @property
     def ready(self) -> bool:
-        """True if the device works, and its carriage has just been at the left stop."""
+        """True if the device works, and its carriage is where a trial may begin."""
         return self._ready
 
     @property
     def reached(self) -> bool:
-        """True if the hand has been at the end of the stimulus."""
-        return self.read or (self._end is not None and self._end.reached)
+        """True if the hand has been at the end of the stimulus; a picture has none."""
+        return self.read or self._end is None or self._end.reached
 
     @property
     def explorations(self) -> list[FeltFrames]:
         """Frames and places of each stimulus of the trial so far."""
         together = (np.concatenate(parts) for parts in self._felt)
-        return [FeltFrames(t["frame"], t["x_mm"], t["time_ns"] / 1e9) for t in together]
+        return [
+            FeltFrames(t["frame"], t["x_mm"], t["time_ns"] / 1e9, t["y_mm"], t["theta_rad"])
+            for t in together
+        ]
 
     def show(self, presentation: Presentation, *, first: bool = True) -> None:
         """Put a stimulus under the hand, as the showing with the next line number."""
@@ -437,7 +456,13 @@ class OnDevice(Presenter):
         self._shown = presentation
         self.line += 1
         self.engine.show(presentation.program, self.line)
-        if self._steering is not None and presentation.end_mm is not None:
+        if self._steering is None:
+            return
+        if presentation.canvas_mm is not None:
+            width_mm, height_mm = presentation.canvas_mm
+            lines = max(1, round(height_mm / _LINE_MM))
+            self._steering.give(ReadPage(lines, height_mm / lines, width_mm))
+        elif presentation.end_mm is not None:
             self._steering.give(ReadLine(presentation.end_mm))
 
     def rest(self) -> None:
@@ -485,7 +510,7 @@ class OnDevice(Presenter):
         lost = np.diff(ticks["tick"], prepend=before) != 1
         self.newest = ticks[-1]
         # A carriage that a machine moves may be at the left for a few ticks only.
-        at_left = ticks["x_mm"] <= HOME_MM - self._span_mm / 2
+        at_left = self._anywhere | (ticks["x_mm"] <= HOME_MM - self._span_mm / 2)
         well = ticks["flags"] & AWAY == 0
         self._ready = bool(well[-1] and (at_left & well).any())
         if self._trace is not None:
@@ -511,7 +536,12 @@ class OnDevice(Presenter):
 
     def _pressed(self, given: Iterable[Event]) -> list[Occurrence]:
         """Press of the button that ends reading, if it is among these events."""
-        if self._shown is None or self.ended:
+        if self._shown is None:
+            return []
+        for event in given:
+            if isinstance(event, Button) and event.pressed and event.number != self._button:
+                self.pressed.append(event.number)
+        if self.ended:
             return []
         for event in given:
             if isinstance(event, Button) and event.pressed and event.number == self._button:
@@ -549,8 +579,11 @@ class OnDevice(Presenter):
                 self._touched = True
                 notices.append(Occurrence(events.Contact, when(ticks[int(on[0])])))
         steered = self._steering is not None and self._steering.done_at(int(ticks["device_ns"][-1]))
-        end = None if self.read or not self._by_hand else self._end
-        if end is not None and (end.find(ticks["x_mm"]) is not None or steered):
+        shown = self._shown
+        assert shown is not None, "nothing is followed that is not shown"
+        if self.read or not self._by_hand or {shown.end_mm, shown.canvas_mm} == {None}:
+            return notices
+        if steered or (self._end is not None and self._end.find(ticks["x_mm"]) is not None):
             self.read = True
             notices.append(Occurrence(events.Read, when(ticks[-1])))
         return notices

@@ -59,10 +59,48 @@ def pair_of(
 
 
 MOST_NOISE = 100.0
-_INSTEAD = "type the answers, or give a file of them"
+INSTEAD = "type the answers, or give a file of them"
 
 
-class Simulated(TrialResponses):
+class SimulatedPerson(TrialResponses):
+    """A simulated person, whose noise and replies are drawn by protocol, participant and seed.
+
+    Parameters
+    ----------
+    plan
+        Plan of the session.
+    noise
+        Standard deviation of the noise, in a unit of the person's own.
+
+    Raises
+    ------
+    InputError
+        If the noise is out of range.
+    """
+
+    felt = True
+
+    def __init__(self, plan: Plan, noise: float) -> None:
+        if not 0 <= noise <= MOST_NOISE:
+            raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
+        self.name = f"simulated:{noise:g}"
+        self._noise = noise
+        self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"
+        self._replied = 0
+
+    def reply(self, item: AnyItem, columns: Named[str, str], /) -> tuple[str, int]:
+        """Answer to a question of the questionnaire: the right one, or any."""
+        self._replied += 1
+        random = np.random.default_rng(seed_of(f"{self._drawn} {item.name} {self._replied}"))
+        return item.simulate(columns, self._noise, random), 0
+
+    def _random(self, trial: Trial, attempt: int) -> np.random.Generator:
+        """Make the generator of an attempt at a trial."""
+        drawn = f"{self._drawn} {trial.practice} {trial.number} {attempt}"
+        return np.random.default_rng(seed_of(drawn))
+
+
+class Simulated(SimulatedPerson):
     """A simulated reader, which is given the frames sent to the device, and nothing of the plan.
 
     Like a person, it has been told the task: where a string begins, how many characters it has,
@@ -84,22 +122,18 @@ class Simulated(TrialResponses):
         If the protocol is for paper, or the noise is out of range.
     """
 
-    felt = True
-
     def __init__(self, protocol: Protocol, plan: Plan, noise: float = 0.0) -> None:
         if protocol.medium == "paper":
             raise InputError(
                 f"{protocol.name} is read on paper, which the simulated reader cannot feel; "
-                f"{_INSTEAD}"
+                f"{INSTEAD}"
             )
         if any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions):
             raise InputError(
                 f"{protocol.name} is read on a conventional display too, which the simulated "
-                f"reader cannot feel; {_INSTEAD}"
+                f"reader cannot feel; {INSTEAD}"
             )
-        if not 0 <= noise <= MOST_NOISE:
-            raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
-        self.name = f"simulated:{noise:g}"
+        super().__init__(plan, noise)
         model: Model = protocol.model
 
         def told(condition: Condition) -> Observer:
@@ -107,7 +141,6 @@ class Simulated(TrialResponses):
             style = replace(model.style, mapping=style.mapping, geometry=style.geometry)
             return Observer(model.display, style, noise=noise)
 
-        self._noise = noise
         self._observers = {c.name: told(c) for c in protocol.conditions}
         self._lead_cells = protocol.lead_cells
         self._parameter = protocol.parameter or ""
@@ -117,16 +150,13 @@ class Simulated(TrialResponses):
         if not self._question.simulated or (pairs and 1 in self._question.stimuli):
             raise InputError(
                 f"{protocol.name} asks a question of the kind {self._question.name!r}, which the "
-                f"simulated reader cannot answer; {_INSTEAD}"
+                f"simulated reader cannot answer; {INSTEAD}"
             )
         self._check_feels(protocol)
-        self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"
-        self._replied = 0
 
     def next(self, trial: Trial, attempt: int, felt: list[FeltFrames], /) -> tuple[str, int]:
         """Answer to a trial, by what was felt of it."""
-        drawn = f"{self._drawn} {trial.practice} {trial.number} {attempt}"
-        random = np.random.default_rng(seed_of(drawn))
+        random = self._random(trial, attempt)
         scale = self._question.confidence
         sure = "" if scale is None else f"; {(scale.least + scale.most) // 2}"
         number = len(trial.stimuli)  # of what was turned only the newest counts
@@ -141,12 +171,6 @@ class Simulated(TrialResponses):
         )
         return self._question.simulate(told, self._noise, random) + sure, 0
 
-    def reply(self, item: AnyItem, columns: Named[str, str], /) -> tuple[str, int]:
-        """Answer to a question of the questionnaire: the right one, or any."""
-        self._replied += 1
-        random = np.random.default_rng(seed_of(f"{self._drawn} {item.name} {self._replied}"))
-        return item.simulate(columns, self._noise, random), 0
-
     def _check_feels(self, protocol: Protocol) -> None:
         """Raise InputError if the model cannot tell what the question is about."""
         question, parameter = self._question, self._parameter
@@ -155,13 +179,13 @@ class Simulated(TrialResponses):
         if parameter == "texture_cycles":
             raise InputError(
                 f"{protocol.name} compares {parameter}, and the simulated reader does not feel "
-                f"which texture is finer; {_INSTEAD}"
+                f"which texture is finer; {INSTEAD}"
             )
         if question.right == "nearest" and parameter not in LENGTHS:
             raise InputError(
                 f"{protocol.name} asks which of two is nearest to a {parameter} of "
                 f"{question.reference:g}, and the simulated reader feels how strong a dot is, not "
-                f"its {parameter}; {_INSTEAD}"
+                f"its {parameter}; {INSTEAD}"
             )
 
 

@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING, Any
 from vbraille.braille.spelling import ordinal
 from vbraille.devices.events import Button, Knob
 from vbraille.engine.host import HostDiedError
-from vbraille.engine.suspending import Suspension
 from vbraille.sessions.planning.pace import ENTER
 from vbraille.sessions.planning.plan import stimulus_to_json
 from vbraille.sessions.planning.questions import AdjustQuestion
@@ -30,6 +29,7 @@ from vbraille.sessions.record import events
 from vbraille.sessions.record.folder import versions
 from vbraille.sessions.running.presenters import Paper, presentation_of
 from vbraille.sessions.running.responses import KeyPress, Typed
+from vbraille.signals import Suspension
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -371,6 +371,11 @@ class Runner:
             else:
                 take(line, 0)
         self.poll()
+        if self.device is not None:
+            pressed, self.device.pressed = self.device.pressed, []
+            for word in filter(None, map(self.protocol.asks.by_button, pressed)):
+                if self.open_trial is not None and not self.paused:
+                    take(f"answer {word}", 0)
         if not self.responses.typed:
             self._ask(take)
         return True

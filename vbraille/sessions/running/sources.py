@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from vbraille.errors import InputError
 from vbraille.sessions.planning.questions import AdjustQuestion
 from vbraille.sessions.running.console import find_command, read_line
+from vbraille.sessions.running.naming import SimulatedNaming
 from vbraille.sessions.running.reader import Simulated
 from vbraille.sessions.running.responses import (
     PROGRAM,
@@ -200,7 +201,8 @@ def parse_responses(spec: str, protocol: Protocol, plan: Plan, after: int = 0) -
             loud = float(noise or 0.0)
         except ValueError:
             raise InputError(f"noise is {noise!r}; give a number, such as simulated:0.2") from None
-        answers = Simulated(protocol, plan, loud)
+        kind = SimulatedNaming if protocol.pictures else Simulated
+        answers = kind(protocol, plan, loud)
     else:
         from difflib import get_close_matches  # takes long to load
 

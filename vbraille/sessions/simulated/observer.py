@@ -53,7 +53,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.braille.dots import PLACES, mask_of
+from vbraille.braille.cells import PLACES, mask_of
 from vbraille.sessions.simulated.skin import (
     STILL_MM_S,
     FeltFrames,

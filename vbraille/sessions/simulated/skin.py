@@ -35,6 +35,8 @@ class FeltFrames:
         Places of the array's centre; NaN where one is not known.
     time_s : float64[n]
         Times of the ticks, counted from any moment.
+    y_mm, theta_rad : float64[n], optional
+        Places down the canvas, and angles by which the array is turned, where a picture is felt.
 
     Raises
     ------
@@ -45,6 +47,8 @@ class FeltFrames:
     frames: NDArray[np.floating]
     x_mm: NDArray[np.float64]
     time_s: NDArray[np.float64]
+    y_mm: NDArray[np.float64] | None = None
+    theta_rad: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         ticks = {len(self.frames), len(self.x_mm), len(self.time_s)}

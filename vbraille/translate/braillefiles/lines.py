@@ -16,8 +16,7 @@ from vbraille.braille.cells import Cells
 from vbraille.errors import InputError, VbrailleError
 from vbraille.translate.documents.chapters import LONGEST_BLOCK, ChapterSource, Passage
 from vbraille.translate.documents.encodings import binary_kind, find_encoding, named_encoding
-from vbraille.translate.source import Block, BlockKind
-from vbraille.translate.text import SPACE, Text
+from vbraille.translate.source import SPACE, Block, BlockKind, Text
 from vbraille.wording import setting
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from vbraille.translate.source import Block, BlockKind, Index, Mark
-from vbraille.translate.text import Text, to_codes
+from vbraille.translate.source import Block, BlockKind, Index, Mark, Text, to_codes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

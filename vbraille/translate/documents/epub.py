@@ -22,8 +22,7 @@ from vbraille.translate.documents.markup.package import (
 )
 from vbraille.translate.documents.markup.reader import MarkupReader
 from vbraille.translate.documents.markup.tree import read_tree
-from vbraille.translate.source import Mark, MarkKind
-from vbraille.translate.text import NO_BREAK_SPACE, SPACE, to_codes, to_text
+from vbraille.translate.source import NO_BREAK_SPACE, SPACE, Mark, MarkKind, to_codes, to_text
 from vbraille.wording import count
 
 if TYPE_CHECKING:

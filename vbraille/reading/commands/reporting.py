@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.braille.dots import dots_of
+from vbraille.braille.cells import dots_of
 from vbraille.reading.outputs import Echo
 from vbraille.reading.position import block_of, whereabouts
 from vbraille.reading.search.structure import within
