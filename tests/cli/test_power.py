@@ -13,12 +13,13 @@ FEW = [*ASKED, "--studies", "60"]
 def test_each_comparison_has_a_line(call):
     said = call(*FEW)
     assert said.code == 0
-    assert said.out.splitlines()[:2] == [
-        "protocol: letters, 78 trials of each participant",
-        "assumed: T0 30.0 % right, T25 50.0 % right, T100 90.0 % right",
-    ]
-    assert "8 participants: T0 against T100; power 100.0 %, 94.0 % to 100.0 %" in said.out
-    assert said.out.splitlines()[-2].startswith("for a power of 80 %: T0 against T100; ")
+    lines = said.out.splitlines()
+    assert lines[0] == "protocol: letters, 78 trials of each person"
+    assert lines[1].startswith("planned: legibility of strings by condition; model trials; ")
+    assert lines[2] == "assumed: T0 30.0 %, T25 50.0 %, T100 90.0 %"
+    told = "8 participants: difference condition: T0 less T100; power 100.0 %, 94.0 % to 100.0 %"
+    assert told in lines
+    assert lines[-2].startswith("for a power of 80 %: condition: T0 less T100; ")
     assert said.err.splitlines()[-1] == "100 percent"
 
 
@@ -26,7 +27,7 @@ def test_the_numbers_are_the_same_as_json_and_as_csv(call):
     found = json.loads(call(*FEW, "--json").out)["rows"]
     rows = list(csv.DictReader(io.StringIO(call(*FEW, "--csv").out)))
     assert [float(row["power"]) for row in rows] == [row["power"] for row in found]
-    assert len(rows) == 6
+    assert len(rows) == 8
 
 
 @pytest.mark.parametrize(
@@ -38,6 +39,7 @@ def test_the_numbers_are_the_same_as_json_and_as_csv(call):
         (["--participants", "4-9999"], "'4-9999' are 9996 sizes; give at most 1000"),
         (["--effect", "T0"], "'T0' is not NAME=SHARE, such as T0=0.5"),
         (["--effect", "T0=0.1,T0=0.2"], "T0 stands there twice"),
+        (["--test", "paired"], "--test is gone; studies are tested as [analysis] of the protocol"),
         (["--cluster", "lab"], "--cluster is gone; --workers shares the work"),
         (["--workers", "0"], "--workers is 0; it must be 1 to 256"),
         (["--keep", "/"], "--keep / cannot be used: Is a directory"),

@@ -97,7 +97,8 @@ def test_a_plan_is_a_line_a_trial(call):
         assert re.fullmatch(rf"trial {number}: (nominal|textured), ⠉[⠁⠉⠈⠀]{{2}}⠉, dots .+", line)
     assert len([line for line in lines if line.startswith("practice ")]) == 8
     assert lines[1].startswith("analysis: legibility of strings by condition")
-    assert len(lines) == 2 + 160 + 8 + 3  # practice, two blocks
+    assert re.fullmatch(r"length: some \d\d minutes, .+", lines[2])
+    assert len(lines) == 3 + 160 + 8 + 3  # practice, two blocks
 
 
 def test_of_a_comparison_the_plan_tells_both_values(call, tmp_path):

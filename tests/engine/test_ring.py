@@ -44,7 +44,7 @@ def append(ring, n):
     ints, floats, frames = ring.columns
     slot = ring.begin()
     ints[slot] = n, 10 * n, 20 * n, 3, 4, 5, 6, 7, 8, int(Flag.PAUSED)
-    floats[slot] = n / 2, n / 8, 0.25, -n / 4, 0.75, 8.0, 9.0, 10.0, 0.5
+    floats[slot] = n / 2, n / 8, 0.25, -n / 4, 0.75, 8.0, 9.0, 10.0, 0.5, *np.arange(8.0)
     frames[slot] = n / 1024
     ring.end()
 
@@ -60,6 +60,7 @@ def test_a_record_has_every_field_in_its_place():
         "overruns": 6, "line": 7, "part": 8, "flags": 1, "x_mm": 0.5, "y_mm": 0.125,
         "theta_rad": 0.25, "vx_mm_s": -0.25, "vy_mm_s": 0.75, "forward_mm": 8.0,
         "forward_s": 9.0, "shown_s": 10.0, "share": 0.5,
+        **{f"signal_{n + 1}": n for n in range(8)},
     }  # fmt: skip
     assert tuple(want) == (*INTS, *FLOATS)
     assert {name: tick[name] for name in tick.dtype.names if name != "frame"} == want

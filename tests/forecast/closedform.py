@@ -11,13 +11,9 @@ _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(80)
 
 
 def of_row(question, row):
-    """Power of a row of a table, if shares were normal and p not corrected."""
+    """Power of a row of two conditions, if shares were normal."""
     plan = question.plan()
-    names = list(question.effect) if plan.test == "half" else [
-        condition.name for condition in question.protocol.conditions
-    ]  # fmt: skip
-    second = None if plan.test == "half" else names.index(row.second)
-    mean, spread = mean_and_spread(plan, names.index(row.first), second, plan.trials[0])
+    mean, spread = mean_and_spread(plan, 0, 1, plan.trials[0])
     return t_power(mean / spread, row.participants)
 
 
@@ -53,7 +49,7 @@ def mean_and_spread(plan, first, second, trials):
     own = []
     for condition in (first,) if second is None else (first, second):
         # Shares given a participant's z, and what varies beside it.
-        log_odds = plan.log_odds[condition] + plan.between * _NODES
+        log_odds = plan.middles[condition] + plan.between * _NODES
         shares = expit(log_odds[:, None] + plan.differing * _NODES)
         mean = shares @ weights
         within = (shares * (1 - shares)) @ weights / trials[condition]

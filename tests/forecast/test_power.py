@@ -4,12 +4,14 @@ import math
 from dataclasses import replace
 
 import pytest
+from msgspec import structs
+from scipy.stats import t as student
 from statsmodels.stats.power import TTestPower
 
 from tests.forecast.closedform import of_row, t_power
 from tests.tiers import by_tier, heavy
 from vbraille.errors import InputError
-from vbraille.forecast.power import PowerQuestion, power
+from vbraille.forecast.power import PowerQuestion, power, values_of
 from vbraille.forecast.workers import Workers
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol
@@ -20,9 +22,12 @@ EFFECT = {"T0": "0.4", "T25": "0.5", "T100": "0.7"}
 QUESTION = PowerQuestion(LETTERS, EFFECT, (6, 12), studies=300)
 
 
-def legibility(**changed):
+def legibility(model="trials", **changed):
     effect = {"nominal": "0.5", "textured": "0.58"}
-    return PowerQuestion(load_protocol("legibility"), effect, **{"sizes": (12,), **changed})
+    protocol = load_protocol("legibility")
+    analysis = structs.replace(protocol.analysis, model=model)
+    protocol = structs.replace(protocol, analysis=analysis)
+    return PowerQuestion(protocol, effect, **{"sizes": (12,), **changed})
 
 
 @pytest.mark.parametrize(("d", "n"), [(0.0, 5), (0.4, 12), (-1.2, 20)])
@@ -32,21 +37,47 @@ def test_power_of_a_t_test_is_that_of_statsmodels(d, n):
 
 def test_power_of_a_paired_design_is_that_of_its_closed_form():
     studies = by_tier(2000, 10_000, 50_000)
-    question = legibility(sizes=(5, 12, 20), studies=studies, test="paired")
+    question = legibility("means", sizes=(5, 12, 20), studies=studies)
     for row in power(question, ONE).rows:
         chance = 3.5 * math.sqrt(row.power * (1 - row.power) / studies)
         assert row.power == pytest.approx(of_row(question, row), abs=0.005 + chance)
 
 
-def test_a_preference_is_found():
-    question = PowerQuestion(
-        load_protocol("tuning-width"), {"1.5": "0.65"}, (6, 20), studies=200, between=0.4
-    )
-    assert question.plan().trials[0] == (30,)  # with 5 other values, in 2 orders, 3 times
-    few, many = power(question, ONE).rows
-    assert many.second == "one half"
-    assert few.power < many.power
-    assert few.power == pytest.approx(of_row(question, few), abs=0.12)
+def test_a_preference_has_the_width_of_its_interval():
+    """Student's interval of normal values: its half width follows from the chi distribution."""
+    protocol = load_protocol("tuning-width-adaptive")
+    question = PowerQuestion(protocol, {"preferred": "2"}, (6, 20), studies=400, between=0.4)
+    for row in power(question, ONE).rows:
+        n = row.participants
+        chi = math.exp(math.lgamma(n / 2) - math.lgamma((n - 1) / 2)) * math.sqrt(2 / (n - 1))
+        wanted = float(student.ppf(0.975, n - 1)) * 0.4 * chi / math.sqrt(n)
+        assert (row.kind, row.power, row.untested) == ("mean", None, 0)
+        assert row.half_width == pytest.approx(wanted, rel=0.05)
+
+
+def test_groups_factors_and_interactions_are_found():
+    effect = {
+        "flat-low": "0.4", "flat-high": "0.4", "rough-low": "0.4", "rough-high": "0.4",
+        "paired:rough-high": "0.9", "paired:rough-low": "0.9",
+    }  # fmt: skip
+    question = PowerQuestion(load_protocol("factors"), effect, (12,), studies=100)
+    rows = {(row.kind, row.compared): row.power for row in power(question, ONE).rows}
+    assert rows["effect", "texture × mapping"] > 0.8
+    assert rows["simple effect", "flat less rough, at mapping paired"] > 0.8
+    assert rows["simple effect", "flat less rough, at mapping alternate"] < 0.1
+    assert rows["effect", "contrast"] < 0.1
+    assert ("difference", "texture: flat less rough") not in rows  # it is the effect
+
+
+def test_ratings_are_compared_as_participants_means():
+    effect = {"T0": "2", "T25": "2", "T50": "2", "T75": "2", "T100": "5"}
+    rating = load_protocol("rating")
+    question = PowerQuestion(rating, effect, (8,), studies=60, between=1, differing=0.7)
+    table = power(question, ONE)
+    rows = {row.compared: row.power for row in table.rows}
+    assert rows["condition: T0 less T100"] > 0.9
+    assert rows["condition: T0 less T25"] < 0.15
+    assert "between people by 0.99" in dict(table.about)["people differ"]
 
 
 def test_catch_trials_belong_to_no_condition():
@@ -60,11 +91,14 @@ def test_catch_trials_belong_to_no_condition():
 
 def test_rows_are_of_each_size_and_pair_with_what_is_enough():
     table = power(replace(QUESTION, sizes=(4, 6, 30)), ONE)
-    assert [(row.participants, row.first, row.second) for row in table.rows[3:6]] == [
-        (6, "T0", "T25"), (6, "T0", "T100"), (6, "T25", "T100"),
-    ]  # fmt: skip
-    assert table.enough()["T0", "T100"] in (6, 30)
-    assert table.enough(1.01)["T0", "T100"] is None
+    assert [(row.participants, row.compared) for row in table.rows[4:8]] == [
+        (6, "condition"),
+        (6, "condition: T0 less T25"),
+        (6, "condition: T0 less T100"),
+        (6, "condition: T25 less T100"),
+    ]
+    assert table.enough()["condition: T0 less T100"] in (6, 30)
+    assert table.enough(1.01)["condition: T0 less T100"] is None
     row = table.rows[0]
     assert row.low < row.power < row.high
     assert row.studies == 300
@@ -72,9 +106,9 @@ def test_rows_are_of_each_size_and_pair_with_what_is_enough():
 
 
 def test_an_odds_ratio_gives_the_other_shares():
-    ratio = replace(QUESTION, effect={"T25": "0.5", "odds-ratio": "3"}, studies=1)
-    shares = {(row.first, row.first_share) for row in power(ratio, ONE).rows}
-    assert shares == {("T0", 0.75), ("T25", 0.5)}
+    analysis = LETTERS.planned_analysis
+    shares = values_of(LETTERS, analysis, {"T25": "0.5", "odds-ratio": "3"})
+    assert shares == {"T0": 0.75, "T25": 0.5, "T100": 0.75}
 
 
 @heavy
@@ -106,19 +140,21 @@ def test_work_that_was_ended_goes_on(tmp_path):
         ({"effect": {"T0": "0.5"}}, "no share for T25, T100; give one"),
         ({"effect": EFFECT | {"T0": "1.2"}}, "share of T0 is 1.2; it must be between 0 and 1"),
         ({"effect": EFFECT | {"T0": "high"}}, "T0 is 'high', which is not a number"),
-        ({"effect": EFFECT | {"odds-ratio": "2"}}, "an odds ratio and 3 shares"),
+        ({"effect": EFFECT | {"odds-ratio": "2"}}, "an odds ratio and 3 values"),
         ({"effect": {"T0": "0.5", "odds-ratio": "0"}}, "odds-ratio is 0; it must be 0.001 to"),
         ({"sizes": (2, 3)}, "one is 2; it must be 3 to 500"),
         ({"studies": 0}, "is 0; it must be 1 to"),
         ({"between": -1.0}, "is -1 log odds; it must be 0 to 5 log odds"),
-        ({"protocol": load_protocol("control")}, "control has one condition"),
-        ({"protocol": load_protocol("tuning-width-adaptive")}, "chooses its trials by the answers"),
-        ({"protocol": load_protocol("tuning-width")}, "compares two stimuli; give"),
+        ({"protocol": load_protocol("control")}, "condition T0, which control does not have"),
+        ({"protocol": load_protocol("rating"), "between": 0.0}, "people would not differ"),
         (
-            {"protocol": load_protocol("tuning-width"), "effect": {"1.7": "0.5"}},
-            "the value 1.7, which tuning-width does not have; give ",
+            {"protocol": load_protocol("detection"), "effect": {"threshold": "0"}},
+            "threshold is 0; it must be above 0|blank is 0; it must be above 0",
         ),
-        ({"protocol": load_protocol("tuning-width"), "test": "paired"}, "has one test; leave"),
+        (
+            {"protocol": load_protocol("factors"), "effect": {"far:flat-low": "0.5"}},
+            "and a group before a colon",
+        ),
     ],
 )  # fmt: skip
 def test_what_cannot_be_asked_is_refused_in_a_sentence(changed, sentence):

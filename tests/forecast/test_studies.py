@@ -7,11 +7,11 @@ import pytest
 from scipy.special import expit
 
 from tests.forecast.closedform import mean_and_spread
-from vbraille.analysis.statistics.intervals import adjust
+from vbraille.analysis.statistics.comparisons import CellScores, CellShares, effects
 from vbraille.forecast.studies import (
     StudyPlan,
     StudyTask,
-    _corrected,
+    _in_cells,
     count_found,
     log_odds_of,
     simulate,
@@ -19,11 +19,13 @@ from vbraille.forecast.studies import (
 
 PLAN = StudyPlan(
     trials=((26, 26, 20),) * 8,
-    log_odds=(0.0, 0.3, 1.0),
+    middles=(0.0, 0.3, 1.0),
+    cells=(0, 1, 2),
+    levels=((0,), (1,), (2,)),
     between=0.5,
     differing=0.3,
     sizes=(5, 8),
-    test="model",
+    model="trials",
     correction="holm",
 )
 
@@ -42,7 +44,7 @@ def test_a_smaller_study_is_the_beginning_of_a_larger_one():
 
 
 def test_participants_have_trials_in_the_conditions_of_their_own_alone():
-    groups = replace(PLAN, trials=((10, 0, 5), (0, 20, 5)) * 4, log_odds=(39.0, 39.0, -39.0))
+    groups = replace(PLAN, trials=((10, 0, 5), (0, 20, 5)) * 4, middles=(39.0, 39.0, -39.0))
     correct = simulate(StudyTask(groups, 7, 0, 2))
     assert correct[0, :2].tolist() == [[10, 0, 0], [0, 20, 0]]
 
@@ -66,24 +68,39 @@ def test_shares_differ_as_the_closed_form_says():
     assert correct[..., 1].std() == pytest.approx(half[1], rel=0.02)
 
 
-def test_p_values_of_a_study_are_corrected_as_the_analysis_does():
-    p = np.random.default_rng(3).random((20, 3)) / 10
-    missing = p.copy()
-    missing[4, 1] = np.nan
-    for given in (p, missing):
-        for own, corrected in zip(given, _corrected(given, "holm"), strict=True):
-            known = ~np.isnan(own)
-            assert np.allclose(corrected[known], adjust(own[known], "holm"), rtol=1e-12)
-            assert np.isnan(corrected[~known]).all()
+@pytest.mark.parametrize("model", ["trials", "means", "scores"])
+def test_a_study_is_tested_as_the_analysis_does(model):
+    """What is found in each study is what the report would find."""
+    plan = replace(PLAN, model=model, sizes=(8,))
+    found = np.zeros(4, int)
+    for study in range(12):
+        made = simulate(StudyTask(plan, 7, study, 1))[0]
+        asked = np.array(plan.trials)
+        group, groups = np.zeros(8, int), np.zeros(3, int)
+        if model == "trials":
+            data = CellShares(made.astype(int), asked, plan.design)
+        else:
+            own = made if model == "scores" else made / asked
+            data = CellScores(own, plan.design, group, groups)
+        (effect,) = effects(data, "holm")
+        found += np.array([effect.p, *(p for *_, p in effect.pairs)], float) < 0.05
+    assert [one for one, _ in count_found(StudyTask(plan, 7, 0, 12))[0]] == found.tolist()
+
+
+def test_conditions_are_put_together_in_the_cells_of_the_analysis():
+    plan = replace(PLAN, cells=(0, 0, 1), levels=((0,), (1,)))
+    values, asked = _in_cells(plan, simulate(StudyTask(plan, 7, 0, 2)))
+    assert values.shape == (2, 8, 2)
+    assert asked.tolist() == [[52, 20]] * 8
 
 
 def test_what_differs_is_found_and_what_does_not_is_not():
-    counts = count_found(StudyTask(replace(PLAN, log_odds=(0.0, 0.0, 3.0)), 7, 0, 40))
-    (_, _), (alike, one) = (size[:2] for size in counts)
+    counts = count_found(StudyTask(replace(PLAN, middles=(0.0, 0.0, 3.0)), 7, 0, 40))
+    _, (effect, alike, one, _) = counts
+    assert effect[0] >= one[0] >= 35
     assert alike[0] <= 6
-    assert one[0] >= 35
 
 
 def test_a_study_in_which_nobody_differs_is_told_of():
-    sure = replace(PLAN, log_odds=(39.0, 39.0, -39.0), between=0.0, differing=0.0, test="paired")
-    assert count_found(StudyTask(sure, 7, 0, 3))[0][0] == [0, 3]
+    sure = replace(PLAN, middles=(39.0, 39.0, -39.0), between=0.0, differing=0.0, model="means")
+    assert count_found(StudyTask(sure, 7, 0, 3))[0][1] == [0, 3]

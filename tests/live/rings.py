@@ -51,7 +51,8 @@ class TestRing:
                 n // 9,
                 n % 1024,
             )
-            floats[slot] = n / 8, n / 16, n / 32, -n / 4, 0, 0, 0, 0, 0.5
+            floats[slot] = 0
+            floats[slot, :9] = n / 8, n / 16, n / 32, -n / 4, 0, 0, 0, 0, 0.5
             frames[slot] = frame_of(n, self.extent.shape)
             self._ring.end()
             self.ticks += 1

@@ -12,7 +12,7 @@ from vbraille.scene.schema import scene_schema, summary, tables_of, told
 
 PAGE = Path(__file__).parents[2] / "docs" / "scenes.md"
 BEGIN, END = "<!-- keys: made by tests/scene/keyspage.py -->\n", "<!-- end of keys -->\n"
-COMMON = ("id", "title", "description", "amplitude", "inverted", "vibration")
+COMMON = ("id", "title", "description", "amplitude", "inverted", "vibration", "factor")
 WORDS = {"number": "number", "integer": "whole number", "boolean": "true or false"}
 
 
@@ -78,7 +78,7 @@ def _takes(field, kinds):
         return (
             f"a table by name, of {kinds[of['$ref'].rpartition('/')[2]]}"
             if "$ref" in of
-            else ("a table of patterns by name")
+            else f"a table of {'signals' if 'Switch' in str(of) else 'patterns'} by name"
         )
     if kind == "array" and "prefixItems" in field:
         return "two numbers" if len(field["prefixItems"]) == 2 else "numbers"

@@ -20,6 +20,7 @@ from vbraille.scene.patterns import (
 )
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.signals import Inverse, Pulse, Speed, Switch
 from vbraille.scene.strokes import Along, DotStyle, Dotting, Stroke, VertexMarkers, Vibration
 from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
 
@@ -249,3 +250,17 @@ def test_examples():
     tried = doctest.testmod(checking)
     assert tried.attempted
     assert not tried.failed
+
+
+def test_a_signal_that_nothing_uses_is_remarked_on():
+    signals = {"slow": Speed(), "not": Inverse(of="slow"), "view": Switch(), "beat": Pulse()}
+    along = Along(ridge_mm=3.0, velocity_mm_s=10.0, velocity_by="view")
+    written = Scene(
+        canvas=LATERO,
+        signals=signals,
+        elements=(circle(factor="beat", stroke=Stroke(along=along)),),
+    )
+    opened = OpenedScene(Path("a.scene"), Path(), written, resolve(written), Locations())
+    assert check_scene(opened, {}).advice == (
+        "signals not: signal not is used by nothing; use it, or leave it out",
+    )

@@ -12,7 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vbraille.errors import InputError
+from vbraille.scene.converting import write_scene
 from vbraille.scene.reading import MOST_BYTES, open_scene
+from vbraille.scene.signals import Speed
 
 CANVAS = "[canvas]\nwidth_mm = 200\nheight_mm = 100\n"
 CIRCLE = '[[elements]]\nkind = "circle"\ncenter_mm = [10, 20]\nradius_mm = 5\n'
@@ -302,3 +304,54 @@ def test_numbers_are_the_same_in_a_locale_with_a_decimal_comma(tmp_path):
         [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True
     )
     assert done.stdout == "2.5\n"
+
+
+ANSWERS = {
+    "an unknown signal": (
+        'factor = "slw"\n[signals.slow]\nkind = "speed"\n',
+        "line 9: [[elements]] number 1 factor is 'slw', which is no signal here; the nearest is "
+        "slow",
+    ),
+    "an unknown part of a signal": (
+        '[signals.both]\nkind = "product"\nof = ["slow", "x"]\n[signals.slow]\nkind = "speed"\n',
+        "line 9: [signals.both] is 'x', which is no signal here",
+    ),
+    "a circle": (
+        '[signals.a]\nkind = "inverse"\nof = "b"\n[signals.b]\nkind = "inverse"\nof = "a"\n',
+        "line 9: [signals.a] is made of itself: a, b, a; leave one out",
+    ),
+    "keys with other levels": (
+        '[signals.a]\nkind = "switch"\n[signals.b]\nkind = "switch"\nlevels = [0, 0.5, 1]\n',
+        "line 11: [signals.b] has 3 levels, and a, of the same key 1, 2; give both as many",
+    ),
+    "too many": (
+        "".join(f'[signals.s{n}]\nkind = "speed"\n' for n in range(9)),
+        "line 25: [signals.s8] is one signal more than the 8 there can be",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_signals_that_cannot_be_are_one_sentence_with_the_line(tmp_path, name):
+    path = tmp_path / "a.scene"
+    written, says = ANSWERS[name]
+    head = "[canvas]\nwidth_mm = 50\nheight_mm = 50\n[[elements]]\n"
+    circle = 'kind = "circle"\ncenter_mm = [25, 25]\nradius_mm = 9\nstroke = {}\n'
+    path.write_text(f"{head}{circle}{written}")
+    with pytest.raises(InputError) as refused:
+        open_scene(path)
+    assert says in str(refused.value)
+
+
+def test_signals_of_an_included_file_are_there_and_written_again(tmp_path):
+    bank = tmp_path / "bank.scene"
+    bank.write_text('[signals.slow]\nkind = "speed"\ndelay_s = 0.5\n')
+    path = tmp_path / "a.scene"
+    path.write_text(
+        'include = ["bank.scene"]\ncanvas = { width_mm = 50, height_mm = 50 }\n'
+        '[[elements]]\nkind = "uniform"\nfactor = "slow"\n'
+    )
+    scene = open_scene(path).written
+    assert scene.signals == {"slow": Speed(delay_s=0.5)}
+    path.write_text(write_scene(scene))
+    assert open_scene(path).written == scene

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.input.study import Study
     from vbraille.analysis.input.trials import Places
     from vbraille.analysis.results import ResultTable, Row
-    from vbraille.analysis.statistics.comparisons import CellEstimate, ComparedEffect
+    from vbraille.analysis.statistics.comparisons import CellEstimate, ComparedEffect, LevelPair
     from vbraille.sessions.planning.protocol import Protocol
 
 SURE = 0.05  # corrected p below which two things are called different
@@ -477,14 +477,9 @@ class ComparedMeasure(NamedTuple):
         """Words for an effect."""
         return " × ".join(self.cells.factors[at] for at in effect.factors)
 
-    def pair_name(self, pair: Any) -> str:
+    def pair_name(self, pair: LevelPair) -> str:
         """Words for two levels that are compared."""
-        levels = self.cells.levels
-        told = f"{levels[pair.factor][pair.first]} less {levels[pair.factor][pair.second]}"
-        if pair.at is None:
-            return f"{self.cells.factors[pair.factor]}: {told}"
-        other, level = pair.at
-        return f"{told}, at {self.cells.factors[other]} {levels[other][level]}"
+        return pair_name(self.cells.factors, self.cells.levels, pair)
 
     def shown(self) -> ShownTable:
         """Table of the report's first page: means, effects, differences, and simple effects.
@@ -694,6 +689,15 @@ class ComparedMeasure(NamedTuple):
         if value is None or math.isnan(value):
             return None
         return math.exp(value) if self.cells.scale == "log" else scale * value
+
+
+def pair_name(factors: Sequence[str], levels: Sequence[Sequence[str]], pair: LevelPair) -> str:
+    """Words for two levels that are compared: "texture: flat less rough"."""
+    told = f"{levels[pair.factor][pair.first]} less {levels[pair.factor][pair.second]}"
+    if pair.at is None:
+        return f"{factors[pair.factor]}: {told}"
+    other, level = pair.at
+    return f"{told}, at {factors[other]} {levels[other][level]}"
 
 
 def compare(cells: MeasureCells, correction: str) -> ComparedMeasure:

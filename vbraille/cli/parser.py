@@ -52,6 +52,7 @@ _GONE = {
     "--sites": "give participants pseudonyms that tell the sites apart, such as B-P01",
     "--mapping": "docs/analysis.md shows how pandas makes a table of trials",
     "--workers": "one process translates",
+    "--test": "studies are tested as [analysis] of the protocol plans",
     "--cluster": "--workers shares the work between the processors of one machine",
     "--protocol": "a simulated controller speaks the one version of the wire protocol",
 }

@@ -111,6 +111,15 @@ class BatchEngine:
     def paused(self, paused: bool) -> None:
         self._state.pause(paused, self._clock.now_ns())
 
+    @property
+    def switches(self) -> int:
+        """States of a scene's switches; setting them takes effect with the next tick."""
+        return self._state.switches
+
+    @switches.setter
+    def switches(self, switches: int) -> None:
+        self._state.switch(switches, self._clock.now_ns())
+
     def show(self, picture: Program, line: int) -> None:
         """Put a picture under the hand; see `Engine`."""
         self._state.want(picture, line)

@@ -8,7 +8,7 @@ from vbraille.engine import ticks
 from vbraille.engine.hostprocess import warm_up
 from vbraille.engine.mailbox import Extent
 from vbraille.engine.record import FLOATS, INTS
-from vbraille.render import MODELS
+from vbraille.render import MODELS, work
 from vbraille.render.program import scratch_for
 from vbraille.render.scene.compiling import SceneMap, compile_scene
 from vbraille.scene.scene import Canvas, Scene
@@ -37,7 +37,7 @@ def compile_all() -> None:
             scratch,
             ints,
             floats,
-            np.zeros(6),
+            np.zeros(work.AT),
             output,
             held,
             target,

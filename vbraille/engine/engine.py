@@ -55,6 +55,14 @@ class Engine(Protocol):
     @paused.setter
     def paused(self, paused: bool) -> None: ...
 
+    @property
+    def switches(self) -> int:
+        """States of a scene's switches, as `vbraille.scene.signals.packed` has them."""
+        ...
+
+    @switches.setter
+    def switches(self, switches: int) -> None: ...
+
     def show(self, picture: Program, line: int) -> None:
         """Put a picture of a line under the hand.
 

@@ -132,6 +132,7 @@ class Host:
         self._before = Tally()
         self._lost_before = 0
         self._paused = False
+        self._switches = 0
         self._launched = self._ready = False
         self._at_driver = False  # whether all is compiled and loaded, and the driver has its turn
         self._ended = False  # whether its end was told
@@ -175,6 +176,7 @@ class Host:
         self._wait(lambda: self._ready, "do a first tick")
         self._launched = False
         if self._shown is not None:
+            self._posted.switches = self._switches
             self._posted.post(*self._shown)
 
     def launch(self) -> None:
@@ -273,6 +275,15 @@ class Host:
     @paused.setter
     def paused(self, paused: bool) -> None:
         self._paused = self._posted.paused = paused
+
+    @property
+    def switches(self) -> int:
+        """States of a scene's switches; setting them takes effect with the next tick."""
+        return self._switches
+
+    @switches.setter
+    def switches(self, switches: int) -> None:
+        self._switches = self._posted.switches = switches
 
     def show(self, picture: Program, line: int) -> None:
         """Put a picture of a line under the hand; see `Engine`.

@@ -146,6 +146,8 @@ class OrderedLoop:
                 loop.show(posted.program, posted.line)
         if mailbox.paused != loop.paused:
             loop.paused = mailbox.paused
+        if mailbox.switches != loop.switches:
+            loop.switches = mailbox.switches
         if mailbox.zeroed != self._zeroed:
             self._zeroed = mailbox.zeroed
             loop.device.set_zero()

@@ -151,6 +151,15 @@ class Loop:
         self.state.pause(paused, self.clock.now_ns())
 
     @property
+    def switches(self) -> int:
+        """States of a scene's switches; setting them takes effect with the next tick."""
+        return self.state.switches
+
+    @switches.setter
+    def switches(self, switches: int) -> None:
+        self.state.switch(switches, self.clock.now_ns())
+
+    @property
     def resting(self) -> bool:
         """Tell whether every actuator was at rest in the frame last sent."""
         return not self.output.any()

@@ -24,7 +24,7 @@ from vbraille.render.program import Program
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-_PUBLISHED, _PAUSED, _ZEROED, _STOPPED = range(4)
+_PUBLISHED, _PAUSED, _ZEROED, _STOPPED, _SWITCHES = range(5)
 _HEADER_BYTES = 64
 # The words of 8 bytes that a slot begins with; the program's numbers and its table follow.
 _CHECKSUM, _NUMBER, _LINE, _NUMBERS, _WORDS = range(5)
@@ -208,6 +208,15 @@ class Mailbox:
     @paused.setter
     def paused(self, paused: bool) -> None:
         self._words[_PAUSED] = paused
+
+    @property
+    def switches(self) -> int:
+        """States of a scene's switches, as `vbraille.scene.signals.packed` has them."""
+        return self._words[_SWITCHES]
+
+    @switches.setter
+    def switches(self, switches: int) -> None:
+        self._words[_SWITCHES] = switches
 
     @property
     def zeroed(self) -> int:

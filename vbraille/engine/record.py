@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
+from vbraille.render.work import MOST_SIGNALS
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -39,9 +41,10 @@ FLOATS = (
     "forward_s",
     "shown_s",  # the picture's own time, since it was put under the hand
     "share",  # how much of a change has faded in: 1 is all
+    *(f"signal_{number}" for number in range(1, MOST_SIGNALS + 1)),  # values of a scene's signals
 )
 TICK, TIME, DEVICE, LATENESS, WORK, LATE, OVERRUNS, LINE, PART, FLAGS = range(len(INTS))
-X, Y, THETA, VX, VY, FORWARD_MM, FORWARD_S, SHOWN, SHARE = range(len(FLOATS))
+X, Y, THETA, VX, VY, FORWARD_MM, FORWARD_S, SHOWN, SHARE, SIGNAL = range(10)
 
 
 class Flag(IntFlag):

@@ -43,6 +43,7 @@ _STATE = np.dtype(
             "serial",  # how many pictures were wanted under the hand, and so the last one's number
             "line",  # what records call it
             "paused",
+            "switches",  # states of a scene's switches, three bits for each signal
             "tick",  # number of the next one
             "ticked_ns", "done_ns",  # when the last one woke, and when its frame had gone out
             "faded_ns", "fading_ns",  # how far a fade has come, and how long it takes
@@ -134,7 +135,7 @@ class LoopState:
         self.output = np.zeros(display.shape)
         self._held = np.zeros(display.shape)
         self._target = np.zeros(display.shape)
-        self._at = np.zeros(6)
+        self._at = np.zeros(work.AT)
         self._scratch = scratch_for(display.shape)
         self.done_ns = self._numbers.view(np.int64)[list(_STATE.fields or ()).index("done_ns") :]
         self._program = nothing(display)
@@ -171,6 +172,16 @@ class LoopState:
         self.now["paused"] = paused
         self.now["moved_ns"] = now_ns
         self.now["begun"] = self.now["exhausted"] = 0
+
+    @property
+    def switches(self) -> int:
+        """States of a scene's switches, as `vbraille.scene.signals.packed` has them."""
+        return int(self.now["switches"])
+
+    def switch(self, switches: int, now_ns: int) -> None:
+        """Change the states of switches from the next tick on; what rests comes back for it."""
+        self.now["switches"] = switches
+        self.now["moved_ns"] = now_ns
 
     def take_events(self) -> list[Event]:
         """Take the events since the last call: that a picture was felt for long enough."""

@@ -38,6 +38,7 @@ from vbraille.engine.record import (
     PART,
     SHARE,
     SHOWN,
+    SIGNAL,
     THETA,
     TICK,
     TIME,
@@ -49,7 +50,8 @@ from vbraille.engine.record import (
 )
 from vbraille.render import work
 from vbraille.render.frames import blend, copy
-from vbraille.render.kernels import frame, part_of, patience, seamless, too_far
+from vbraille.render.kernels import SCENE, frame, part_of, patience, seamless, too_far
+from vbraille.render.machine.signalkernels import begin, compute
 
 _PAUSED, _SILENT, _RESTING = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.RESTING)
 _CHANGED, _RESTED, _HELD = int(Flag.CHANGED), int(Flag.RESTED), int(Flag.HELD)
@@ -324,6 +326,7 @@ def advance(
         now_ns = times_ns[n, 0]
         now["flags"] = 0
         passed_ns = min(now_ns - now["ticked_ns"], now["period_ns"])
+        shown_before_ns = now["shown_ns"]
         now["faded_ns"] += passed_ns
         if now["shown"] != 0:
             now["shown_ns"] += passed_ns
@@ -350,8 +353,14 @@ def advance(
         if now["shown"] == 0:
             now["flags"] |= _RESTING
         shown_s = now["shown_ns"] / NS_PER_S
+        at[work.SWITCHES] = now["switches"]
         at[work.X], at[work.Y], at[work.THETA] = now["x_mm"], y_mm, now["theta_rad"]
         at[work.TIME], at[work.VX], at[work.VY] = shown_s, now["vx_mm_s"], now["vy_mm_s"]
+        if numbers[work.KIND] == SCENE:
+            if now["shown_ns"] == 0:
+                begin(numbers, at)
+                shown_before_ns = 0
+            compute(numbers, at, (now["shown_ns"] - shown_before_ns) / NS_PER_S)
         # What the flags say was done already; only the frame is to be made.
         _show(
             now["flags"] & _RESTING,
@@ -392,6 +401,8 @@ def advance(
         floats[slot, FORWARD_S] = now["forward_s"]
         floats[slot, SHOWN] = shown_s
         floats[slot, SHARE] = now["share"]
+        for k in range(work.MOST_SIGNALS):
+            floats[slot, SIGNAL + k] = at[work.SIGNAL + k]
         for row in range(rows):
             for column in range(columns):
                 frames[slot, row, column] = output[row, column]
@@ -408,8 +419,8 @@ def replay(numbers, table, scratch, ints, floats, at, output, held, target, fram
     numbers, table, scratch
         The program that was wanted under the hand.
     ints, floats
-        The records, of which part, flags, pose, velocity, time and share are used.
-    at : float64[6]
+        The records, of which part, flags, pose, velocity, time, share and signals are used.
+    at : float64[AT]
         Room for what a frame is evaluated at.
     output, held, target : float64[rows, columns]
         The frame written last, the one that the fade began with, and room for another; they are
@@ -420,6 +431,8 @@ def replay(numbers, table, scratch, ints, floats, at, output, held, target, fram
     for n in range(ints.shape[0]):
         at[work.X], at[work.Y], at[work.THETA] = floats[n, X], floats[n, Y], floats[n, THETA]
         at[work.TIME], at[work.VX], at[work.VY] = floats[n, SHOWN], floats[n, VX], floats[n, VY]
+        for k in range(work.MOST_SIGNALS):
+            at[work.SIGNAL + k] = floats[n, SIGNAL + k]
         flags, share, part = ints[n, FLAGS], floats[n, SHARE], ints[n, PART]
         _show(flags, share, part, numbers, table, scratch, at, output, held, target)
         if flags & _HELD:  # the actuators rested, though the loop goes on from its frame

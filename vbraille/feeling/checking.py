@@ -8,6 +8,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.feeling.composing import compose
@@ -17,7 +18,6 @@ from vbraille.render.scene.compiling import SceneMap
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.checking import LEAST_BLANK_MM, frequencies, kind_of
 from vbraille.scene.patterns import Circle, Dots, Group, Label, PathShape, Polygon
-from vbraille.scene.scene import Scene
 from vbraille.scene.textures import LinearGrating
 from vbraille.scene.traversal import children, each
 
@@ -140,7 +140,7 @@ class _Check:
         top, left = int(box.top / step), int(box.left / step)
         rows = np.arange(float(top), min(math.ceil(box.bottom / step), self._size[0]))
         columns = np.arange(float(left), min(math.ceil(box.right / step), self._size[1]))
-        alone = Scene(canvas=self._scene.canvas, elements=(pattern,))
+        alone = replace(self._scene, elements=(pattern,), operation="overwrite")
         shown = SceneMap(alone, self._loaded.assets)
         hides = shown.opacity((columns + 0.5) * step, (rows + 0.5) * step)
         felt = hides >= _FELT

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from msgspec.structs import replace
+
 from vbraille.errors import InputError
 from vbraille.render import work
 from vbraille.render.program import Program
 from vbraille.render.scene.compiling import compile_scene, highest_hz
 from vbraille.scene.patterns import Group
-from vbraille.scene.scene import Scene
 
 if TYPE_CHECKING:
     from vbraille.display import Display
@@ -50,7 +51,7 @@ def compose(
     whole = contrast == 1.0 and scene.operation in _COMPILED
     if not whole and scene.elements:
         group = Group(operation=scene.operation, parts=scene.elements, amplitude=contrast)
-        scene = Scene(canvas=scene.canvas, operation="maximum", elements=(group,))
+        scene = replace(scene, operation="maximum", elements=(group,))
     try:
         program = compile_scene(scene, display, loaded.assets, rate_hz=rate_hz)
     except ValueError as error:

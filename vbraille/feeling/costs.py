@@ -144,7 +144,7 @@ def measure(program: Program, path: PosedPath, repeats: int = REPEATS) -> Costs:
 
 
 def _batches_of(path: PosedPath) -> NDArray[np.float64]:
-    """Put the poses of a path into batches, as float64[batches, frames, 6] of `work`'s columns.
+    """Put the poses of a path into batches, as float64[batches, frames, AT] of `work`'s columns.
 
     Raises
     ------
@@ -155,10 +155,11 @@ def _batches_of(path: PosedPath) -> NDArray[np.float64]:
     if not batches:
         raise ValueError(f"a path of {path.t_s.size} frames is too short to be timed")
     count = batches * BATCH_FRAMES
-    at = np.zeros((count, 6))
+    at = np.zeros((count, work.AT))
+    at[:, work.MEMORY] = np.nan  # so that each batch begins with what signals are at first
     at[:, work.X], at[:, work.Y] = path.x_mm[:count], path.y_mm[:count]
     at[:, work.THETA], at[:, work.TIME] = path.theta_rad[:count], path.t_s[:count]
-    return at.reshape(batches, BATCH_FRAMES, 6)
+    return at.reshape(batches, BATCH_FRAMES, work.AT)
 
 
 def _time_ns(program: Program, at: NDArray[np.float64], repeats: int) -> NDArray[np.int64]:
@@ -168,7 +169,7 @@ def _time_ns(program: Program, at: NDArray[np.float64], repeats: int) -> NDArray
     ----------
     program
         The program.
-    at : float64[batches, frames, 6]
+    at : float64[batches, frames, AT]
         Poses, as `_batches_of` has them.
     repeats
         How often each batch is timed.

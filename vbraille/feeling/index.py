@@ -8,11 +8,11 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 import numpy as np
+from msgspec.structs import replace
 
 from vbraille.render.scene.compiling import SceneMap
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.patterns import Circle, Group, Label, PathShape, Polygon, Shape
-from vbraille.scene.scene import Scene
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from vbraille.render.scene.labels import Assets
     from vbraille.scene.patterns import AnyPattern, Image
+    from vbraille.scene.scene import Scene
 
 # Ours: an element is felt where it hides half of what it stands on, or does anything if it is the
 # only one there.
@@ -113,6 +114,7 @@ class SceneIndex:
         known: Mapping[Image | Label, Box] | None = None,
     ) -> None:
         self._scene, self._assets = scene, assets
+        self._switches = 0
         # In compiled code, which thousands of dots do not hold up.
         self._map_of = lru_cache(_MOST_COMPILED)(self._compile)
         self._known = {} if known is None else known
@@ -124,6 +126,16 @@ class SceneIndex:
             self._leaves += self._leaves_of(pattern, None)
         boxes = [_EVERYWHERE if leaf.box is None else leaf.box for leaf in self._leaves]
         self._edges = np.array(boxes, float).reshape(-1, 4).T
+
+    @property
+    def switches(self) -> int:
+        """States of the scene's switches; other states show other elements."""
+        return self._switches
+
+    @switches.setter
+    def switches(self, switches: int) -> None:
+        self._switches = switches
+        self._points.cache_clear()
 
     def here(self, x_mm: float, y_mm: float) -> NamedElement | None:
         """Find the uppermost element with a name at a place in mm; None if there is none."""
@@ -200,8 +212,8 @@ class SceneIndex:
             for low, high in ((box.left, box.right), (box.top, box.bottom))
             for count in [min(max(int((high - low) / _STEP_MM), 1), _MOST_STEPS)]
         )
-        alone = Scene(canvas=self._scene.canvas, elements=(element.pattern,))
-        shown = SceneMap(alone, self._assets).opacity(x_mm, y_mm)
+        alone = replace(self._scene, elements=(element.pattern,), operation="overwrite")
+        shown = SceneMap(alone, self._assets).opacity(x_mm, y_mm, switches=self.switches)
         felt = shown >= min(_FELT, max(float(shown.max()) / 2, _TRACE))
         rows, columns = np.nonzero(felt)
         return np.stack((x_mm[columns], y_mm[rows]), axis=1)
@@ -227,8 +239,8 @@ class SceneIndex:
 
     def opacity(self, number: int, x_mm: float, y_mm: float) -> float:
         """Tell how much of what lies below a part, by its number, it hides at a place: 0 … 1."""
-        shown = self._map_of(number)
-        return float(shown.opacity(np.array([x_mm]), np.array([y_mm]))[0, 0])
+        shown, at = self._map_of(number), (np.array([x_mm]), np.array([y_mm]))
+        return float(shown.opacity(*at, switches=self.switches)[0, 0])
 
     def find(self, text: str) -> NamedElement | None:
         """Find an element by its id or title, or by what one of these begins with or has in it."""
@@ -249,7 +261,9 @@ class SceneIndex:
         return None
 
     def _compile(self, number: int) -> SceneMap:
-        alone = Scene(canvas=self._scene.canvas, elements=(self._leaves[number].pattern,))
+        alone = replace(
+            self._scene, elements=(self._leaves[number].pattern,), operation="overwrite"
+        )
         return SceneMap(alone, self._assets)
 
     def _leaves_of(self, pattern: AnyPattern, above: NamedElement | None) -> Iterator[_Leaf]:

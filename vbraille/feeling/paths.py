@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from vbraille.engine.constants import DIFFERENCE, MEAN
 from vbraille.errors import InputError
 from vbraille.simulation.exploring import Disturbance, ExploringPath, parse_place, spot, wide
 from vbraille.simulation.motion import SLACK
@@ -148,3 +149,27 @@ def _refuse(options: PathOptions, name: str) -> None:
         if field.name not in _OPTIONS[name] and getattr(options, field.name) is not None:
             other = setting(field.name)
             raise InputError(f"{other} is not for the path {name}; leave {other} out")
+
+
+def hand_velocities(
+    x_mm: NDArray[np.float64], y_mm: NDArray[np.float64], rate_hz: float
+) -> NDArray[np.float64]:
+    """Compute the velocity of a hand on its way, as ticks do: Lévesque 2009, eqs. 9.4 and 9.5.
+
+    Parameters
+    ----------
+    x_mm, y_mm : float64[n]
+        Places of the hand at even times; before the first it stood still.
+    rate_hz
+        Places a second.
+
+    Returns
+    -------
+    float64[n, 2]
+        Velocity along x and y, in mm/s.
+    """
+    places = np.stack((x_mm, y_mm), axis=1)
+    steps = np.zeros_like(places)
+    steps[DIFFERENCE:] = (places[DIFFERENCE:] - places[:-DIFFERENCE]) * (rate_hz / DIFFERENCE)
+    sums = np.concatenate([np.zeros((MEAN, 2)), np.cumsum(steps, axis=0)])
+    return (sums[MEAN:] - sums[:-MEAN]) / MEAN

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from vbraille.analysis.results import Results, ResultTable
     from vbraille.forecast.workers import Workers
+    from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
 
 MARK = "simulated reader, no data about people"
@@ -69,6 +70,31 @@ class PilotTask:
     def protocol(self) -> Protocol:
         """The protocol, made anew from its file and those beside it."""
         return parse_protocol(self.text, self.where, beside=lambda name: self.files[name])
+
+
+# Lévesque 2009, 4.3: 12 s for a string of five cells.
+READING_S = 12 / 5
+ANSWERING_S = 3.0  # ours: an answer is said and typed
+BREAK_S = 120.0  # ours
+
+
+def expected_minutes(protocol: Protocol, plan: Plan) -> float:
+    """Estimate how long a session takes, in minutes, with people who read as in the source.
+
+    Parameters
+    ----------
+    protocol, plan
+        The protocol, and a participant's plan of it; where answers choose the trials, with the
+        most that there may be.
+    """
+    trials = plan.trials[: protocol.trials]
+    shown = [*plan.practice, *trials]
+    cells = sum(len(stimulus.masks) for trial in shown for stimulus in trial.stimuli)
+    seconds = READING_S * cells + len(shown) * (ANSWERING_S + protocol.trial.gap_s)
+    if every := protocol.session.break_every:
+        seconds += BREAK_S * ((len(trials) - 1) // every)
+    limit = protocol.session.limit_s
+    return (seconds if limit is None else min(seconds, limit)) / 60
 
 
 def conduct(task: PilotTask) -> int:

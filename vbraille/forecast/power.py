@@ -1,4 +1,7 @@
-"""Power of a protocol: how often a study of it would find an effect, by simulation."""
+"""Power of a protocol: how often a study of it would find an effect, by simulation.
+
+Studies are analysed as the protocol plans: its measure, factors, model and correction.
+"""
 
 from __future__ import annotations
 
@@ -7,18 +10,15 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import structs
 
-from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, Unanswerable, wilson
+from vbraille.analysis.input.trials import natural
+from vbraille.analysis.primary import pair_name
+from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, wilson
 from vbraille.errors import InputError, VbrailleError, check_range
-from vbraille.forecast.studies import (
-    ALPHA,
-    StudyPlan,
-    StudyTask,
-    count_found,
-    log_odds_of,
-)
+from vbraille.forecast.studies import ALPHA, StudyPlan, StudyTask, count_found, log_odds_of
 from vbraille.forecast.workers import KeptResults, work_on
-from vbraille.sessions.planning.design import Choice
+from vbraille.sessions.planning.analysis import CONDITION, MEASURES
 from vbraille.sessions.planning.making import make_plan
 from vbraille.wording import setting
 
@@ -27,47 +27,52 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.forecast.workers import Workers
+    from vbraille.sessions.planning.analysis import PlannedAnalysis
     from vbraille.sessions.planning.protocol import Protocol
 
 ENOUGH = 0.8
 MOST_PARTICIPANTS = 500
 MOST_STUDIES = 1_000_000
-MOST_SPREAD = 5.0
+MOST_SPREAD = 5.0  # of log odds, and of logarithms
 PORTION = 125  # studies of a task, however many workers there are
 SEED = 20090618
-TESTS = ("model", "paired")
-_HALF = "one half"
+OF_GROUP = ":"  # between a group and its condition
+ODDS_RATIO = "odds-ratio"
+_EFFECT = setting("effect")
 
 
 @dataclass(frozen=True, slots=True)
 class PowerRow:
-    """Power of a comparison in studies of one size.
+    """Power of a comparison in studies of one size; or how exact the only mean is.
 
     Parameters
     ----------
     participants
         Number of participants of a study.
-    first, second
-        What is compared.
-    first_share, second_share
-        Shares of right answers that were assumed, over the population; 0…1.
+    compared
+        Effect, difference or simple effect; of a plan that compares nothing, the measure.
+    kind
+        "effect", "difference", "simple effect" or "mean".
     studies, found, untested
-        Number of studies, of those that found a difference, and of those that had no p.
+        Number of studies, of those that found it, and of those that had no p.
     power, low, high
-        found / studies, with Wilson's 95 % interval for the number of studies; 0…1.
+        found / studies, with Wilson's 95 % interval for the number of studies; 0…1. None of a
+        mean.
+    half_width
+        Mean of half the width of the mean's interval, in the measure's unit, of logarithms as a
+        logarithm; None of a comparison, or if no study has one.
     """
 
     participants: int
-    first: str
-    second: str
-    first_share: float
-    second_share: float
+    compared: str
+    kind: str
     studies: int
     found: int
     untested: int
-    power: float
-    low: float
-    high: float
+    power: float | None = None
+    low: float | None = None
+    high: float | None = None
+    half_width: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,15 +93,16 @@ class PowerTable:
     rows: tuple[PowerRow, ...]
     unfinished: VbrailleError | None = None
 
-    def enough(self, power: float = ENOUGH) -> dict[tuple[str, str], int | None]:
+    def enough(self, power: float = ENOUGH) -> dict[str, int | None]:
         """Smallest study from which on all have this power, by comparison; None if none has."""
-        least: dict[tuple[str, str], int | None] = {}
+        least: dict[str, int | None] = {}
         for row in sorted(self.rows, key=lambda row: row.participants):
-            pair = row.first, row.second
+            if row.power is None:
+                continue
             if row.power < power:
-                least[pair] = None
-            elif least.get(pair) is None:
-                least[pair] = row.participants
+                least[row.compared] = None
+            elif least.get(row.compared) is None:
+                least[row.compared] = row.participants
         return least
 
     def to_json(self) -> dict[str, Any]:
@@ -105,8 +111,8 @@ class PowerTable:
             "about": dict(self.about),
             "rows": [asdict(row) for row in self.rows],
             "enough": [
-                {"first": first, "second": second, "power": ENOUGH, "participants": least}
-                for (first, second), least in self.enough().items()
+                {"compared": compared, "power": ENOUGH, "participants": least}
+                for compared, least in self.enough().items()
             ],
             "unfinished": None if self.unfinished is None else str(self.unfinished),
         }
@@ -119,18 +125,20 @@ class PowerQuestion:
     Parameters
     ----------
     protocol
-        Protocol whose plan and comparisons are simulated.
+        Protocol whose plan and primary analysis are simulated.
     effect
-        Shares by condition, as `shares_of` takes them.
+        Values by condition, as `values_of` takes them.
     sizes
         Numbers of participants.
-    between, differing
-        Standard deviations over people of the log odds of a right answer, and of what a condition
-        adds to them.
-    test
-        "model" or "paired"; None for the one of the protocol's kind.
+    between
+        Standard deviation over people of what all their conditions share: of shares in log odds of
+        a right answer, of durations, thresholds and magnitudes in natural logarithms, of other
+        measures in their unit.
+    differing
+        Standard deviation over people of what each condition adds to that, so that a difference of
+        two conditions has √2 times as much.
     correction
-        How p-values of several pairs are corrected.
+        How p are corrected; None as planned.
     studies, seed
         Number of studies of each size, and what they are drawn by.
 
@@ -145,8 +153,7 @@ class PowerQuestion:
     sizes: tuple[int, ...]
     between: float = 0.5
     differing: float = 0.0
-    test: str | None = None
-    correction: str = "holm"
+    correction: str | None = None
     studies: int = 1000
     seed: int = SEED
 
@@ -155,70 +162,108 @@ class PowerQuestion:
             raise InputError(
                 f"{setting('studies')} is {self.studies}; it must be 1 to {MOST_STUDIES}"
             )
+        if self.analysis.measure is None:
+            raise InputError(f"{self.protocol.name} asks for words, of which nothing is compared")
+        linear = MEASURES[self.analysis.measure].scale == "linear"
+        unit = " log odds" if self.shares else ""
         try:
             for size in self.sizes:
                 name = f"{setting('participants')}: one"
                 check_range(name, size, FEWEST_PARTICIPANTS, MOST_PARTICIPANTS)
             for name in ("between", "differing"):
-                check_range(setting(name), getattr(self, name), 0, MOST_SPREAD, " log odds")
+                most = math.inf if linear else MOST_SPREAD
+                check_range(setting(name), getattr(self, name), 0, most, unit)
         except ValueError as error:
             raise InputError(str(error)) from None
-        if self.protocol.adaptive:
+        if not self.shares and not self.between and not self.differing:
             raise InputError(
-                f"{self.protocol.name} chooses its trials by the answers, and power is of a fixed "
-                f"design; give one without [procedure]"
-            )
-        if self.test is not None and isinstance(self.protocol.design, Choice):
-            raise InputError(
-                f"{self.protocol.name} compares two stimuli, which has one test; leave "
-                f"{setting('test')} out"
+                f"people would not differ; give {setting('between')} or {setting('differing')}"
             )
 
+    @property
+    def analysis(self) -> PlannedAnalysis:
+        """Analysis that is planned, with the correction that is asked for."""
+        planned = self.protocol.planned_analysis
+        return structs.replace(planned, correction=self.correction or planned.correction)
+
+    @property
+    def shares(self) -> bool:
+        """True if the measure is a share of right answers."""
+        return MEASURES[self.analysis.measure or ""].scale == "share"
+
     def plan(self) -> StudyPlan:
-        """Plan of the simulation: the trials of the protocol's plans, and the shares."""
-        shares = shares_of(self.protocol, self.effect)
-        choosing = isinstance(self.protocol.design, Choice)
-        if choosing and len(self.protocol.conditions) > 1:
-            raise InputError(
-                f"{self.protocol.name} compares two stimuli in {len(self.protocol.conditions)} "
-                f"conditions; power is of one with a single condition"
-            )
-        each = math.hypot(self.between, self.differing)
+        """Plan of the simulation: trials of the protocol's plans, values, and the analysis."""
+        strata, cells, levels, _ = _cells(self.protocol, self.analysis)
+        values = list(values_of(self.protocol, self.analysis, self.effect).values())
+        if self.shares:
+            each = math.hypot(self.between, self.differing)
+            middles = tuple(log_odds_of(value, each) for value in values)
+        else:
+            log = MEASURES[self.analysis.measure or ""].scale == "log"
+            middles = tuple(math.log(value) if log else value for value in values)
         return StudyPlan(
-            trials=self._trials(list(shares)),
-            log_odds=tuple(log_odds_of(share, each) for share in shares.values()),
+            trials=self._trials(strata),
+            middles=middles,
+            cells=cells,
+            levels=levels,
             between=float(self.between),
             differing=float(self.differing),
             sizes=self.sizes,
-            test="half" if choosing else self.test or TESTS[0],
-            correction=self.correction,
+            model=(self.analysis.model or "means") if self.shares else "scores",
+            correction=self.analysis.correction,
         )
 
-    def _trials(self, names: list[str]) -> tuple[tuple[int, ...], ...]:
+    def _trials(self, strata: list[tuple[str, str]]) -> tuple[tuple[int, ...], ...]:
         """Trials of each participant in each condition, by the participant's own plan.
 
-        Catch trials are left out, as the analysis does, except where blank ones are detected.
+        Catch trials are left out, as the analysis does. A score is one in each condition.
         """
-        detects = self.protocol.asks.name == "detect"
         counted = []
         for number in range(1, max(self.sizes) + 1):
-            plan = make_plan(self.protocol, f"P{number}", self.seed)
-            shown = [
-                names[0] if trial.stimuli[0].value is not None else trial.condition
-                for trial in plan.trials
-                if (detects or not trial.catch)
-                and (
-                    len(trial.stimuli) == 1
-                    or names[0] in {f"{stimulus.value:g}" for stimulus in trial.stimuli}
-                )
-            ]
-            counted.append(tuple(shown.count(name) for name in names))
-        if self.test == "paired" and not all(map(all, counted)):
-            raise InputError(
-                f"{self.protocol.name} does not show each participant all conditions, which the "
-                f"paired test needs; leave {setting('test')} out"
-            )
+            if self.shares:
+                plan = make_plan(self.protocol, f"P{number}", self.seed)
+                shown = [(plan.group, trial.condition) for trial in plan.trials if not trial.catch]
+                counted.append(tuple(shown.count(stratum) for stratum in strata))
+            else:
+                groups = self.protocol.groups or ("",)
+                group = groups[(number - 1) % len(groups)]
+                counted.append(tuple(int(own == group) for own, _ in strata))
         return tuple(counted)
+
+
+def _cells(
+    protocol: Protocol, analysis: PlannedAnalysis
+) -> tuple[
+    list[tuple[str, str]],
+    tuple[int, ...],
+    tuple[tuple[int, ...], ...],
+    tuple[tuple[str, ...], ...],
+]:
+    """Groups and conditions, the cell of each in the analysis, and the levels of cells by name.
+
+    Conditions are one where the measure is found along them.
+    """
+    factors = analysis.factors or ()
+    names = [condition.name for condition in protocol.conditions]
+    along = analysis.measure == "threshold" and not protocol.adaptive and CONDITION not in factors
+    strata = [
+        (group, name)
+        for group in protocol.groups or ("",)
+        for name in (names[:1] if along and not protocol.factors else names)
+    ]
+    told = [
+        tuple(
+            name if factor == CONDITION else protocol.assigned(group).levels(name)[factor]
+            for factor in factors
+        )
+        for group, name in strata
+    ]
+    levels = tuple(
+        tuple(sorted({levels[at] for levels in told}, key=natural)) for at in range(len(factors))
+    )
+    places = [tuple(levels[at].index(one) for at, one in enumerate(own)) for own in told]
+    different = sorted(set(places))
+    return strata, tuple(different.index(place) for place in places), tuple(different), levels
 
 
 def power(
@@ -253,10 +298,7 @@ def power(
         for first in starts
     ]
     kept = KeptResults(keep, {"plan": asdict(plan), "seed": question.seed, "all": question.studies})
-    try:
-        ended = work_on(workers, count_found, tasks, kept, report)
-    except Unanswerable as reason:
-        raise InputError(f"this design cannot be tested: {reason}") from None
+    ended = work_on(workers, count_found, tasks, kept, report)
     finished = sum(tasks[number].studies for number in kept.found)
     if not finished and ended is not None:
         raise ended
@@ -267,21 +309,38 @@ def power(
 
 
 def _rows(question: PowerQuestion, plan: StudyPlan, counted: np.ndarray, studies: int):
-    shares = shares_of(question.protocol, question.effect)
-    names, values = list(shares), list(shares.values())
-    for size, pairs in zip(plan.sizes, counted.tolist(), strict=True):
-        for (one, two), (found, untested) in zip(plan.pairs, pairs, strict=True):
-            half = plan.test == "half"
-            ends = wilson(found, studies)
+    analysis = question.analysis
+    factors, (*_, levels) = analysis.factors or (), _cells(question.protocol, analysis)
+    for size, counts in zip(plan.sizes, counted.tolist(), strict=True):
+        if not factors:
+            ((widths, without),) = counts
+            known = studies - int(without)
+            yield PowerRow(
+                size,
+                MEASURES[analysis.measure or ""].words,
+                "mean",
+                studies,
+                0,
+                int(without),
+                half_width=widths / known if known else None,
+            )
+            continue
+        for (own, pair), (found, untested) in zip(plan.compared(), counts, strict=True):
+            if pair is not None and pair.at is None and len(levels[pair.factor]) == 2:
+                continue  # the only difference of a factor is its effect
+            ends = wilson(int(found), studies)
+            if pair is None:
+                name, kind = " × ".join(factors[at] for at in own), "effect"
+            else:
+                name = pair_name(factors, levels, pair)
+                kind = "difference" if pair.at is None else "simple effect"
             yield PowerRow(
                 participants=size,
-                first=names[one],
-                second=_HALF if half else names[two],
-                first_share=values[one],
-                second_share=0.5 if half else values[two],
+                compared=name,
+                kind=kind,
                 studies=studies,
-                found=found,
-                untested=untested,
+                found=int(found),
+                untested=int(untested),
                 power=found / studies,
                 low=ends.low,
                 high=ends.high,
@@ -289,111 +348,104 @@ def _rows(question: PowerQuestion, plan: StudyPlan, counted: np.ndarray, studies
 
 
 def _about(question: PowerQuestion, plan: StudyPlan, studies: int) -> tuple[tuple[str, str], ...]:
-    protocol, shares = question.protocol, shares_of(question.protocol, question.effect)
+    protocol, analysis = question.protocol, question.analysis
+    values = values_of(protocol, analysis, question.effect)
     trials = sorted({sum(own) for own in plan.trials})
     many = f"{trials[0]} to {trials[-1]}" if len(trials) > 1 else f"{trials[0]}"
-    chosen = plan.test == "half"
-    what = "comparisons that have the value" if chosen else "trials"
-    tests = {
-        "model": "logistic regression of single trials with participants as clusters",
-        "paired": "paired t-test of the participants' shares",
-        "half": "t-test over participants, of the share of comparisons in which it is chosen",
-    }
-    correction = "" if len(plan.pairs) == 1 else f", p corrected by {plan.correction}"
-    right = "chosen" if chosen else "right"
     studied = "study" if studies == 1 else "studies"
-    assumed = ", ".join(f"{name} {share:.1%} {right}" for name, share in shares.items())
+    assumed = ", ".join(
+        f"{name} {100 * value:.1f} %" if question.shares else f"{name} {value:g}"
+        for name, value in values.items()
+    )
+    of = MEASURES[analysis.measure or ""]
+    scale = {
+        "share": "log odds of a right answer",
+        "log": f"logarithms of the {of.words}",
+        "linear": f"the {of.words}",
+    }[of.scale]
     return (
-        ("protocol", f"{protocol.name}, {many} {what} of each participant"),
-        ("assumed", assumed.replace("%", " %")),
+        ("protocol", f"{protocol.name}{f', {many} trials of each person' * question.shares}"),
+        ("planned", analysis.described()),
+        ("assumed", assumed),
         (
             "people differ",
-            f"by an s.d. of {plan.between:g} in log odds, and in what a condition adds to them "
-            f"by {plan.differing:g}",
+            f"by an s.d. of {plan.between:g} in {scale}, the same in all conditions, and by one of "
+            f"{plan.differing:g} in each condition by itself, so that a difference of two "
+            f"conditions differs between people by {math.sqrt(2) * plan.differing:.3g}",
         ),
-        ("test", f"{tests[plan.test]}, two-sided at {ALPHA:g}{correction}"),
+        ("test", f"two-sided at {ALPHA:g}, p corrected as in the report"),
         ("simulated", f"{studies} {studied} of each size, seed {question.seed}"),
     )
 
 
-ODDS_RATIO = "odds-ratio"
-_EFFECT = setting("effect")
-
-
-def shares_of(protocol: Protocol, effect: Mapping[str, str]) -> dict[str, float]:
-    """Share of right answers in each condition, in the protocol's order.
+def values_of(
+    protocol: Protocol, analysis: PlannedAnalysis, effect: Mapping[str, str]
+) -> dict[str, float]:
+    """Value of the measure in each condition of each group, in the protocol's order.
 
     Parameters
     ----------
-    protocol
-        Protocol whose conditions are compared. Where it compares two stimuli, the only name is
-        one of its values, and its share that of the comparisons in which the value is chosen.
+    protocol, analysis
+        Protocol whose conditions are compared, and how.
     effect
-        Shares by the names of conditions; or the share of one condition, and by the name
-        ``odds-ratio`` the odds of a right answer in every other one by those in this.
+        Values by the names of conditions, or of a group and a condition with a colon between; or,
+        of shares, that of one condition, and by the name ``odds-ratio`` the odds of a right answer
+        in every other one by those in this. A protocol with one condition takes the value of that,
+        or by the name of the measure.
 
     Raises
     ------
     InputError
-        If a condition is not known, has no share, or its share is none; or if nothing differs.
+        If a condition is not known, has no value, or its value is none.
     """
-    if isinstance(protocol.design, Choice):
-        return _preference(protocol.name, protocol.design, effect)
-    names = [condition.name for condition in protocol.conditions]
-    if len(names) < 2:
-        raise InputError(
-            f"{protocol.name} has one condition, and power is that of a comparison; take a "
-            f"protocol with two or more"
-        )
-    ratio = _ratio(effect[ODDS_RATIO]) if ODDS_RATIO in effect else None
-    given = {name: share for name, share in effect.items() if name != ODDS_RATIO}
+    strata, *_ = _cells(protocol, analysis)
+    share = MEASURES[analysis.measure or ""].scale == "share"
+    names = list(dict.fromkeys(name for _, name in strata))
+    given = {name: text for name, text in effect.items() if name != ODDS_RATIO}
+    if len(names) == 1 and analysis.measure in given:
+        given[names[0]] = given.pop(analysis.measure or "")
+    known = {OF_GROUP.join(stratum) for stratum in strata if stratum[0]} | set(names)
     for name in given:
-        if name not in names:
+        if name not in known:
             raise InputError(
                 f"{_EFFECT} has the condition {name}, which {protocol.name} does not have; it has "
-                f"{', '.join(names)}"
+                f"{', '.join(names)}{', and a group before a colon' * bool(protocol.groups)}"
             )
-    shares = {name: _share(name, given[name]) for name in names if name in given}
-    if ratio is not None:
-        if len(shares) != 1:
+    found = {name: _value(name, text, analysis) for name, text in given.items()}
+    if ODDS_RATIO in effect:
+        ratio = _ratio(effect[ODDS_RATIO]) if share else None
+        if ratio is None or len(found) != 1:
             raise InputError(
-                f"{_EFFECT} has an odds ratio and {len(shares)} shares; give the share of one "
+                f"{_EFFECT} has an odds ratio and {len(found)} values; give the share of one "
                 f"condition, such as {names[0]}=0.5,{ODDS_RATIO}=1.8"
             )
-        ((base, share),) = shares.items()
-        odds = share / (1 - share) * ratio
-        shares = {name: share if name == base else odds / (1 + odds) for name in names}
-    missing = [name for name in names if name not in shares]
-    if missing:
+        ((base, own),) = found.items()
+        odds = own / (1 - own) * ratio
+        found = {name: own if name == base else odds / (1 + odds) for name in names}
+    made = {}
+    for group, name in strata:
+        value = found.get(f"{group}{OF_GROUP}{name}", found.get(name))
+        if value is None:
+            missing = [name for name in names if name not in found]
+            raise InputError(
+                f"{_EFFECT} has no share for {', '.join(missing)}; give one such as "
+                f"{missing[0]}=0.5{f', or {ODDS_RATIO}=1.8' * share}"
+            )
+        made[f"{group}{OF_GROUP}{name}" if group else name] = value
+    return made
+
+
+def _value(name: str, text: str, analysis: PlannedAnalysis) -> float:
+    value = _number(name, text)
+    scale = MEASURES[analysis.measure or ""].scale
+    if scale == "share" and not 0 < value < 1:
         raise InputError(
-            f"{_EFFECT} has no share for {', '.join(missing)}; give one such as "
-            f"{missing[0]}=0.5, or {ODDS_RATIO}=1.8"
-        )
-    return shares
-
-
-def _preference(name: str, design: Choice, effect: Mapping[str, str]) -> dict[str, float]:
-    if len(effect) != 1:
-        raise InputError(
-            f"{name} compares two stimuli; give {_EFFECT} the share of one value that is chosen, "
-            f"such as {design.values[0]:g}=0.7"
-        )
-    ((value, share),) = effect.items()
-    values = [f"{of:g}" for of in design.values]
-    if value not in values:
-        there = f"give {' or '.join(values)}"
-        raise InputError(f"{_EFFECT} has the value {value}, which {name} does not have; {there}")
-    return {value: _share(value, share)}
-
-
-def _share(name: str, text: str) -> float:
-    share = _number(name, text)
-    if not 0 < share < 1:
-        raise InputError(
-            f"{_EFFECT}: the share of {name} is {share:g}; it must be between 0 and 1, and "
+            f"{_EFFECT}: the share of {name} is {value:g}; it must be between 0 and 1, and "
             f"neither of them"
         )
-    return share
+    if (scale == "log" and value <= 0) or not math.isfinite(value):
+        raise InputError(f"{_EFFECT}: {name} is {value:g}; it must be above 0")
+    return value
 
 
 def _ratio(text: str) -> float:

@@ -303,7 +303,7 @@ def _header(numbers: Sequence[float], state: int) -> FrameHeader:
     """Header of a tick, by the numbers of its record."""
     (
         tick, time_ns, _, lateness_ns, work_ns, late, _, line, part, flags,
-        x_mm, y_mm, theta_rad, vx_mm_s, _, _, _, _, share,
+        x_mm, y_mm, theta_rad, vx_mm_s, _, _, _, _, share, *_,
     ) = numbers  # fmt: skip
     return FrameHeader(
         int(flags), state, int(line), int(part), int(late), tick, time_ns / 1e9,

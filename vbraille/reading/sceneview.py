@@ -13,6 +13,7 @@ from vbraille.feeling.loading import FileWatch, check_fits, load_scene
 from vbraille.reading.keys import Context
 from vbraille.reading.view import Cue, Prompt, View
 from vbraille.scene.checking import kind_of
+from vbraille.scene.signals import Switch, packed
 from vbraille.scene.traversal import each
 from vbraille.simulation.steering import GlideTo, ReadPage
 from vbraille.wording import spelled
@@ -180,6 +181,7 @@ class SceneView(View):
         self._names: list[str] = []  # of elements that were typed
         self._spot: Spot | None = None  # what the finger was on when that was last looked for
         self._element = -1  # number of the element that was gone to last
+        self._states: dict[int, int] = {}  # of the picture's switches, by their keys
         self._index = self._index_of(loaded)
         self._watch = FileWatch(Path(loaded.opened.path)) if watched else None
         self._goes = goes and device.steering is not None
@@ -197,6 +199,7 @@ class SceneView(View):
 
     def start(self, program: Program) -> None:
         """Put the scene under the hand, and say what it is."""
+        self._set_switches()
         self._show(program)
         self.steer()
         self.say_scene()
@@ -383,6 +386,29 @@ class SceneView(View):
             self._show(self._compose(self.loaded))
         self.say(f"contrast: {self.contrast:g}")
 
+    def switch(self, key: int) -> None:
+        """Put a switch of the picture into its next state."""
+        switches = [
+            one
+            for one in self.loaded.scene.signals.values()
+            if isinstance(one, Switch) and one.key == key
+        ]
+        if not switches:
+            self.cue(Cue.LIMIT)
+            self.say(f"switch {key}: this picture has none")
+            return
+        self._states[key] = (self._states.get(key, 0) + 1) % len(switches[0].levels)
+        self._set_switches()
+        state = self._states[key]
+        name = next((one.states[state] for one in switches if one.states), str(state + 1))
+        title = next((one.title for one in switches if one.title), f"switch {key}")
+        self.say(f"{title}: {name}")
+
+    def _set_switches(self) -> None:
+        states = packed(self._states, self.loaded.scene.signals)
+        self.engine.switches = self._index.switches = states
+        self._looked_at = (math.nan, math.nan)
+
     def reload(self) -> None:
         """Read the file again, and show what it holds now; what is wrong with it is said."""
         try:
@@ -401,6 +427,8 @@ class SceneView(View):
         self._index = self._index_of(loaded)
         self._looked_at = (math.nan, math.nan)
         self._element = -1
+        self._states = {}
+        self._set_switches()
         self.say(f"reloaded: {loaded.title}")
         for note in loaded.notes:
             self.say(f"note: {note}")

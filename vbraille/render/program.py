@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.render import work
-from vbraille.render.machine.words import SCRATCH_ROWS
+from vbraille.render.machine.words import LEAST_LANES, SCRATCH_ROWS
 from vbraille.render.work import ProgramKind
 
 if TYPE_CHECKING:
@@ -43,14 +43,15 @@ class Program:
         Rows and columns of the display that the program was compiled for.
     """
 
-    __slots__ = ("_at", "_fill", "_scratch", "numbers", "shape", "table")
+    __slots__ = ("_at", "_fill", "_last", "_scratch", "numbers", "shape", "table")
 
     def __init__(self, numbers: NDArray[np.float64], table: NDArray[np.uint16]) -> None:
         self.numbers = numbers
         self.table = table
         self.shape = int(numbers[work.ROWS]), int(numbers[work.COLUMNS])
         self._scratch = scratch_for(self.shape, self.kind)
-        self._at = np.zeros(6)
+        self._at = np.zeros(work.AT)
+        self._last: NDArray[np.float64] | None = None  # at which the last frame of a way was made
         self._fill = None  # the kernel, which loads numba
 
     @property
@@ -106,6 +107,8 @@ class Program:
     ) -> None:
         """Fill one frame, however far the array is turned.
 
+        Signals of a scene are as under a hand that stands still, with all switches as at first.
+
         Parameters
         ----------
         x_mm
@@ -135,6 +138,11 @@ class Program:
         at = self._at
         at[work.X], at[work.THETA], at[work.TIME] = x_mm, theta_rad, time_s
         at[work.Y] = self.own_y_mm if y_mm is None else y_mm
+        if self.kind is ProgramKind.SCENE:
+            from vbraille.render.machine import signalkernels
+
+            signalkernels.begin(self.numbers, at)
+            signalkernels.compute(self.numbers, at, 0.0)
         # Kernels are compiled for float64 in one piece alone.
         fits = out.dtype is _DOUBLE and out.flags.c_contiguous
         made = out if fits else np.empty(out.shape)
@@ -184,6 +192,9 @@ class Program:
         theta_rad: NDArray[np.float64] | float = 0.0,
         time_s: NDArray[np.float64] | float = 0.0,
         velocity_mm_s: NDArray[np.float64] | float = 0.0,
+        switches: NDArray[np.int64] | int = 0,
+        *,
+        going_on: bool = False,
     ) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
         """Fill the frames of a way over the canvas.
 
@@ -195,6 +206,10 @@ class Program:
             The picture's own time at each, in seconds since its start.
         velocity_mm_s : float64[n, 2]
             Velocity of the array along x and y.
+        switches : int64[n]
+            States of a scene's switches, as `vbraille.scene.signals.packed` has them.
+        going_on
+            Whether the way goes on where the last call's ended, and signals remember that.
 
         Returns
         -------
@@ -204,14 +219,21 @@ class Program:
         """
         from vbraille.render import kernels
 
-        at = np.zeros((x_mm.size, 6))
+        at = np.zeros((x_mm.size, work.AT))
         at[:, work.X], at[:, work.Y], at[:, work.THETA] = x_mm, y_mm, theta_rad
         at[:, work.TIME] = time_s
         at[:, work.VX : work.VY + 1] = velocity_mm_s
-        parts = np.zeros(x_mm.size, np.int64)
-        out = np.empty((x_mm.size, *self.shape), np.float32)
+        at[:, work.SWITCHES] = switches
+        at[:1, work.MEMORY] = np.nan
+        before = 0
+        if going_on and self._last is not None:
+            at = np.concatenate([self._last, at])
+            before = 1
+        parts = np.zeros(len(at), np.int64)
+        out = np.empty((len(at), *self.shape), np.float32)
         kernels.poses(self.numbers, self.table, self._scratch, at, parts, out)
-        return parts, out
+        self._last = at[-1:].copy() if len(at) else self._last
+        return parts[before:], out[before:]
 
     def with_anchor(self, anchor_mm: float) -> Program:
         """Make a program of the same braille for which another point of the array tells its place.
@@ -240,7 +262,7 @@ def scratch_for(shape: tuple[int, int], kind: ProgramKind | None = None) -> NDAr
     """
     rows, columns = shape
     if kind is None or kind is ProgramKind.SCENE:
-        return np.zeros((SCRATCH_ROWS, rows * columns))
+        return np.zeros((SCRATCH_ROWS, max(rows * columns, LEAST_LANES)))
     return np.zeros((2, _BLOCK * columns))
 
 

@@ -6,6 +6,8 @@ every kind begin with the same head; what follows is the kind's own.
 
 from enum import IntEnum
 
+from vbraille.scene.signals import MOST_SIGNALS
+
 
 class ProgramKind(IntEnum):
     """Kinds of programs; only kernels distinguish them."""
@@ -55,8 +57,11 @@ class ProgramKind(IntEnum):
     IDLE,  # deflection of each row off the dots, then how far and which way a dot swings it
 ) = range(OWN, OWN + 22)
 
-# Numbers that a frame is evaluated at: pose, the picture's own time, velocity.
-X, Y, THETA, TIME, VX, VY = range(6)
+# Numbers that a frame is evaluated at: pose, the picture's own time, velocity, the states of
+# switches (three bits for each signal), the values of signals, and what these remember.
+X, Y, THETA, TIME, VX, VY, SWITCHES, SIGNAL = range(8)
+MEMORY = SIGNAL + MOST_SIGNALS
+AT = MEMORY + MOST_SIGNALS
 
 # Rows of the kernels' scratch: the swing under each column, and the slot that the column is over.
 SWING, SLOT = range(2)

@@ -21,12 +21,14 @@ from vbraille.scene.patterns import (
     Shape,
     Tile,
 )
+from vbraille.scene.signals import made_of
 from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform
 from vbraille.scene.traversal import (
     ONE,
     children,
     drawn_vibrations,
     each,
+    signals_of,
     vibrations,
     with_children,
 )
@@ -130,7 +132,7 @@ def check_scene(opened: OpenedScene, known: Mapping[Image | Label, Box]) -> Scen
         elements=elements,
         textures=_texture_count(scene),
         vibrations=tuple(_vibrations(scene, elements, known)),
-        advice=tuple(_advice(scene, elements)),
+        advice=(*_advice(scene, elements), *_signal_advice(opened)),
     )
 
 
@@ -181,6 +183,18 @@ def _advice(scene: Scene, elements: Sequence[ElementReport]) -> Iterator[str]:
             f"there are {textures} different textures; more than {MOST_TEXTURES} are "
             "hard to tell apart"
         )
+
+
+def _signal_advice(opened: OpenedScene) -> Iterator[str]:
+    """Sentences about signals that nothing uses."""
+    written = opened.written
+    patterns = each(*written.elements, *written.textures.values())
+    used = {name for one in patterns for _, name in signals_of(one)}
+    used |= {name for one in written.signals.values() for name in made_of(one)}
+    for name in written.signals:
+        if name not in used:
+            place = opened.locations.place(("signals", name))
+            yield f"{place}: signal {name} is used by nothing; use it, or leave it out"
 
 
 def _grouped(told: Sequence[tuple[int, str]], elements: Sequence[ElementReport]) -> Iterator[str]:

@@ -33,7 +33,7 @@ LONGEST = 72  # columns of a line, where that can be
 # Keys that come first: what a table is, and what people call it.
 _FIRST = ("id", "title", "description")
 # Keys that all patterns have, which change what the others describe.
-_LAST = ("amplitude", "inverted", "vibration")
+_LAST = ("amplitude", "inverted", "vibration", "factor")
 _ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 
 

@@ -74,6 +74,18 @@ def travel_deg(wave_angle_deg: float | None, ridge_angle_deg: float | None) -> f
     return 0.0 if wave_angle_deg is None else wave_angle_deg
 
 
+def check_velocity_by(name: str, moves: bool) -> None:
+    """Refuse the name of a signal as the speed of what does not move.
+
+    Raises
+    ------
+    ValueError
+        If there is such a name, and no velocity.
+    """
+    if name and not moves:
+        raise ValueError(f"velocity_by is {name!r} without a velocity; add one, or leave it out")
+
+
 def check_file(name: str) -> None:
     """Check the name of a file that is read with a scene.
 

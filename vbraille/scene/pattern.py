@@ -10,7 +10,7 @@ from vbraille.tomlfile import Table
 class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
     """What patterns of every kind have in common.
 
-    The three changes are made in this order: amplitude, inversion, vibration.
+    The changes are made in this order: amplitude, inversion, vibration, factor.
 
     Parameters
     ----------
@@ -24,6 +24,9 @@ class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
         Whether 1 - δ is shown in place of δ.
     vibration
         Vibration of its high or of its low parts; None for none.
+    factor
+        Name of a signal by which its deflections, and what it hides of others, are multiplied;
+        empty for none.
 
     Raises
     ------
@@ -37,6 +40,7 @@ class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
     amplitude: float = 1.0
     inverted: bool = False
     vibration: Vibration | None = None
+    factor: str = ""
 
     def __post_init__(self) -> None:
         check_share("amplitude", self.amplitude)

@@ -19,6 +19,7 @@ from vbraille.scene.measures import (
     check_length,
     check_point,
     check_share,
+    check_velocity_by,
 )
 from vbraille.scene.pattern import Pattern
 from vbraille.scene.strokes import DotStyle, Dotting, Stroke, VertexMarkers
@@ -26,6 +27,7 @@ from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
     RadialGrating,
+    SignalLevel,
     Uniform,
     UniformVibration,
 )
@@ -247,6 +249,41 @@ class Tile(Pattern, frozen=True, kw_only=True, tag="tile"):
         check_length("width", self.width_mm, 0.1)
         check_length("height", self.height_mm, 0.1)
         check_point("origin", self.origin_mm)
+
+
+class Moving(Pattern, frozen=True, kw_only=True, tag="moving"):
+    """A texture that moves as a whole: δ(p - vt); Lévesque 2009, eq. 9.1.
+
+    Parameters
+    ----------
+    part
+        The texture, or any pattern.
+    velocity_mm_s
+        How fast it moves, right and down.
+    velocity_by
+        Name of a signal that is the share of this speed at which it moves; empty for all of it.
+    array_at_mm
+        Place at which the array is taken to stand, so that what moves is felt to go on under the
+        finger whether the hand moves or not; None for where it is.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or a signal is given without a velocity.
+    """
+
+    part: AnyPattern
+    velocity_mm_s: Point = (0.0, 0.0)
+    velocity_by: str = ""
+    array_at_mm: Point | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for axis, velocity in zip("xy", self.velocity_mm_s, strict=True):
+            check_range(f"velocity, {axis}", velocity, -1000.0, 1000.0, " mm/s")
+        check_velocity_by(self.velocity_by, any(self.velocity_mm_s))
+        if self.array_at_mm is not None:
+            check_point("array_at", self.array_at_mm)
 
 
 class Image(Pattern, frozen=True, kw_only=True, tag="image"):
@@ -510,10 +547,12 @@ class Use(Pattern, frozen=True, kw_only=True, tag="use"):
 AnyPattern = (
     Uniform
     | UniformVibration
+    | SignalLevel
     | LinearGrating
     | RadialGrating
     | AxialGrating
     | Tile
+    | Moving
     | Image
     | ImageDots
     | StraightLine

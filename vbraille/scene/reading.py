@@ -15,6 +15,7 @@ from vbraille.scene.locations import LocatedFile, Locations, OpenedScene
 from vbraille.scene.patterns import AnyPattern, Group, Image, ImageDots, Label, Operation
 from vbraille.scene.resolving import MOST_PATTERNS, resolve
 from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.signals import AnySignal
 from vbraille.scene.svg.paint import ClassLook
 from vbraille.scene.traversal import with_children
 from vbraille.tomlfile import Table, TomlFile
@@ -54,6 +55,9 @@ class SceneFile(Table, frozen=True, kw_only=True):
     classes
         What shapes of included SVG drawings become, by the name of their class, by the label that
         Inkscape gives them, or by their id.
+    signals
+        Numbers from 0 to 1 by name, by which patterns answer to the hand, to keys and to time; at
+        most 8, where one that is the speed of a motion counts twice.
     textures
         Patterns by name, which are shown where something uses them.
     elements
@@ -67,6 +71,7 @@ class SceneFile(Table, frozen=True, kw_only=True):
     operation: Operation = "overwrite"
     include: tuple[str, ...] = ()
     classes: dict[str, ClassLook] = {}  # noqa: RUF012 - msgspec copies an empty default
+    signals: dict[str, AnySignal] = {}  # noqa: RUF012 - msgspec copies an empty default
     textures: dict[str, AnyPattern] = {}  # noqa: RUF012 - msgspec copies an empty default
     elements: tuple[AnyPattern, ...] = ()
 
@@ -79,8 +84,8 @@ class Gathered:
     ----------
     form
         What the file itself says.
-    elements, textures
-        Elements and named textures of the file and of those that it includes.
+    elements, textures, signals
+        Elements, named textures and signals of the file and of those that it includes.
     locations
         Where each of them is written.
     warnings
@@ -90,6 +95,7 @@ class Gathered:
     form: SceneFile
     elements: list[AnyPattern] = field(default_factory=list)
     textures: dict[str, AnyPattern] = field(default_factory=dict)
+    signals: dict[str, AnySignal] = field(default_factory=dict)
     locations: Locations = field(default_factory=Locations)
     warnings: list[str] = field(default_factory=list)
 
@@ -115,26 +121,32 @@ class Gathered:
             operation=form.operation,
             elements=tuple(self.elements),
             textures=self.textures,
+            signals=self.signals,
         )
 
     def add(
         self,
         elements: tuple[AnyPattern, ...] | list[AnyPattern],
         textures: dict[str, AnyPattern],
+        signals: dict[str, AnySignal],
         locations: Locations,
         operation: Operation,
     ) -> None:
-        """Add elements and textures after those that are there.
+        """Add elements, textures and signals after those that are there.
 
         Elements that are put together in another way than this file's become one group.
         """
-        for name, texture in textures.items():
-            origin, there = locations.places["textures", name]
-            if name in self.textures:
-                first = self.locations.place(("textures", name))
-                origin.fail(there, f"is called {name}, as is {first}; give it another name")
-            self.textures[name] = texture
-            self.locations.places["textures", name] = (origin, there)
+        for kind, own, given in (
+            ("textures", self.textures, textures),
+            ("signals", self.signals, signals),
+        ):
+            for name, one in given.items():
+                origin, there = locations.places[kind, name]
+                if name in own:
+                    first = self.locations.place((kind, name))
+                    origin.fail(there, f"is called {name}, as is {first}; give it another name")
+                own[name] = one  # pyright: ignore[reportArgumentType]
+                self.locations.places[kind, name] = (origin, there)
         start = len(self.elements)
         apart = bool(elements) and operation != self.form.operation
         for steps, origin in locations.places.items():
@@ -194,14 +206,18 @@ class _Gathering:
             key: file.read(AnyPattern, under=("textures", key))  # pyright: ignore[reportArgumentType]
             for key in file.names("textures")
         }
+        for key in file.names("signals"):
+            file.read(AnySignal, under=("signals", key))  # pyright: ignore[reportArgumentType]
         for key in file.names("classes"):  # whose faults are then said as those of a table
             file.read(ClassLook, under=("classes", key))
         gathered = Gathered(file.read(SceneFile))
         for number, included in enumerate(gathered.form.include):
             self._include(gathered, file, number, included, name, way)
         elements = gathered.form.elements
-        locations = _all_from(LocatedFile(file.where, file.lines, file.fail), elements, textures)
-        gathered.add(elements, textures, locations, gathered.form.operation)
+        form = gathered.form
+        located = LocatedFile(file.where, file.lines, file.fail)
+        locations = _all_from(located, elements, textures, form.signals)
+        gathered.add(elements, textures, form.signals, locations, form.operation)
         return gathered
 
     def _include(
@@ -236,6 +252,7 @@ class _Gathering:
         into.add(
             [_seen_from(element, folder, language) for element in found.elements],
             {key: _seen_from(one, folder, language) for key, one in found.textures.items()},
+            found.signals,
             found.locations,
             found.form.operation,
         )
@@ -280,9 +297,9 @@ def _foreign(path: Path, form: str, classes: Mapping[str, ClassLook]) -> Gathere
         ],
     )
     locations = _all_from(
-        LocatedFile(str(path), lambda: found.lines), scene.elements, scene.textures
+        LocatedFile(str(path), lambda: found.lines), scene.elements, scene.textures, scene.signals
     )
-    gathered.add(scene.elements, scene.textures, locations, scene.operation)
+    gathered.add(scene.elements, scene.textures, scene.signals, locations, scene.operation)
     return gathered
 
 
@@ -302,10 +319,14 @@ def _read_foreign(path: Path, form: str, classes: Mapping[str, ClassLook]) -> Fo
 
 
 def _all_from(
-    file: LocatedFile, elements: tuple[AnyPattern, ...], textures: dict[str, AnyPattern]
+    file: LocatedFile,
+    elements: tuple[AnyPattern, ...],
+    textures: dict[str, AnyPattern],
+    signals: dict[str, AnySignal],
 ) -> Locations:
-    """Places of elements and textures of a file, which are all its own."""
+    """Places of elements, textures and signals of a file, which are all its own."""
     steps: list[Steps] = [("textures", name) for name in textures]
+    steps += [("signals", name) for name in signals]
     steps += [("elements", number) for number in range(len(elements))]
     return Locations({one: (file, one) for one in steps})
 

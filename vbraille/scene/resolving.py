@@ -12,8 +12,17 @@ from vbraille.errors import InputError
 from vbraille.scene.dotting import most_dots_of
 from vbraille.scene.locations import Locations
 from vbraille.scene.patterns import Group, ImageDots, Use
+from vbraille.scene.signals import MOST_SIGNALS, Switch, circle, made_of
 from vbraille.scene.stock import STOCK, stock_textures
-from vbraille.scene.traversal import LISTS, SEVERAL, each, moved, placed_children, with_children
+from vbraille.scene.traversal import (
+    LISTS,
+    SEVERAL,
+    each,
+    moved,
+    placed_children,
+    signals_of,
+    with_children,
+)
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
@@ -49,9 +58,10 @@ def resolve(scene: Scene, folder: Path | None = None, locations: Locations | Non
     Raises
     ------
     InputError
-        If a name is not known or given twice, uses lead back to themselves, patterns or uses nest
-        more than 32 deep, there are more than 200,000 patterns, 4,000,000 points or 200,000 dots
-        along shapes, something is moved too far, or an image of dots cannot be read.
+        If a name is not known or given twice, uses or signals lead back to themselves, patterns or
+        uses nest more than 32 deep, there are more than 200,000 patterns, 4,000,000 points, 200,000
+        dots along shapes or 8 signals, something is moved too far, or an image of dots cannot be
+        read.
     """
     return _Resolving(scene, folder or Path(), locations or Locations()).scene()
 
@@ -86,6 +96,7 @@ class _Resolving:
             self._count(steps, 1, points_of(pattern), most_dots_of(pattern))
             if pattern.id:
                 self._name(steps, pattern.id, pattern)
+        self._check_signals()
         for name in textures:  # also those that nothing uses are to be right
             self._body(name, ("textures", name))
         elements = tuple(
@@ -93,6 +104,43 @@ class _Resolving:
             for number, element in enumerate(self._written.elements)
         )
         return replace(self._written, textures={}, elements=elements)
+
+    def _check_signals(self) -> None:
+        """Refuse signals that lead back to themselves or are not there, and too many of them."""
+        signals = self._written.signals
+        for name, signal in signals.items():
+            for one in made_of(signal):
+                self._check_signal(("signals", name), one)
+            if isinstance(signal, Switch):
+                self._check_levels(name, signal)
+        way = circle(signals)
+        if way:
+            self._fail(("signals", way[0]), f"is made of itself: {', '.join(way)}; leave one out")
+        for steps, pattern in self._all():
+            for more, name in signals_of(pattern):
+                self._check_signal((*steps, *more), name)
+        if len(signals) > MOST_SIGNALS:
+            last = list(signals)[MOST_SIGNALS]
+            self._fail(
+                ("signals", last), f"is one signal more than the {MOST_SIGNALS} there can be"
+            )
+
+    def _check_levels(self, name: str, switch: Switch) -> None:
+        """Refuse switches of one key that have not the same number of states."""
+        for other, one in self._written.signals.items():
+            if isinstance(one, Switch) and one.key == switch.key:
+                if len(one.levels) == len(switch.levels):
+                    return
+                self._fail(
+                    ("signals", name),
+                    f"has {len(switch.levels)} levels, and {other}, of the same key "
+                    f"{switch.key}, {len(one.levels)}; give both as many",
+                )
+
+    def _check_signal(self, steps: Steps, name: str) -> None:
+        signals = self._written.signals
+        if name not in signals:
+            self._fail(steps, f"is {name!r}, which is no signal here{nearest(name, signals)}")
 
     def _all(self) -> Iterator[tuple[Steps, AnyPattern]]:
         """All patterns of the scene as it is written, in order, with the keys that lead to them."""
@@ -154,7 +202,7 @@ class _Resolving:
             self._fail(steps, f"cannot be moved so far: {error}")
         title = use.title or pattern.title
         description = use.description or pattern.description
-        if use.amplitude == 1.0 and not use.inverted and use.vibration is None:
+        if use.amplitude == 1.0 and not use.inverted and not (use.vibration or use.factor):
             return _called(pattern, use.id, title, description)
         return Group(
             operation="maximum",
@@ -162,6 +210,7 @@ class _Resolving:
             amplitude=use.amplitude,
             inverted=use.inverted,
             vibration=use.vibration,
+            factor=use.factor,
             id=use.id,
             title=title,
             description=description,

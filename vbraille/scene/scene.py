@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from vbraille.errors import check_range
 from vbraille.scene.patterns import AnyPattern, Operation
+from vbraille.scene.signals import AnySignal
 from vbraille.tomlfile import Table
 
 
@@ -47,6 +48,8 @@ class Scene(Table, frozen=True, kw_only=True):
         The elements in order, the last on top.
     textures
         Patterns by name, for `Use`.
+    signals
+        Numbers by name, by which patterns answer to the hand, to keys and to time.
     """
 
     canvas: Canvas
@@ -56,3 +59,4 @@ class Scene(Table, frozen=True, kw_only=True):
     operation: Operation = "overwrite"
     elements: tuple[AnyPattern, ...] = ()
     textures: dict[str, AnyPattern] = {}  # noqa: RUF012 - msgspec copies an empty default
+    signals: dict[str, AnySignal] = {}  # noqa: RUF012 - msgspec copies an empty default

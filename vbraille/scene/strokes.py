@@ -14,6 +14,7 @@ from vbraille.scene.measures import (
     check_angle,
     check_length,
     check_share,
+    check_velocity_by,
 )
 from vbraille.tomlfile import Table
 
@@ -93,6 +94,8 @@ class Along(Table, frozen=True, kw_only=True):
     velocity_mm_s
         Speed of the grating along the path, in the order of the path's points (eq. 9.2, with the
         sign that moves ridges towards larger places).
+    velocity_by
+        Name of a signal that is the share of this speed at which they move; empty for all of it.
 
     Raises
     ------
@@ -106,12 +109,14 @@ class Along(Table, frozen=True, kw_only=True):
     whole_edges: bool = False
     whole_cycles: bool = True
     velocity_mm_s: float = 0.0
+    velocity_by: str = ""
 
     def __post_init__(self) -> None:
         check_length("ridge", self.ridge_mm)
         check_length("gap", self.gap_mm, 0.0)
         check_share("amplitude", self.amplitude)
         check_range("velocity", self.velocity_mm_s, -1000, 1000, " mm/s")
+        check_velocity_by(self.velocity_by, bool(self.velocity_mm_s))
 
 
 class Stroke(Table, frozen=True, kw_only=True):

@@ -16,6 +16,7 @@ from vbraille.scene.measures import (
     check_length,
     check_point,
     check_share,
+    check_velocity_by,
 )
 from vbraille.scene.pattern import Pattern
 from vbraille.tomlfile import Table
@@ -144,6 +145,18 @@ class UniformVibration(Pattern, frozen=True, kw_only=True, tag="vibration"):
         check_range("frequency", self.frequency_hz, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, " Hz")
 
 
+class SignalLevel(Pattern, frozen=True, kw_only=True, tag="signal"):
+    """A signal as a deflection, the same everywhere: what a blend chooses by, or masks a group.
+
+    Parameters
+    ----------
+    name
+        Name of the signal.
+    """
+
+    name: str
+
+
 class LinearGrating(Pattern, frozen=True, kw_only=True, tag="linear-grating"):
     """Ridges and gaps along a direction: Lévesque 2009, eq. 8.4.
 
@@ -160,6 +173,8 @@ class LinearGrating(Pattern, frozen=True, kw_only=True, tag="linear-grating"):
         Change of the spatial frequency along the wave; None for none.
     velocity_mm_s
         Speed of the ridges in the direction of the wave (eq. 9.2); not beside a distortion.
+    velocity_by
+        Name of a signal that is the share of this speed at which they move; empty for all of it.
 
     Raises
     ------
@@ -174,6 +189,7 @@ class LinearGrating(Pattern, frozen=True, kw_only=True, tag="linear-grating"):
     start_mm: Point = (0.0, 0.0)
     distortion: Gradual | Peak | None = None
     velocity_mm_s: float = 0.0
+    velocity_by: str = ""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -198,6 +214,8 @@ class RadialGrating(Pattern, frozen=True, kw_only=True, tag="radial-grating"):
         Change of the spatial frequency outwards; None for none.
     velocity_mm_s
         Speed of the rings outwards (eq. 9.2); not beside a distortion.
+    velocity_by
+        Name of a signal that is the share of this speed at which they move; empty for all of it.
 
     Raises
     ------
@@ -210,6 +228,7 @@ class RadialGrating(Pattern, frozen=True, kw_only=True, tag="radial-grating"):
     gap_mm: float = 0.0
     distortion: Gradual | Peak | None = None
     velocity_mm_s: float = 0.0
+    velocity_by: str = ""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -240,6 +259,8 @@ class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
         Change of the frequency around an angle; None for none.
     velocity_deg_s
         Speed at which the spokes turn, towards larger angles; not beside a distortion.
+    velocity_by
+        Name of a signal that is the share of this speed at which they move; empty for all of it.
 
     Raises
     ------
@@ -256,6 +277,7 @@ class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
     middle: float = 1.0
     distortion: TurnPeak | None = None
     velocity_deg_s: float = 0.0
+    velocity_by: str = ""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -272,6 +294,7 @@ class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
             raise ValueError("fade is from a smaller to a larger length, from 0 to 100 mm")
         if outer_mm - inner_mm < LEAST_APART_MM:
             raise ValueError("fade is from a length to the same; set the second larger")
+        check_velocity_by(self.velocity_by, bool(self.velocity_deg_s))
         if self.distortion is not None and self.velocity_deg_s:
             raise ValueError("velocity cannot be given beside a distortion; leave one out")
 
@@ -280,5 +303,6 @@ def _check_grating(grating: LinearGrating | RadialGrating) -> None:
     check_length("ridge", grating.ridge_mm)
     check_length("gap", grating.gap_mm, 0.0)
     check_range("velocity", grating.velocity_mm_s, -1000.0, 1000.0, " mm/s")
+    check_velocity_by(grating.velocity_by, bool(grating.velocity_mm_s))
     if grating.distortion is not None and grating.velocity_mm_s:
         raise ValueError("velocity cannot be given beside a distortion; leave one out")

@@ -12,16 +12,17 @@ from vbraille.scene.patterns import (
     Group,
     Image,
     ImageDots,
+    Moving,
     PathShape,
     Polygon,
     Shape,
     Tile,
 )
 from vbraille.scene.strokes import Vibration
-from vbraille.scene.textures import UniformVibration
+from vbraille.scene.textures import SignalLevel, UniformVibration
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
 
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import AnyPattern
@@ -49,7 +50,7 @@ def placed_children(pattern: AnyPattern) -> list[tuple[Steps, AnyPattern]]:
             (("parts", number), part) for number, part in enumerate(pattern.parts)
         ]
         return parts if pattern.by is None else [*parts, (("by",), pattern.by)]
-    if isinstance(pattern, Tile):
+    if isinstance(pattern, Tile | Moving):
         return [(("part",), pattern.part)]
     if isinstance(pattern, Image):
         return [] if pattern.texture is None else [(("texture",), pattern.texture)]
@@ -93,6 +94,44 @@ def drawn_vibrations(pattern: AnyPattern) -> list[Vibration]:
     return [vibration for vibration in found if vibration is not None]
 
 
+def driving(*patterns: AnyPattern) -> list[str]:
+    """Names of the signals that are the speed of a motion in patterns and what stands in them."""
+    return [
+        name
+        for part in each(*patterns)
+        for key, name in signals_of(part)
+        if key[-1] == "velocity_by"
+    ]
+
+
+def signals_of(pattern: AnyPattern) -> list[tuple[Steps, str]]:
+    """Names of the signals that a pattern itself uses, with the keys that lead to each."""
+    found: list[tuple[Steps, str]] = [(("factor",), pattern.factor)]
+    if isinstance(pattern, SignalLevel):
+        found.append((("name",), pattern.name))
+    elif isinstance(pattern, Shape) and pattern.stroke is not None and pattern.stroke.along:
+        found.append((("stroke", "along", "velocity_by"), pattern.stroke.along.velocity_by))
+    else:
+        found.append((("velocity_by",), getattr(pattern, "velocity_by", "")))
+    return [(steps, name) for steps, name in found if name]
+
+
+def with_signals(pattern: AnyPattern, names: Mapping[str, str]) -> AnyPattern:
+    """Pattern that uses signals under other names, as does all that stands in it."""
+    changes: dict[str, Any] = {}
+    for (*_, key), name in signals_of(pattern):
+        if isinstance(pattern, Shape) and key == "velocity_by":
+            stroke = pattern.stroke
+            assert stroke is not None
+            assert stroke.along is not None
+            along = replace(stroke.along, velocity_by=names[name])
+            changes["stroke"] = replace(stroke, along=along)
+        else:
+            changes[str(key)] = names[name]
+    pattern = replace(pattern, **changes) if changes else pattern
+    return with_children(pattern, lambda _, part: with_signals(part, names))
+
+
 def with_children(
     pattern: AnyPattern, change: Callable[[Steps, AnyPattern], AnyPattern]
 ) -> AnyPattern:
@@ -112,7 +151,7 @@ def with_children(
     if isinstance(pattern, Group):
         parts = tuple(changed["parts", number] for number in range(len(pattern.parts)))
         return replace(pattern, parts=parts, by=changed.get(("by",)))
-    if isinstance(pattern, Tile):
+    if isinstance(pattern, Tile | Moving):
         return replace(pattern, part=changed["part",])
     if isinstance(pattern, Image):
         return replace(pattern, texture=changed["texture",])
@@ -122,7 +161,15 @@ def with_children(
 
 
 # The fields of patterns that are a place, places, and lists of places.
-ONE = ("start_mm", "end_mm", "center_mm", "origin_mm", "place_mm", "move_mm")
+ONE = (
+    "start_mm",
+    "end_mm",
+    "center_mm",
+    "origin_mm",
+    "place_mm",
+    "move_mm",
+    "array_at_mm",
+)
 SEVERAL = ("vertices_mm", "centers_mm")
 LISTS = ("contours_mm",)
 
@@ -161,7 +208,7 @@ def _places(pattern: AnyPattern, move_mm: Point) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for name in pattern.__struct_fields__:
         value = getattr(pattern, name)
-        if name in ONE:
+        if name in ONE and value is not None:
             found[name] = (value[0] + dx_mm, value[1] + dy_mm)
         elif name in SEVERAL:
             found[name] = tuple((x + dx_mm, y + dy_mm) for x, y in value)

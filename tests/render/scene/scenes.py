@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from tests.render.scene.showing import SIDE_MM
+from tests.render.scene.twinsignals import SIGNALS
 from tests.tiers import by_tier
 from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.patterns import (
@@ -41,6 +42,7 @@ from vbraille.scene.textures import (
     LinearGrating,
     Peak,
     RadialGrating,
+    SignalLevel,
     TurnPeak,
     Uniform,
     UniformVibration,
@@ -71,7 +73,12 @@ changes = st.one_of(
     st.just({}),
     st.fixed_dictionaries(
         {},
-        optional={"amplitude": shares, "inverted": st.booleans(), "vibration": vibrations},
+        optional={
+            "amplitude": shares,
+            "inverted": st.booleans(),
+            "vibration": vibrations,
+            "factor": st.sampled_from(["none", "half", "all"]),
+        },
     ),
 )
 
@@ -104,6 +111,7 @@ def moving_or_distorted(distortion, velocity):
 
 
 uniforms = patterns_of(Uniform, level=shares)
+levels = patterns_of(SignalLevel, name=st.sampled_from(["none", "half", "all"]))
 uniform_vibrations = patterns_of(UniformVibration, frequency_hz=numbers(0.1, 50))
 linear_gratings = st.builds(
     lambda own, angle, more, change: LinearGrating(**own, **angle, **more, **change),
@@ -138,7 +146,9 @@ axial_gratings = st.builds(
     moving_or_distorted(turn_peaks, "velocity_deg_s"),
     changes,
 )
-textures = st.one_of(uniforms, uniform_vibrations, linear_gratings, radial_gratings, axial_gratings)
+textures = st.one_of(
+    levels, uniforms, uniform_vibrations, linear_gratings, radial_gratings, axial_gratings
+)
 
 # Strokes and dots
 
@@ -338,7 +348,7 @@ def groups(parts):
             Group,
             operation=st.just("blend"),
             parts=st.tuples(parts, parts),
-            by=parts,
+            by=parts | levels,
         ),
     )
 
@@ -370,6 +380,7 @@ def tiles(parts):
 KINDS = {
     "uniform": uniforms,
     "vibration": uniform_vibrations,
+    "signal": levels,
     "linear grating": linear_gratings,
     "radial grating": radial_gratings,
     "axial grating": axial_gratings,
@@ -402,6 +413,7 @@ def scenes(draw, parts=patterns, most=4):
         canvas=Canvas(width_mm=SIDE_MM, height_mm=SIDE_MM),
         operation=draw(st.sampled_from(["overwrite", "maximum", "add", "multiply"])),
         elements=tuple(draw(st.lists(parts, min_size=1, max_size=most))),
+        signals=SIGNALS,
     )
 
 

@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from tests.render.scene import twin as reference
+from tests.render.scene.twinsignals import SIGNALS
 from vbraille.display import Display
 from vbraille.render import STRESS2_8X8
 from vbraille.render.scene.compiling import compile_scene
@@ -23,9 +24,9 @@ DISPLAYS = (STRESS2_8X8_ARRAY, Display("wide", 6, 10, 1.2, 1.8))
 
 
 def scene_of(*elements, operation="overwrite", side_mm=SIDE_MM):
-    """A scene of these elements."""
+    """A scene of these elements, with the signals that they may use."""
     canvas = Canvas(width_mm=side_mm, height_mm=side_mm)
-    return Scene(canvas=canvas, operation=operation, elements=elements)
+    return Scene(canvas=canvas, operation=operation, elements=elements, signals=SIGNALS)
 
 
 # What needs something beside itself

@@ -6,12 +6,14 @@ Lévesque 2009, 8.4.5, over the patterns of `referencewaves`, `referencestrokes`
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tests.render.scene.twinbraille import label_deflections, label_opacity
+from tests.render.scene.twinsignals import SIGNALS, Signals
 from tests.render.scene.twinstrokes import (
     coordinates,
     dots_deflection,
@@ -40,6 +42,7 @@ from vbraille.scene.patterns import (
     Group,
     Image,
     Label,
+    Moving,
     PathShape,
     Polygon,
     StraightLine,
@@ -49,12 +52,14 @@ from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
     RadialGrating,
+    SignalLevel,
     Uniform,
     UniformVibration,
 )
+from vbraille.scene.traversal import driving
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -72,6 +77,7 @@ def deflections(
     y_mm: ArrayLike,
     parity: ArrayLike = 0,
     time_s: float = 0.0,
+    signals: Mapping[str, float] | None = None,
 ) -> Values:
     """Compute the deflections of a scene at places, which are at rest beside its canvas.
 
@@ -87,13 +93,17 @@ def deflections(
         0 where the parities of an actuator's column and row are the same, else 1.
     time_s
         Time since the scene was first shown, in seconds.
+    signals
+        Values of its signals; None for those of a hand that stands still.
 
     Returns
     -------
     float64[n]
         Deflections, 0 … 1.
     """
-    at = places(x_mm, y_mm, parity, time_s)
+    if signals is None:
+        signals = Signals(scene.signals, driving(*scene.elements)).step(0.0)
+    at = places(x_mm, y_mm, parity, time_s, signals)
     if not scene.elements:
         return np.zeros(at.x_mm.shape)
     whole = Group(operation=scene.operation, parts=scene.elements)
@@ -110,20 +120,28 @@ def opacity(
     y_mm: ArrayLike,
     parity: ArrayLike = 0,
     time_s: float = 0.0,
+    signals: Mapping[str, float] | None = None,
 ) -> Values:
     """Compute the opacity mask of a pattern at places; the arguments are those of a scene's.
 
     Only a blend's mask can depend on time and parity, by the pattern that chooses in it.
     """
-    return mask(pattern, assets, places(x_mm, y_mm, parity, time_s))
+    return mask(pattern, assets, places(x_mm, y_mm, parity, time_s, signals))
 
 
-def places(x_mm: ArrayLike, y_mm: ArrayLike, parity: ArrayLike, time_s: float) -> ActuatorPlaces:
-    """Make places of arrays; single numbers count for all."""
+def places(
+    x_mm: ArrayLike,
+    y_mm: ArrayLike,
+    parity: ArrayLike,
+    time_s: float,
+    signals: Mapping[str, float] | None = None,
+) -> ActuatorPlaces:
+    """Make places of arrays; single numbers count for all, and no signals for those of tests."""
+    signals = Signals(SIGNALS).step(0.0) if signals is None else signals
     x, y, odd = np.broadcast_arrays(
         np.atleast_1d(np.asarray(x_mm, np.float64)), np.asarray(y_mm, np.float64), parity
     )
-    return ActuatorPlaces(x, y, np.where(odd == 0, 1.0, -1.0), time_s)
+    return ActuatorPlaces(x, y, np.where(odd == 0, 1.0, -1.0), time_s, signals)
 
 
 # Deflections
@@ -134,7 +152,8 @@ def deflection(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Value
     changed = pattern.amplitude * plain(pattern, assets, at)
     if pattern.inverted:
         changed = 1 - changed
-    return np.clip(vibrated(changed, at, pattern.vibration), 0.0, 1.0)
+    shown = np.clip(vibrated(changed, at, pattern.vibration), 0.0, 1.0)
+    return shown * at.signals[pattern.factor] if pattern.factor else shown
 
 
 def plain(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Values:
@@ -142,6 +161,13 @@ def plain(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Values:
     match pattern:
         case Uniform():
             return np.full(at.x_mm.shape, pattern.level)
+        case SignalLevel():
+            return np.full(at.x_mm.shape, at.signals[pattern.name])
+        case Moving():
+            passed_s = at.moved_s(pattern.velocity_by)
+            right, down = pattern.velocity_mm_s
+            moved = replace(at, x_mm=at.x_mm - right * passed_s, y_mm=at.y_mm - down * passed_s)
+            return deflection(pattern.part, assets, moved)
         case UniformVibration():
             return vibration(at, pattern.frequency_hz)
         case LinearGrating():
@@ -233,6 +259,12 @@ def mask(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Values:
     Amplitude does not change it, nor does vibration of what is up. It is nowhere below the
     pattern: where inversion, or a vibration of what is down, brings up what was rest, it is 1.
     """
+    own = _own_mask(pattern, assets, at)
+    return own * at.signals[pattern.factor] if pattern.factor else own
+
+
+def _own_mask(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Values:
+    """Compute a pattern's opacity mask without its factor."""
     everywhere = np.ones(at.x_mm.shape)
     if is_everywhere(pattern):
         return everywhere

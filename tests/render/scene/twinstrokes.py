@@ -221,7 +221,8 @@ def stroke_deflection(shape: AnyShape, stroke: Stroke, at: ActuatorPlaces) -> Va
         texture = 1 - groove(r, width, stroke.edge)  # 8.8
     swing = stroke.vibration
     if stroke.along is not None:
-        cut = _cut(stroke.along, stroke_cycles(shape), seen, at.time_s)
+        moved_s = at.moved_s(stroke.along.velocity_by)
+        cut = _cut(stroke.along, stroke_cycles(shape), seen, moved_s)
         if stroke.along.whole_edges:
             cut = groove(r, width, stroke.edge) * cut  # 8.12
         if swing is not None and swing.of == "low":

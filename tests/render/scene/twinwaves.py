@@ -6,7 +6,7 @@ Lévesque 2009, 8.3 to 8.4.2. It is slow and plain on purpose; the tests hold th
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +18,8 @@ from vbraille.scene.measures import travel_deg
 from vbraille.scene.textures import Gradual, Peak
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from vbraille.scene.bitmap import Bitmap
     from vbraille.scene.strokes import Vibration
     from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating
@@ -37,12 +39,19 @@ class ActuatorPlaces:
         1 where the parities of an actuator's column and row are the same, else -1.
     time_s
         The moment, in seconds since the scene was first shown.
+    signals
+        Values of the scene's signals by name, and of their integrals by ∫ and the name.
     """
 
     x_mm: Values
     y_mm: Values
     sign: Values
     time_s: float
+    signals: Mapping[str, float] = field(default_factory=dict)
+
+    def moved_s(self, velocity_by: str) -> float:
+        """Time by which something has moved whose speed may follow a signal."""
+        return self.signals[f"∫{velocity_by}"] if velocity_by else self.time_s
 
     def from_point(self, x_mm: float, y_mm: float) -> tuple[Values, Values]:
         """Vectors from a point to the places."""
@@ -134,14 +143,14 @@ def linear_grating(grating: LinearGrating, at: ActuatorPlaces) -> Values:
     dx, dy = at.from_point(*grating.start_mm)
     cycle = Cycle(grating.ridge_mm, grating.gap_mm)
     x = distorted(dx * math.cos(angle) + dy * math.sin(angle), grating.distortion)
-    return ridges(moved_on(x, cycle, grating.velocity_mm_s, at.time_s), cycle)
+    return ridges(moved_on(x, cycle, grating.velocity_mm_s, at.moved_s(grating.velocity_by)), cycle)
 
 
 def radial_grating(grating: RadialGrating, at: ActuatorPlaces) -> Values:
     """Compute a radial grating: x is the distance from its centre, 8.4.1."""
     cycle = Cycle(grating.ridge_mm, grating.gap_mm)
     x = distorted(np.hypot(*at.from_point(*grating.center_mm)), grating.distortion)
-    return ridges(moved_on(x, cycle, grating.velocity_mm_s, at.time_s), cycle)
+    return ridges(moved_on(x, cycle, grating.velocity_mm_s, at.moved_s(grating.velocity_by)), cycle)
 
 
 def axial_grating(grating: AxialGrating, at: ActuatorPlaces) -> Values:
@@ -158,7 +167,7 @@ def axial_grating(grating: AxialGrating, at: ActuatorPlaces) -> Values:
         turn = grating.distortion
         x = peak(x, turn.factor, turn.center_deg, turn.length_deg)
         shortest /= max(1.0, turn.factor)
-    g = ridges(moved_on(x, cycle, grating.velocity_deg_s, at.time_s), cycle)
+    g = ridges(moved_on(x, cycle, grating.velocity_deg_s, at.moved_s(grating.velocity_by)), cycle)
     arc_mm = math.radians(shortest) * np.hypot(dx, dy)
     start_mm, end_mm = grating.fade_mm
     share = np.clip((arc_mm - start_mm) / (end_mm - start_mm), 0.0, 1.0)

@@ -44,7 +44,7 @@ from vbraille.analysis.statistics.trialsmodel import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -157,6 +157,12 @@ class CellDesign:
         contrasts = apart[:, place] / others
         contrasts[:, ~whole] = 0.0
         return contrasts
+
+    def compared(self, own: tuple[int, ...]) -> list[LevelPair]:
+        """Differences in an effect: of a factor's levels, or simple effects of two factors."""
+        if len(own) == 1:
+            return self.pairs(own[0]) if self.levels[:, own[0]].max() < MOST_LEVELS else []
+        return self.simple_effects(own)
 
     def pairs(self, factor: int) -> list[LevelPair]:
         """All pairs of a factor's levels, each averaged over those of the other factors."""
@@ -453,24 +459,61 @@ def effects(data: CellShares | CellScores, correction: str) -> list[ComparedEffe
     """
     design = data.design
     found = [(own, data.joint(own)) for own in design.effects()]
-    corrected = _adjusted([test.p for _, test in found], correction)
-    made = []
-    for (own, test), p in zip(found, corrected, strict=True):
-        pairs = design.pairs(own[0]) if len(own) == 1 else design.simple_effects(own)
-        if len(own) == 1 and int(design.levels[:, own[0]].max()) + 1 > MOST_LEVELS:
-            pairs = []
-        told = [data.contrast(pair.weights) for pair in pairs]
-        # Levels that are the effect itself are tested once.
-        single = len(own) == 1 and len(pairs) == 1
-        own_p = [test.p] if single else [each.p for each in told]
-        within = _adjusted(own_p, correction)
-        gated = [None if one is None or p is None else max(one, p) for one in within]
-        made.append(ComparedEffect(own, test, p, tuple(zip(pairs, told, gated, strict=True))))
-    return made
+    pairs = [design.compared(own) for own, _ in found]
+    told = [[data.contrast(pair.weights) for pair in of] for of in pairs]
+    family, within = correct_family(
+        np.array([[np.nan if test.p is None else test.p for _, test in found]]),
+        [np.array([[np.nan if one.p is None else one.p for one in of]]) for of in told],
+        correction,
+    )
+    return [
+        ComparedEffect(
+            own,
+            test,
+            _known(family[0, at]),
+            tuple(
+                (pair, one, _known(p))
+                for pair, one, p in zip(pairs[at], told[at], within[at][0], strict=True)
+            ),
+        )
+        for at, (own, test) in enumerate(found)
+    ]
 
 
-def _adjusted(values: list[float | None], correction: str) -> list[float | None]:
-    """p-values corrected for those that there are."""
-    known = [p for p in values if p is not None]
-    corrected = iter(adjust(known, correction).tolist() if known else [])
-    return [None if p is None else next(corrected) for p in values]
+def correct_family(
+    effect_p: Floats, pair_p: Sequence[Floats], correction: str
+) -> tuple[Floats, list[Floats]]:
+    """Correct p of effects as one family, and those of the differences in each effect.
+
+    Parameters
+    ----------
+    effect_p : float64[studies, effects]
+        p of each effect; NaN where there is none.
+    pair_p : float64[studies, pairs] each
+        p of the differences in each effect.
+    correction
+        A key of `intervals.METHODS`.
+
+    Returns
+    -------
+    float64[studies, effects], and a list of float64[studies, pairs]
+        Corrected p; that of a difference is at least that of its effect.
+    """
+    family = _adjusted(effect_p, correction)
+    within = [_adjusted(own, correction) for own in pair_p]
+    return family, [np.maximum(own, family[:, [at]]) for at, own in enumerate(within)]
+
+
+def _adjusted(p: Floats, correction: str) -> Floats:
+    """P corrected in each study for those that it has, float64[studies, n]."""
+    known = ~np.isnan(p)
+    if known.all():
+        return adjust(p, correction)
+    corrected = np.full_like(p, np.nan)
+    for study, own in enumerate(known):
+        corrected[study, own] = adjust(p[study, own], correction)
+    return corrected
+
+
+def _known(p: float) -> float | None:
+    return None if math.isnan(p) else float(p)

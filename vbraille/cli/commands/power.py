@@ -29,7 +29,6 @@ def run(arguments: argparse.Namespace) -> int:
         sizes=arguments.participants,
         between=arguments.between,
         differing=arguments.differing,
-        test=arguments.test,
         correction=arguments.correction,
         studies=arguments.studies,
         seed=SEED if arguments.seed is None else arguments.seed,
@@ -57,13 +56,18 @@ def _lines(table: PowerTable) -> Iterator[str]:
     for word, sentence in table.about:
         yield f"{word}: {sentence}"
     for row in table.rows:
+        people = count(row.participants, "participant")
+        if row.power is None:
+            width = "no interval" if row.half_width is None else f"± {row.half_width:.3g}"
+            yield f"{people}: {row.kind} {row.compared}; 95 % interval {width} on average"
+            continue
         untested = f"; without a p {row.untested}" if row.untested else ""
         line = (
-            f"{count(row.participants, 'participant')}: {row.first} against {row.second}; "
+            f"{people}: {row.kind} {row.compared}; "
             f"power {row.power:.1%}, {row.low:.1%} to {row.high:.1%}{untested}"
         )
         yield line.replace("%", " %")
     largest = max(row.participants for row in table.rows)
-    for (first, second), least in table.enough().items():
+    for compared, least in table.enough().items():
         who = f"more than {largest}" if least is None else f"{least}"
-        yield f"for a power of {100 * ENOUGH:.0f} %: {first} against {second}; {who} participants"
+        yield f"for a power of {100 * ENOUGH:.0f} %: {compared}; {who} participants"

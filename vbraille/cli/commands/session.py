@@ -65,7 +65,11 @@ def _plan(arguments: argparse.Namespace) -> int:
     )
     if plan.group:
         _say(f"group: {plan.group}")
+    from vbraille.forecast.pilots import expected_minutes
+
+    minutes = expected_minutes(protocol, plan)
     _say(f"analysis: {protocol.planned_analysis.described()}")
+    _say(f"length: some {minutes:.0f} minutes, if people read as those of the source")
     if protocol.adaptive:
         from vbraille.sessions.planning.nexttrial import describe
 

@@ -302,10 +302,10 @@ def power(parser: CommandParser) -> None:
     protocol(parser)
     parser.option(
         "--effect",
-        "NAME=SHARE,…",
-        "Assume these shares of right answers, by condition; or one of them, and odds-ratio=R for "
-        "the odds in every other one. Where values are compared: VALUE=SHARE, how often it is "
-        "chosen.",
+        "NAME=VALUE,…",
+        "Assume these values of the planned measure, by condition, or GROUP:CONDITION: shares of "
+        "right answers, durations, ratings and so on. Of shares also one of them, and odds-ratio=R "
+        "for the odds in every other one. Without conditions: MEASURE=VALUE.",
         expected_shares,
         required=True,
     )
@@ -320,28 +320,23 @@ def power(parser: CommandParser) -> None:
     parser.option(
         "--between",
         "SD",
-        "Let participants differ by this standard deviation, in log odds of a right answer.",
+        "Let participants differ by this standard deviation in all conditions alike: of shares in "
+        "log odds, of durations, thresholds and magnitudes in logarithms, else in the unit.",
         number,
         default=0.5,
     )
     parser.option(
         "--differing",
         "SD",
-        "Let what a condition adds to the log odds differ between participants by this standard "
-        "deviation.",
+        "Let each condition by itself differ between participants by this standard deviation "
+        "beside; a difference of two then has √2 times as much.",
         number,
         default=0.0,
     )
     parser.choice(
-        "--test",
-        ("model", "paired"),
-        "Test by the logistic model of trials, or by a paired t-test of shares (default: model).",
-    )
-    parser.choice(
         "--correction",
         ("none", "bonferroni", "holm", "fdr"),
-        "Correct the p-values of several pairs in this way.",
-        default="holm",
+        "Correct p in this way (default: as the protocol plans).",
     )
     parser.option("--seed", "N", "Begin random draws with this (default: 20090618).", seed)
     _workers(parser)

@@ -8,10 +8,11 @@ from operator import methodcaller
 from vbraille.reading.commands import control
 from vbraille.reading.commands.table import TYPING
 from vbraille.reading.keys import ANY, Bindings, Command, Context, bind
+from vbraille.scene.signals import MOST_KEYS
 
 STEP_MM, FAR_MM = 1.0, 10.0
 # Buttons of the device, by their numbers.
-BUTTONS = {"1": "HERE", "2": "DESCRIBE", "3": "PAUSE"}
+BUTTONS = {"1": "HERE", "2": "DESCRIBE", "3": "PAUSE", "4": "SWITCH_1", "5": "SWITCH_2"}
 
 
 # A command calls a method of the feeler, by its name: what feels loads the kernels.
@@ -80,6 +81,15 @@ COMMANDS = (
     ),
     Command("CONTRAST_UP", ("c",), "more contrast", methodcaller("turn_contrast", 1)),
     Command("CONTRAST_DOWN", ("C",), "less contrast", methodcaller("turn_contrast", -1)),
+    *(
+        Command(
+            f"SWITCH_{number}",
+            (str(number),),
+            f"picture: its switch {number}, such as another view",
+            methodcaller("switch", number),
+        )
+        for number in range(1, MOST_KEYS + 1)
+    ),
     Command("RELOAD", ("r",), "read the file of the picture again", methodcaller("reload")),
     Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
     Command("HELP", ("h", "f1"), "say the keys", control.say_keys),

@@ -18,15 +18,17 @@ from vbraille.render.waves import compiled
 
 # A number of a type, for what a plain 0 is given to would be compiled for it and for all others.
 _NO_BLOCK = _NONE = np.int64(0)
+_NO_PLACE = 1e9  # mm; a centre farther away is none
 
 
 @compiled
-def evaluate(numbers, table, rows, start, count, time, left, right, top_mm, bottom_mm):
+def evaluate(numbers, table, rows, start, count, gates, time, left, right, top_mm, bottom_mm):
     """Compute the deflections at ``count`` places, which are in the rows X and Y, by words.
 
     The row of signs says which way each place swings, 1 or -1. Without a time, which is NaN then,
-    it has noise from -1 to 1 that stands for vibrations. The deflections go to the row `STACK`.
-    All places are in the box that is given last.
+    it has noise from -1 to 1 that stands for vibrations. The row `GIVEN_ROW` has the signals, by
+    which ``gates`` are shut. The deflections go to the row `STACK`. All places are in the box that
+    is given last.
     """
     at = start
     block = _NO_BLOCK
@@ -45,7 +47,8 @@ def evaluate(numbers, table, rows, start, count, time, left, right, top_mm, bott
                 parts, first = int(numbers[at]), at + 1
                 at = first + parts
             if (
-                numbers[block + w.BOX_RIGHT] < left
+                gates & int(numbers[block + w.SHUT_BY]) != 0
+                or numbers[block + w.BOX_RIGHT] < left
                 or numbers[block + w.BOX_LEFT] > right
                 or numbers[block + w.BOX_BOTTOM] < top_mm
                 or numbers[block + w.BOX_TOP] > bottom_mm
@@ -142,6 +145,20 @@ def evaluate(numbers, table, rows, start, count, time, left, right, top_mm, bott
             strokes.fill_blended(rows, top, count)
         elif operation == w.FILL_MASK:
             strokes.fill_mask(rows, top - 1, count)
+        elif operation == w.SIGNAL:
+            _level(rows, top, rows[w.GIVEN_ROW, int(numbers[place])], count)
+            top += 1
+        elif operation == w.BY_SIGNAL:
+            _scale(rows, top - 1, rows[w.GIVEN_ROW, int(numbers[place])], count)
+        elif operation == w.GATE:
+            if gates & int(numbers[place]) != 0:
+                at += int(numbers[place + 1])
+                for _ in range(int(numbers[place + 2])):
+                    _level(rows, top, 0.0, count)
+                    top += 1
+        elif operation == w.SHIFT:
+            _shift(numbers, rows, place, time, top, count)
+            top += 2
         elif operation == w.WRAP:
             _wrap(numbers, rows, place, top, count)
             top += 2
@@ -245,6 +262,27 @@ def _wrap(numbers, rows, at, top, count):
         # A quotient may be rounded up to the next tile.
         rows[w.X_ROW, n] = x if x >= 0.0 else x + width
         rows[w.Y_ROW, n] = y if y >= 0.0 else y + height
+
+
+@compiled
+def _shift(numbers, rows, at, time, top, count):
+    """Keep the places in two rows and move them: constants velocity, clock, and a centre's place.
+
+    Lévesque 2009, eq. 9.1: δ(p - vt). Where a centre is given, places are taken as if the array's
+    centre stood there, so that what moves does so under the finger, not by the hand.
+    """
+    right = down = 0.0
+    passed = textures.passed_s(rows, numbers[at + 2], time)
+    if passed == passed:
+        right, down = -numbers[at] * passed, -numbers[at + 1] * passed
+    x, y = rows[w.GIVEN_ROW, w.CENTER_X], rows[w.GIVEN_ROW, w.CENTER_Y]
+    if numbers[at + 3] < _NO_PLACE and x == x:
+        right += numbers[at + 3] - x
+        down += numbers[at + 4] - y
+    for n in range(count):
+        rows[top, n], rows[top + 1, n] = rows[w.X_ROW, n], rows[w.Y_ROW, n]
+        rows[w.X_ROW, n] += right
+        rows[w.Y_ROW, n] += down
 
 
 @compiled

@@ -8,6 +8,7 @@ Shapes of many parts are given only those in reach: ``numbers`` has at ``first``
 
 import math
 
+from vbraille.render.machine.texturekernels import passed_s
 from vbraille.render.machine.words import (
     ACROSS_ROW,
     ALONG_ROW,
@@ -81,7 +82,8 @@ def circle(numbers, rows, at, count):
 
 @compiled
 def segments(numbers, rows, at, time, block, first, parts, count):
-    """Coordinates of lines through places, eqs. 8.15-8.17: constants what is asked for."""
+    """Coordinates of lines through places, eqs. 8.15-8.17: constants what is asked for, clock."""
+    time = passed_s(rows, numbers[at + 1], time)
     for n in range(count):
         rows[ACROSS_ROW, n] = _FAR
     along = numbers[at] != ACROSS

@@ -15,8 +15,9 @@ from numba.extending import intrinsic
 from vbraille.caching import keep_compiled
 from vbraille.render.machine import words as w
 from vbraille.render.machine.scenekernels import evaluate
+from vbraille.render.machine.signalkernels import begin, compute, shut_gates
 from vbraille.render.waves import compiled
-from vbraille.render.work import THETA, TIME, X, Y
+from vbraille.render.work import MEMORY, MOST_SIGNALS, SIGNAL, THETA, TIME, X, Y
 
 _NAME = "vbraille_evaluate_scene"
 _I64, _F64 = ir.IntType(64), ir.DoubleType()
@@ -24,14 +25,14 @@ _SIGNATURE = types.void(
     types.CPointer(types.float64),
     types.CPointer(types.uint16),
     types.CPointer(types.float64),
-    types.int64,
-    types.int64,
-    types.int64,
+    *(types.int64,) * 4,
     *(types.float64,) * 5,
 )
 
 
-def _evaluate_plainly(numbers, table, rows, width, start, count, time, left, right, top, bottom):
+def _evaluate_plainly(
+    numbers, table, rows, width, start, count, gates, time, left, right, top, bottom
+):
     # The machine stays within what was compiled; how long that is it does not ask.
     evaluate(
         carray(numbers, (_ANY,)),
@@ -39,6 +40,7 @@ def _evaluate_plainly(numbers, table, rows, width, start, count, time, left, rig
         carray(rows, (w.SCRATCH_ROWS, width)),
         start,
         count,
+        gates,
         time,
         left,
         right,
@@ -53,13 +55,14 @@ _ROUNDING_MM = 1e-6
 
 @intrinsic
 def _call(
-    _typing, _numbers, _table, _rows, _width, _start, _count, _time, _left, _right, _top, _bottom
-):
+    _typing, _numbers, _table, _rows, _width, _start, _count, _gates, _time, _left, _right, _top,
+    _bottom,
+):  # fmt: skip
     """Call `evaluate` by its name, with addresses of arrays."""
 
     def code(context, builder, _signature, arguments):
         doubles, words = _F64.as_pointer(), ir.IntType(16).as_pointer()
-        kinds = (doubles, words, doubles, _I64, _I64, _I64, *(_F64,) * 5)
+        kinds = (doubles, words, doubles, *(_I64,) * 4, *(_F64,) * 5)
         function = builder.module.globals.get(_NAME)
         if function is None:
             kind = ir.FunctionType(ir.VoidType(), kinds)
@@ -70,7 +73,7 @@ def _call(
         builder.call(function, given)
         return context.get_dummy_value()
 
-    return types.void(*(types.int64,) * 6, *(types.float64,) * 5), code
+    return types.void(*(types.int64,) * 7, *(types.float64,) * 5), code
 
 
 if config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
@@ -83,7 +86,7 @@ else:
     binding.add_symbol(_NAME, _evaluate.address)
 
     @compiled
-    def run(numbers, table, rows, start, count, time, left, right, top, bottom):
+    def run(numbers, table, rows, start, count, gates, time, left, right, top, bottom):
         """Do as `scenekernels.evaluate` does, which is not compiled into the caller."""
         _call(  # pyright: ignore[reportCallIssue]
             numbers.ctypes.data,
@@ -92,6 +95,7 @@ else:
             rows.shape[1],
             start,
             count,
+            gates,
             time,
             left,
             right,
@@ -114,8 +118,8 @@ def _words_at(numbers, x, y):
 
 
 @compiled
-def _is_out_of_reach(numbers, at, left, right, top, bottom):
-    """Tell whether words only call patterns of which none is in a box, which gives 0 then."""
+def _is_out_of_reach(numbers, at, gates, left, right, top, bottom):
+    """Tell whether words only call patterns of which none is in a box or none is let through."""
     while True:
         word = int(numbers[at])
         at += 1
@@ -123,7 +127,8 @@ def _is_out_of_reach(numbers, at, left, right, top, bottom):
         if operation == w.CALL or operation == w.CALL_PARTS:
             block = argument >> 6
             if not (
-                numbers[block + w.BOX_RIGHT] < left
+                gates & int(numbers[block + w.SHUT_BY]) != 0
+                or numbers[block + w.BOX_RIGHT] < left
                 or numbers[block + w.BOX_LEFT] > right
                 or numbers[block + w.BOX_BOTTOM] < top
                 or numbers[block + w.BOX_TOP] > bottom
@@ -150,9 +155,20 @@ def show(numbers, table, rows, at, out):
 
 @compiled
 def show_all(numbers, table, rows, at, out):
-    """Fill a frame for each pose and time, of which each is a row of ``at``."""
+    """Fill a frame for each pose and time, of which each is a row of ``at``, in order of time.
+
+    Signals are computed, too. They begin as when the picture is first shown, unless the first row
+    has what they remember; without it the first number of that is NaN.
+    """
     count, above, across = out.shape
     for n in range(count):
+        if numbers[w.SIGNALS] != 0.0:
+            if n:
+                at[n, MEMORY:] = at[n - 1, MEMORY:]
+                compute(numbers, at[n], max(at[n, TIME] - at[n - 1, TIME], 0.0))
+            elif at[0, MEMORY] != at[0, MEMORY]:
+                begin(numbers, at[0])
+                compute(numbers, at[0], 0.0)
         start = _words_at(numbers, at[n, X], at[n, Y])
         if start == 0 or not _show_tile(numbers, table, rows, start, at[n], out[n]):
             for i in range(above):
@@ -175,7 +191,11 @@ def _show_tile(numbers, table, rows, start, at, out):
     wide = half_aside * abs(cosine) + half_down * abs(sine) + _ROUNDING_MM
     high = half_down * abs(cosine) + half_aside * abs(sine) + _ROUNDING_MM
     x0, x1, y0, y1 = x - wide, x + wide, y - high, y + high
-    if _is_out_of_reach(numbers, start, x0, x1, y0, y1):
+    for n in range(MOST_SIGNALS):
+        rows[w.GIVEN_ROW, n] = at[SIGNAL + n]
+    rows[w.GIVEN_ROW, w.CENTER_X], rows[w.GIVEN_ROW, w.CENTER_Y] = x, y
+    gates = shut_gates(numbers, rows[w.GIVEN_ROW])
+    if _is_out_of_reach(numbers, start, gates, x0, x1, y0, y1):
         return False
     n = 0
     for i in range(above):
@@ -186,7 +206,7 @@ def _show_tile(numbers, table, rows, start, at, out):
             rows[w.Y_ROW, n] = y + down * cosine - aside * sine
             rows[w.SIGN_ROW, n] = 1.0 - 2.0 * ((i + j) & 1)
             n += 1
-    run(numbers, table, rows, start, lanes, at[TIME], x0, x1, y0, y1)
+    run(numbers, table, rows, start, lanes, gates, at[TIME], x0, x1, y0, y1)
     left, right = numbers[w.LEFT_MM], numbers[w.RIGHT_MM]
     top, bottom = numbers[w.TOP_MM], numbers[w.BOTTOM_MM]
     if not (left <= x0 and x1 <= right and top <= y0 and y1 <= bottom):
@@ -216,7 +236,7 @@ def raster(numbers, table, rows, x_mm, y_mm, columns, lines, sign, noise, time, 
     numbers, table
         The program, with a grid for arrays that are points.
     rows : float64[SCRATCH_ROWS, LANES]
-        Room to work in.
+        Room to work in, with the values of the signals.
     x_mm, y_mm : float64[w], float64[h]
         Places of the raster's columns and lines.
     columns, lines : int64[n, 3]
@@ -271,7 +291,8 @@ def _block(numbers, table, rows, x_mm, y_mm, i0, i1, j0, j1, sign, noise, time, 
             n += 1
     x0, x1 = _span(x_mm, j0, j1)
     y0, y1 = _span(y_mm, i0, i1)
-    run(numbers, table, rows, start, n, time, x0, x1, y0, y1)
+    gates = shut_gates(numbers, rows[w.GIVEN_ROW])
+    run(numbers, table, rows, start, n, gates, time, x0, x1, y0, y1)
 
 
 @compiled

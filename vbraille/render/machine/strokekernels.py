@@ -6,7 +6,7 @@
 
 import math
 
-from vbraille.render.machine.texturekernels import phase
+from vbraille.render.machine.texturekernels import passed_s, phase
 from vbraille.render.machine.words import (
     ACROSS_ROW,
     ALONG_ROW,
@@ -33,11 +33,12 @@ NO_VIBRATION, HIGH, LOW = 0.0, 1.0, 2.0
     SWING,  # what vibrates, and then the frequency and amplitude of that
     _SWING_HZ,
     _SWING_SHARE,
+    CLOCK,  # signal by which a texture along the stroke moves; below 0 for time
     MARKS,  # 1 if there are markers, or dots on vertices, that vibrate in their own way; then how
     _MARKS_HZ,
     _MARKS_SHARE,
     STROKE_NUMBERS,
-) = range(5, 19)
+) = range(5, 20)
 
 
 @compiled
@@ -132,8 +133,9 @@ def _cut(numbers, rows, at, time, count):
     cycle, ridge = numbers[at + CYCLE], numbers[at + RIDGE]
     depth, velocity = numbers[at + DEPTH], numbers[at + VELOCITY]
     shift = 0.0
-    if velocity != 0.0 and time == time:
-        shift = velocity * time / cycle
+    passed = passed_s(rows, numbers[at + CLOCK], time)
+    if velocity != 0.0 and passed == passed:
+        shift = velocity * passed / cycle
         shift = cycle * (shift - math.floor(shift))
     cycles, ridges = 1.0 / cycle, 1.0 / ridge
     for n in range(count):

@@ -6,7 +6,7 @@ first of its constants in ``numbers``, whose order is that of `vbraille.render.s
 
 import math
 
-from vbraille.render.machine.words import FREE_ROW, SIGN_ROW, SPARE_ROW, X_ROW, Y_ROW
+from vbraille.render.machine.words import FREE_ROW, GIVEN_ROW, SIGN_ROW, SPARE_ROW, X_ROW, Y_ROW
 from vbraille.render.waves import angle, compiled, hump
 
 _TURN_DEG = 360.0
@@ -52,6 +52,12 @@ def vibrate_low(numbers, rows, at, time, top, count):
 
 
 @compiled
+def passed_s(rows, clock, time):
+    """Time by which something has moved: by a signal, if a clock has its number, or by itself."""
+    return rows[GIVEN_ROW, int(clock)] if clock >= 0.0 and time == time else time
+
+
+@compiled
 def linear(numbers, rows, at, time, top, count):
     """Linear grating: constants direction, start, then those of `_grating`."""
     right, down, start = numbers[at], numbers[at + 1], numbers[at + 2]
@@ -93,11 +99,11 @@ def axial(numbers, rows, at, time, top, count):
 def _grating(numbers, rows, at, time, top, count):
     """Waveform g of the abscissa in ``top``, eq. 8.4, after a distortion, eqs. 8.5 and 8.6.
 
-    Constants: cycle, ridge, velocity, factor, then of the distortion its change of frequency
+    Constants: cycle, ridge, velocity, clock, then of the distortion its change of frequency
     K - 1 (0 for none), where it begins, its length, and 1 if it is a peak.
     """
     cycle, ridge, velocity = numbers[at], numbers[at + 1], numbers[at + 2]
-    factor, change = numbers[at + 3], numbers[at + 4]
+    change = numbers[at + 4]
     if change != 0.0:
         begin, length, peak = numbers[at + 5], numbers[at + 6], numbers[at + 7]
         half = 0.5 / length
@@ -113,14 +119,15 @@ def _grating(numbers, rows, at, time, top, count):
             after = w - half * w * w if peak != 0.0 else v
             rows[top, n] = x + change * (half * u * u + after)
     shift = 0.0
-    if velocity != 0.0 and time == time:
-        shift = velocity * time / cycle
+    passed = passed_s(rows, numbers[at + 3], time)
+    if velocity != 0.0 and passed == passed:
+        shift = velocity * passed / cycle
         shift = cycle * (shift - math.floor(shift))
     cycles, ridges = 1.0 / cycle, 1.0 / ridge
     for n in range(count):
         x = rows[top, n] - shift
         x -= cycle * math.floor(x * cycles)
-        rows[top, n] = factor * hump(x * ridges - 0.5)
+        rows[top, n] = hump(x * ridges - 0.5)
 
 
 @compiled

@@ -7,7 +7,7 @@ words costs next to nothing. A word is a whole number, kept as float64: its oper
 """
 
 # After the head (`vbraille.render.work`): where everything is.
-from vbraille.render.work import OWN
+from vbraille.render.work import MOST_SIGNALS, OWN
 
 (
     COLUMN_MM,  # distances between actuators
@@ -21,8 +21,12 @@ from vbraille.render.work import OWN
     TILES_PER_MM,
     GRID_COLUMNS,
     GRID_ROWS,
-    GRID,  # place of the first of the numbers that say, for each tile, where its words begin
-) = range(OWN, OWN + 12)
+    SIGNALS,  # how many signals there are, and then each as `SIGNAL_NUMBERS` numbers
+    SIGNAL_ROWS,
+) = range(OWN, OWN + 13)
+SIGNAL_NUMBERS = 12
+# Place of the first of the numbers that say, for each tile, where its words begin.
+GRID = SIGNAL_ROWS + MOST_SIGNALS * SIGNAL_NUMBERS
 
 OPERATIONS = 64
 
@@ -66,15 +70,20 @@ OPERATIONS = 64
     WRAP,  # places are wrapped into a tile, until UNWRAP
     UNWRAP,
     MARKERS,  # how much of each place is in a marker of a polygon
-) = range(39)
+    SIGNAL,  # push a signal
+    BY_SIGNAL,  # change of the uppermost: times a signal
+    GATE,  # push 0, once or twice, instead of the words that follow, if these are shut
+    SHIFT,  # places are moved, until UNWRAP
+) = range(43)
 
 # How what a CALL pushes joins what is on the stack: by one of the words from ADD to OVER_ITSELF, or
 # not at all, as one row or as a pair.
 PUSHED, PUSHED_PAIR = 62, 63
 JOINS = 64
 
-# The block of a pattern: its box, then its words, then its constants.
-BOX_LEFT, BOX_TOP, BOX_RIGHT, BOX_BOTTOM, WORDS = range(5)
+# The block of a pattern: its box, its gate, then its words, then its constants. A gate has a bit
+# for each signal that shuts it where it is 0, and then one for each that does where it is 1.
+BOX_LEFT, BOX_TOP, BOX_RIGHT, BOX_BOTTOM, SHUT_BY, WORDS = range(6)
 
 # Rows of the scratch: places and signs, coordinates of shapes, room, and the stack.
 (
@@ -88,7 +97,10 @@ BOX_LEFT, BOX_TOP, BOX_RIGHT, BOX_BOTTOM, WORDS = range(5)
     PART_ROW,
     FREE_ROW,
     SPARE_ROW,
+    GIVEN_ROW,  # the values of the signals, then where the array's centre is
     STACK,
-) = range(11)
+) = range(12)
+CENTER_X, CENTER_Y = MOST_SIGNALS, MOST_SIGNALS + 1
+LEAST_LANES = MOST_SIGNALS + 2  # so that these fit into a row
 DEPTH = 32  # rows of the stack
 SCRATCH_ROWS = STACK + DEPTH

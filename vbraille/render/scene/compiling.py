@@ -7,21 +7,23 @@ from __future__ import annotations
 
 import math
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vbraille.render import work
-from vbraille.render.machine import words
+from vbraille.render.machine import signalkernels, words
 from vbraille.render.program import Program, head
 from vbraille.render.scene.grid import TileGrid, assemble, flatten
 from vbraille.render.scene.labels import Assets
 from vbraille.render.scene.nodes import NodeKind, joined
 from vbraille.render.scene.trees import ONE, deflection, layer, mask
 from vbraille.render.work import ProgramKind
-from vbraille.scene.patterns import Group, Shape
+from vbraille.scene.patterns import Group, Moving, Shape
+from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch, ordered
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating
-from vbraille.scene.traversal import drawn_vibrations, each
+from vbraille.scene.traversal import drawn_vibrations, driving, each
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,14 +32,24 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.render.scene.grid import Flat
+    from vbraille.scene.measures import Point
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
+    from vbraille.scene.signals import OrderedSignal
 
 _KINDS = {
     "multiply": NodeKind.MULTIPLY,
     "add": NodeKind.ADD,
     "maximum": NodeKind.MAXIMUM,
     "overwrite": NodeKind.OVER,
+}
+
+
+_AT_REST = {"high": signalkernels.HIGH, "low": signalkernels.LOW, "keep": signalkernels.KEEP}
+_SHAPES = {
+    "sine": signalkernels.SINE,
+    "square": signalkernels.SQUARE,
+    "ramp": signalkernels.RAMP,
 }
 
 
@@ -72,6 +84,7 @@ def compile_scene(
     moves_hz = [
         highest_hz(element, number, rate_hz) for number, element in enumerate(scene.elements, 1)
     ]
+    moves_hz += [1.0 / one.period_s for one in scene.signals.values() if isinstance(one, Pulse)]
     flat = flatten_scene(scene, assets or Assets())
     radius_mm = 0.5 * math.hypot(display.span_mm, display.depth_mm)
     grid = TileGrid.over(scene.canvas, radius_mm, pruned)
@@ -80,6 +93,7 @@ def compile_scene(
     numbers[words.ROW_MM] = display.row_pitch_mm
     numbers[work.FREQUENCY] = max(moves_hz, default=0.0)
     numbers[work.AMPLITUDE] = numbers[work.FREQUENCY] > 0.0
+    numbers[words.SIGNALS : words.GRID] = signal_numbers(scene)
     return Program(*assemble(numbers, scene.canvas, grid, flat))
 
 
@@ -98,9 +112,69 @@ def flatten_scene(scene: Scene, assets: Assets) -> Flat | None:
         )
     if not scene.elements:
         return None
+    assets = _with_signals(scene, assets)
     node = layer if scene.operation == "overwrite" else deflection
     elements = tuple(node(element, assets) for element in scene.elements)
     return flatten(joined(_KINDS[scene.operation], elements))
+
+
+def _with_signals(scene: Scene, assets: Assets) -> Assets:
+    """What a scene takes from elsewhere, with the numbers of its signals by their names."""
+    if not scene.signals:
+        return assets
+    numbers = {
+        one.name if one.signal is not None else f"∫{one.name}": number
+        for number, one in enumerate(ordered(scene.signals, driving(*scene.elements)))
+    }
+    return replace(assets, signals=numbers)
+
+
+def signal_numbers(scene: Scene) -> NDArray[np.float64]:
+    """Numbers of a scene's signals, as `signalkernels` takes them; float64[GRID - SIGNALS].
+
+    Raises
+    ------
+    ValueError
+        If there are more than 8 with the integrals of those that are the speed of a motion.
+    """
+    order = ordered(scene.signals, driving(*scene.elements)) if scene.signals else []
+    if len(order) > work.MOST_SIGNALS:
+        raise ValueError(
+            f"there are {len(order)} signals, where each that is the speed of a motion counts "
+            f"twice; there can be {work.MOST_SIGNALS}"
+        )
+    numbers = np.zeros(words.GRID - words.SIGNALS)
+    numbers[0] = len(order)
+    rows = numbers[1:].reshape(work.MOST_SIGNALS, words.SIGNAL_NUMBERS)
+    for row, one in zip(rows, order, strict=False):
+        own = _signal(one)
+        row[: len(own)] = own
+    return numbers
+
+
+def _signal(one: OrderedSignal) -> tuple[float, ...]:
+    """Numbers of a signal: its kind, and what `signalkernels` says of that."""
+    match one.signal:
+        case Speed() as speed:
+            end = speed.below_mm_s + speed.transition_mm_s
+            return (signalkernels.SPEED, speed.below_mm_s, end, speed.delay_s)
+        case Direction() as way:
+            angle = math.remainder(math.radians(way.angle_deg), 2.0 * math.pi)
+            slow = way.below_mm_s, way.below_mm_s + way.slow_transition_mm_s
+            last = way.tolerance_deg + way.transition_deg
+            away = math.radians(way.tolerance_deg), math.radians(last)
+            rest = _AT_REST[way.at_rest]
+            return (signalkernels.DIRECTION, angle, *slow, *away, float(way.axis), rest)
+        case Switch() as switch:
+            count = float(len(switch.levels))
+            return (signalkernels.SWITCH, switch.fade_s, count, *switch.levels)
+        case Pulse() as clock:
+            return (signalkernels.CLOCK, _SHAPES[clock.shape], clock.period_s)
+        case Product():
+            return (signalkernels.PRODUCT, float(len(one.of)), *map(float, one.of))
+        case Inverse():
+            return (signalkernels.INVERSE, 1.0, float(one.of[0]))
+    return (signalkernels.INTEGRAL, 1.0, float(one.of[0]))
 
 
 def highest_hz(pattern: AnyPattern, number: int, rate_hz: float) -> float:
@@ -146,9 +220,12 @@ def _frequencies(pattern: AnyPattern) -> Iterator[float]:
             yield abs(pattern.velocity_mm_s) / (pattern.ridge_mm + pattern.gap_mm)
     elif isinstance(pattern, AxialGrating) and pattern.velocity_deg_s:
         yield abs(pattern.velocity_deg_s) / (pattern.ridge_deg + pattern.gap_deg)
+    elif isinstance(pattern, Moving) and any(pattern.velocity_mm_s):
+        yield _MOVING_HZ
 
 
 _THREADS = 2
+_MOVING_HZ = 1.0  # of what moves at any length of its waves
 _Numbers = tuple["NDArray[np.float64]", "NDArray[np.uint16]", TileGrid]
 
 
@@ -181,6 +258,8 @@ class SceneMap:
         time_s: float = 0.0,
         parity: int = 0,
         noise_seed: int | None = None,
+        velocity_mm_s: Point = (0.0, 0.0),
+        switches: int = 0,
     ) -> NDArray[np.float32]:
         """Compute the deflections of actuators at the places of a raster: Lévesque 2009, 8.3.3.
 
@@ -195,6 +274,9 @@ class SceneMap:
         noise_seed
             Seed of the noise that stands for vibrations; None shows them as they are at the time.
             Gratings that travel stand where they do at first then.
+        velocity_mm_s, switches
+            Velocity of the hand for as long as signals remember, and states of the switches, as
+            `vbraille.scene.signals.packed` has them.
 
         Returns
         -------
@@ -203,7 +285,8 @@ class SceneMap:
         """
         if self._shown is None:
             self._shown = self._assemble(flatten_scene(self._scene, self._assets))
-        return _raster(self._shown, x_mm, y_mm, time_s, parity, noise_seed)
+        given = self._given(time_s, velocity_mm_s, switches)
+        return _raster(self._shown, x_mm, y_mm, time_s, parity, noise_seed, given)
 
     def opacity(
         self,
@@ -213,6 +296,8 @@ class SceneMap:
         time_s: float = 0.0,
         parity: int = 0,
         noise_seed: int | None = None,
+        velocity_mm_s: Point = (0.0, 0.0),
+        switches: int = 0,
     ) -> NDArray[np.float32]:
         """Compute the opacity mask of the scene at the places of a raster: Lévesque 2009, 8.4.5.
 
@@ -226,19 +311,37 @@ class SceneMap:
         """
         if self._hiding is None:
             self._hiding = self._assemble(self._mask())
-        return _raster(self._hiding, x_mm, y_mm, time_s, parity, noise_seed)
+        given = self._given(time_s, velocity_mm_s, switches)
+        return _raster(self._hiding, x_mm, y_mm, time_s, parity, noise_seed, given)
 
     def _mask(self) -> Flat | None:
         elements = self._scene.elements
         if not elements:
             return None
         whole = Group(operation=self._scene.operation, parts=elements)
-        tree = mask(elements[0] if len(elements) == 1 else whole, self._assets)
+        assets = _with_signals(self._scene, self._assets)
+        tree = mask(elements[0] if len(elements) == 1 else whole, assets)
         return flatten(ONE if tree is None else tree)
 
-    def _assemble(self, flat: Flat | None) -> _Numbers:
+    def _given(self, time_s: float, velocity_mm_s: Point, switches: int) -> NDArray[np.float64]:
+        """Values of the signals, and no centre of an array: float64[n]."""
+        at = np.zeros(work.AT)
+        if self._scene.signals:
+            at[work.TIME], at[work.SWITCHES] = time_s, switches
+            at[work.VX], at[work.VY] = velocity_mm_s
+            numbers = self._head()
+            signalkernels.begin(numbers, at)
+            signalkernels.compute(numbers, at, 0.0)
+        return np.append(at[work.SIGNAL : work.MEMORY], (math.nan, math.nan))
+
+    def _head(self) -> NDArray[np.float64]:
         head = np.zeros(words.GRID)
         head[work.KIND] = ProgramKind.SCENE
+        head[words.SIGNALS :] = signal_numbers(self._scene)
+        return head
+
+    def _assemble(self, flat: Flat | None) -> _Numbers:
+        head = self._head()
         grid = TileGrid.over(self._scene.canvas, 0.0)
         return (*assemble(head, self._scene.canvas, grid, flat), grid)
 
@@ -250,6 +353,7 @@ def _raster(
     time_s: float,
     parity: int,
     noise_seed: int | None,
+    given: NDArray[np.float64],
 ) -> NDArray[np.float32]:
     # Importing kernels loads numba, which only a process that makes pictures has to wait for.
     from vbraille.render.machine import showkernels
@@ -268,6 +372,7 @@ def _raster(
 
     def fill(some: NDArray[np.int64]) -> None:
         rows = np.zeros((words.SCRATCH_ROWS, showkernels.LANES))
+        rows[words.GIVEN_ROW, : given.size] = given
         sign = -1.0 if parity else 1.0
         showkernels.raster(numbers, table, rows, x_mm, y_mm, columns, some, sign, noise, time, out)
 

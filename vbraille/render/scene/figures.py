@@ -12,7 +12,8 @@ from vbraille.render.scene.labels import Assets, Written, box_of
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.patterns import Fill, Group, Image, Label, Polygon, Uniform
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.traversal import each, moved
+from vbraille.scene.signals import renamed
+from vbraille.scene.traversal import each, moved, with_signals
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from vbraille.scene.bitmap import Bitmap
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import AnyPattern
+    from vbraille.scene.signals import AnySignal
 
 PAGE = "page"  # id of the label that has the text of the page
 FIGURE = "figure"  # id of the group that the figure is
@@ -118,9 +120,14 @@ def page_with_figures(
     elements: tuple[AnyPattern, ...] = (text,)
     bitmaps: dict[Image, Bitmap] = {}
     written: dict[Label, Written] = {text: Written(tuple(lines), style)}
-    for figure, place_mm, assets in figures:
+    signals: dict[str, AnySignal] = {}
+    for number, (figure, place_mm, assets) in enumerate(figures):
+        names = {name: f"{number} {name}" for name in figure.signals}
+        signals |= {names[name]: renamed(one, names) for name, one in figure.signals.items()}
         try:
-            parts = tuple(moved(element, place_mm) for element in figure.elements)
+            parts = tuple(
+                with_signals(moved(element, place_mm), names) for element in figure.elements
+            )
         except ValueError as error:
             raise InputError(f"the figure cannot stand there: {error}") from None
         given = _moved_assets(figure.elements, parts, assets)
@@ -137,6 +144,7 @@ def page_with_figures(
         description=first.description,
         language=first.language,
         elements=elements,
+        signals=signals,
     )
     return scene, Assets(bitmaps, written)
 

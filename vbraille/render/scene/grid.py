@@ -505,9 +505,10 @@ class _Flattening:
         self.entries: list[TableEntry] = []
         self._size = 0
 
-    def add(self, node: Node, ordinal: int = 0) -> int:
-        """Add a node and all below it; return its number."""
-        children = [self.add(child, number) for number, child in enumerate(node.children)]
+    def add(self, node: Node, ordinal: int = 0, gate: int = 0) -> int:
+        """Add a node and all below it; return its number. A gate above it is one of its own."""
+        gate |= node.gate
+        children = [self.add(child, number, gate) for number, child in enumerate(node.children)]
         number = len(self.nodes)
         for child in children:
             self.nodes[child][PARENT] = number - child
@@ -516,7 +517,7 @@ class _Flattening:
         row[PUSHES], row[ONE] = node.pushes, node.one
         self.nodes.append(row)
         if node.kind is NodeKind.LEAF:
-            self._add_leaf(node, row, number)
+            self._add_leaf(node, row, number, gate)
         elif node.changes:
             row[ALWAYS] = node.everywhere
             row[CHANGES], row[CHANGE_COUNT] = len(self.changes), len(node.changes)
@@ -525,11 +526,11 @@ class _Flattening:
                 self._keep(np.array(constants, np.float64))
         return number
 
-    def _add_leaf(self, node: Node, row: list[float], number: int) -> None:
+    def _add_leaf(self, node: Node, row: list[float], number: int, gate: int) -> None:
         assert node.say is not None
         block = WordBlock()
         kept = node.say(block, node.parts)
-        numbers, entries = block.finish(node.box)
+        numbers, entries = block.finish(node.box, gate)
         row[BLOCK], row[HAS_PARTS], row[ALWAYS] = self._size, node.parts, node.box is None
         self.entries += [entry._replace(at=entry.at + self._size) for entry in entries]
         self._keep(numbers)

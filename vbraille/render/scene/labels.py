@@ -85,10 +85,13 @@ class Assets:
         Intensities of each image of the scene.
     written
         Cells of each label of the scene.
+    signals
+        Numbers of the signals by their names, and of their integrals by ``∫`` and the name.
     """
 
     bitmaps: Mapping[Image, Bitmap] = field(default_factory=dict)
     written: Mapping[Label, Written] = field(default_factory=dict)
+    signals: Mapping[str, int] = field(default_factory=dict)
 
 
 # By so much lines may reach into one another; a dot is less than 1e-9 up so near its edge.

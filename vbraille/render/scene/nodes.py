@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import IntEnum
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -84,8 +85,19 @@ class WordBlock:
         """Place of the first constant, from the block's beginning, once all words are said."""
         return words.WORDS + len(self._words) + 1
 
+    def say_gated(self, gate: int, pushes: int, say: Callable[[], None]) -> None:
+        """Add words that are passed over while a gate is shut, and so many zeros are pushed."""
+        if not gate:
+            say()
+            return
+        place = len(self._constants) + 1
+        self.say(words.GATE, gate, 0, pushes)
+        before = len(self._words)
+        say()
+        self._constants[place] = len(self._words) - before
+
     def finish(
-        self, box: tuple[float, float, float, float] | None
+        self, box: tuple[float, float, float, float] | None, gate: int = 0
     ) -> tuple[NDArray[np.float64], list[TableEntry]]:
         """Make the numbers of the block, and tell what of it belongs into the table.
 
@@ -93,6 +105,8 @@ class WordBlock:
         ----------
         box
             Left, top, right and bottom beyond which it is nothing; None for everywhere.
+        gate
+            Signals by which it is nothing: `words.SHUT_BY`.
         """
         first = self.first_constant
         constants = list(self._constants)
@@ -100,7 +114,7 @@ class WordBlock:
             constants[begin:end] = [place + first for place in constants[begin:end]]
         said = [operation + words.OPERATIONS * (place + first) for operation, place in self._words]
         within = (min(max(side, -_FAR), _FAR) for side in box or EVERYWHERE)
-        numbers = np.array([*within, *said, words.RETURN, *constants])
+        numbers = np.array([*within, gate, *said, words.RETURN, *constants])
         if not np.isfinite(numbers).all():
             raise ValueError("a number of a pattern is not finite")
         return numbers, [TableEntry(first + at, entries) for at, entries in self._entries]
@@ -172,6 +186,8 @@ class Node:
         Whether its deflection is 1 everywhere.
     depth
         Rows of the stack that it takes.
+    gate
+        Signals by which all of it is nothing: `words.SHUT_BY`.
     """
 
     kind: NodeKind
@@ -185,6 +201,7 @@ class Node:
     everywhere: bool = False
     one: bool = False
     depth: int = 1
+    gate: int = 0
 
 
 def joined(kind: NodeKind, children: tuple[Node, ...], pushes: Pushes = Pushes.ITSELF) -> Node:
@@ -202,6 +219,11 @@ _JOINS = {
 
 def say_whole(node: Node, block: WordBlock) -> None:
     """Say all of a tree in one block, wherever its parts are."""
+    pushes = 2 if node.pushes is Pushes.PAIR else 1
+    block.say_gated(node.gate, pushes, partial(_say_whole, node, block))
+
+
+def _say_whole(node: Node, block: WordBlock) -> None:
     if node.kind is NodeKind.LEAF:
         assert node.say is not None
         node.say(block, False)

@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
+import msgspec
 import numpy as np
 
 from vbraille.render.machine import shapekernels as places
@@ -30,17 +31,29 @@ from vbraille.render.scene.paths import (
     segments,
     walls,
 )
+from vbraille.render.work import MOST_SIGNALS
 from vbraille.scene.bitmap import WHOLE, bitmap_box, opaque
 from vbraille.scene.bounds import drawn_radius_mm, is_everywhere, unchanged_bounds
 from vbraille.scene.dotting import PlacedDot, dots_of
 from vbraille.scene.joints import Cycle, axial_cycle, stroke_cycles
 from vbraille.scene.measures import travel_deg
-from vbraille.scene.patterns import Circle, Dots, Group, Image, Label, Polygon, StraightLine, Tile
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Group,
+    Image,
+    Label,
+    Moving,
+    Polygon,
+    StraightLine,
+    Tile,
+)
 from vbraille.scene.textures import (
     AxialGrating,
     Gradual,
     LinearGrating,
     RadialGrating,
+    SignalLevel,
     TurnPeak,
     Uniform,
     UniformVibration,
@@ -56,10 +69,11 @@ if TYPE_CHECKING:
     from vbraille.scene.pattern import Pattern
     from vbraille.scene.patterns import AnyPattern, Fill
     from vbraille.scene.strokes import Across, DotStyle, Stroke, Vibration
-    from vbraille.scene.textures import Peak
 
     Saying = Callable[[WordBlock, bool], list[int]]
+    Changes = tuple[tuple[int, tuple[float, ...]], ...]
 
+_NO_PLACE = 1e30
 _KINDS = {
     "multiply": NodeKind.MULTIPLY,
     "add": NodeKind.ADD,
@@ -73,27 +87,33 @@ _KINDS = {
 def deflection(pattern: AnyPattern, assets: Assets) -> Node:
     """Tree of a pattern's deflection."""
     if isinstance(pattern, Group):
-        return _changed(pattern, group(pattern, assets))
-    if isinstance(pattern, Image) and pattern.texture is not None:
+        own = group(pattern, assets)
+    elif isinstance(pattern, Image) and pattern.texture is not None:
         parts = (_image(pattern, assets), deflection(pattern.texture, assets))
-        return _changed(pattern, joined(NodeKind.MULTIPLY, parts))
-    if isinstance(pattern, AnyShape) and is_apart(pattern):
-        return _changed(pattern, shape_apart(pattern, _fill_texture(pattern, assets)))
-    if isinstance(pattern, ShapeOrDots) and is_everywhere(pattern):
+        own = joined(NodeKind.MULTIPLY, parts)
+    elif isinstance(pattern, AnyShape) and is_apart(pattern):
+        own = shape_apart(pattern, _fill_texture(pattern, assets), assets)
+    elif isinstance(pattern, ShapeOrDots) and is_everywhere(pattern):
         # Where there is nothing of it, it is something now, and still few of its parts are asked.
-        return _changed(pattern, shape_leaf(pattern, _fill_texture(pattern, assets)))
-    return _leaf(pattern, assets)
+        own = shape_leaf(pattern, _fill_texture(pattern, assets), assets)
+    else:
+        return _leaf(pattern, assets)
+    changes = _changes(pattern, assets)
+    if changes:
+        own = _change(own, changes, is_everywhere(pattern))
+    return replace(own, gate=own.gate | _gate(pattern, assets))
 
 
 def layer(pattern: AnyPattern, assets: Assets) -> Node:
     """Tree of a pattern as a layer over others: its deflection and what it hides."""
-    if is_everywhere(pattern):
+    if is_everywhere(pattern) and not pattern.factor:
         return replace(deflection(pattern, assets), pushes=Pushes.COVER)
-    if isinstance(pattern, ShapeOrDots) and not is_apart(pattern):
+    shape = isinstance(pattern, ShapeOrDots) and not is_everywhere(pattern)
+    if shape and not is_apart(pattern):
         own = _leaf(pattern, assets)
         if _is_plain(pattern) and is_own_mask(pattern):
             return own
-        return shape_pair(pattern, own)
+        return shape_pair(pattern, own, _by_signal(pattern, assets))
     covered = mask(pattern, assets)
     own = deflection(pattern, assets)
     if covered is None:
@@ -104,6 +124,14 @@ def layer(pattern: AnyPattern, assets: Assets) -> Node:
 
 def mask(pattern: AnyPattern, assets: Assets) -> Node | None:
     """Tree of a pattern's opacity mask; None if it is 1 everywhere. Lévesque 2009, 8.4.5."""
+    own, changes = _mask(pattern, assets), _by_signal(pattern, assets)
+    if not changes:
+        return own
+    return replace(_change(ONE if own is None else own, changes), gate=_gate(pattern, assets))
+
+
+def _mask(pattern: AnyPattern, assets: Assets) -> Node | None:
+    """Tree of a pattern's opacity mask without its factor."""
     if is_everywhere(pattern):
         return None
     match pattern:
@@ -133,7 +161,7 @@ def group(pattern: Group, assets: Assets) -> Node:
         pairs = zip(children, pattern.weights, strict=True)
         children = tuple(_change(child, ((words.SCALE, (weight,)),)) for child, weight in pairs)
     if pattern.by is not None:
-        return _blend(children, deflection(pattern.by, assets))
+        return _blend(_choosable(children, pattern.by, assets), deflection(pattern.by, assets))
     return joined(_KINDS[pattern.operation], children)
 
 
@@ -147,7 +175,8 @@ def _group_mask(pattern: Group, assets: Assets) -> Node | None:
         if not known:
             return None
         first, second = (ONE if part is None else part for part in masks)
-        return _blend((first, second), deflection(pattern.by, assets))
+        parts = _choosable((first, second), pattern.by, assets)
+        return _blend(parts, deflection(pattern.by, assets))
     if len(known) < len(masks):
         return None
     return joined(_KINDS[pattern.operation], known)
@@ -159,17 +188,34 @@ def _blend(parts: Sequence[Node], by: Node) -> Node:
     return Node(NodeKind.BLEND, (first, second, by), depth=depth)
 
 
-def _changed(pattern: Pattern, own: Node) -> Node:
-    changes = _changes(pattern)
-    return _change(own, changes, is_everywhere(pattern)) if changes else own
+def _choosable(parts: Sequence[Node], by: AnyPattern, assets: Assets) -> Sequence[Node]:
+    """Parts of a blend; each is passed over while a signal chooses the other alone."""
+    if not (isinstance(by, SignalLevel) and _is_plain(by)) or by.factor:
+        return parts
+    bit = 1 << assets.signals[by.name]
+    first, second = parts
+    first = replace(first, gate=first.gate | bit << MOST_SIGNALS)
+    return first, replace(second, gate=second.gate | bit)
 
 
-def _change(own: Node, changes: tuple, everywhere: bool = False) -> Node:
+def _gate(pattern: Pattern, assets: Assets) -> int:
+    """Gate of a pattern that has a factor."""
+    return 1 << assets.signals[pattern.factor] if pattern.factor else 0
+
+
+def _by_signal(pattern: Pattern, assets: Assets) -> Changes:
+    """Word of a pattern's factor."""
+    if not pattern.factor:
+        return ()
+    return ((words.BY_SIGNAL, (float(assets.signals[pattern.factor]),)),)
+
+
+def _change(own: Node, changes: Changes, everywhere: bool = False) -> Node:
     return Node(NodeKind.CHANGE, (own,), changes=changes, everywhere=everywhere, depth=own.depth)
 
 
-def _changes(pattern: Pattern) -> tuple[tuple[int, tuple[float, ...]], ...]:
-    """Words of what any pattern may have: amplitude, then inversion, then vibration."""
+def _changes(pattern: Pattern, assets: Assets) -> Changes:
+    """Words of what any pattern may have: amplitude, inversion, vibration, and then a factor."""
     changes: list[tuple[int, tuple[float, ...]]] = []
     if pattern.amplitude != 1.0:
         changes.append((words.SCALE, (pattern.amplitude,)))
@@ -179,7 +225,7 @@ def _changes(pattern: Pattern) -> tuple[tuple[int, tuple[float, ...]], ...]:
     if swing is not None:
         word = words.VIBRATE_HIGH if swing.of == "high" else words.VIBRATE_LOW
         changes.append((word, (swing.frequency_hz, swing.amplitude)))
-    return tuple(changes)
+    return (*changes, *_by_signal(pattern, assets))
 
 
 def _is_plain(pattern: Pattern) -> bool:
@@ -191,31 +237,34 @@ def _is_plain(pattern: Pattern) -> bool:
 
 def _leaf(pattern: AnyPattern, assets: Assets) -> Node:
     """Leaf with a pattern's own changes among its words."""
-    changes = _changes(pattern)
+    changes = _changes(pattern, assets)
     if isinstance(pattern, ShapeOrDots):
-        own = shape_leaf(pattern, _fill_texture(pattern, assets))
+        own = shape_leaf(pattern, _fill_texture(pattern, assets), assets)
     elif isinstance(pattern, Image):
         own = _image(pattern, assets)
     elif isinstance(pattern, Label):
         written = assets.written[pattern]
         say = partial(_say_label, words.LABEL, pack_label(pattern, written))
         own = Node(NodeKind.LEAF, say=say, box=box_of(pattern, written))
-    elif isinstance(pattern, Tile):
+    elif isinstance(pattern, Tile | Moving):
         part = deflection(pattern.part, assets)
-        own = Node(NodeKind.LEAF, say=partial(_say_tile, pattern, part), depth=2 + part.depth)
+        place = (
+            (words.WRAP, *pattern.origin_mm, pattern.width_mm, pattern.height_mm)
+            if isinstance(pattern, Tile)
+            else (words.SHIFT, *_motion(pattern, assets))
+        )
+        own = Node(NodeKind.LEAF, say=partial(_say_inside, place, part), depth=2 + part.depth)
     else:
         own = Node(
             NodeKind.LEAF,
-            say=partial(_say, *_texture(pattern)),
+            say=partial(_say, *_texture(pattern, assets)),
             one=isinstance(pattern, Uniform) and pattern.level == 1.0 and not changes,
         )
     if not changes:
         return own
     assert own.say is not None
-    say = partial(_say_changed, own.say, changes)
-    if is_everywhere(pattern):
-        return replace(own, say=say, box=None)
-    return replace(own, say=say)
+    own = replace(own, say=partial(_say_changed, own.say, changes), gate=_gate(pattern, assets))
+    return replace(own, box=None) if is_everywhere(pattern) else own
 
 
 def _fill_texture(pattern: ShapeOrDots, assets: Assets) -> Node | None:
@@ -232,7 +281,7 @@ def _image(pattern: Image, assets: Assets) -> Node:
 # What leaves say
 
 
-def _texture(pattern: AnyPattern) -> tuple[int, tuple[float, ...]]:
+def _texture(pattern: AnyPattern, assets: Assets) -> tuple[int, tuple[float, ...]]:
     """Word of a texture, and its constants.
 
     Raises
@@ -243,16 +292,18 @@ def _texture(pattern: AnyPattern) -> tuple[int, tuple[float, ...]]:
     match pattern:
         case Uniform():
             return words.LEVEL, (pattern.level,)
+        case SignalLevel():
+            return words.SIGNAL, (float(assets.signals[pattern.name]),)
         case UniformVibration():
             return words.VIBRATION, (pattern.frequency_hz,)
         case LinearGrating():
-            return words.LINEAR, _linear(pattern)
+            return words.LINEAR, _linear(pattern, assets)
         case RadialGrating():
             cycle = Cycle(pattern.ridge_mm, pattern.gap_mm)
-            waveform = _waveform(cycle, pattern.velocity_mm_s, pattern.distortion)
+            waveform = _waveform(cycle, pattern, pattern.velocity_mm_s, assets)
             return words.RADIAL, (*pattern.center_mm, *waveform)
         case AxialGrating():
-            return words.AXIAL, _axial(pattern)
+            return words.AXIAL, _axial(pattern, assets)
     raise TypeError(f"a {type(pattern).__name__} is not rendered; resolve the scene first")
 
 
@@ -269,11 +320,22 @@ def _say_label(word: int, packed: PackedLabel, block: WordBlock, _parts: bool) -
     return []
 
 
-def _say_tile(tile: Tile, part: Node, block: WordBlock, _parts: bool) -> list[int]:
-    block.say(words.WRAP, *tile.origin_mm, tile.width_mm, tile.height_mm)
+def _say_inside(place: tuple[float, ...], part: Node, block: WordBlock, _parts: bool) -> list[int]:
+    """Say a pattern that is seen at other places, by the word that finds these."""
+    block.say(int(place[0]), *place[1:])
     say_whole(part, block)
     block.say(words.UNWRAP)
     return []
+
+
+def _clock(velocity_by: str, assets: Assets) -> float:
+    """Number of the signal whose integral is the time of a motion; below 0 for time itself."""
+    return float(assets.signals[f"∫{velocity_by}"]) if velocity_by else -1.0
+
+
+def _motion(moving: Moving, assets: Assets) -> tuple[float, ...]:
+    center = moving.array_at_mm or (_NO_PLACE, _NO_PLACE)
+    return (*moving.velocity_mm_s, _clock(moving.velocity_by, assets), *center)
 
 
 def _say_changed(say, changes, block: WordBlock, parts: bool) -> list[int]:
@@ -283,18 +345,18 @@ def _say_changed(say, changes, block: WordBlock, parts: bool) -> list[int]:
     return kept
 
 
-def _linear(grating: LinearGrating) -> tuple[float, ...]:
+def _linear(grating: LinearGrating, assets: Assets) -> tuple[float, ...]:
     angle = math.radians(travel_deg(grating.wave_angle_deg, grating.ridge_angle_deg))
     right, down = math.cos(angle), math.sin(angle)
     x, y = grating.start_mm
     cycle = Cycle(grating.ridge_mm, grating.gap_mm)
-    waveform = _waveform(cycle, grating.velocity_mm_s, grating.distortion)
+    waveform = _waveform(cycle, grating, grating.velocity_mm_s, assets)
     return (right, down, x * right + y * down, *waveform)
 
 
-def _axial(grating: AxialGrating) -> tuple[float, ...]:
+def _axial(grating: AxialGrating, assets: Assets) -> tuple[float, ...]:
     cycle = axial_cycle(grating)
-    waveform = _waveform(cycle, grating.velocity_deg_s, grating.distortion)
+    waveform = _waveform(cycle, grating, grating.velocity_deg_s, assets)
     factor = 1.0 if grating.distortion is None else max(1.0, grating.distortion.factor)
     inner_mm, outer_mm = grating.fade_mm
     radius = factor / math.radians(cycle.length)
@@ -317,9 +379,13 @@ def _say_bitmap(bitmap: Bitmap, block: WordBlock, _parts: bool) -> list[int]:
 
 
 def _waveform(
-    cycle: Cycle, velocity: float, distortion: Gradual | Peak | TurnPeak | None
+    cycle: Cycle,
+    grating: LinearGrating | RadialGrating | AxialGrating,
+    velocity: float,
+    assets: Assets,
 ) -> tuple[float, ...]:
-    own = (cycle.length, cycle.ridge, velocity, 1.0)
+    own = (cycle.length, cycle.ridge, velocity, _clock(grating.velocity_by, assets))
+    distortion = grating.distortion
     if distortion is None:
         return (*own, 0.0)
     if isinstance(distortion, Gradual):
@@ -343,8 +409,19 @@ def is_apart(pattern: ShapeOrDots) -> bool:
     )
 
 
-def shape_apart(shape: AnyShape, texture: Node | None) -> Node:
+def _with_clock(pattern: ShapeOrDots, assets: Assets) -> ShapeOrDots:
+    """Shape in which a signal that moves a texture along it has its number for its name."""
+    along = pattern.stroke.along if isinstance(pattern, AnyShape) and pattern.stroke else None
+    if along is None or not along.velocity_by:
+        return pattern
+    along = msgspec.structs.replace(along, velocity_by=str(_clock(along.velocity_by, assets)))
+    stroke = msgspec.structs.replace(pattern.stroke, along=along)
+    return msgspec.structs.replace(pattern, stroke=stroke)
+
+
+def shape_apart(shape: AnyShape, texture: Node | None, assets: Assets) -> Node:
     """Tree of a shape that is several leaves, without its own changes."""
+    shape = cast("AnyShape", _with_clock(shape, assets))
     fill = fill_of(shape)
     assert fill is not None
     assert texture is not None
@@ -358,8 +435,9 @@ def shape_apart(shape: AnyShape, texture: Node | None) -> Node:
     return joined(NodeKind.OVER, (filled, replace(over, pushes=Pushes.PAIR, depth=2)))
 
 
-def shape_leaf(pattern: ShapeOrDots, texture: Node | None) -> Node:
+def shape_leaf(pattern: ShapeOrDots, texture: Node | None, assets: Assets) -> Node:
     """Leaf of a pattern with the texture of its fill, without its own changes."""
+    pattern = _with_clock(pattern, assets)
     if isinstance(pattern, Dots):
         return _drawn(pattern, partial(say_dots, pattern.dot, _placed(pattern)))
     if texture is None:
@@ -368,10 +446,10 @@ def shape_leaf(pattern: ShapeOrDots, texture: Node | None) -> Node:
     return _filled(pattern, say, max(texture.depth, 3))
 
 
-def shape_pair(pattern: ShapeOrDots, own: Node) -> Node:
-    """Leaf that pushes a deflection, and then its mask from the same coordinates."""
+def shape_pair(pattern: ShapeOrDots, own: Node, changes: Changes) -> Node:
+    """Leaf that pushes a deflection, and then its changed mask from the same coordinates."""
     assert own.say is not None
-    say = partial(_say_pair, own.say, partial(_say_mask, pattern))
+    say = partial(_say_pair, own.say, partial(_say_mask, pattern), changes)
     return replace(own, say=say, pushes=Pushes.PAIR, depth=own.depth + 1)
 
 
@@ -407,9 +485,11 @@ def _filled(shape: AnyShape, say: Saying, depth: int = 3) -> Node:
 # What leaves say
 
 
-def _say_pair(say, say_mask, block: WordBlock, parts: bool) -> list[int]:
+def _say_pair(say, say_mask, changes: Changes, block: WordBlock, parts: bool) -> list[int]:
     kept = say(block, parts)
     say_mask(block, parts, paired=True)
+    for operation, constants in changes:
+        block.say(operation, *constants)
     return kept
 
 
@@ -636,11 +716,18 @@ def _stroke_numbers(shape: AnyShape, stroke: Stroke) -> list[float]:
         else:
             numbers[strokes.CYCLE], numbers[strokes.RIDGE] = cycles[0].length, cycles[0].ridge
             numbers[strokes.VELOCITY] = stroke.along.velocity_mm_s
+            numbers[strokes.CLOCK] = _clock_of(shape)
     numbers[strokes.SWING : strokes.SWING + 3] = _swing(stroke.vibration)
     if isinstance(shape, Polygon) and shape.markers is not None:
         swing = _swing(shape.markers.swing)
         numbers[strokes.MARKS : strokes.MARKS + 3] = (1.0, *swing[1:])
     return numbers
+
+
+def _clock_of(shape: AnyShape) -> float:
+    """Number of the signal that moves a texture along a shape, as `_with_clock` left it."""
+    along = None if shape.stroke is None else shape.stroke.along
+    return float(along.velocity_by or -1.0) if along is not None else -1.0
 
 
 def _dotting(shape: AnyShape) -> DotStyle:
@@ -684,7 +771,7 @@ def _say_places(
     if along or marked:
         rounded = isinstance(shape, Polygon) and shape.join == "rounded"
         asked = places.ROUNDED if rounded or differ(stroke_cycles(shape)) else places.ALONG
-    block.say(words.SEGMENTS, float(asked))
+    block.say(words.SEGMENTS, float(asked), _clock_of(shape))
     if filled:
         block.say(words.INSIDE)
     if marked:

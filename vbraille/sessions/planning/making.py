@@ -134,7 +134,7 @@ def check_plan(protocol: Protocol, plan: Plan) -> None:
 
 def _difference(plan: Plan, again: Plan) -> str:
     """Say where a plan differs from the one that was made again; empty if it does not."""
-    for name in ("protocol", "group", "order"):
+    for name in ("protocol", "group", "order", "analysis"):
         if (kept := getattr(plan, name)) != (made := getattr(again, name)):
             return f"{name} is {kept!r}, and must be {made!r}"
     for name, trials, made in (

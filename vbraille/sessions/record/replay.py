@@ -14,6 +14,7 @@ import numpy as np
 
 from vbraille.engine.record import FLAGS, FLOATS, INTS, LINE, Flag
 from vbraille.engine.ticks import replay
+from vbraille.render import work
 from vbraille.render.program import nothing, scratch_for
 from vbraille.sessions.record.progress import stimulus_of
 from vbraille.sessions.record.traces import TRACE, read_trace
@@ -48,7 +49,7 @@ class Replay:
         self._shape = display.shape
         self._output, self._held, self._target = np.zeros((3, *display.shape))
         self._scratch = scratch_for(display.shape)
-        self._at = np.zeros(6)
+        self._at = np.zeros(work.AT)
         self._next = 0
 
     def frames(self, ticks: NDArray[np.void]) -> NDArray[np.float64]:

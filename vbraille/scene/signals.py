@@ -1,0 +1,282 @@
+"""Signals: numbers from 0 to 1 by which a picture answers to the hand, to keys and to time.
+
+A scene names them, and its patterns use them: as what a blend chooses by, as the factor of a layer
+or of a pulse, as the speed of a motion. They are computed once a tick. Lévesque 2009, 9.4 and 9.5.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from msgspec.structs import replace
+
+from vbraille.errors import check_range
+from vbraille.scene.measures import check_angle, check_share
+from vbraille.tomlfile import Table
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+MOST_SIGNALS = 8
+MOST_LEVELS = 8
+MOST_KEYS = 8
+SWITCH_BITS = 3  # of a state
+_MOST_MM_S = 1000.0
+
+
+class Speed(Table, frozen=True, kw_only=True, tag_field="kind", tag="speed"):
+    """1 under a hand that is slow, 0 under one that is fast: Lévesque 2009, eqs. 9.6 and 9.7.
+
+    Parameters
+    ----------
+    below_mm_s
+        Speed of the hand below which it is 1.
+    transition_mm_s
+        How much faster the hand goes where it has fallen to 0.
+    delay_s
+        How long it waits once the hand has become slow, and over how long it then rises; 0 for
+        neither.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    below_mm_s: float = 5.0
+    transition_mm_s: float = 5.0
+    delay_s: float = 0.25
+
+    def __post_init__(self) -> None:
+        _check_speeds(self.below_mm_s, self.transition_mm_s)
+        check_range("delay", self.delay_s, 0.0, 10.0, " s")
+
+
+class Direction(Table, frozen=True, kw_only=True, tag_field="kind", tag="direction"):
+    """1 where the hand goes in a direction, 0 elsewhere: Lévesque 2009, eqs. 9.8-9.10.
+
+    Parameters
+    ----------
+    angle_deg
+        The direction, from +x (right) towards +y (down).
+    axis
+        Whether the opposite direction counts as well.
+    tolerance_deg, transition_deg
+        How far from it the hand may go for 1, and how much farther it goes for 0.
+    at_rest
+        Under a hand that is slow: "high" for 1 (eq. 9.9), "low" for 0 (eq. 9.10), or "keep" for
+        what it was before; at first that is 1.
+    below_mm_s, slow_transition_mm_s
+        Speed below which a hand is slow, and how much faster it goes where it is so no more.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    angle_deg: float = 0.0
+    axis: bool = False
+    tolerance_deg: float = 30.0
+    transition_deg: float = 20.0
+    at_rest: Literal["high", "low", "keep"] = "keep"
+    below_mm_s: float = 0.0
+    slow_transition_mm_s: float = 5.0
+
+    def __post_init__(self) -> None:
+        check_angle("angle", self.angle_deg)
+        check_range("tolerance", self.tolerance_deg, 0.0, 180.0, "°")
+        check_range("transition", self.transition_deg, 0.1, 180.0, "°")
+        _check_speeds(self.below_mm_s, self.slow_transition_mm_s)
+
+
+class Switch(Table, frozen=True, kw_only=True, tag_field="kind", tag="switch"):
+    """A level that a key of ``vbraille feel`` changes, such as of a layer: Lévesque 2009, 9.5.
+
+    Parameters
+    ----------
+    key
+        Number of the key, 1 to 8; the same key may change several signals of as many levels.
+    levels
+        Levels of the states that the key goes through, and back to the first.
+    states
+        What these states are called, for whoever presses the key; empty for their numbers.
+    title
+        What the key changes.
+    fade_s
+        Time for a change from 0 to 1.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or states and levels are not as many.
+    """
+
+    key: int = 1
+    levels: tuple[float, ...] = (0.0, 1.0)
+    states: tuple[str, ...] = ()
+    title: str = ""
+    fade_s: float = 0.1
+
+    def __post_init__(self) -> None:
+        check_range("key", self.key, 1, MOST_KEYS)
+        check_range("number of levels", len(self.levels), 2, MOST_LEVELS)
+        for number, level in enumerate(self.levels, 1):
+            check_share(f"levels, number {number}", level)
+        if self.states and len(self.states) != len(self.levels):
+            raise ValueError(f"states are {len(self.states)}; there is one for each level")
+        check_range("fade", self.fade_s, 0.0, 10.0, " s")
+
+
+class Pulse(Table, frozen=True, kw_only=True, tag_field="kind", tag="time"):
+    """A pulse that repeats by itself, since the picture was put under the hand.
+
+    Parameters
+    ----------
+    shape
+        "sine", from 0 to 1 and back; "square", 0 in the first half and 1 in the second; "ramp",
+        from 0 to 1, where it begins again.
+    period_s
+        Time after which it repeats.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    shape: Literal["sine", "square", "ramp"] = "sine"
+    period_s: float = 1.0
+
+    def __post_init__(self) -> None:
+        check_range("period", self.period_s, 0.02, 3600.0, " s")
+
+
+class Product(Table, frozen=True, kw_only=True, tag_field="kind", tag="product"):
+    """Signals multiplied: 1 where all of them are.
+
+    Parameters
+    ----------
+    of
+        Names of the signals, two or more.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer, or too many.
+    """
+
+    of: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        check_range("number of names in of", len(self.of), 2, MOST_SIGNALS)
+
+
+class Inverse(Table, frozen=True, kw_only=True, tag_field="kind", tag="inverse"):
+    """1 where another signal is 0, and 0 where that is 1.
+
+    Parameters
+    ----------
+    of
+        Name of the other signal.
+    """
+
+    of: str
+
+
+AnySignal = Speed | Direction | Switch | Pulse | Product | Inverse
+
+
+def _check_speeds(below_mm_s: float, transition_mm_s: float) -> None:
+    check_range("below", below_mm_s, 0.0, _MOST_MM_S, " mm/s")
+    check_range("transition", transition_mm_s, 0.1, _MOST_MM_S, " mm/s")
+
+
+class OrderedSignal(NamedTuple):
+    """A signal as it is computed, after those that it is made of.
+
+    Parameters
+    ----------
+    name
+        Name of the signal.
+    signal
+        How it is made; None for the integral over time of the signal that ``of`` names, s.
+    of
+        Numbers of the signals that it is made of.
+    """
+
+    name: str
+    signal: AnySignal | None
+    of: tuple[int, ...] = ()
+
+
+def made_of(signal: AnySignal) -> tuple[str, ...]:
+    """Names of the signals that a signal is made of."""
+    if isinstance(signal, Product):
+        return signal.of
+    return (signal.of,) if isinstance(signal, Inverse) else ()
+
+
+def renamed(signal: AnySignal, names: Mapping[str, str]) -> AnySignal:
+    """Signal made of others, which go by other names."""
+    if isinstance(signal, Product):
+        return replace(signal, of=tuple(names[name] for name in signal.of))
+    return replace(signal, of=names[signal.of]) if isinstance(signal, Inverse) else signal
+
+
+def circle(signals: Mapping[str, AnySignal]) -> tuple[str, ...]:
+    """Find names of signals of which each is made of the next, and the last is the first again."""
+    right: set[str] = set()
+    for name in signals:
+        way: list[tuple[str, ...]] = [(name,)]
+        while way:
+            names = way.pop()
+            for one in made_of(signals[names[-1]]):
+                if one in names:
+                    return (*names[names.index(one) :], one)
+                if one not in right:
+                    way.append((*names, one))
+        right.add(name)
+    return ()
+
+
+def ordered(signals: Mapping[str, AnySignal], driving: Iterable[str] = ()) -> list[OrderedSignal]:
+    """Put signals, of which none leads back to itself, into an order in which to compute them.
+
+    Parameters
+    ----------
+    signals
+        The signals by their names.
+    driving
+        Names of those that are the speed of a motion; the integral of each comes last.
+    """
+    found: dict[str, int] = {}
+    order: list[OrderedSignal] = []
+
+    def put(name: str) -> int:
+        if name not in found:
+            of = tuple(put(one) for one in made_of(signals[name]))
+            found[name] = len(order)
+            order.append(OrderedSignal(name, signals[name], of))
+        return found[name]
+
+    for name in signals:
+        put(name)
+    return order + [OrderedSignal(name, None, (found[name],)) for name in dict.fromkeys(driving)]
+
+
+def packed(states: Mapping[int, int], signals: Mapping[str, AnySignal]) -> int:
+    """Put states of switches into the number that a tick takes.
+
+    Parameters
+    ----------
+    states
+        State of each key, from 0; a key that is not there is in its first.
+    signals
+        The signals of a scene.
+    """
+    bits = 0
+    for number, one in enumerate(ordered(signals)):
+        if isinstance(one.signal, Switch):
+            bits |= states.get(one.signal.key, 0) << SWITCH_BITS * number
+    return bits
