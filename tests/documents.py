@@ -15,7 +15,14 @@ from vbraille.reading.commands.scene import COMMANDS as FEELING
 from vbraille.reading.commands.table import COMMANDS as READING
 from vbraille.render import Tuning
 from vbraille.sessions.planning.protocol import Protocol, ProtocolFile
-from vbraille.sessions.record.events import OTHER, AnyEvent, AnyTime, InTrial, WithStimulus
+from vbraille.sessions.record.events import (
+    OTHER,
+    AnyEvent,
+    AnyTime,
+    InTrial,
+    Presented,
+    WithStimulus,
+)
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -192,7 +199,8 @@ def protocol_tables():
 
 
 def _bytes():
-    told = [f"`{kind.__struct_config__.tag}` {kind.code}" for kind in get_args(AnyEvent)]
+    kinds = [kind for kind in get_args(AnyEvent) if kind is not Presented]
+    told = [f"`{kind.__struct_config__.tag}` {kind.code}" for kind in kinds]
     said = ", ".join([*told, f"any other {OTHER}"])
     return "\n".join(textwrap.wrap(said, 118, break_on_hyphens=False))
 

@@ -301,6 +301,8 @@ def check_protocol(protocol: Protocol, *, planned: bool = False) -> None:
     for number, item in enumerate(protocol.questionnaire, 1):
         with _naming(f"[[questionnaire]] number {number}"):
             item.check(protocol.item_columns)
+    with _naming("[markers]"):
+        protocol.marker_codes  # noqa: B018
     _check_names(protocol)
     _check_styles(protocol)
     _check_procedure(protocol)

@@ -97,7 +97,7 @@ POLL_S = 0.02
 MOST_DEATHS = 3  # number of deaths after which the host is not started again
 
 
-def _unmarked(_event: JournalEvent, _ago_ns: int) -> None:
+def _unmarked(_event: JournalEvent, _ago_ns: int, _condition: str) -> None:
     """Send no marker."""
 
 
@@ -147,9 +147,9 @@ class Runner:
         Whether the experimenter has asked for a break that has not begun.
     script_line : int
         Number of the line of an answers file that is being done; the next event keeps it.
-    mark : Callable[[JournalEvent, int], None]
-        Function that is given each event once it is in the journal, and how many nanoseconds ago it
-        happened; it must not wait.
+    mark : Callable[[JournalEvent, int, str], None]
+        Function that is given each event once it is in the journal, how many nanoseconds ago it
+        happened, and the condition of its trial; it must not wait.
     """
 
     def __init__(
@@ -183,7 +183,7 @@ class Runner:
         self._replied: list[tuple[AnyItem, int]] = []  # questions of this time, the last one last
         self.break_wanted = False
         self.script_line = 0
-        self.mark: Callable[[JournalEvent, int], None] = _unmarked
+        self.mark: Callable[[JournalEvent, int, str], None] = _unmarked
         self._journal = journal
         self._paper = Paper()
         self._say = say
@@ -296,7 +296,7 @@ class Runner:
         event = kind(script_line=self.script_line, **fields)
         self.script_line = 0
         written = self._journal.append(event)
-        self.mark(written, self._now_ns() - at_ns)
+        self.mark(written, self._now_ns() - at_ns, "" if trial is None else trial.condition)
         self.progress.take(written)
 
     def start(self, **fields: Any) -> None:
