@@ -11,11 +11,19 @@ from msgspec import inspect as info
 
 from vbraille.braille.geometry import Geometry
 from vbraille.config.options import BOOK, FILE, PROFILE, held_in
+from vbraille.reading.commands.game import COMMANDS as PLAYING
 from vbraille.reading.commands.scene import COMMANDS as FEELING
 from vbraille.reading.commands.table import COMMANDS as READING
 from vbraille.render import Tuning
 from vbraille.sessions.planning.protocol import Protocol, ProtocolFile
-from vbraille.sessions.record.events import OTHER, AnyEvent, AnyTime, InTrial, WithStimulus
+from vbraille.sessions.record.events import (
+    OTHER,
+    AnyEvent,
+    AnyTime,
+    InTrial,
+    Presented,
+    WithStimulus,
+)
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -192,7 +200,8 @@ def protocol_tables():
 
 
 def _bytes():
-    told = [f"`{kind.__struct_config__.tag}` {kind.code}" for kind in get_args(AnyEvent)]
+    kinds = [kind for kind in get_args(AnyEvent) if kind is not Presented]
+    told = [f"`{kind.__struct_config__.tag}` {kind.code}" for kind in kinds]
     said = ", ".join([*told, f"any other {OTHER}"])
     return "\n".join(textwrap.wrap(said, 118, break_on_hyphens=False))
 
@@ -203,6 +212,7 @@ TABLES = (
     ("settings.md", list(_profile())),
     ("keys.md", list(_keys(READING))),
     ("feeling.md", list(_keys(FEELING))),
+    ("playing.md", list(_keys(PLAYING))),
     ("session-format.md", list(_events())),
     *(("protocols.md", rows) for rows in protocol_tables()),
 )

@@ -51,10 +51,39 @@ MORE = {
 }
 
 
+# What a system other than Linux does not have, as far as commands use it.
+ANOTHER_SYSTEM = """
+import os, signal, sys
+sys.modules.update(dict.fromkeys(("fcntl", "pty", "resource", "termios", "tty")))
+for module, names in (
+    (os, ("memfd_create", "sched_setscheduler", "sched_param", "SCHED_FIFO")),
+    (signal, ("SIGHUP", "SIGTSTP", "SIGCONT", "SIGALRM", "SIGKILL", "SIGQUIT", "SIGUSR1")),
+):
+    for name in names:
+        delattr(module, name)
+"""
+ANYWHERE = """\
+page {texts}/english.txt --format brf
+structure {texts}/english.txt
+render {texts}/english.txt --lines 1 --out {out}/reading.h5
+map {texts}/scenes/house.scene --out {out}/house.png
+scene check {texts}/scenes/house.scene
+analyse {out}/scored.csv
+"""
+ON_LINUX = """\
+read {texts}/english.txt --device sim --no-places
+feel {texts}/scenes/house.scene --device sim
+session run letters --participant P1 --answers simulated --fast --out {out}/P1
+device info sim
+"""
+TRIALS = "participant,condition,presented,answered\nP1,T0,ab,ab\nP2,T0,ab,a?\n"
+
+
 @pytest.fixture
 def ended(tmp_path, texts):
     """Function that gives the exit codes of commands, by line, and what they said on stderr."""
     (tmp_path / "sitecustomize.py").write_text(CUSTOMIZE)
+    (tmp_path / "scored.csv").write_text(TRIALS)
     (tmp_path / "small.scene").write_text(SCENE)
     environment = os.environ | {"PYTHONPATH": str(tmp_path), "VBRAILLE_SETTINGS": "/dev/null"}
 
@@ -89,6 +118,14 @@ def test_a_command_without_its_extra_says_what_installs_it(ended):
         assert "make setup" in sentence, part
         assert f"vbraille[{extra}]" in sentence or "vbraille[all]" in sentence, part
         assert "Traceback" not in part
+
+
+def test_on_another_system_all_works_that_drives_nothing(ended, tmp_path):
+    (tmp_path / "sitecustomize.py").write_text(ANOTHER_SYSTEM)
+    codes, said = ended(ANYWHERE + ON_LINUX)
+    assert list(codes.values()) == [0] * 6 + [1] * 4, said
+    assert "Traceback" not in said
+    assert said.count("this needs Linux: the system has no ") == 4
 
 
 def test_a_module_of_no_extra_is_missing_as_ever():

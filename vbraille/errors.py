@@ -57,16 +57,38 @@ EXTRAS = {
 }
 
 
+# Modules of Python that a system other than Linux may not have.
+_OF_THE_SYSTEM = ("fcntl", "pty", "resource", "termios", "tty")
+
+
 @contextmanager
 def needing_extras() -> Iterator[None]:
-    """Raise InputError, which says how to install it, for a module of an extra that is missing."""
+    """Raise an error of one sentence for a module that is missing.
+
+    Raises
+    ------
+    InputError
+        If an extra brings it; the sentence says how to install it.
+    VbrailleError
+        If the system has none.
+    """
     try:
         yield
     except ModuleNotFoundError as error:
         name = (error.name or "").partition(".")[0]
+        if name in _OF_THE_SYSTEM:
+            raise VbrailleError(only_linux(name)) from None
         if name not in EXTRAS:
             raise
         raise InputError(f"this {lacking(name)}") from None
+
+
+def only_linux(name: str) -> str:
+    """Say that the system has no such thing, and what works without."""
+    return (
+        f"this needs Linux: the system has no {name}, by which devices are driven and sessions "
+        f"kept; page, structure, render, map, scene, analyse and import vbraille work without"
+    )
 
 
 def lacking(name: str) -> str:

@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.errors import InputError, VbrailleError
+from vbraille.errors import InputError, VbrailleError, only_linux
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -231,6 +231,21 @@ def write_folder(
             kind = VbrailleError if partial in made else InputError
             raise kind(f"{folder} cannot be written: {fault.strerror}") from None
         raise
+
+
+def open_memory(name: str, size: int) -> int:
+    """Open a file in memory, which processes share by its descriptor.
+
+    Raises
+    ------
+    VbrailleError
+        If the system has no such files.
+    """
+    if not hasattr(os, "memfd_create"):
+        raise VbrailleError(only_linux("memfd_create"))
+    descriptor = os.memfd_create(name)
+    os.ftruncate(descriptor, size)
+    return descriptor
 
 
 def check_unused(path: Path, *, replace: bool) -> None:

@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     from types import FrameType
     from typing import Self
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+# A system other than Linux may not have all of them.
+_NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
+SIGNALS = tuple(getattr(signal, name) for name in _NAMES if hasattr(signal, name))
 SAID = "stopped"
 EXIT_CODE = 1
 _AGAIN_S = 0.001
@@ -58,8 +60,10 @@ class _Ear:
 
     def close(self) -> None:
         """Let nothing disturb what has to be done before the end."""
-        for number in (*SIGNALS, signal.SIGALRM):
+        for number in SIGNALS:
             signal.signal(number, signal.SIG_IGN)
+        if hasattr(signal, "SIGALRM"):
+            signal.signal(signal.SIGALRM, signal.SIG_IGN)
 
     @contextmanager
     def at_once(self) -> Iterator[None]:
@@ -98,7 +102,7 @@ class _Ear:
 
     def _take_unraisable(self, unraisable: sys.UnraisableHookArgs) -> None:
         # Python cannot stop within a destructor or a callback: try again a moment later.
-        if isinstance(unraisable.exc_value, Stopped):
+        if isinstance(unraisable.exc_value, Stopped) and hasattr(signal, "SIGALRM"):
             signal.signal(signal.SIGALRM, self._stop)
             signal.setitimer(signal.ITIMER_REAL, _AGAIN_S)
         elif not self.heard:

@@ -9,7 +9,6 @@ it shares memory (`vbraille.engine.host`).
 from __future__ import annotations
 
 import ctypes
-import fcntl
 import os
 import select
 import signal
@@ -277,6 +276,6 @@ def begin(orders: Any, nice: int = 0) -> tuple[Incoming[Any], Outgoing]:
         sys.exit()
     with suppress(OSError):
         os.nice(nice)
-    told = fcntl.fcntl(1, fcntl.F_DUPFD_CLOEXEC, 3)
+    told = os.dup(1)  # which no process of its own inherits
     os.dup2(2, 1)
     return Incoming(0, orders), Outgoing(told)

@@ -68,7 +68,7 @@ def test_a_key_feels_it_on_a_slider_and_the_same_place_is_read_on(water):
         said = terminal.until("goes back to the text\r\n")
         assert "picture: Water cycle\r\n" in said
         assert "one axis: " in said
-        terminal.type("e")
+        terminal.type("O")
         terminal.until(
             "element: lake, 20 mm × 20 mm, middle 20 mm from the left, 15 mm from the top\r\n"
         )

@@ -24,38 +24,38 @@ def test_it_says_what_is_here_and_more_of_it(scene):
     felt = Felt(scene)
     assert felt.be_at(90, 20) == []
     assert felt.press("i") == ["here: Sun", "place: 90 mm from the left, 20 mm from the top"]
-    assert felt.press("d") == ["Sun: It shines."]
+    assert felt.press("w") == ["Sun: It shines."]
     felt.be_at(60, 50)
     assert felt.press("u")[0] == "here: edge of wall"
-    assert felt.press("d") == ["wall: polygon, 43 mm × 53 mm with linear grating"]
+    assert felt.press("w") == ["wall: polygon, 43 mm × 53 mm with linear grating"]
     felt.be_at(110, 80)
     nothing = ["here: nothing with a name", "nearest: wall, 49 mm left"]
     assert felt.press("i") == [*nothing, "place: 110 mm from the left, 80 mm from the top"]
-    assert felt.press("d") == nothing
-    assert felt.press("t") == [
+    assert felt.press("w") == nothing
+    assert felt.press("V") == [
         "picture: A house",
         "description: A house and the sun.",
         "size: 120 mm × 90 mm",
     ]
-    assert felt.press("e") == [
+    assert felt.press("O") == [
         "element: Sun, 23 mm × 23 mm, middle 90 mm from the left, 20 mm from the top",
         "element: wall, 43 mm × 53 mm, middle 40 mm from the left, 55 mm from the top",
     ]
     felt.at = None
-    assert felt.press("i") == felt.press("d") == ["place: not known yet"]
+    assert felt.press("i") == felt.press("w") == ["place: not known yet"]
 
 
 def test_elements_are_said_on_entering_if_that_is_asked_for(scene):
     felt = Felt(scene)
     assert felt.be_at(90, 20) == []
-    assert felt.press("s") == ["entering: said"]
+    assert felt.press("v") == ["entering: said"]
     assert felt.be_at(60, 50) == ["leaving: Sun", "entering: wall"]
     assert felt.be_at(60, 52) == []
     assert felt.be_at(50, 52) == ["on: wall"]
     assert felt.be_at(59, 52) == ["edge: wall"]
     assert felt.be_at(110, 80) == ["leaving: wall"]
     assert felt.be_at(90, 20) == ["entering: Sun"]
-    assert felt.press("s") == ["entering: not said"]
+    assert felt.press("v") == ["entering: not said"]
     assert felt.be_at(60, 50) == []
 
 
@@ -71,14 +71,20 @@ def test_a_person_is_told_the_way_to_an_element_each_second_until_there(scene):
     felt.press("g", *"wall", "\n")
     assert felt.press("escape") == ["way: no longer said"]
     assert felt.be_at(10, 10, 30.0) == []
-    assert felt.press("right") == ["hand: a person moves this device; move it by hand"]
+    assert felt.press("right") == felt.press("e") == ["element: no more"]
+    assert felt.press("up") == ["element: Sun"]
 
 
 def test_a_simulated_hand_glides_within_the_carriage(scene):
     steering = Steering()
     device = Steering(steering.descriptor)
     felt = Felt(scene, steering=steering)
+    begun = device.take()
+    assert begun == GlideTo(60.0, begun.y_mm, 100.0)  # on the edge of the wall, next to the middle
     felt.be_at(90, 20)
+    felt.held = True  # by a page of the live view, which lets it go again
+    felt.feeler.step(np.zeros(1, tick_dtype((8, 8))))
+    felt.held = False
     felt.press("right", "shift-down")
     assert device.take() == GlideTo(91.0, 30.0, 60.0)
     felt.press(*["shift-up"] * 9)
@@ -112,7 +118,7 @@ def test_a_changed_file_fades_in_and_a_broken_one_is_said(scene):
     felt.bench.run(0.2)
     before = felt.bench.device.sent[-1].copy()
     scene.write_text(SCENE.replace("[90, 20]", "[30, 20]").replace("Sun", "Moon"))
-    assert felt.press("r") == ["reloaded: A house"]
+    assert felt.press("\x12") == ["reloaded: A house"]
     felt.bench.run(0.2)
     assert not felt.bench.device.sent[-1].any()
     assert np.abs(np.diff(np.array(felt.bench.device.sent), axis=0)).max() <= 1 / 100 + 1e-9
@@ -121,14 +127,14 @@ def test_a_changed_file_fades_in_and_a_broken_one_is_said(scene):
     felt.bench.run(0.2)
     np.testing.assert_allclose(felt.bench.device.sent[-1], before, atol=1e-9)
     scene.write_text(SCENE.replace("radius_mm = 10", "radius_mm = -10"))
-    said = felt.press("r")
+    said = felt.press("\x12")
     assert said[0].startswith("not reloaded: ")
     assert "radius" in said[0]
     assert said[1:] == ["picture: as it was"]
     scene.write_text(SCENE.replace("width_mm = 120", "width_mm = 1200"))
-    assert "the scene's canvas is 1200 × 90 mm" in felt.press("r")[0]
+    assert "the scene's canvas is 1200 × 90 mm" in felt.press("\x12")[0]
     scene.unlink()
-    assert felt.press("r")[0].startswith("not reloaded: ")
+    assert felt.press("\x12")[0].startswith("not reloaded: ")
     felt.bench.run(0.2)
     np.testing.assert_allclose(felt.bench.device.sent[-1], before, atol=1e-9)
     assert felt.press("i")[0] == "here: edge of Moon"
@@ -137,19 +143,19 @@ def test_a_changed_file_fades_in_and_a_broken_one_is_said(scene):
 def test_a_picture_that_has_grown_too_large_is_said(scene):
     felt = Felt(scene, room=1000)
     scene.write_text(SCENE.replace("Sun", "Moon"))
-    assert "has become too large" in felt.press("r")[0]
+    assert "has become too large" in felt.press("\x12")[0]
 
 
 def test_what_moves_too_fast_for_the_rate_is_said_with_its_line(scene):
     slow = replace(DISPLAY, rate_hz=80.0)
     felt = Felt(scene, rate_hz=80.0, display=slow)
     scene.write_text(SCENE + "vibration = { frequency_hz = 50 }\n")
-    said = felt.press("r")[0]
+    said = felt.press("\x12")[0]
     line = SCENE.splitlines().index('id = "wall"') - 1  # where the element begins
     assert said.startswith(f"not reloaded: {scene} line {line}: ")
     assert said.endswith('element "wall" moves at 50 Hz; it can be at most half of the rate, 40 Hz')
     felt.press("C")  # the whole picture is then a group
-    assert felt.press("r")[0] == said
+    assert felt.press("\x12")[0] == said
 
 
 def test_on_one_axis_keys_choose_the_height(scene):
@@ -212,20 +218,21 @@ def plan(tmp_path):
 
 def test_outlines_tell_inside_edge_and_outside(plan):
     felt = Felt(plan, entering=True)
-    assert felt.be_at(110, 5) == []
+    felt.be_at(110, 5)
+    assert felt.press("escape") == ["way: no longer said"]
     assert felt.be_at(60, 10) == ["entering: Roof"]
     assert felt.be_at(60, 25) == ["inside: Roof"]
     assert felt.press("i")[0] == "here: inside Roof"
     assert felt.be_at(60, 45) == ["leaving: Roof", "entering: House"]
     assert felt.be_at(60, 52) == ["entering: Window"]  # the house is around it
     assert felt.be_at(60, 60) == ["inside: Window"]
-    assert felt.press("d") == ["Window: circle, 18 mm × 18 mm"]
+    assert felt.press("w") == ["Window: circle, 18 mm × 18 mm"]
     assert felt.be_at(60, 75) == ["leaving: Window", "entering: House"]
 
 
 def test_a_label_says_its_text_and_outlines_are_led_to_where_they_are_felt(plan):
     felt = Felt(plan)
-    assert felt.press("e")[-1].startswith("element: hut, ")
+    assert felt.press("O")[-1].startswith("element: hut, ")
     felt.press("g", *"roof", "\n")
     said = felt.be_at(60, 25, 1.0)[0]
     assert said != "there: Roof"  # its middle, where nothing is felt
@@ -248,7 +255,7 @@ def test_who_only_hears_finds_each_element_of_the_gallery(path):
     x_mm, y_mm = 1.0, 1.0
     felt.be_at(x_mm, y_mm)
     now_s = 0.0
-    for name in [found[1] for said in felt.press("e") if (found := NAME.match(said))]:
+    for name in [found[1] for said in felt.press("O") if (found := NAME.match(said))]:
         felt.press("g", *name, "\n")
         for _ in range(10):
             now_s += 1.0
@@ -263,3 +270,22 @@ def test_who_only_hears_finds_each_element_of_the_gallery(path):
         element = index.find(name)
         x, y = index.point_on(element)
         assert index.where(x, y) is not None, name
+
+
+def test_a_person_is_led_into_a_picture_whose_middle_is_empty(scene):
+    felt = Felt(scene)
+    said = felt.be_at(110, 80, 1.0)
+    assert WAY.search(said[0])
+    assert felt.be_at(60, 45, 2.0) == ["there: picture"]
+
+
+def test_a_person_whose_finger_is_on_the_picture_is_not_led(scene):
+    assert Felt(scene).be_at(90, 20, 1.0) == []
+
+
+def test_one_axis_begins_at_a_height_where_something_is_felt(scene):
+    scene.write_text(
+        SCENE.replace("[[20, 30], [60, 30], [60, 80], [20, 80]]", "[[9, 2], [9, 9], [2, 9]]")
+    )
+    felt = Felt(scene, display=replace(DISPLAY, height_mm=0.0))
+    assert 9 <= felt.feeler._at_mm <= 31  # of the sun, and not the empty middle

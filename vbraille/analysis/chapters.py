@@ -19,6 +19,7 @@ from vbraille.analysis.measures import (
     discrimination,
     legibility,
     movement,
+    naming,
     preferences,
     rated,
     scaling,
@@ -505,6 +506,23 @@ def _of_judgements(study: Study, judgements: pd.DataFrame, plan: FollowedPlan) -
             sure[protocol.name] = question.confidence.least, question.confidence.most
     asked = {*judgements["question"]}
     told: list[Chapter] = []
+    pictures = naming.named(judgements)
+    judgements = judgements[judgements["question"] != naming.NAME]
+    if len(pictures):
+        protocols = {session.protocol.name: session.protocol for session in study.sessions}
+        told.append(
+            Chapter(
+                "Names",
+                "Which names pictures were given.",
+                (
+                    naming.cells(pictures, plan.columns),
+                    naming.confusions(pictures, protocols),
+                    naming.participants(pictures, protocols),
+                ),
+            )
+        )
+    if judgements.empty:
+        return told
     if asked & {"detect", "same-different"} or (judgements["outcome"] != "").any():
         found, by_level = discrimination.thresholds(judgements, plan.columns)
         known = len(found) or "detect" in asked

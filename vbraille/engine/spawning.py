@@ -14,6 +14,8 @@ import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from vbraille.files import open_memory
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -60,7 +62,7 @@ def spawn(pass_fds: Sequence[int] = ()) -> Spawned:
     pass_fds
         Descriptors that the process inherits, for its device.
     """
-    descriptor = os.memfd_create("vbraille")
+    descriptor = open_memory("vbraille", 0)
     process = subprocess.Popen(
         [sys.executable, "-m", "vbraille.engine.spawning", str(descriptor), str(os.getpid())],
         stdin=subprocess.PIPE,

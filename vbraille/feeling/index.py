@@ -202,9 +202,27 @@ class SceneIndex:
         _, number, (to_x_mm, to_y_mm) = min(found)
         return self.elements[number], (to_x_mm, to_y_mm)
 
+    def inside(self) -> tuple[float, float]:
+        """Find a place in mm where the picture is felt, as near to its middle as there is one."""
+        middle = self._canvas.right / 2, self._canvas.bottom / 2
+        if self.here(*middle) is not None:
+            return middle
+        found = self.nearest(*middle)
+        if found is not None:
+            return found[1]
+        points = self._felt(self._scene, self._canvas)
+        if not len(points):
+            return middle
+        x_mm, y_mm = points[np.hypot(*(points - middle).T).argmin()].tolist()
+        return x_mm, y_mm
+
     def _find_points(self, element: NamedElement) -> NDArray[np.float64]:
         """Places where an element by itself is felt, float64[n, 2] in mm."""
-        box = element.box
+        alone = replace(self._scene, elements=(element.pattern,), operation="overwrite")
+        return self._felt(alone, element.box)
+
+    def _felt(self, scene: Scene, box: Box) -> NDArray[np.float64]:
+        """Places of a box where a scene is felt, float64[n, 2] in mm."""
         if box.is_empty:
             return np.empty((0, 2))
         x_mm, y_mm = (
@@ -212,8 +230,7 @@ class SceneIndex:
             for low, high in ((box.left, box.right), (box.top, box.bottom))
             for count in [min(max(int((high - low) / _STEP_MM), 1), _MOST_STEPS)]
         )
-        alone = replace(self._scene, elements=(element.pattern,), operation="overwrite")
-        shown = SceneMap(alone, self._assets).opacity(x_mm, y_mm, switches=self.switches)
+        shown = SceneMap(scene, self._assets).opacity(x_mm, y_mm, switches=self.switches)
         felt = shown >= min(_FELT, max(float(shown.max()) / 2, _TRACE))
         rows, columns = np.nonzero(felt)
         return np.stack((x_mm[columns], y_mm[rows]), axis=1)

@@ -132,7 +132,8 @@ class SceneView(View):
     room
         Bytes of the largest program that the engine has room for.
     at_mm
-        Height at which an array is that moves along x alone; None for the middle of the canvas.
+        Height at which an array is that moves along x alone; None for one where the picture is
+        felt, near the middle of the canvas.
     entering
         Whether each element is said when the finger comes to it.
     watched
@@ -175,6 +176,8 @@ class SceneView(View):
         self._room = room
         self._rate_hz = rate_hz
         self._at_mm = loaded.scene.canvas.height_mm / 2 if at_mm is None else at_mm
+        self._chosen = at_mm is not None
+        self._outside = False  # whether it is to be seen if a person's finger is on the picture
         self._aim: tuple[float, float] | None = None  # where keys have sent the hand
         self._looked_at = (math.nan, math.nan)
         self._guide: Guide | None = None
@@ -198,8 +201,11 @@ class SceneView(View):
         return None if pose is None else (pose.x_mm, pose.y_mm)
 
     def start(self, program: Program) -> None:
-        """Put the scene under the hand, and say what it is."""
+        """Put the scene under the hand, where something of it is felt, and say what it is."""
         self._set_switches()
+        if not (self.display.height_mm or self._chosen):
+            self._at_mm = self._index.inside()[1]
+            program = at_height(program, self._at_mm)
         self._show(program)
         self.steer()
         self.say_scene()
@@ -211,15 +217,16 @@ class SceneView(View):
             )
 
     def steer(self) -> None:
-        """Have a hand that goes by itself go over the whole picture, another to its middle."""
+        """Have a hand that goes by itself go over the whole picture, another begin inside it."""
         steering = self._device.steering
         if self._goes and steering is not None:
             canvas = self.loaded.scene.canvas
             lines = max(1, round(canvas.height_mm / _LINE_MM))
             steering.give(ReadPage(lines, canvas.height_mm / lines, canvas.width_mm))
-        elif self._watch is not None:
-            canvas = self.loaded.scene.canvas
-            self._glide((canvas.width_mm / 2, canvas.height_mm / 2), LED_MM_S)
+        elif steering is not None:
+            self._glide(self._index.inside(), LED_MM_S)
+        else:
+            self._outside = self.display.height_mm > 0 or not self._chosen
 
     def step(self, ticks: NDArray[np.void]) -> None:
         """Look where the hand is, and whether the file has changed or the hand is done."""
@@ -237,6 +244,11 @@ class SceneView(View):
         place = self.place
         if place is None:
             return
+        if self._outside:  # unless the finger is on the picture by chance
+            self._outside = False
+            if self._index.where(*place) is None:
+                down = self.display.height_mm > 0
+                self._guide = Guide("picture", self._index.inside(), down=down)
         if self._guide is not None:
             sentence = self._guide.sentence(place, now_s)
             if sentence:
@@ -360,12 +372,15 @@ class SceneView(View):
     # What is changed
 
     def move(self, right_mm: float, down_mm: float) -> None:
-        """Move a simulated hand; on a device of one axis, choose another height."""
+        """Move a simulated hand; on a device of one axis, choose another height.
+
+        A person moves the device by hand: to them it says the way to the next element.
+        """
         if not self.display.height_mm and down_mm:
             self._choose_height(self._at_mm + down_mm)
             return
         if self._device.steering is None:
-            self.say("hand: a person moves this device; move it by hand")
+            self.step_element(1 if right_mm + down_mm > 0 else -1)
             return
         begun = self._aim or self.place
         if begun is not None:

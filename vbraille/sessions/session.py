@@ -424,7 +424,9 @@ class Session:
         markers = conventional = None
         try:
             if self.conditions.markers is not None:
-                markers = Markers(parse_markers(self.conditions.markers))
+                markers = Markers(
+                    parse_markers(self.conditions.markers), self.protocol.marker_codes
+                )
             conventional = usual_conventional(
                 self.protocol, self.plan, self.conditions, felt=given.felt
             )

@@ -18,6 +18,8 @@ from dataclasses import astuple, dataclass
 from typing import Any, Final
 from zlib import crc32
 
+from vbraille.files import open_memory
+
 _HEADER_BYTES: Final = 64
 _NUMBERS: Final = struct.Struct("<2q")  # checksum, and the number of what is told
 
@@ -58,9 +60,8 @@ class TwoSlots:
         self._slot = struct.Struct(f"{_NUMBERS.format}{form}")
         size = _HEADER_BYTES + 2 * self._slot.size + spare_bytes
         if descriptor is None:
-            descriptor = os.memfd_create(f"vbraille {purpose}")
+            descriptor = open_memory(f"vbraille {purpose}", size)
             weakref.finalize(self, os.close, descriptor)
-            os.ftruncate(descriptor, size)
         self.descriptor = descriptor
         try:
             if os.fstat(descriptor).st_size != size:

@@ -10,10 +10,12 @@ from threading import Event
 import pytest
 
 from tests.sessions.sittings import MINI, Session
+from tests.sessions.written import LETTERS
 from vbraille.devices import open_device
 from vbraille.engine.batch import BatchEngine
 from vbraille.errors import InputError
 from vbraille.sessions import session as door
+from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record import events
 from vbraille.sessions.running.markers import Markers, MarkerSpec, parse_markers
 
@@ -99,15 +101,48 @@ def cue(n):
     return events.Cue(n=n, t_s=0.0, trial=n)
 
 
+def code_of(event):
+    """Byte of an event: of what is presented that of the only condition."""
+    return 101 if event.kind == "presented" else event.code
+
+
+def test_a_marker_has_the_code_of_its_condition(tmp_path, port):
+    _, name = port
+    coded = LETTERS.replace("[practice]", "[markers]\ncodes = { smooth = 200 }\n[practice]")
+    told, _, listed = sit(tmp_path / "s", f"serial:{name}", coded)
+    shown = {int(row["n"]): row for row in listed if row["event"] == "presented"}
+    of = {event.n: event for event in told if event.kind == "presented"}
+    codes = {(row["condition"], row["byte"]) for row in shown.values()}
+    assert codes == {("smooth", "200"), ("rough", "102")}
+    assert {n: event.trial for n, event in of.items()} == {
+        n: int(row["trial"]) for n, row in shown.items()
+    }
+
+
+@pytest.mark.parametrize(
+    ("codes", "says"),
+    [
+        ("{ smoth = 60 }", "codes have 'smoth'; the nearest is smooth"),
+        ("{ smooth = 7 }", "it must be 40 to 254"),
+        ("{ smooth = 60, rough = 60 }", "codes have one twice"),
+        ("{ smooth = 102 }", "codes give two conditions the same"),
+    ],
+)
+def test_codes_that_cannot_be_are_refused(codes, says):
+    with pytest.raises(InputError) as refused:
+        parse_protocol(LETTERS + f"[markers]\ncodes = {codes}\n", "page.toml")
+    assert says in str(refused.value)
+
+
 def test_each_event_of_a_session_is_a_byte_at_a_serial_port(tmp_path, port):
     ends, name = port
     told, said, listed = sit(tmp_path / "s", f"serial:{name}")
-    wanted, come = bytes(event.code for event in told), b""
+    wanted, come = bytes(map(code_of, told)), b""
     while len(come) < len(wanted):  # a terminal hands on what it has, not all that was sent
         come += os.read(ends["master"], 4096)
     assert come == wanted
     assert [(int(row["n"]), row["event"], int(row["byte"])) for row in listed] == [
-        (event.n, event.kind, event.code) for event in told
+        (event.n, event.kind, code_of(event)) for event in told
     ]
     cues = [row for row in listed if row["event"] == "cue"]
     assert [row["trial"] for row in cues] == ["1", "2", "3", "4"]
@@ -176,8 +211,8 @@ def test_a_port_that_is_unplugged_ends_no_session(tmp_path, port):
         f"markers: 3 markers lost, since serial:{name} took none then",
     ]
     assert (tmp_path / "markers-001.csv").read_text().splitlines() == [
-        "n,event,trial,practice,byte,late_ms,recorder",
-        *(f"{n},cue,{n},0,3,,serial:{name}" for n in range(1, 4)),
+        "n,event,trial,practice,condition,byte,late_ms,recorder",
+        *(f"{n},cue,{n},0,,3,,serial:{name}" for n in range(1, 4)),
     ]
 
 
@@ -226,7 +261,7 @@ def test_lateness_is_from_the_event_to_the_marker_sent(tmp_path):
     assert markers.close() == ["markers: 1 sent to recorder, late by 4.5 ms, at most 4.5 ms"]
     assert (tmp_path / "markers-001.csv").read_text().splitlines()[
         1
-    ] == "1,contact,2,1,4,4.500,recorder"
+    ] == "1,contact,2,1,,4,4.500,recorder"
 
 
 def test_a_list_that_cannot_be_written_keeps_no_marker_back(tmp_path):

@@ -28,6 +28,7 @@ from vbraille.devices.latero.conversation import (
 from vbraille.devices.latero.watchdog import POWER
 from vbraille.devices.latero.wire import NO_IO, PORT, full_request
 from vbraille.errors import DeviceError, InputError
+from vbraille.files import open_memory
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -158,8 +159,7 @@ class WatchdogProcess:
     """
 
     def __init__(self, request: bytes, off: bytes, socket: int, kept: Sequence[int] = ()) -> None:
-        memory = os.memfd_create("vbraille-latero")
-        os.ftruncate(memory, watchdog.MEMORY_BYTES)
+        memory = open_memory("vbraille-latero", watchdog.MEMORY_BYTES)
         self._memory = mmap.mmap(memory, watchdog.MEMORY_BYTES)
         self.board = watchdog.Board(self._memory)
         self.board.full[:] = request

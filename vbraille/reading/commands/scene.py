@@ -16,40 +16,51 @@ BUTTONS = {"1": "HERE", "2": "DESCRIBE", "3": "PAUSE", "4": "SWITCH_1", "5": "SW
 
 
 # A command calls a method of the feeler, by its name: what feels loads the kernels.
+# Keys mean what they mean to a reader, as far as a picture has it: elements are like headings.
 COMMANDS = (
     Command(
         "HERE",
-        ("i", "u", "f5"),
+        ("i", "u"),
         "say what is under the finger, and where",
         methodcaller("say_here"),
     ),
     Command(
-        "DESCRIBE", ("d",), "say more of what is under the finger", methodcaller("describe_here")
+        "DESCRIBE", ("w",), "say more of what is under the finger", methodcaller("describe_here")
     ),
-    Command("SCENE", ("t",), "say what the picture is", methodcaller("say_scene")),
-    Command("ELEMENTS", ("e",), "say the elements that have a name", methodcaller("say_elements")),
-    Command("GOTO", ("g",), "go to an element by its name", methodcaller("ask_element")),
-    Command("NEXT", ("n",), "go to the next element", methodcaller("step_element", 1)),
-    Command("PREVIOUS", ("p",), "go to the element before", methodcaller("step_element", -1)),
+    Command("SCENE", ("V", "f5"), "say what the picture is", methodcaller("say_scene")),
+    Command("ELEMENTS", ("O",), "list the elements that have a name", methodcaller("say_elements")),
+    Command("GOTO", ("g", "/"), "go to an element by its name", methodcaller("ask_element")),
+    Command("NEXT", ("n", "e"), "go to the next element", methodcaller("step_element", 1)),
+    Command("PREVIOUS", ("p", "E"), "go to the element before", methodcaller("step_element", -1)),
     Command("CANCEL", ("escape",), "say the way to an element no more", methodcaller("cancel")),
     Command(
         "ENTERING",
-        ("s",),
+        ("v", "f6"),
         "say each element when the finger comes to it, or no longer",
         methodcaller("toggle_entering"),
     ),
-    Command("RIGHT", ("right",), "simulated hand: 1 mm right", methodcaller("move", STEP_MM, 0)),
-    Command("LEFT", ("left",), "simulated hand: 1 mm left", methodcaller("move", -STEP_MM, 0)),
+    Command(
+        "RIGHT",
+        ("right",),
+        "simulated hand: 1 mm right; a person's: next element",
+        methodcaller("move", STEP_MM, 0),
+    ),
+    Command(
+        "LEFT",
+        ("left",),
+        "simulated hand: 1 mm left; a person's: the element before",
+        methodcaller("move", -STEP_MM, 0),
+    ),
     Command(
         "DOWN",
         ("down",),
-        "simulated hand: 1 mm down; one axis: 1 mm lower",
+        "simulated hand: 1 mm down; one axis: 1 mm lower; a person's: next element",
         methodcaller("move", 0, STEP_MM),
     ),
     Command(
         "UP",
         ("up",),
-        "simulated hand: 1 mm up; one axis: higher",
+        "simulated hand: 1 mm up; one axis: higher; a person's: the element before",
         methodcaller("move", 0, -STEP_MM),
     ),
     Command(
@@ -76,9 +87,7 @@ COMMANDS = (
         "simulated hand: 10 mm up; one axis: higher",
         methodcaller("move", 0, -FAR_MM),
     ),
-    Command(
-        "MIDDLE", ("m", "home"), "go to the middle of the picture", methodcaller("go_to_middle")
-    ),
+    Command("MIDDLE", ("home",), "go to the middle of the picture", methodcaller("go_to_middle")),
     Command("CONTRAST_UP", ("c",), "more contrast", methodcaller("turn_contrast", 1)),
     Command("CONTRAST_DOWN", ("C",), "less contrast", methodcaller("turn_contrast", -1)),
     *(
@@ -90,7 +99,7 @@ COMMANDS = (
         )
         for number in range(1, MOST_KEYS + 1)
     ),
-    Command("RELOAD", ("r",), "read the file of the picture again", methodcaller("reload")),
+    Command("RELOAD", ("\x12",), "read the file of the picture again", methodcaller("reload")),
     Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
     Command("HELP", ("h", "f1"), "say the keys", control.say_keys),
     Command(

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING, Literal
 
 from vbraille.errors import check_range
-from vbraille.tomlfile import Table
+from vbraille.tomlfile import Table, which
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -162,6 +162,53 @@ class SessionPace(Table, frozen=True):
     def __post_init__(self) -> None:
         check_range("limit_s", self.limit_s, 1, 86_400, " s")
         check_range("break_every", self.break_every, 1, 10_000)
+
+
+FIRST_CODE, LEAST_CODE, MOST_CODE = 101, 40, 254  # bytes below the least are those of events
+
+
+class MarkerCodes(Table, frozen=True):
+    """Codes by which markers tell other recorders the condition of what is shown.
+
+    Parameters
+    ----------
+    codes
+        Byte of each condition, 40 to 254, by the condition's name; conditions that are not named
+        have 101 for the first of the protocol, 102 for the second, and so on.
+
+    Raises
+    ------
+    ValueError
+        If a code is out of range, or is there twice.
+    """
+
+    codes: dict[str, int] = {}  # noqa: RUF012  (msgspec copies an empty default)
+
+    def __post_init__(self) -> None:
+        for code in self.codes.values():
+            check_range("codes: one", code, LEAST_CODE, MOST_CODE)
+        if len(set(self.codes.values())) < len(self.codes):
+            raise ValueError("codes have one twice; give each condition its own")
+
+    def of(self, conditions: Sequence[str]) -> dict[str, int]:
+        """Code of each condition.
+
+        Raises
+        ------
+        ValueError
+            If a code is of no condition, or two conditions would have the same.
+        """
+        for name in self.codes:
+            if name not in conditions:
+                raise ValueError(f"codes have {name!r}{which(name, conditions)}")
+        found = {
+            name: self.codes.get(name, min(FIRST_CODE + place, MOST_CODE))
+            for place, name in enumerate(conditions)
+        }
+        doubled = len(set(found.values())) < len(found)
+        if doubled and (self.codes or len(found) <= MOST_CODE - FIRST_CODE + 1):
+            raise ValueError("codes give two conditions the same; name all of them")
+        return found
 
 
 class Tone(Table, frozen=True, array_like=True):

@@ -39,6 +39,7 @@ from vbraille.sessions.planning.factors import (
 from vbraille.sessions.planning.items import ItemRow, Items, OrderRow
 from vbraille.sessions.planning.pace import (
     FaultRules,
+    MarkerCodes,
     ParticipantField,
     SessionPace,
     SignalSound,
@@ -97,6 +98,7 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     session: SessionPace = SessionPace()
     faults: FaultRules = FaultRules()
     sound: SignalSound = SignalSound()
+    markers: MarkerCodes = MarkerCodes()
     fields: tuple[ParticipantField, ...] = ()
     questionnaire: tuple[AnyItem, ...] = ()
     analysis: PlannedAnalysis | None = None
@@ -152,6 +154,8 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         What is done about a trial in which the device failed.
     sound
         Sounds that the participant hears.
+    markers
+        Codes of the conditions for other recorders.
     fields
         Questions about the participant.
     questionnaire
@@ -333,6 +337,11 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
             items=tuple(f"{ITEM}{name}" for name in self.item_columns),
         )
         return (self.analysis or PlannedAnalysis()).resolved(task)
+
+    @property
+    def marker_codes(self) -> dict[str, int]:
+        """Byte of a marker for each condition, by its name."""
+        return self.markers.of([condition.name for condition in self.conditions])
 
     @property
     def adaptive(self) -> bool:

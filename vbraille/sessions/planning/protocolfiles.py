@@ -301,6 +301,8 @@ def check_protocol(protocol: Protocol, *, planned: bool = False) -> None:
     for number, item in enumerate(protocol.questionnaire, 1):
         with _naming(f"[[questionnaire]] number {number}"):
             item.check(protocol.item_columns)
+    with _naming("[markers]"):
+        protocol.marker_codes  # noqa: B018
     _check_names(protocol)
     _check_styles(protocol)
     _check_procedure(protocol)
@@ -490,6 +492,8 @@ def _check_question(protocol: Protocol) -> None:
         )
     if protocol.trial.end is not None and protocol.medium == "paper":
         raise ValueError("[trial] end is of a device; on paper Enter ends reading, leave it out")
+    if protocol.asks.turns and protocol.medium == "paper":
+        raise ValueError("[question] kind is 'adjust', which turns what a device shows; leave it")
     there = any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions)
     if protocol.trial.exposure_s is not None and (there or protocol.medium == "paper"):
         raise ValueError(

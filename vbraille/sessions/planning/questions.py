@@ -137,6 +137,7 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
     words: ClassVar[tuple[str, ...]] = ()  # all answers, the one that is looked for first
     numeric: ClassVar[bool] = False  # whether answers are numbers on a scale
     positive_known: ClassVar[bool] = False  # whether a procedure can go by the answers
+    turns: ClassVar[bool] = False  # whether the participant turns the value of the last stimulus
     simulated: ClassVar[bool] = True  # whether the simulated reader can answer
     typed: ClassVar[str] = "the answer"  # what may be typed as an answer
 
@@ -974,6 +975,107 @@ class NameQuestion(QuestionTable, frozen=True, kw_only=True, tag="name"):
         return f"Of each picture it was said which of {many} names it has"
 
 
+class AdjustQuestion(QuestionTable, frozen=True, kw_only=True, tag="adjust"):
+    """The request to turn the last stimulus until it is equal to the standard, or as it should be.
+
+    Parameters
+    ----------
+    step
+        Smallest turn of the value.
+    least, most
+        Bounds of the value.
+    knob
+        Number of the device's knob whose way from end to end is that from ``least`` to ``most``;
+        None for none.
+    buttons
+        Numbers of three buttons of the device: for less, for more, and for equal; empty for none.
+
+    Raises
+    ------
+    ValueError
+        If there is nothing to turn, or a number is out of range.
+    """
+
+    numeric: ClassVar[bool] = True
+    turns: ClassVar[bool] = True
+    forms: ClassVar[tuple[str, ...]] = ("single", "standard")
+
+    step: float
+    least: float
+    most: float
+    knob: int | None = None
+    buttons: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_range("step", self.step, 1e-4, LARGEST)
+        if not self.least + self.step <= self.most:
+            raise ValueError("most is less than a step above least; make it larger")
+        check_range("knob", self.knob, 1, MOST_BUTTONS)
+        if len(set(self.buttons)) not in (0, 3) or len(self.buttons) != len(set(self.buttons)):
+            raise ValueError("buttons must be three, for less, for more and for equal")
+        for number in self.buttons:
+            check_range("buttons: one", number, 1, MOST_BUTTONS)
+
+    def prompt(self) -> str:
+        """Say how the value is turned."""
+        return "+ or - to turn it (++ twice), equal when it is; standard shows both again"
+
+    def check(self, stimuli: int, form: str, *, adaptive: bool) -> None:
+        """Check that this question can be asked of trials; see `QuestionTable.check`."""
+        super().check(stimuli, form, adaptive=adaptive)
+        if not form:
+            raise ValueError("kind is 'adjust', which turns values of kind = 'choice' of [design]")
+
+    def steps(self, line: str) -> int:
+        """Steps by which a typed line turns the value; 0 if it does not."""
+        word = line.strip()
+        return 0 if set(word) - {"+", "-"} else word.count("+") - word.count("-")
+
+    def turned(self, value: float, steps: int) -> float:
+        """Value turned by some steps, within the bounds."""
+        return round(min(max(value + steps * self.step, self.least), self.most), 9)
+
+    def at(self, share: float) -> float:
+        """Value at which the knob stands, given the share of its way."""
+        return self.turned(self.least, round(share * (self.most - self.least) / self.step))
+
+    def parse(self, text: str, trial: Trial, _spelling: CellSpelling, /) -> str:
+        """Take the value that the last stimulus has, or one that is typed as a number."""
+        if text.strip().lower() in ("equal", "="):
+            return f"{trial.stimuli[-1].value:.9g}"
+        try:
+            number = float(text.strip().replace(",", "."))
+        except ValueError:
+            number = math.nan
+        if not self.least <= number <= self.most:
+            raise ValueError(f"{quoted(text)}type {self.prompt()}")
+        return f"{number:.9g}"
+
+    def describe(self, _rows: Sequence[dict[str, Any]], knob: str | None, /) -> str:
+        """Sentence on what was turned."""
+        of = KNOBS[knob or "contrast"]
+        return f"They turned the {of.words} until it was equal, in steps of {self.step:g}{of.unit}"
+
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
+        """Turn towards what is felt as equal, by one noise in a trial, until it is within a step.
+
+        Nothing is equal to what cannot be reached: after a turn through all steps it says so.
+        """
+        values, unit = felt.values()
+        standard = unit if len(values) == 1 else values[0]
+        drawn = noise * unit * random.standard_normal(2)
+        apart = values[-1] + drawn[1] - (standard + drawn[0])
+        span = (self.most - self.least) / self.step
+        if math.isnan(apart) or felt.turns > span + 2:
+            return "equal"
+        step = self.step if felt.by_length else TIE
+        if abs(apart) <= step / 2:
+            return "equal"
+        steps = min(round(abs(apart) / step), round(span)) if felt.by_length else 1
+        return ("-" if apart > 0 else "+") * max(steps, 1)
+
+
 class FreeQuestion(QuestionTable, frozen=True, kw_only=True, tag="free"):
     """A question that is answered in words, which are not scored."""
 
@@ -1003,6 +1105,7 @@ AnyQuestion = (
     | DetectQuestion
     | RatingQuestion
     | MagnitudeQuestion
+    | AdjustQuestion
     | NameQuestion
     | FreeQuestion
 )

@@ -285,7 +285,8 @@ def _asked(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     question, t_s = record.protocol.asks, told.t_s
     row = question.columns(trial, told.answer) | {"ended_by": told.ended_by}
     row["confidence"] = "" if told.confidence is None else told.confidence
-    values = [f"{stimulus.value:g}" for stimulus in trial.stimuli if stimulus.value is not None]
+    stimuli = told.trial.stimuli if question.turns else trial.stimuli  # from where it was turned
+    values = [f"{stimulus.value:g}" for stimulus in stimuli if stimulus.value is not None]
     if record.protocol.parameter is not None:
         row["parameter"] = record.protocol.parameter
         row |= _compared(trial, record.protocol.parameter)

@@ -586,7 +586,9 @@ def _answered_lines(progress: Progress) -> dict[str, set[int]]:
         if state.answer is None and state.first_answer is None:
             continue
         if state.trace is not None:
-            lines.setdefault(state.trace, set()).update(each.line for each in state.last_attempt)
+            # What was turned at once to another value was perhaps never felt.
+            last = {each.stimulus: each.line for each in state.last_attempt}
+            lines.setdefault(state.trace, set()).update(last.values())
     return lines
 
 

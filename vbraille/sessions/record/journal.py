@@ -7,7 +7,6 @@ is mended here. `vbraille.sessions.record.events` has the kinds of events.
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import re
@@ -270,6 +269,8 @@ class Journal:
             self.close()
 
     def _lock(self) -> None:
+        import fcntl  # which a system may not have that reads sessions and runs none
+
         try:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:

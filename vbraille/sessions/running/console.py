@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from vbraille.braille.spelling import ordinal
 from vbraille.errors import InputError
 from vbraille.sessions.planning.pace import ENTER
-from vbraille.sessions.planning.questions import NameQuestion
+from vbraille.sessions.planning.questions import AdjustQuestion, NameQuestion
 from vbraille.sessions.record import events
 from vbraille.sessions.running.runner import PendingAnswer, Phase, Runner
 
@@ -122,6 +122,8 @@ class Console:
             self._reply(line, runner.asking[0])
             return
         trial = correcting or runner.open_trial
+        if correcting is None and trial is not None and self._turn(line):
+            return
         if trial is None:
             self._say("no answer is waited for now; help says what there is to type")
             return
@@ -131,6 +133,8 @@ class Console:
             self._say(f"the {coming} has not been felt yet; repeat shows {both} again")
             return
         question = runner.protocol.asks
+        if question.turns:
+            trial = self._progress.record_of(trial).shown
         try:
             if isinstance(question, NameQuestion) and question.confirm and runner.responses.typed:
                 line = self._confirmed(question, trial, line)
@@ -147,7 +151,7 @@ class Console:
         if correcting is not None:
             told["corrects"] = True
         else:
-            if not runner.presenter.reached:
+            if not (runner.presenter.reached or runner.protocol.asks.turns):
                 if self._asks_again(trial, answer):
                     return
                 told["early"] = True
@@ -176,6 +180,19 @@ class Console:
         how = f"then one of {missing}" if missing else "Enter takes it, another key changes it"
         self._say(f"chosen: {said}; {how}")
         return ""
+
+    def _turn(self, line: str) -> bool:
+        """Turn the open trial's value, or show the standard again; True if the line says so."""
+        question, runner = self._runner.protocol.asks, self._runner
+        if not isinstance(question, AdjustQuestion):
+            return False
+        if line == "standard" and not runner.more_to_come:
+            runner.show_standard()
+        elif (steps := question.steps(line)) and not runner.more_to_come:
+            runner.turn(steps)
+        else:
+            return False
+        return True
 
     def undo(self, _: str = "") -> None:
         """Take back the last answer, with its confidence."""

@@ -18,11 +18,11 @@ from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
-from vbraille.sessions.record.events import AnyTime, JournalEvent
+from vbraille.sessions.record.events import AnyTime, JournalEvent, Presented
 from vbraille.wording import count, setting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from io import TextIOWrapper
     from pathlib import Path
 
@@ -50,9 +50,11 @@ class Marker:
     stimulus
         Which stimulus of the trial it was, from 0.
     code
-        Byte of the event's kind, from 1 to 255.
+        Byte of the event's kind, from 1 to 255; of what is presented, that of its condition.
     happened_ns
         When it happened, by `time.monotonic_ns`.
+    condition
+        Condition of the trial; empty if it is in none.
     """
 
     n: int
@@ -62,16 +64,19 @@ class Marker:
     stimulus: int
     code: int
     happened_ns: int
+    condition: str = ""
 
     @property
     def text(self) -> str:
-        """Words for the event, without what was shown or answered.
+        """Words for the event, without what was answered.
 
-        >>> Marker(9, "presented", 3, False, 1, 2, 0).text
-        'presented trial 3 stimulus 2'
+        >>> Marker(9, "presented", 3, False, 1, 101, 0, "flat").text
+        'presented trial 3 stimulus 2 condition flat'
         """
+        condition = f" condition {self.condition}" if self.condition else ""
         where = f" {'practice' if self.practice else 'trial'} {self.trial}" if self.trial else ""
-        return f"{self.kind}{where}{f' stimulus {self.stimulus + 1}' if self.stimulus else ''}"
+        which = f" stimulus {self.stimulus + 1}" if self.stimulus else ""
+        return f"{self.kind}{where}{which}{condition}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +195,7 @@ def _reason(error: Exception) -> str:
     return str(error).split("\n")[0]
 
 
-HEAD = "n,event,trial,practice,byte,late_ms,recorder\n"
+HEAD = "n,event,trial,practice,condition,byte,late_ms,recorder\n"
 _ROOM = 1000  # markers that may wait
 _AGAIN_S = 1.0  # a recorder that is gone is looked for so often
 _LEAVE_S = 2.0  # how long the end of a session waits for markers that are still on their way
@@ -203,6 +208,8 @@ class Markers:
     ----------
     spec
         What the markers are sent to; it is opened at once.
+    codes
+        Byte of each condition, by its name.
     now_ns
         Clock by which lateness is measured.
     room
@@ -215,9 +222,14 @@ class Markers:
     """
 
     def __init__(
-        self, spec: MarkerSpec, now_ns: Callable[[], int] = time.monotonic_ns, room: int = _ROOM
+        self,
+        spec: MarkerSpec,
+        codes: Mapping[str, int] | None = None,
+        now_ns: Callable[[], int] = time.monotonic_ns,
+        room: int = _ROOM,
     ) -> None:
         self._spec = spec
+        self._codes = codes or {}
         self._now_ns = now_ns
         self._port: _LslStream | _SerialPort | None = spec.open()
         self._again_ns = 0
@@ -245,7 +257,7 @@ class Markers:
         self._thread = Thread(target=self._send_all, name="markers", daemon=True)
         self._thread.start()
 
-    def mark(self, event: JournalEvent, ago_ns: int) -> None:
+    def mark(self, event: JournalEvent, ago_ns: int, condition: str = "") -> None:
         """Have an event's marker sent; this never waits.
 
         Parameters
@@ -254,7 +266,10 @@ class Markers:
             Event that is in the journal.
         ago_ns
             How long ago it happened.
+        condition
+            Condition of the trial that it happened in; empty if it was in none.
         """
+        code = self._codes.get(condition) if isinstance(event, Presented) else None
         told = event if isinstance(event, AnyTime) else None
         marker = Marker(
             event.n,
@@ -262,8 +277,9 @@ class Markers:
             told.trial if told else 0,
             told.practice if told else False,
             getattr(event, "stimulus", 0) or 0,
-            event.code,
+            code or event.code,
             self._now_ns() - ago_ns,
+            condition if len(self._codes) > 1 else "",  # a name that tells something
         )
         self._marked += 1
         with suppress(Full):
@@ -324,7 +340,8 @@ class Markers:
             return
         trial, late = marker.trial or "", "" if late_ms is None else f"{late_ms:.3f}"
         row = (
-            marker.n, marker.kind, trial, int(marker.practice), marker.code, late, str(self._spec)
+            marker.n, marker.kind, trial, int(marker.practice), marker.condition, marker.code, late,
+            str(self._spec),
         )  # fmt: skip
         try:
             csv.writer(self._list, lineterminator="\n").writerow(row)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from vbraille.devices.base import Placing
-from vbraille.devices.events import Button, HandHeld
+from vbraille.devices.events import Button, HandHeld, Knob
 from vbraille.devices.sentences import placing_sentence, told
 from vbraille.engine.engine import HOME_MM, EndOfLine, Engine, Upright, placing_of
 from vbraille.engine.record import Flag
@@ -389,6 +389,7 @@ class OnDevice(Presenter):
         self._faults = FaultWatch()
         self._upright = Upright()
         self._felt: list[list[NDArray[np.void]]] = []
+        self._controls: list[Button | Knob] = []
 
     def open(self, run: int, line: int) -> str:
         """Begin the trace of an engine that was started, and return the trace's name.
@@ -501,6 +502,7 @@ class OnDevice(Presenter):
         """
         ticks = self.engine.poll()
         given = self.engine.take_events()
+        self._controls += [event for event in given if isinstance(event, Button | Knob)]
         notices = _notices_of(given)
         if not ticks.size:
             return notices + self._pressed(given)
@@ -526,6 +528,11 @@ class OnDevice(Presenter):
                 key=lambda each: each.fields["tick"],
             )
         return notices + self._pressed(given)
+
+    def take_controls(self) -> list[Button | Knob]:
+        """Buttons and knobs of the device that were moved since the last call."""
+        controls, self._controls = self._controls, []
+        return controls
 
     def _pressed(self, given: Iterable[Event]) -> list[Occurrence]:
         """Press of the button that ends reading, if it is among these events."""

@@ -159,13 +159,15 @@ class Simulated(SimulatedPerson):
         random = self._random(trial, attempt)
         scale = self._question.confidence
         sure = "" if scale is None else f"; {(scale.least + scale.most) // 2}"
+        number = len(trial.stimuli)  # of what was turned only the newest counts
         told = FeltTrial(
             self._observers[trial.condition],
-            felt,
+            [*felt[: number - 1], felt[-1]],
             [self._lead_cells + len(stimulus.masks) for stimulus in trial.stimuli],
             slice(*(self._lead_cells + place for place in trial.asked)),
             self._parameter,
             self._pairs[trial.condition],
+            len(felt) - number,
         )
         return self._question.simulate(told, self._noise, random) + sure, 0
 

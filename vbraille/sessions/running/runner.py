@@ -19,9 +19,12 @@ from enum import Enum, auto
 from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.spelling import ordinal
+from vbraille.devices.events import Button, Knob
 from vbraille.engine.host import HostDiedError
 from vbraille.sessions.planning.pace import ENTER
 from vbraille.sessions.planning.plan import stimulus_to_json
+from vbraille.sessions.planning.questions import AdjustQuestion
+from vbraille.sessions.planning.stimuli import with_value
 from vbraille.sessions.record import events
 from vbraille.sessions.record.folder import versions
 from vbraille.sessions.running.presenters import Paper, presentation_of
@@ -35,7 +38,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.questionnaire import AnyItem
-    from vbraille.sessions.planning.stimuli import Trial
+    from vbraille.sessions.planning.stimuli import Stimulus, Trial
     from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.record.journal import Journal
     from vbraille.sessions.record.progress import Progress
@@ -94,7 +97,7 @@ POLL_S = 0.02
 MOST_DEATHS = 3  # number of deaths after which the host is not started again
 
 
-def _unmarked(_event: JournalEvent, _ago_ns: int) -> None:
+def _unmarked(_event: JournalEvent, _ago_ns: int, _condition: str) -> None:
     """Send no marker."""
 
 
@@ -144,9 +147,9 @@ class Runner:
         Whether the experimenter has asked for a break that has not begun.
     script_line : int
         Number of the line of an answers file that is being done; the next event keeps it.
-    mark : Callable[[JournalEvent, int], None]
-        Function that is given each event once it is in the journal, and how many nanoseconds ago it
-        happened; it must not wait.
+    mark : Callable[[JournalEvent, int, str], None]
+        Function that is given each event once it is in the journal, how many nanoseconds ago it
+        happened, and the condition of its trial; it must not wait.
     """
 
     def __init__(
@@ -180,7 +183,7 @@ class Runner:
         self._replied: list[tuple[AnyItem, int]] = []  # questions of this time, the last one last
         self.break_wanted = False
         self.script_line = 0
-        self.mark: Callable[[JournalEvent, int], None] = _unmarked
+        self.mark: Callable[[JournalEvent, int, str], None] = _unmarked
         self._journal = journal
         self._paper = Paper()
         self._say = say
@@ -192,6 +195,8 @@ class Runner:
         self._exposed: TimePoint | None = None  # from when the stimulus's exposure counts
         self._asked: TimePoint | None = None  # from when the time for the answer counts
         self._told_late = False
+        self._turned: Stimulus | None = None  # what the participant has turned in the open trial
+        self._take_line: Callable[[str, int], None] = lambda _line, _number: None
         self._deaths = 0
         self._why = ""  # what the experimenter was told that the trial waits for
         self._prompted = False  # whether the experimenter was asked for the answer
@@ -291,7 +296,7 @@ class Runner:
         event = kind(script_line=self.script_line, **fields)
         self.script_line = 0
         written = self._journal.append(event)
-        self.mark(written, self._now_ns() - at_ns)
+        self.mark(written, self._now_ns() - at_ns, "" if trial is None else trial.condition)
         self.progress.take(written)
 
     def start(self, **fields: Any) -> None:
@@ -335,6 +340,7 @@ class Runner:
         if self.progress.correcting is not None:
             self._say(f"undo: {self.name(self.progress.correcting)}; type its answer")
         self._watch_key()
+        self._take_line = take
         self.next()
         try:
             with Suspension() as suspension:
@@ -605,6 +611,50 @@ class Runner:
         seconds = told.t_s["ended"] - told.t_s["cue"] - told.paused_s
         self._say(f"ended: {seconds:.2f} s, by {key}; type {self.prompt}")
 
+    def turn(self, steps: int) -> None:
+        """Turn the value of the stimulus that is shown, as the question has it."""
+        question = self.protocol.asks
+        if isinstance(question, AdjustQuestion) and (value := self._value) is not None:
+            self._turn_to(question.turned(value, steps))
+
+    def show_standard(self) -> None:
+        """Show the stimuli of the open trial again, the last one as it was turned."""
+        if (trial := self.open_trial) is not None:
+            self._show(trial, 0)
+
+    @property
+    def _value(self) -> float | None:
+        """Value of the stimulus that can be turned now; None if none can be."""
+        trial = self.open_trial
+        if trial is None or self.more_to_come or self.pending is not None:
+            return None
+        return (self._turned or trial.stimuli[-1]).value
+
+    def _turn_to(self, value: float) -> None:
+        """Show the last stimulus of the open trial at another value."""
+        trial, parameter, now = self.open_trial, self.protocol.parameter, self._value
+        if trial is None or parameter is None or now in (None, value):
+            return
+        shown = replace(self._turned or trial.stimuli[-1], value=value)
+        self._turned = with_value(shown, parameter, value)
+        self._present(trial)
+        self._say(f"turned: {self.name(trial)}")
+
+    def _take_controls(self) -> None:
+        """Turn the stimulus by the device's knob and buttons, if the question has them do so."""
+        question = self.protocol.asks
+        for event in [] if self.device is None else self.device.take_controls():
+            if not isinstance(question, AdjustQuestion) or self._value is None or self.paused:
+                continue
+            if isinstance(event, Knob) and event.number == question.knob:
+                self._turn_to(question.at(event.value))
+            elif isinstance(event, Button) and event.pressed and event.number in question.buttons:
+                which = question.buttons.index(event.number)
+                if which == 2:
+                    self._take_line("equal", 0)
+                else:
+                    self.turn((-1, 1)[which])
+
     def retune(self, tuning: dict[str, float]) -> None:
         """Show the open trial and all later ones with another contrast or texture."""
         trial, device = self.open_trial, self.device
@@ -644,6 +694,7 @@ class Runner:
         """
         if not self.look():
             return
+        self._take_controls()
         trial = self.trial
         if trial is None or self.paused:
             return
@@ -707,22 +758,14 @@ class Runner:
         """Begin the next trial."""
         self._attempt = self.progress.record_of(trial).attempts + 1
         self.phase = Phase.OPEN
-        self._prompted, self.ended_by, self._told_late = False, "", False
+        self._prompted, self.ended_by, self._told_late, self._turned = False, "", False, None
         self._show(trial, 0)
 
     def _show(self, trial: Trial, stimulus: int) -> None:
         self.stimulus = stimulus
-        shown: dict[str, Any] = {"attempt": self._attempt, "stimulus": stimulus}
-        shown["shown"] = stimulus_to_json(trial.stimuli[stimulus])
-        if self.device is not None and not self.by_key:
-            # The showing gets this number next: the journal has it before the stimulus is felt.
-            shown["line"] = self.device.line + 1
-        if self.progress.tuning:
-            shown["tuning"] = self.progress.tuning
-        self.log(events.Presented, trial, **shown)
         if (referred := self._referred) is not None and not stimulus:
             referred.show_reference()
-        self.presenter.show(self._presentation(trial), first=not stimulus)
+        self._present(trial)
         self._cue = self._point(trial, self._now_ns())
         limits = self.protocol.trial
         exposed = limits.exposure_s is not None and limits.exposure_from == "cue"
@@ -733,8 +776,28 @@ class Runner:
         self.log(events.Cue, trial)
         self._say(f"cue: {self.name(trial)}" + (f", {ordinal(stimulus)}" if stimulus else ""))
 
+    def _felt_now(self, trial: Trial) -> Stimulus:
+        """Stimulus that is shown, as the participant has turned it."""
+        if self._turned is not None and not self.more_to_come:
+            return self._turned
+        return trial.stimuli[self.stimulus]
+
+    def _present(self, trial: Trial) -> None:
+        """Put the stimulus before the participant; the journal has it before it is felt."""
+        stimulus = self.stimulus
+        shown: dict[str, Any] = {"attempt": self._attempt, "stimulus": stimulus}
+        shown["shown"] = stimulus_to_json(self._felt_now(trial))
+        if self.device is not None and not self.by_key:
+            # The showing gets this number next: the journal has it before the stimulus is felt.
+            shown["line"] = self.device.line + 1
+        if self.progress.tuning:
+            shown["tuning"] = self.progress.tuning
+        self.log(events.Presented, trial, **shown)
+        first = not stimulus and self._turned is None
+        self.presenter.show(self._presentation(trial), first=first)
+
     def _presentation(self, trial: Trial) -> Presentation:
-        stimulus = trial.stimuli[self.stimulus]
+        stimulus = self._felt_now(trial)
         tuning = replace(stimulus.tuning, **self.progress.tuning)
         return presentation_of(self.protocol, stimulus, tuning)
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
+from vbraille.sessions.planning.questions import AdjustQuestion
 from vbraille.sessions.running.console import find_command, read_line
 from vbraille.sessions.running.naming import SimulatedNaming
 from vbraille.sessions.running.reader import Simulated
@@ -128,7 +129,7 @@ def check_script(script: Scripted, protocol: Protocol, progress: Progress) -> No
             half, again = None, half
         elif word == "undo":
             correcting = correcting or answered
-        if word != "answer":
+        if word != "answer" or _turns(protocol, line):
             continue
         trial = half or again or correcting or next(trials, None)
         if trial is None:
@@ -152,6 +153,14 @@ def check_script(script: Scripted, protocol: Protocol, progress: Progress) -> No
         correcting, answered = None, trial if correcting is None else answered
 
 
+def _turns(protocol: Protocol, line: str) -> bool:
+    """True if a line turns a value, and answers nothing yet."""
+    question = protocol.asks
+    return isinstance(question, AdjustQuestion) and (
+        bool(question.steps(line)) or line.strip() == "standard"
+    )
+
+
 def _is_whole(protocol: Protocol, trial: Trial, line: str) -> bool:
     """True if a line has all that is asked; ValueError if it does not suit its trial."""
     found = find_command(line)
@@ -162,7 +171,7 @@ def _is_whole(protocol: Protocol, trial: Trial, line: str) -> bool:
 def _is_answer(protocol: Protocol, trial: Trial, line: str) -> bool:
     """True if a line is an answer and no command; ValueError if it does not suit its trial."""
     found = find_command(line)
-    if found is not None and found[0].word != "answer":
+    if (found is not None and found[0].word != "answer") or _turns(protocol, line):
         return False
     scale = protocol.asks.confidence
     if not _is_whole(protocol, trial, line) and scale is not None:

@@ -99,6 +99,8 @@ class FeltTrial:
         Number in which stimuli differ; empty if strings are read.
     pair
         Dots by which a distance is told; None if there are none.
+    turns
+        How often the participant has turned the last stimulus.
     """
 
     observer: Observer
@@ -107,6 +109,7 @@ class FeltTrial:
     asked: slice
     parameter: str
     pair: DotPair | None
+    turns: int = 0
 
     @property
     def by_length(self) -> bool:
