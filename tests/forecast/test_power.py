@@ -9,6 +9,7 @@ from scipy.stats import t as student
 from statsmodels.stats.power import TTestPower
 
 from tests.forecast.closedform import of_row, t_power
+from tests.forecast.independent import off_by
 from tests.tiers import by_tier, heavy
 from vbraille.errors import InputError
 from vbraille.forecast.power import PowerQuestion, power, values_of
@@ -109,6 +110,13 @@ def test_an_odds_ratio_gives_the_other_shares():
     analysis = LETTERS.planned_analysis
     shares = values_of(LETTERS, analysis, {"T25": "0.5", "odds-ratio": "3"})
     assert shares == {"T0": 0.75, "T25": 0.5, "T100": 0.75}
+
+
+def test_power_of_a_crossed_design_is_that_of_an_independent_simulation():
+    """2 × 3 within people, and 2 groups; bench_power has as many studies as 1.5 points need."""
+    studies = by_tier(150, 2000, 10_000)
+    off, compared = off_by(studies)
+    assert off <= 0.01 + 3.5 * math.sqrt(0.5 / studies), compared
 
 
 @heavy

@@ -133,7 +133,7 @@ def analyse_study(study: Study, options: Options) -> Results:
         chapters += _of_judgements(study, study.judgements, plan)
     if any(session.notes for session in study.sessions):
         table = rated.notes(study.sessions)
-        chapters.append(Chapter("Notes", "What the experimenter wrote down.", (table,)))
+        chapters.append(Chapter("Notes", (table,)))
     chapters = _corrected([each for each in map(_filled, chapters) if each.tables], correction)
     about = (*study.about, *_chosen(plan, options))
     return _told(
@@ -332,8 +332,7 @@ def _told(
     first: tuple[Chapter, ...] = ()
     if compared is not None:
         table = PRIMARY.fill(list(compared.rows()))
-        text = "The analysis that was planned."
-        first = (Chapter("Primary analysis", text, (table,), (compared.figure(),)),)
+        first = (Chapter("Primary analysis", (table,), (compared.figure(),)),)
         more |= {
             "findings": (*compared.sentences(), *chance, *compared.extremes()),
             "shown": compared.shown(),
@@ -342,7 +341,7 @@ def _told(
         }
         excluded = (*excluded, *compared.incomplete())
     sources = SOURCES.fill([{"what": word, "told": told} for word, told in about])
-    last = Chapter("Sources", "Where the numbers come from.", (sources,))
+    last = Chapter("Sources", (sources,))
     return Results(
         title,
         tuple(about),
@@ -364,7 +363,7 @@ def _chosen(plan: FollowedPlan, options: Options) -> list[tuple[str, str]]:
 def _others(others: Sequence[ComparedMeasure]) -> Chapter:
     rows = [row for each in others for row in each.rows(corrected=False)]
     drawn = tuple(each.figure(f"means_{each.cells.measure}") for each in others)
-    return Chapter("Other measures", "What was not the question.", (EXPLORED.fill(rows),), drawn)
+    return Chapter("Other measures", (EXPLORED.fill(rows),), drawn)
 
 
 def _filled(chapter: Chapter) -> Chapter:
@@ -422,38 +421,32 @@ def _of_trials(
     return [
         Chapter(
             "Legibility",
-            "Who read how much of it right, and how long it took.",
             (own, averages),
             (figures.legibility(own, averages),),
         ),
         Chapter(
             "Characters and strings",
-            "What is easy to read, and what is not.",
             (legibility.characters(places), by_dots, dots_own, legibility.strings(trials)),
             (figures.dots(by_dots, dots_own),) if len(by_dots) else (),
         ),
         _confusions(trials, places, options),
         Chapter(
             "Errors",
-            "What is wrong with wrong answers.",
             (errors, errors_own),
             (figures.errors(errors, errors_own),) if len(errors) else (),
         ),
         Chapter(
             "Over time",
-            "Whether reading became harder or easier.",
             (slopes, runs),
             tuple(figures.over_time(runs, slopes)),
         ),
         Chapter(
             "How strings were read",
-            "What the hand did, from the traces of sessions.",
             (movement.patterns(ways), movement.correlations(trials), ways, *tables),
             ways_drawn,
         ),
         Chapter(
             "Trials modelled",
-            "What else legibility goes with, by a logistic model of single trials.",
             (covariates.covariates(trials, plan.columns),),
         ),
     ]
@@ -479,7 +472,7 @@ def _confusions(trials: pd.DataFrame, places: Places, options: Options) -> Chapt
         else:
             tables.append(confusion.to_table(schema, counts, places, options.marks))
             drawn.append(figures.confusion(tables[-1]))
-    return Chapter("Confusions", "What was taken for what.", tuple(tables), tuple(drawn))
+    return Chapter("Confusions", tuple(tables), tuple(drawn))
 
 
 def _of_comparisons(study: Study, comparisons: pd.DataFrame, options: Options) -> Chapter:
@@ -488,7 +481,6 @@ def _of_comparisons(study: Study, comparisons: pd.DataFrame, options: Options) -
     each = preferences.own_values(comparisons, [session.protocol for session in study.sessions])
     return Chapter(
         "Which of two was chosen",
-        "What participants took for closer to the reference.",
         (table, own, preferred, each),
         tuple(figures.choices(table, preferred, own)),
     )
@@ -513,7 +505,6 @@ def _of_judgements(study: Study, judgements: pd.DataFrame, plan: FollowedPlan) -
         told.append(
             Chapter(
                 "Names",
-                "Which names pictures were given.",
                 (
                     naming.cells(pictures, plan.columns),
                     naming.confusions(pictures, protocols),
@@ -529,7 +520,6 @@ def _of_judgements(study: Study, judgements: pd.DataFrame, plan: FollowedPlan) -
         told.append(
             Chapter(
                 "Telling apart",
-                "How well one thing was told from another.",
                 (discrimination.sensitivity(judgements), *((found, by_level) if known else ())),
                 tuple(figures.rises(found, by_level)) if known else (),
             )
@@ -538,17 +528,13 @@ def _of_judgements(study: Study, judgements: pd.DataFrame, plan: FollowedPlan) -
     apart, exponents = scaling.apart(judgements), scaling.exponents(judgements)
     compared = [table for table in (points, means, apart, exponents) if len(table)]
     if compared:
-        text = "Values against a standard, and how estimates grow."
-        told.append(Chapter("Scaling", text, tuple(compared)))
+        told.append(Chapter("Scaling", tuple(compared)))
     if "rating" in asked:
-        text = "Where on a scale things were put."
-        told.append(Chapter("Ratings", text, rated.ratings(judgements, scales)))
+        told.append(Chapter("Ratings", rated.ratings(judgements, scales)))
     if "magnitude" in asked:
-        text = "How strong things felt, in numbers of one's own."
-        told.append(Chapter("Magnitudes", text, (rated.magnitudes(judgements),)))
+        told.append(Chapter("Magnitudes", (rated.magnitudes(judgements),)))
     if judgements["confidence"].notna().any():
-        text = "How sure somebody was of the answers."
-        told.append(Chapter("Confidence", text, (rated.confidence(judgements, sure),)))
+        told.append(Chapter("Confidence", (rated.confidence(judgements, sure),)))
     if "free" in asked:
-        told.append(Chapter("Words", "What was said in words.", (rated.words(judgements),)))
+        told.append(Chapter("Words", (rated.words(judgements),)))
     return told

@@ -265,14 +265,6 @@ class ResultTable:
         """True if a column of a confusion matrix counts a row's right answers."""
         return bool(self.marks) and at > 0 and self.columns[at].heading == row[0]
 
-    def mark(self, row: Sequence[Value], at: int) -> int | None:
-        """Largest of `marks` that a row's count of a wrong answer is above; None if none is."""
-        count = row[at]
-        answers = at > 0 and self.columns[at].kind is Kind.COUNT and not self.is_right(row, at)
-        if not answers or not isinstance(count, int):
-            return None
-        return max((mark for mark in self.marks if count > mark), default=None)
-
     def wrong(self) -> list[tuple[int, str, str]]:
         """Wrong answers of a confusion matrix: how often, what was presented, what was answered."""
         return [
@@ -409,14 +401,11 @@ class Chapter:
     ----------
     title
         Heading of the chapter.
-    text
-        What the chapter is about: a sentence or two.
     tables, figures
-        What the chapter shows, in order: figures stand after the tables.
+        What the chapter has, in order.
     """
 
     title: str
-    text: str
     tables: tuple[ResultTable, ...]
     figures: tuple[ReportFigure, ...] = ()
 

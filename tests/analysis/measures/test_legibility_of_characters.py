@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.analysis.making import answers, record
+from tests.analysis.making import answers, from_rows, record
+from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.trials import UNREAD_MASK
 from vbraille.analysis.measures.legibility import (
     cell_order,
@@ -135,3 +136,13 @@ def test_legibility_of_a_character_in_all_of_its_strings():
 def test_of_nothing_there_is_no_mean():
     assert mean_or_none([]) is None
     assert mean_or_none([1, 2]) == 1.5
+
+
+def test_a_string_made_by_a_braille_table_is_named_as_in_print():
+    head = {"participant": "P1", "condition": "T0"}
+    rows = [
+        head | {"presented": cells, "answered": cells, "text": text}
+        for cells, text in (("⠿⠞⠿", "été"), ("⠁", ""))
+    ]
+    table = strings(parse([from_rows("made", rows)]).trials)
+    assert {row["name"]: row["braille"] for row in table.records()} == {"été": "⠿⠞⠿", "a": "⠁"}

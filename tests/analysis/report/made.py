@@ -1,7 +1,5 @@
 """Results by hand: names that no page may take for its own, and all that a table can have."""
 
-from dataclasses import replace
-
 from tests.analysis.making import table_of
 from tests.pictures.charts import bars, matrix, runs
 from vbraille.analysis.results import (
@@ -78,7 +76,6 @@ RESULTS = Results(
     (
         Chapter(
             "Legibility",
-            "Who read what.",
             (LEGIBILITY, CONFUSIONS),
             (
                 ReportFigure(
@@ -95,7 +92,6 @@ RESULTS = Results(
         ),
         Chapter(
             "Over <time>",
-            "How it went on.",
             (TRIALS, NOTHING),
             (ReportFigure("runs", "Over time", "It falls.", "trials", runs()),),
         ),
@@ -111,5 +107,4 @@ RESULTS = Results(
     methods=f"4 participants read. {SCRIPT}",
     excluded=(f"participant {NASTY[3]}: slept",),
 )
-BARE = Results("Nothing", (), (), (Chapter("Patterns", "None.", (NOTHING,)),))
-ONE_MARK = replace(CONFUSIONS, marks=(4,))
+BARE = Results("Nothing", (), (), (Chapter("Patterns", (NOTHING,)),))

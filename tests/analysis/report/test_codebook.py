@@ -30,7 +30,7 @@ def test_a_number_with_a_decimal_is_no_duration():
         Column("trials", "trials", "mean number", Kind.TENTHS),
         Column("duration_mean_s", "mean duration (s)", "of them", Kind.TENTHS),
     )
-    chapter = Chapter("All", "", (table_of(columns, ((7.5, 3.25),)),))
+    chapter = Chapter("All", (table_of(columns, ((7.5, 3.25),)),))
     read = csv.DictReader(io.StringIO(codebook(Results("One", (), (), (chapter,)), "trials.csv")))
     assert [row["unit"] for row in read] == ["", "s"]
 

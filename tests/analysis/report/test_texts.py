@@ -11,7 +11,7 @@ from itertools import pairwise
 import html5lib
 
 from tests.analysis.making import table_of
-from tests.analysis.report.made import BARE, CONFUSIONS, LEGIBILITY, NASTY, ONE_MARK, RESULTS
+from tests.analysis.report.made import BARE, CONFUSIONS, NASTY, RESULTS
 from vbraille.analysis.report.tohtml import to_html
 from vbraille.analysis.report.totext import to_json, to_lines
 from vbraille.analysis.results import Column, Kind, to_csv
@@ -120,11 +120,6 @@ def test_the_table_is_headed():
         assert (first.tag, first.get("scope")) == ("th", "row")
         assert [text(cell) for cell in rest] == [said or "–" for said in told[1:]]
     assert text(rows[1][0]) == "é"
-
-
-def test_marks_are_of_wrong_answers_alone():
-    assert LEGIBILITY.mark(LEGIBILITY.rows[0], 2) is None
-    assert ONE_MARK.mark(ONE_MARK.rows[1], 1) == 4
 
 
 def test_the_figure_has_a_text():

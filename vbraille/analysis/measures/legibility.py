@@ -212,7 +212,7 @@ STRINGS = Schema(
     "A string whose cells come in another order at each showing is one string, as the protocol "
     "lists it. " + _ABOUT,
     (
-        Column("name", "string", "its letters, or its cells' names"),
+        Column("name", "string", "its print or letters, or its cells' names"),
         Column("braille", "braille", "Unicode braille"),
         Column("orders", "orders", "orders of its cells in which it was presented", Kind.COUNT),
         *_COUNTS,
@@ -253,8 +253,12 @@ def strings(trials: pd.DataFrame) -> ResultTable:
     """Table 3.3 of Lévesque 2009: one row for each string."""
     sets = trials["string_set"].cat.categories
     shown = trials[["string_set", "presented"]].drop_duplicates()
+    printed: dict[str, str] = {}
+    if "text" in trials:  # print that a braille table made the cells of, such as "été"
+        texts = trials[trials["text"] != ""].drop_duplicates("string_set")
+        printed = dict(zip(texts["string_set"].astype(str), texts["text"], strict=True))
     counts = _counts(codes(trials["string_set"]), trials).assign(
-        name=[name_string(string) for string in sets],
+        name=[printed.get(string) or name_string(string) for string in sets],
         braille=sets.to_numpy(object),
         orders=shown["string_set"].value_counts(sort=False).to_numpy(),
     )
