@@ -12,10 +12,12 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import pandas as pd
 from scipy.special import expit
 from scipy.stats import norm
 
 from tests.benchmarks.timing import Result
+from vbraille.analysis.measures.preferences import own_values
 from vbraille.analysis.statistics.comparisons import (
     CellDesign,
     CellScores,
@@ -186,6 +188,7 @@ def of_pools(studies: int, pool: int) -> Iterator[Coverage]:
     random = np.random.default_rng(3)
     for what, truth, found in (
         ("threshold of detection", math.log(0.2), thresholds(random, pool)),
+        ("preferred value of a tuning, 90 pairs", 1.8, preferred_values(random, pool // 3)),
         ("d′ of yes and no, 36 trials", 1.5, d_primes(random, pool)),
         ("d′ of same and different, 72 trials", 2.0, same_or_different(random, pool)),
     ):
@@ -219,6 +222,30 @@ def thresholds(random: np.random.Generator, pool: int) -> Floats:
         if fit.threshold > 0:
             found[at] = math.log(fit.threshold)
     return found
+
+
+def preferred_values(random: np.random.Generator, pool: int) -> Floats:
+    """Preferred values (mm) of 30 ordered pairs of six widths, 3 times each, by the model."""
+    widths = np.linspace(0.5, 3.0, 6)
+    pairs = np.array([(a, b) for a in widths for b in widths if a != b] * 3)
+    whole = []
+    for at in range(pool):
+        liked = 1.8 + 0.25 * random.normal()
+        felt = np.abs(pairs - liked) + 0.3 * random.normal(size=pairs.shape) / math.sqrt(2)
+        whole.append(
+            pd.DataFrame(
+                {
+                    "participant": f"P{at}",
+                    "parameter": "dot_width_mm",
+                    "first": pairs[:, 0],
+                    "second": pairs[:, 1],
+                    "chosen": felt.argmin(axis=1),
+                }
+            )
+        )
+    table = pd.concat(whole, ignore_index=True)
+    table = table.assign(parameter=table["parameter"].astype("category"))
+    return own_values(table, []).frame["preferred"].to_numpy(np.float64)
 
 
 def d_primes(random: np.random.Generator, pool: int) -> Floats:

@@ -417,8 +417,8 @@ class CellScores:
         """Smallest p of the pairs of a factor, times their number."""
         if len(own) > 1:
             return JointEffect(note="no test: an interaction of groups alone has several parts")
-        (factor,) = own
-        known = [p for pair in self.design.pairs(factor) if (p := self.contrast(pair.weights).p)]
+        pairs = self.design.compared(own)
+        known = [p for pair in pairs if (p := self.contrast(pair.weights).p) is not None]
         if not known:
             return JointEffect(note=f"no test: {_ALIKE}")
         return JointEffect(
