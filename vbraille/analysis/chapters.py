@@ -18,6 +18,7 @@ from vbraille.analysis.measures import (
     discrimination,
     legibility,
     movement,
+    passages,
     preferences,
     rated,
     scaling,
@@ -510,6 +511,9 @@ def _of_judgements(study: Study, judgements: pd.DataFrame, plan: FollowedPlan) -
     if compared:
         text = "Values against a standard, and how estimates grow."
         told.append(Chapter("Scaling", text, tuple(compared)))
+    if "read" in asked:
+        text = "How fast passages were read, and how the hand went."
+        told.append(Chapter("Reading speed", text, (passages.reading_speed(judgements),)))
     if "rating" in asked:
         text = "Where on a scale things were put."
         told.append(Chapter("Ratings", text, rated.ratings(judgements, scales)))
