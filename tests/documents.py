@@ -11,6 +11,7 @@ from msgspec import inspect as info
 
 from vbraille.braille.geometry import Geometry
 from vbraille.config.options import BOOK, FILE, PROFILE, held_in
+from vbraille.reading.commands.game import COMMANDS as PLAYING
 from vbraille.reading.commands.scene import COMMANDS as FEELING
 from vbraille.reading.commands.table import COMMANDS as READING
 from vbraille.render import Tuning
@@ -211,6 +212,7 @@ TABLES = (
     ("settings.md", list(_profile())),
     ("keys.md", list(_keys(READING))),
     ("feeling.md", list(_keys(FEELING))),
+    ("playing.md", list(_keys(PLAYING))),
     ("session-format.md", list(_events())),
     *(("protocols.md", rows) for rows in protocol_tables()),
 )

@@ -9,6 +9,7 @@ import venv
 import zipfile
 from pathlib import Path
 
+import louis
 import pytest
 
 from tests.tiers import heavy
@@ -80,6 +81,43 @@ def test_the_wheel_does_without_the_checkout(call, line):
 def test_the_wheel_reads_and_runs_a_session_and_analyses_it(call):
     for line in HEAVY:
         done = call("-m", "vbraille", *line.split())
+        assert done.returncode == 0, done.stderr
+        assert done.stdout
+
+
+OTHERS = [name for name in ("python3.12", "python3.13") if name != Path(sys.executable).name]
+
+
+@heavy  # pip installs all packages anew
+@pytest.mark.parametrize("name", OTHERS)
+def test_another_python_reads_with_all_that_pip_installs(tmp_path, name):
+    of_pyenv = Path.home().glob(f".pyenv/versions/{name.removeprefix('python')}.*/bin/python")
+    for found in filter(None, (shutil.which(name), *of_pyenv)):
+        made = subprocess.run(
+            [found, "-m", "venv", tmp_path / "venv"], check=False, capture_output=True
+        )
+        if not made.returncode:
+            break
+    else:
+        pytest.skip(f"this machine has no {name} that makes environments")
+    python = tmp_path / "venv" / "bin" / "python"
+    installed = subprocess.run(
+        [python, "-m", "pip", "install", "-q", f"{ROOT}[analysis]"],
+        check=False, capture_output=True, text=True,
+    )  # fmt: skip
+    if installed.returncode:
+        pytest.skip(f"pip has not all packages for {name}: {installed.stderr[-300:]}")
+    place = subprocess.check_output(
+        [python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"], text=True
+    )
+    (Path(place.strip()) / "louis").symlink_to(Path(louis.__file__).parent)
+    shutil.copy(ROOT / "texts" / "english.txt", tmp_path / "story.txt")
+    for line in HEAVY:
+        done = subprocess.run(
+            [python, "-m", "vbraille", *line.split()],
+            cwd=tmp_path, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300,
+            check=False,
+        )  # fmt: skip
         assert done.returncode == 0, done.stderr
         assert done.stdout
 

@@ -61,6 +61,7 @@ def study_of(protocol, people=2, state="ended"):
         for who in range(people)
     )
     columns = ["condition", *(f"factor_{factor.name}" for factor in protocol.factors)]
+    columns += [f"item_{name}" for name in protocol.item_columns]
     frame = pd.DataFrame(
         {"participant": ["P0", "P1"], "protocol": protocol.name}
         | {name: ["one", "two"] for name in columns}

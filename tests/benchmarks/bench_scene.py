@@ -13,6 +13,8 @@ from tests.benchmarks.scenes import (
     CANVAS,
     DISPLAY,
     along_teeth,
+    answering,
+    hidden,
     masked,
     nested,
     shapes,
@@ -20,6 +22,7 @@ from tests.benchmarks.scenes import (
     through_tens,
     toothed,
     within_ten,
+    without_signals,
 )
 from tests.benchmarks.timing import Result, ratio, seconds
 from vbraille.engine.clock import ManualClock
@@ -41,6 +44,7 @@ TEETH = 50, 98  # of a comb of nearly as many segments, and the steps of each
 PLACES = 1000
 SWEEPS = 11
 TICKS = 5000
+SIGNAL_PAIRS = 5
 PIXELS = 1000
 
 
@@ -54,6 +58,25 @@ def run() -> Iterator[Result]:
     yield from compiling()
     yield maps()
     yield ticks()
+    yield from signals()
+
+
+def signals() -> Iterator[Result]:
+    """Ticks of a picture with signals against the same without, and of one whose layers are off."""
+    with_eight, without = (
+        compile_scene(scene, DISPLAY) for scene in (answering(), without_signals(answering()))
+    )
+    share = statistics.median(
+        tick_ns(with_eight, 50) / tick_ns(without, 50) for _ in range(SIGNAL_PAIRS)
+    )
+    what = "one tick of a picture with 8 signals, half of the ticks, against the same without"
+    yield Result(what, "≤ 1.15 ×", f"{share:.2f} ×", share <= 1.15)
+    scene = without_signals(answering())
+    off = compile_scene(hidden(scene, 4), DISPLAY)
+    gone = compile_scene(msgspec.structs.replace(scene, elements=scene.elements[:4]), DISPLAY)
+    share = statistics.median(tick_ns(off, 50) / tick_ns(gone, 50) for _ in range(SIGNAL_PAIRS))
+    what = "one tick of a picture of 8 layers, 4 of them off, against one without these"
+    yield Result(what, "≤ 1.03 ×", f"{share:.2f} ×", share <= 1.03)
 
 
 def frame_from_python(
@@ -239,8 +262,8 @@ def ticks() -> Result:
     )
 
 
-def tick_ns(program: Program) -> float:
-    """99th percentile of the time of a tick with a program; the least of three runs."""
+def tick_ns(program: Program, percentile: float = 99) -> float:
+    """Percentile of the time of a tick with a program; the least of three runs."""
     clock = ManualClock()
     with SimulatedDevice(DISPLAY, clock.now_ns) as device:
         loop = Loop(device, clock)
@@ -252,4 +275,4 @@ def tick_ns(program: Program) -> float:
                 begun = perf_counter_ns()
                 loop.tick()
                 row[n] = perf_counter_ns() - begun
-        return float(np.percentile(taken, 99, axis=1).min())
+        return float(np.percentile(taken, percentile, axis=1).min())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from msgspec.structs import replace
 
 from tests.conftest import SEED
 from vbraille.display import Display
@@ -19,6 +20,7 @@ from vbraille.scene.patterns import (
     StraightLine,
 )
 from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch
 from vbraille.scene.strokes import Across, Along, DotStyle, Stroke
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, UniformVibration
 
@@ -84,6 +86,39 @@ def nested() -> tuple[Scene, Assets]:
         Scene(canvas=CANVAS, operation="maximum", elements=(chosen, everywhere)),
         Assets(),
     )
+
+
+def answering() -> Scene:
+    """Eight layers under every actuator, each of which follows a signal of its own."""
+    signals = {
+        "slow": Speed(),
+        "right": Direction(),
+        "down": Direction(angle_deg=90.0, axis=True, at_rest="low"),
+        "view": Switch(levels=(0.9, 0.1)),
+        "beat": Pulse(period_s=0.7),
+        "ramp": Pulse(shape="ramp", period_s=3.0),
+        "both": Product(of=("right", "beat")),
+        "fast": Inverse(of="slow"),
+    }
+    layers = tuple(
+        LinearGrating(ridge_mm=3.0 + n, wave_angle_deg=20.0 * n, factor=name)
+        for n, name in enumerate(signals)
+    )
+    return Scene(canvas=CANVAS, operation="add", elements=layers, signals=signals)
+
+
+def without_signals(scene: Scene) -> Scene:
+    """Scene whose layers are all there, whatever the hand does."""
+    still = tuple(replace(element, factor="") for element in scene.elements)
+    return replace(scene, elements=still, signals={})
+
+
+def hidden(scene: Scene, layers: int) -> Scene:
+    """Scene of which so many of the last layers are off."""
+    signals = {"off": Switch(levels=(0.0, 1.0))}
+    shown, others = scene.elements[:-layers], scene.elements[-layers:]
+    off = tuple(replace(element, factor="off") for element in others)
+    return replace(scene, elements=(*shown, *off), signals=signals)
 
 
 def short_lines() -> Scene:

@@ -5,7 +5,7 @@ import pytest
 
 from tests.engine.planar import PLANE, Bench
 from vbraille.engine.record import FLOATS, INTS, columns_of
-from vbraille.engine.ticks import replay
+from vbraille.engine.ticks import recall, replay
 from vbraille.render import work
 from vbraille.render.program import scratch_for
 from vbraille.render.scene.compiling import compile_scene
@@ -112,6 +112,21 @@ def test_eight_signals_are_recorded_and_frames_made_again_from_any_tick_bit_for_
         replay(program.numbers, program.table, scratch, ints, floats, at, *room, frames)
         faded = np.flatnonzero(some["share"] == 1.0)[0]
         np.testing.assert_array_equal(frames[faded : some.size], sent[begin + faded :])
+
+
+def test_signals_are_computed_again_from_records_without_them():
+    signals = {"slow": Speed(), "right": Direction(), "pulse": Pulse(period_s=0.3)}
+    parts = [Uniform(factor=name) for name in signals]
+    program = compiled(*parts, **signals)
+    bench = Bench(going(40.0, 1.0), rate_hz=1000)
+    bench.engine.show(program, 1)
+    ticks = bench.run(1.7)
+    ints, floats, _ = columns_of(np.concatenate([ticks, ticks[:1]]))
+    ints, floats = ints[:-1].copy(), floats[:-1].copy()
+    known = floats.copy()
+    floats[:, FLOATS.index("signal_1") :] = np.nan
+    recall(program.numbers, ints, floats, np.zeros(work.AT))
+    np.testing.assert_array_equal(floats[1:], known[1:])
 
 
 def test_a_part_whose_signal_is_0_changes_nothing_and_hides_nothing():

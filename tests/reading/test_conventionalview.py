@@ -5,8 +5,9 @@ import pytest
 from tests.reading.test_reader import Bench
 from vbraille.conventional.brlapi import DisplayAway, DisplayStands, KeyPressed, KeyTyped
 from vbraille.errors import InputError
+from vbraille.layout.texts import choose_table, lay_out_text
 from vbraille.reading.commands.table import bound_by
-from vbraille.reading.conventionalview import ConventionalView, Pane
+from vbraille.reading.conventionalview import ConventionalView, Pane, SentencesOnDisplay
 from vbraille.reading.keys import Bindings, Context
 from vbraille.simulation.hand import Sweep
 
@@ -190,3 +191,32 @@ class TestPane:
         pane.follow(line, 8, None, 20)
         assert pane.offset == 16
         assert pane.cells == line.masks[16:24].tobytes()
+
+
+def test_sentences_stand_there_together_and_give_way_to_the_next():
+    pins, bench, now_s = Pins(12), Bench(TEXT, width=60), [0.0]
+    table = choose_table("en")
+    view = SentencesOnDisplay(
+        pins, lambda: bench.reader, bench.said.append, table, lambda: now_s[0]
+    )
+
+    def parts(sentence):
+        layout = lay_out_text(sentence, 12, table)
+        return [layout.line(n).masks.tobytes() for n in range(1, layout.count() + 1)]
+
+    view.say("match: the sun")
+    view.say("turn: player 2")
+    view.attend()
+    shown = [*parts("match: the sun"), *parts("turn: player 2")]
+    assert pins.shown == [shown[0]]
+    for part in (*shown[1:], shown[-1]):  # at the end it stays
+        pins.tell(KeyPressed("FWINRT", 0))
+        view.attend()
+        assert pins.shown[-1] == part
+    now_s[0] += 1.0
+    view.say("place: row 1")
+    view.attend()
+    assert pins.shown[-1] == parts("place: row 1")[0]
+    pins.tell(KeyPressed("LNDN", 0))
+    view.attend()
+    assert bench.reader.line_number == 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,7 @@ from vbraille.analysis.measures import (
     discrimination,
     legibility,
     movement,
+    naming,
     passages,
     preferences,
     rated,
@@ -37,7 +39,7 @@ from vbraille.analysis.results import Chapter, Column, Kind, Results, Schema
 from vbraille.analysis.statistics.intervals import METHODS, Interval, adjust
 from vbraille.errors import InputError
 from vbraille.sessions.planning.analysis import CONDITION, MEASURES, PlannedAnalysis, Task
-from vbraille.sessions.planning.questions import RatingQuestion
+from vbraille.sessions.planning.questions import NameQuestion, RatingQuestion
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -294,6 +296,10 @@ def _measured(study: Study, places: Places | None, plan: FollowedPlan) -> dict[s
 
 def _chance(study: Study, analysis: PlannedAnalysis) -> tuple[str, ...]:
     """Sentence on what guessing would give, where a share is compared."""
+    names = [each.protocol.asks for each in study.sessions]
+    if names and all(isinstance(each, NameQuestion) for each in names):
+        share = max(1 / math.prod(len(one.names) for one in each.choices) for each in names)
+        return (f"Guessing alone would give {100 * share:.2g} %.",)
     if analysis.measure == "right":
         return ("Guessing alone would give 50 % where both answers are right equally often.",)
     if analysis.measure != "legibility" or study.trials is None:
@@ -494,6 +500,23 @@ def _of_judgements(study: Study, judgements: pd.DataFrame, plan: FollowedPlan) -
             sure[protocol.name] = question.confidence.least, question.confidence.most
     asked = {*judgements["question"]}
     told: list[Chapter] = []
+    pictures = naming.named(judgements)
+    judgements = judgements[judgements["question"] != naming.NAME]
+    if len(pictures):
+        protocols = {session.protocol.name: session.protocol for session in study.sessions}
+        told.append(
+            Chapter(
+                "Names",
+                "Which names pictures were given.",
+                (
+                    naming.cells(pictures, plan.columns),
+                    naming.confusions(pictures, protocols),
+                    naming.participants(pictures, protocols),
+                ),
+            )
+        )
+    if judgements.empty:
+        return told
     if asked & {"detect", "same-different"} or (judgements["outcome"] != "").any():
         found, by_level = discrimination.thresholds(judgements, plan.columns)
         known = len(found) or "detect" in asked

@@ -211,6 +211,8 @@ def _people(sessions: Sequence[SessionTrials], tested: Sequence[Rows], rows: Row
             f"compared {_span(numbers, 'pair')} of {len(values)} values of the {knob.words}, "
             f"{min(values):g} to {max(values):g}{knob.unit}"
         )
+    elif protocol.pictures:
+        did = f"felt {_span(numbers, 'picture')}{' each' if max(numbers) > 1 else ''}"
     else:
         cells = _span([len(row["presented"]) for row in rows], "cell")
         verb = "read" if protocol.asks.name == "identify" else "felt"
@@ -279,6 +281,8 @@ def _displays(sessions: Sequence[SessionTrials], rows: Rows) -> Facts:
         array, model = head["array"], MODELS.get(head["model"])
         simulated = head["device"].partition(":")[0] == "sim"
         how = [f"at {head['rate_hz']:g} frames a second"]
+        if protocol.pictures:
+            varied |= {"mapping", *_DISTANCES}
         how += [] if "mapping" in varied else [f"with the mapping {head['mapping']}"]
         how += [
             form.format(f"{head['geometry'][name]:g}")

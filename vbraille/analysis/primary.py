@@ -31,7 +31,7 @@ from vbraille.analysis.statistics.comparisons import CellDesign, CellScores, Cel
 from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, Interval, Unanswerable
 from vbraille.analysis.statistics.psychometric import fit_psychometric
 from vbraille.pictures.charts import Bars, Series
-from vbraille.sessions.planning.analysis import MEASURES
+from vbraille.sessions.planning.analysis import ITEM, MEASURES
 from vbraille.sessions.planning.questions import GOOD, RatingQuestion
 from vbraille.wording import count
 
@@ -220,7 +220,7 @@ def arrange(
     return MeasureCells(
         *named,
         "share" if scale == "means" else scale,
-        tuple(name.removeprefix("factor_") for name in columns),
+        tuple(name.removeprefix("factor_").removeprefix(ITEM) for name in columns),
         tuple(tuple(map(str, level.categories)) for level in levels),
         places,
         tuple(map(str, who.categories)),

@@ -194,6 +194,8 @@ def _keys(program: str) -> str:
         from vbraille.reading.commands.table import COMMANDS as KEYS
     elif program == "vbraille feel":
         from vbraille.reading.commands.scene import COMMANDS as KEYS
+    elif program == "vbraille play":
+        from vbraille.reading.commands.game import COMMANDS as KEYS
     else:
         return ""
     width = max(len(command.spoken_keys) for command in KEYS)
@@ -228,6 +230,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         "Feel a tactile picture on a device, or with a simulated hand.",
         exploring.feel,
         "vbraille feel house.scene --device latero:192.168.1.10",
+    ),
+    "play": (
+        "Play memory with cards that only the finger tells apart.",
+        exploring.play,
+        "vbraille play --players 2 --device latero:192.168.1.10",
     ),
     "books": (
         "List the books that were read, or read on in one of them.",
@@ -432,7 +439,7 @@ ACTIONS = {"device": DEVICE_ACTIONS, "scene": SCENE_ACTIONS, "session": SESSION_
 # Commands as the overview has them.
 GROUPS = {
     "reading": ("read", "books", "keys", "settings", "tune", "structure", "tables"),
-    "pictures": ("feel", "map", "scene", "profile"),
+    "pictures": ("feel", "play", "map", "scene", "profile"),
     "a page, its frames and drawings": ("page", "render", "plot", "monitor"),
     "devices": ("device", "simulate"),
     "for a lab": ("session", "analyse", "power", "predict"),

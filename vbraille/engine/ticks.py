@@ -277,6 +277,39 @@ def _show(flags, share, part, numbers, table, scratch, at, output, held, target)
 
 
 @_compiled
+def _answer(numbers, at, before_s):
+    """Compute the signals of a tick, whose picture's own time was so much at the tick before."""
+    if numbers[work.KIND] == SCENE:
+        if at[work.TIME] == 0.0:
+            begin(numbers, at)
+        compute(numbers, at, max(at[work.TIME] - before_s, 0.0))
+
+
+@_compiled
+def recall(numbers, ints, floats, at):
+    """Compute the signals of ticks again from records that have no values of them.
+
+    They are those that there were if the records begin with the picture's first, and no switch was
+    pressed.
+
+    Parameters
+    ----------
+    numbers
+        The program that was wanted under the hand.
+    ints, floats
+        The records, of which velocity and time are used; the values of signals are filled in.
+    at : float64[AT]
+        Memory of the signals, and the time of the record before; for the ticks that come next.
+    """
+    for n in range(ints.shape[0]):
+        before_s = at[work.TIME]
+        at[work.TIME], at[work.VX], at[work.VY] = floats[n, SHOWN], floats[n, VX], floats[n, VY]
+        _answer(numbers, at, before_s)
+        for k in range(work.MOST_SIGNALS):
+            floats[n, SIGNAL + k] = at[work.SIGNAL + k]
+
+
+@_compiled
 def advance(
     state,
     window_ns,
@@ -326,7 +359,7 @@ def advance(
         now_ns = times_ns[n, 0]
         now["flags"] = 0
         passed_ns = min(now_ns - now["ticked_ns"], now["period_ns"])
-        shown_before_ns = now["shown_ns"]
+        shown_before_s = now["shown_ns"] / NS_PER_S
         now["faded_ns"] += passed_ns
         if now["shown"] != 0:
             now["shown_ns"] += passed_ns
@@ -356,11 +389,7 @@ def advance(
         at[work.SWITCHES] = now["switches"]
         at[work.X], at[work.Y], at[work.THETA] = now["x_mm"], y_mm, now["theta_rad"]
         at[work.TIME], at[work.VX], at[work.VY] = shown_s, now["vx_mm_s"], now["vy_mm_s"]
-        if numbers[work.KIND] == SCENE:
-            if now["shown_ns"] == 0:
-                begin(numbers, at)
-                shown_before_ns = 0
-            compute(numbers, at, (now["shown_ns"] - shown_before_ns) / NS_PER_S)
+        _answer(numbers, at, shown_before_s)
         # What the flags say was done already; only the frame is to be made.
         _show(
             now["flags"] & _RESTING,

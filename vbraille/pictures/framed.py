@@ -55,7 +55,8 @@ class FramedScene(OpenedScene):
         time_s : float or float64[n]
             Time since the scene was first shown, in seconds.
         velocity_mm_s : float or float64[n, 2]
-            Velocity of the array along x and y. Nothing of today's scenes depends on it.
+            Velocity of the array along x and y, which signals of the scene may follow; poses are
+            then those of one hand in order.
         display
             Display that the frames are for.
 

@@ -1,13 +1,17 @@
-"""A conventional display beside a reading: the line under the hand stands on it, too."""
+"""A conventional display beside: the line under the hand, or what is said, stands on it, too."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+import math
+import time
+from typing import TYPE_CHECKING, Any, Final
 
 from vbraille.conventional.brlapi import DisplayAway, DisplayStands, KeyPressed, KeyTyped
+from vbraille.layout.texts import lay_out_text
 from vbraille.reading.commands.reporting import say_cell
 from vbraille.reading.keys import Context
 from vbraille.reading.outputs import Output
+from vbraille.reading.speech import TOGETHER_S
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -16,6 +20,8 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.layout.pages import Line
     from vbraille.reading.reader import Reader
+    from vbraille.reading.view import View
+    from vbraille.translate import BrailleTable
 
 _ROUTE: Final = "ROUTE"
 _ALONG: Final = {"FWINRT": 1, "FWINLT": -1}
@@ -107,7 +113,128 @@ def _same(line: Line, other: Line | None) -> bool:
     )
 
 
-class ConventionalView(Output):
+class _OnDisplay(Output):
+    """An output on a conventional display, whose keys are obeyed.
+
+    Parameters
+    ----------
+    display
+        The display. Nothing here waits for it.
+    view
+        Function that gives the view which is explored.
+    say
+        Function that is called with each sentence about the display.
+    """
+
+    def __init__(
+        self,
+        display: ConventionalDisplay,
+        view: Callable[[], Any],
+        say: Callable[[str], None],
+    ) -> None:
+        self._display = display
+        self._view = view
+        self._say = say
+        self._shown: bytes | None = None
+
+    def attend(self, events: Sequence[Event] = ()) -> None:  # noqa: ARG002 - which are said
+        """Show what is to stand there, if it is another than before, and do what keys say."""
+        view = self._view()
+        for message in self._display.poll():
+            if isinstance(message, DisplayStands):
+                self._say(f"display: {message.title}, {message.columns} cells")
+            elif isinstance(message, DisplayAway):
+                self._say(f"display: {message.why}")
+            elif isinstance(message, KeyPressed):
+                self._press(view, message)
+            elif isinstance(message, KeyTyped):
+                view.press(message.key)
+        if (cells := self._cells(view)) != self._shown:
+            self._shown = cells
+            self._display.show(cells)
+
+    def rest(self) -> None:
+        """Give the display back for a while, until `attend` is called."""
+        self._shown = None
+        self._display.rest()
+
+    def close(self) -> None:
+        """Give the display back."""
+        self._display.close()
+
+    def _press(self, view: Any, key: KeyPressed) -> None:
+        """Do what a key of the display says."""
+        raise NotImplementedError
+
+    def _cells(self, view: Any) -> bytes:
+        """Give the dot masks that are to stand there."""
+        raise NotImplementedError
+
+
+class SentencesOnDisplay(_OnDisplay):
+    """A conventional display on which what was said last stands, a part at a time.
+
+    Its keys for panning go through all that was said together.
+
+    Parameters
+    ----------
+    display, view, say
+        As for a `ConventionalView`.
+    table
+        Table that sentences are translated by.
+    now_s
+        Clock in seconds that does not go back.
+    """
+
+    def __init__(
+        self,
+        display: ConventionalDisplay,
+        view: Callable[[], View],
+        say: Callable[[str], None],
+        table: BrailleTable,
+        now_s: Callable[[], float] = time.monotonic,
+    ) -> None:
+        super().__init__(display, view, say)
+        self._table = table
+        self._now_s = now_s
+        self._said_s = -math.inf
+        self._sentences: list[str] = []
+        self._at = 0  # part of all these sentences that stands there
+
+    def say(self, sentence: str) -> None:
+        """Take a sentence, which takes the place of those before unless it follows at once."""
+        before_s, self._said_s = self._said_s, self._now_s()
+        if self._said_s - before_s >= TOGETHER_S:
+            self._sentences.clear()
+            self._at = 0
+        self._sentences.append(sentence)
+
+    def _press(self, view: View, key: KeyPressed) -> None:
+        at = self._at + _ALONG.get(key.name, 0)
+        if at == self._at:
+            view.call(f"display {key.name}", view.bound.display_keys.get(key.name))
+        elif 0 <= at < len(self._parts()):
+            self._at = at
+
+    def _parts(self) -> list[bytes]:
+        """Dot masks of all sentences, cut into parts of the display's width."""
+        if self._display.standing is None:
+            return []
+        width, parts = self._display.standing.columns, []
+        for sentence in self._sentences:
+            layout = lay_out_text(sentence, width, self._table)
+            number = 1
+            while (line := layout.line(number)) is not None:
+                parts.append(line.masks.tobytes())
+                number += 1
+        return parts
+
+    def _cells(self, view: View) -> bytes:  # noqa: ARG002 - whose sentences come by `say`
+        parts = self._parts()
+        return parts[self._at] if parts else b""
+
+
+class ConventionalView(_OnDisplay):
     """A conventional display on which the line under the hand stands, and whose keys are obeyed.
 
     Parameters
@@ -126,43 +253,15 @@ class ConventionalView(Output):
         reader: Callable[[], Reader],
         say: Callable[[str], None],
     ) -> None:
-        self._display = display
-        self._reader = reader
-        self._say = say
+        super().__init__(display, reader, say)
         self._pane = Pane()
-        self._shown: bytes | None = None
 
-    def attend(self, events: Sequence[Event] = ()) -> None:  # noqa: ARG002 - which are said
-        """Show what is under the hand, if it is another than before, and do what keys say."""
-        reader = self._reader()
-        for message in self._display.poll():
-            if isinstance(message, DisplayStands):
-                self._say(f"display: {message.title}, {message.columns} cells")
-            elif isinstance(message, DisplayAway):
-                self._say(f"display: {message.why}")
-            elif isinstance(message, KeyPressed):
-                self._press(reader, message)
-            elif isinstance(message, KeyTyped):
-                reader.press(message.key)
-        self._show(reader)
-
-    def rest(self) -> None:
-        """Give the display back for a while, until `attend` is called."""
-        self._shown = None
-        self._display.rest()
-
-    def close(self) -> None:
-        """Give the display back."""
-        self._display.close()
-
-    def _show(self, reader: Reader) -> None:
+    def _cells(self, reader: Reader) -> bytes:
         standing, window = self._display.standing, reader.window
         if window is not None and standing is not None:
             first = max(window.offset, 0)
             self._pane.follow(window.line, standing.columns, reader.cell, first)
-        if (cells := self._pane.cells) != self._shown:
-            self._shown = cells
-            self._display.show(cells)
+        return self._pane.cells
 
     def _press(self, reader: Reader, key: KeyPressed) -> None:
         reading = reader.context is Context.READING

@@ -6,7 +6,7 @@ every kind begin with the same head; what follows is the kind's own.
 
 from enum import IntEnum
 
-from vbraille.scene.signals import MOST_SIGNALS
+MOST_SIGNALS = 8  # of a scene; a text, which has none, does not load what reads scenes
 
 
 class ProgramKind(IntEnum):

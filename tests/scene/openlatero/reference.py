@@ -1,6 +1,6 @@
 """What OpenLatero shows, in plain float64: its files read and its equations restated by themselves.
 
-It shares nothing with what it tests. Pictures and reactive patterns are not in it.
+It shares nothing with what it tests. Pictures are not in it.
 """
 
 import math
@@ -29,12 +29,13 @@ from tests.scene.openlatero.referencevalues import (
 SURFACE = (289.9, 230.1875)
 
 
-def deflections(text, places, sign=1.0, time_s=0.0):
-    """Deflections of a scene or texture at places."""
+def deflections(text, places, sign=1.0, time_s=0.0, velocity=(0.0, 0.0), center=(0.0, 0.0)):
+    """Deflections of a scene or texture at places, under a hand that has moved so for long."""
     root = ElementTree.fromstring(text)
     generator = root.find("Generator")
     top = (root if generator is None else generator).find("Pattern")
-    return [min(1.0, pattern(top, place, Now(sign, time_s))) for place in places]
+    now = Now(sign, time_s, velocity, center)
+    return [min(1.0, pattern(top, place, now)) for place in places]
 
 
 def pattern(node, place, now):
@@ -42,6 +43,8 @@ def pattern(node, place, now):
     if kind == "Group":
         parts = node.findall("Pattern")
         values = [pattern(part, place, now) for part in parts]
+        if operation(node) == "reactive":
+            return blended(node.find("operation/Modulator"), values, now)
         return group(node, values, lambda: [mask(part, place) for part in parts[1:]])
     if kind == "Toggle":
         return pattern(node.find("Pattern"), place, now)
@@ -60,7 +63,36 @@ def pattern(node, place, now):
     raise AssertionError(kind)
 
 
-# Operators, section 5
+# Operators and reaction, section 5
+
+
+def blended(modulator, values, now):
+    k = modulation(modulator, now)
+    return k * values[0] + (1 - k) * values[1]
+
+
+def modulation(node, now):
+    """Eqs. 9.6 and 9.8-9.10; a toggle is high at first, until its value reaches 0."""
+    speed = math.hypot(*now.velocity)
+    if node.get("type") == "Velocity":
+        return fallen(speed, number(node, "limit", 5.0), number(node, "transition", 5.0))
+    slow = fallen(
+        speed, number(node, "velocity_tolerance", 0.0), number(node, "velocity_transition", 5.0)
+    )
+    way = math.degrees(math.atan2(now.velocity[1], now.velocity[0]))
+    away = abs((way - number(node, "direction", 0.0) + 180) % 360 - 180)
+    if switch(node, "symmetric", False) and away > 90:
+        away = 180 - away
+    tolerance = number(node, "direction_tolerance", 30.0)
+    alpha = fallen(away, tolerance, number(node, "direction_transition", 20.0))
+    mode = word(node, "low_velocity_mode", "toggle")
+    return min(alpha, 1 - slow) if mode == "low" else max(alpha, slow)
+
+
+def fallen(value, limit, transition):
+    if value < limit:
+        return 1.0
+    return max(0.0, (limit + transition - value) / transition)
 
 
 def operation(node, default="max"):
@@ -124,7 +156,7 @@ def wave(node, x, now, usual):
     if switch(modulator, "enable", False):
         x = warped(modulator, x)
     else:
-        x -= speed * now.time_s
+        x -= speed * (now.travelled(speed, cycle))
     u = (x / cycle) % 1.0
     value = (1 - math.cos(2 * math.pi * u / (ridge / cycle))) / 2 if u <= ridge / cycle else 0.0
     return 1 - value if inverted else value
@@ -152,6 +184,9 @@ def warped(modulator, x):
 
 def texture(node, place, now):
     kind = node.get("subtype")
+    if node.find("td_centric") is not None:
+        at = point(node, "td_centric", (0.0, 0.0))
+        place = tuple(place[n] - now.center[n] + at[n] for n in (0, 1))
     motion = node.find("motion")
     if switch(motion, "enable", False) and kind not in ("DoubleLinearGrating", "Pattern"):
         speed, way = number(motion, "velocity", 50.0), number(motion, "direction", 0.0)
@@ -189,6 +224,9 @@ def plain_texture(node, kind, place, now):
         return double(node, x, y, now)
     if kind == "Combo":
         return group(node, [pattern(part, place, now) for part in node.findall("Pattern")], list)
+    if kind == "Blend":
+        values = [pattern(part, place, now) for part in node.findall("Pattern")]
+        return blended(node.find("Modulator"), values, now)
     if kind == "Motion":
         return pattern(node.find("Pattern"), place, now)
     assert kind == "Pattern"

@@ -6,9 +6,17 @@ import math
 class Now:
     """Which actuator it is, as the sign of its vibration, and when."""
 
-    def __init__(self, sign, time_s):
+    def __init__(self, sign, time_s, velocity=(0.0, 0.0), center=(0.0, 0.0)):
         self.sign = sign
         self.time_s = time_s
+        self.velocity = velocity
+        self.center = center
+
+    def travelled(self, speed, cycle):
+        """Time within a period of ridges, which has whole microseconds."""
+        if not speed:
+            return 0.0
+        return math.fmod(self.time_s, math.floor(1e6 * cycle / abs(speed)) / 1e6)
 
     def swing(self, hertz):
         """q: what an actuator shows of a vibration."""

@@ -19,8 +19,11 @@ from tests.scene.openlatero.files import (
     texture,
     waves,
 )
+from vbraille.render import STRESS2_8X8
+from vbraille.render.scene.compiling import SceneMap, compile_scene
 from vbraille.render.scene.labels import Assets
 from vbraille.scene.openlatero import read_gen
+from vbraille.scene.signals import packed
 
 SQUARE = ("20,20", "70,20", "70,60", "20,60")
 DENT = ("20,20", "70,20", "45,35", "70,60", "20,60")
@@ -272,6 +275,95 @@ def test_a_scene_feels_as_there(name, tmp_path):
         theirs = reference.deflections(text, at, sign, time)
         assert np.ptp(theirs) > 0.1 or name.split(",")[0] in FLAT
         np.testing.assert_allclose(ours, theirs, atol=1e-6, rtol=0, err_msg=name)
+
+
+MODULATOR = '<Modulator type="{}">{}</Modulator>'
+TOWARDS = "<direction>30</direction><direction_tolerance>20</direction_tolerance>"
+CARRIED = "<motion><enable>yes</enable><direction>30</direction><velocity>20</velocity></motion>"
+REACTIVE = {
+    "blend by speed": texture(
+        "Blend", f"{MODULATOR.format('Velocity', '')}{grating()}{grating(5, angle=90)}"
+    ),
+    "blend by direction": texture(
+        "Blend", f"{MODULATOR.format('Directional', TOWARDS)}{grating()}{grating(angle=90)}"
+    ),
+    "blend by axis, low at rest": texture(
+        "Blend",
+        MODULATOR.format(
+            "Directional",
+            f"{TOWARDS}<symmetric>yes</symmetric><low_velocity_mode>low</low_velocity_mode>",
+        )
+        + grating()
+        + grating(angle=90),
+    ),
+    "reactive group": '<Pattern type="Group"><operation type="reactive">'
+    + MODULATOR.format("Velocity", "<limit>2</limit><transition>9</transition>")
+    + f"</operation>{circle(stroke() + fill(grating()))}{line(stroke())}</Pattern>",
+    "moving rings": texture("RadialGrating", f"<seed>40,40</seed>{waves(5, 1)}{CARRIED}"),
+    "moving combo": texture(
+        "Combo", f'<operation type="max"/>{grating()}{grating(angle=60)}{CARRIED}'
+    ),
+    "moving slope": texture(
+        "LinearGrating",
+        waves(5, 1, '<PitchModulator type="slope"><enable>yes</enable></PitchModulator>') + CARRIED,
+    ),
+    "still under the hand": grating(inside="<td_centric>5,5</td_centric>"),
+    "moving rings under the hand": texture(
+        "RadialGrating", f"<seed>9,9</seed>{waves(3, 1)}{CARRIED}<td_centric>0,8</td_centric>"
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REACTIVE)
+def test_what_moves_and_answers_feels_as_there(name, tmp_path):
+    text = scene(REACTIVE[name])
+    path = tmp_path / "old.gen"
+    path.write_text(text)
+    found = read_gen(path)
+    assert not found.warnings
+    program = compile_scene(found.scene, STRESS2_8X8.display)
+    chance = random.Random(3)
+    for velocity in ((0.0, 0.0), (4.0, 1.0), (30.0, 12.0), (-30.0, -17.0), (3.0, -40.0)):
+        x, y, time = chance.uniform(20, 60), chance.uniform(25, 55), chance.uniform(0, 2)
+        shown = program.poses(np.array([x]), np.array([y]), 0.0, time, velocity)[1][0]
+        places = [
+            (x + (column - 3.5) * 1.2, y + (row - 3.5) * 1.4)
+            for row in range(8)
+            for column in range(8)
+        ]
+        theirs = [
+            reference.deflections(text, [place], 1.0, time, velocity, (x, y))[0] for place in places
+        ]
+        np.testing.assert_allclose(shown.ravel(), theirs, atol=2e-4, rtol=0, err_msg=name)
+
+
+@pytest.mark.parametrize("speed", [37.0, -89.0, 99.0])
+def test_periods_of_ridges_have_whole_microseconds_as_shown(speed, tmp_path):
+    text = scene(texture("LinearGrating", waves(3.1, 0.9, f"<velocity>{speed}</velocity>")))
+    path = tmp_path / "old.gen"
+    path.write_text(text)
+    x, y = np.linspace(10, 30, 50), np.full(50, 20.0)
+    for time in (0.3, 4321.0):
+        theirs = reference.deflections(text, list(zip(x, y, strict=True)), 1.0, time)
+        ours = deflections(read_gen(path, as_shown=True).scene, Assets(), x, y, 0, time)
+        np.testing.assert_allclose(ours, theirs, atol=2e-4, rtol=0)
+    as_written = deflections(read_gen(path).scene, Assets(), x, y, 0, time)
+    assert np.abs(as_written - theirs).max() > 0.01
+
+
+def test_a_key_swaps_what_a_button_swaps_there(tmp_path):
+    path = tmp_path / "old.gen"
+    for text, state in ((circle(stroke()), 0), (line(stroke()), 1)):
+        path.write_text(
+            scene(f'<Pattern type="Toggle">{circle(stroke())}{line(stroke())}</Pattern>')
+        )
+        found = read_gen(path)
+        assert not found.warnings
+        drawn, at = SceneMap(found.scene), np.linspace(10, 80, 71)
+        switches = packed({1: state}, found.scene.signals)
+        path.write_text(scene(text))
+        alone = SceneMap(read_gen(path).scene).deflections(at, at)
+        np.testing.assert_array_equal(drawn.deflections(at, at, switches=switches), alone)
 
 
 # What is the same everywhere.

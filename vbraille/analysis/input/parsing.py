@@ -37,7 +37,7 @@ from vbraille.analysis.input.sheets import (
 from vbraille.analysis.input.trials import ALL, TRIAL_COLUMNS, LeftOut, factor, name_string
 from vbraille.analysis.statistics.intervals import LARGEST
 from vbraille.errors import InputError
-from vbraille.sessions.planning.questions import KINDS, OneOfTwo
+from vbraille.sessions.planning.questions import KINDS, RIGHT, WRONG, OneOfTwo
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -435,6 +435,8 @@ def _outcomes(sheet: Sheet, rows: pd.DataFrame, kinds: pd.Series) -> pd.Series:
     right = correct.map({"1": "right", "1.0": "right", "0": "wrong", "0.0": "wrong"}).fillna("")
     found = given.where(given != "", right.where(kinds.isin(USUAL), ""))
     presented, answered = (rows[name].astype(str).str.strip() for name in ("presented", "answered"))
+    named = (kinds == "name") & (found == "") & (presented != "")
+    found = found.mask(named, (presented == answered).map({True: RIGHT, False: WRONG}))
     for kind, asked in KINDS.items():
         if not issubclass(asked, OneOfTwo):
             continue

@@ -393,6 +393,33 @@ def feel(parser: CommandParser) -> None:
     parser.take(*HEARD, *LIVE)
 
 
+def play(parser: CommandParser) -> None:
+    """Add the options of ``vbraille play``."""
+    parser.option(
+        "--deck",
+        "FOLDER",
+        "Play with the scenes of this folder, two cards of each (default: twelve that come with "
+        "the program).",
+    )
+    parser.choice("--players", (1, 2), "Deal for so many players.", default=1, kind=int)
+    parser.take("device")
+    add_model(
+        parser,
+        "Simulate this display, or refuse a device that is another one (default: the STReSS² of "
+        "8 × 8 on the Tactograph).",
+    )
+    parser.take("hand", "rate")
+    parser.option(
+        "--seed",
+        "N",
+        "Shuffle the cards, and move a simulated hand, by this seed (default: another one each "
+        "time, which is said).",
+        seed,
+    )
+    parser.take(*HEARD, "also")
+    parser.set_defaults(hand=None, monitor=False, pointer=None, begun=None, host=None, port=None)
+
+
 def path(parser: CommandParser) -> None:
     """Add the options of a path over a picture."""
     parser.option(

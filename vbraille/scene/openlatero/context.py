@@ -11,6 +11,7 @@ from msgspec.structs import replace
 
 from vbraille.scene.measures import LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ
 from vbraille.scene.patterns import Group
+from vbraille.scene.signals import MOST_SIGNALS
 from vbraille.scene.strokes import Vibration
 from vbraille.wording import nearest
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from vbraille.scene.openlatero.elements import GenElement
     from vbraille.scene.patterns import AnyPattern
+    from vbraille.scene.signals import AnySignal
 
 # The surface that the pictures stand on, which no file says.
 SURFACE_MM = (289.9, 230.1875)
@@ -39,11 +41,14 @@ class GenContext:
         Whether the picture is to be as OpenLatero shows it, where that is not what the file says.
     readers
         What reads patterns, by their type.
+    signals
+        Signals of the scene, as they come.
     """
 
     folder: Path
     as_shown: bool
     readers: Mapping[str, Reader]
+    signals: dict[str, AnySignal] = field(default_factory=dict)
     _found: dict[int, tuple[AnyPattern, GenElement]] = field(default_factory=dict)
     _way: list[GenElement] = field(default_factory=list)
 
@@ -76,6 +81,24 @@ class GenContext:
         if pattern is not None:
             self._found[id(pattern)] = (pattern, element)
         return pattern
+
+    def signal(self, name: str, signal: AnySignal) -> str:
+        """Name of a signal, which is called by a name and a number if others have that name.
+
+        Raises
+        ------
+        ValueError
+            If a scene cannot have as many.
+        """
+        for known, other in self.signals.items():
+            if other == signal:
+                return known
+        if len(self.signals) == MOST_SIGNALS:
+            raise ValueError(f"a scene has at most {MOST_SIGNALS} signals")
+        number = len(self.signals) + 1
+        own = f"{name}-{number}" if name in self.signals else name
+        self.signals[own] = signal
+        return own
 
     def element_of(self, pattern: AnyPattern) -> GenElement | None:
         """Element that a pattern came from; None if it was made on the way."""
@@ -125,6 +148,14 @@ def swung(element: GenElement, context: GenContext) -> Vibration:
 def timed(hertz: float, context: GenContext) -> float:
     """Frequency that is shown for one that is written: its period has whole microseconds there."""
     return 1e6 / math.floor(1e6 / hertz) if context.as_shown else hertz
+
+
+def travelled(speed: float, cycle: float, context: GenContext) -> float:
+    """Speed of ridges that is shown for one that is written, as `timed` does for vibrations."""
+    period_us = math.floor(1e6 * cycle / abs(speed)) if speed else 0
+    if not context.as_shown or period_us < 1:
+        return speed
+    return math.copysign(1e6 * cycle / period_us, speed)
 
 
 def changed(

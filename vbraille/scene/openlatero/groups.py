@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, Final, Literal
+
+from msgspec.structs import replace
 
 from vbraille.scene.openlatero.shapes import operation_of
 from vbraille.scene.patterns import Group, Tile
+from vbraille.scene.signals import Direction, Speed, Switch
 from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
     RadialGrating,
+    SignalLevel,
     Uniform,
     UniformVibration,
 )
@@ -27,15 +32,63 @@ OPERATIONS: dict[str, Operation] = {
     "blend": "blend",
     "overwrite": "overwrite",
 }
+_MODULATORS: Final = ("Directional", "Velocity")
+_AT_REST: Final[dict[str, Literal["high", "low", "keep"]]] = {
+    "high": "high",
+    "low": "low",
+    "toggle": "keep",
+}
 _TEXTURES = (Uniform, UniformVibration, LinearGrating, RadialGrating, AxialGrating, Tile)
 
 
 def read_group(element: GenElement, context: GenContext) -> AnyPattern | None:
     """Group of an element; None if there is nothing to show."""
-    return joined(element, [context.pattern(part) for part in element.every("Pattern")])
+    return joined(element, [context.pattern(part) for part in element.every("Pattern")], context)
 
 
-def joined(element: GenElement, parts: list[AnyPattern | None]) -> AnyPattern | None:
+def reacting(
+    first: AnyPattern | None, second: AnyPattern | None, modulator: GenElement, context: GenContext
+) -> AnyPattern:
+    """Blend of two patterns by the hand's movement; it is the first where the modulator is 1.
+
+    Raises
+    ------
+    ValueError
+        If the scene has too many signals.
+    """
+    kind = modulator.chosen(modulator.attribute("type"), _MODULATORS, "Directional")
+    signal = (_velocity if kind == "Velocity" else _direction)(modulator)
+    by = SignalLevel(name=context.signal("slow" if kind == "Velocity" else "way", signal))
+    nothing = Uniform(level=0.0)
+    parts = (nothing if second is None else second, nothing if first is None else first)
+    return Group(operation="blend", parts=parts, by=by)
+
+
+def _velocity(modulator: GenElement) -> Speed:
+    return Speed(
+        below_mm_s=modulator.number("limit", 5.0, 0.0, 1000.0, "mm/s"),
+        transition_mm_s=modulator.number("transition", 5.0, 0.1, 1000.0, "mm/s"),
+        # Theirs is the time until it has risen: half of it waits.
+        delay_s=modulator.number("delay", 500.0, 0.0, 20_000.0, "ms") / 2000.0,
+    )
+
+
+def _direction(modulator: GenElement) -> Direction:
+    at_rest = modulator.word("low_velocity_mode", tuple(_AT_REST), "toggle")
+    return Direction(
+        angle_deg=math.fmod(modulator.number("direction", 0.0, -1e6, 1e6, "°"), 360.0),
+        axis=modulator.switch("symmetric", False),
+        tolerance_deg=modulator.number("direction_tolerance", 30.0, 0.0, 180.0, "°"),
+        transition_deg=modulator.number("direction_transition", 20.0, 0.1, 180.0, "°"),
+        at_rest=_AT_REST[at_rest],
+        below_mm_s=modulator.number("velocity_tolerance", 0.0, 0.0, 1000.0, "mm/s"),
+        slow_transition_mm_s=modulator.number("velocity_transition", 5.0, 0.1, 1000.0, "mm/s"),
+    )
+
+
+def joined(
+    element: GenElement, parts: list[AnyPattern | None], context: GenContext
+) -> AnyPattern | None:
     """Parts put together as an element says; None if there is nothing to show.
 
     Parameters
@@ -44,15 +97,23 @@ def joined(element: GenElement, parts: list[AnyPattern | None]) -> AnyPattern | 
         The group, with its operation.
     parts
         Parts of it, of which None are left out.
+    context
+        How the file is read.
+
+    Raises
+    ------
+    ValueError
+        If the scene has too many signals.
     """
     name = operation_of(element, "max")
     if not parts:
         element.say("it has no patterns; left out")
         return None
     if name == "reactive":
-        element.part("operation").forget()
-        element.say("it depends on the hand's movement there; its first pattern is shown")
-        return parts[0]
+        modulator = element.part("operation").part("Modulator")
+        if len(parts) != 2:
+            element.say(f"a reactive group is of 2 patterns, and this has {len(parts)}")
+        return reacting(*(*parts, None)[:2], modulator, context)
     if name == "blend":
         return _blended(element, parts)
     if name == "multiply" and None in parts:
@@ -84,16 +145,24 @@ def _say_layers(element: GenElement, parts: list[AnyPattern]) -> None:
 
 
 def read_toggle(element: GenElement, context: GenContext) -> AnyPattern | None:
-    """First pattern of two that a button swaps."""
+    """Two patterns that a key swaps, as a button does there."""
     parts = element.every("Pattern")
-    if len(parts) < 2:
+    if len(parts) != 2:
         element.forget()
         element.say(f"a toggle is of 2 patterns, and this has {len(parts)}; left out")
         return None
-    for part in parts[1:]:
-        part.forget()
-    element.say("a button swaps two patterns there; the first is shown")
-    return context.pattern(parts[0])
+    first, second = (context.pattern(part) for part in parts)
+    shown = context.signal("first", Switch(title="button", levels=(1.0, 0.0)))
+    other = context.signal("second", Switch(title="button", levels=(0.0, 1.0)))
+    named = ((first, shown), (second, other))
+    layers = tuple(_layer(part, factor) for part, factor in named if part is not None)
+    return Group(operation="maximum", parts=layers) if layers else None
+
+
+def _layer(pattern: AnyPattern, factor: str) -> AnyPattern:
+    if pattern.factor:
+        pattern = Group(operation="maximum", parts=(pattern,))
+    return replace(pattern, factor=factor)
 
 
 def read_audio(element: GenElement, context: GenContext) -> None:

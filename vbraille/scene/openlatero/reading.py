@@ -80,6 +80,7 @@ def read_gen(path: str | Path, *, as_shown: bool = False) -> FoundScene:
         title=_title(path),
         operation=operation,
         elements=elements,
+        signals=context.signals,
     )
     return FoundScene(scene, _lines(scene, context), remarks.listed())
 
@@ -104,7 +105,7 @@ def _made(root: GenElement, context: GenContext, path: Path) -> AnyPattern | Non
         return context.pattern(group)
     if context.as_shown:
         group.say("this is taken as a Group, as OpenLatero does")
-        return joined(group, [context.pattern(part) for part in group.every("Pattern")])
+        return joined(group, [context.pattern(part) for part in group.every("Pattern")], context)
     group.say("this is shown, although OpenLatero takes it as a Group")
     return context.pattern(group)
 
@@ -115,7 +116,7 @@ def _spread(made: AnyPattern | None) -> tuple[Operation, tuple[AnyPattern, ...]]
         return "maximum", ()
     if not isinstance(made, Group) or made.by is not None or made.weights is not None:
         return "maximum", (made,)
-    if made.amplitude != 1.0 or made.inverted or made.vibration is not None:
+    if made.amplitude != 1.0 or made.inverted or made.vibration is not None or made.factor:
         return "maximum", (made,)
     return made.operation, made.parts
 

@@ -12,7 +12,7 @@ from vbraille.errors import needing_extras
 from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.joints import joints, rounding_radius_mm
 from vbraille.scene.measures import LEAST_MM, MOST_MM
-from vbraille.scene.openlatero.context import SURFACE_MM, swung, vibration
+from vbraille.scene.openlatero.context import SURFACE_MM, swung, travelled, vibration
 from vbraille.scene.patterns import Circle, Dots, Fill, PathShape, Polygon, StraightLine
 from vbraille.scene.strokes import (
     Across,
@@ -88,7 +88,7 @@ def drawn(shape: GenElement, context: GenContext, *, corners_swing: bool = False
         element.say(f"stroke width is {width:g}, so there is no stroke")
         return StrokeLook(intensity, None, None)
     if is_dotted:
-        _speed(element, fill, None)
+        _speed(element, fill, None, context)
         if fill is not None:
             fill.skip("Grating", "gutter")
         height = row.number("height", 1.0, 0.0, 1.0, "share")
@@ -105,7 +105,7 @@ def drawn(shape: GenElement, context: GenContext, *, corners_swing: bool = False
     row.forget()
     stroke = _stroke(fill, context, Stroke(width_mm=width, edge_mm=edge, across=across), swing)
     along = None if stroke is None else stroke.along
-    speed = _speed(element, fill, along)
+    speed = _speed(element, fill, along, context)
     if stroke is not None and along is not None and speed:
         stroke = replace(stroke, along=replace(along, velocity_mm_s=speed))
     return StrokeLook(intensity, stroke, None)
@@ -215,14 +215,16 @@ def _along(fill: GenElement) -> Along | None:
     return Along(ridge_mm=ridge, gap_mm=gap, whole_cycles=False)
 
 
-def _speed(stroke: GenElement, fill: GenElement | None, along: Along | None) -> float:
+def _speed(
+    stroke: GenElement, fill: GenElement | None, along: Along | None, context: GenContext
+) -> float:
     """Speed of the texture along a stroke, in mm/s, once the cues that are not shown are said."""
     own = 0.0
     if fill is not None and along is not None:
         own = speed_of(fill.part("Grating"), "mm", along.ridge_mm + along.gap_mm)
     motion = stroke.one("motion")
     if motion is None:
-        return own
+        return own if along is None else travelled(own, along.ridge_mm + along.gap_mm, context)
     cue = motion.word("cue", _CUES, "none") if motion.one("cue") else None
     speed = motion.number("velocity", 50.0, -_MOST_SPEED, _MOST_SPEED, "mm/s")
     motion.forget()
@@ -230,7 +232,8 @@ def _speed(stroke: GenElement, fill: GenElement | None, along: Along | None) -> 
         motion.say("the dots stand still here, and move along the shape in OpenLatero")
     elif cue not in (None, "none", "inherent"):
         motion.say(f'the motion cue "{cue}" is not shown')
-    return speed if cue == "inherent" else own if cue is None else 0.0
+    shown = speed if cue == "inherent" else own if cue is None else 0.0
+    return shown if along is None else travelled(shown, along.ridge_mm + along.gap_mm, context)
 
 
 def speed_of(grating: GenElement, unit: str, cycle: float, most: float = _MOST_SPEED) -> float:

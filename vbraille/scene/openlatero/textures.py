@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 from msgspec.structs import replace
 
 from vbraille.scene.measures import LEAST_FREQUENCY_HZ, LEAST_MM, MOST_FREQUENCY_HZ, MOST_MM
-from vbraille.scene.openlatero.context import changed, timed, vibration
-from vbraille.scene.openlatero.groups import joined
+from vbraille.scene.openlatero.context import changed, timed, travelled, vibration
+from vbraille.scene.openlatero.groups import joined, reacting
 from vbraille.scene.openlatero.shapes import speed_of
-from vbraille.scene.patterns import Circle, Tile
-from vbraille.scene.strokes import Stroke
+from vbraille.scene.patterns import Circle, Group, Moving, Tile
+from vbraille.scene.strokes import Stroke, Vibration
 from vbraille.scene.textures import (
     AxialGrating,
     Gradual,
@@ -38,9 +38,12 @@ _LEAST_DEG = 0.5
 _MOST_DEG_S = 3600.0
 _MOST_MM_S = 1000.0
 _FACTORS = (0.05, 20.0)
+_EVEN = ("Null", "Plain", "Vibration")  # which are the same everywhere
 _STILL = 1e-3  # mm/s, below which OpenLatero takes a projected speed as none
 
 
+# Bands of a cue: those of the thesis that are best felt (9.7), at what OpenLatero weakens them to.
+_BAND_MM, _BAND_GAP_MM, _BAND_AMPLITUDE = 2.0, 30.0, 0.2
 _CUES = (
     "none",
     "vibration bands",
@@ -68,8 +71,8 @@ def read_texture(element: GenElement, context: GenContext) -> AnyPattern | None:
         element.say(f"the subtype of this texture is {what}, which is not known{near}; left out")
         return None
     element.skip("icon")
-    if element.one("td_centric") is not None:
-        element.say("it stands still under the display there (td_centric), which is not shown")
+    if kind in _EVEN:
+        element.skip("motion", "td_centric")
     pattern = reader(element, context)
     if pattern is None:
         element.forget()
@@ -84,12 +87,10 @@ def _null(element: GenElement, context: GenContext) -> AnyPattern:
 
 
 def _plain(element: GenElement, context: GenContext) -> AnyPattern:
-    element.skip("motion")  # the same everywhere
     return _changed(Uniform(), element, context)
 
 
 def _vibration(element: GenElement, context: GenContext) -> AnyPattern:
-    element.skip("motion")
     hertz = element.number("freq", MOST_FREQUENCY_HZ, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, "Hz")
     return _changed(UniformVibration(frequency_hz=timed(hertz, context)), element, context)
 
@@ -98,19 +99,19 @@ def _linear(element: GenElement, context: GenContext) -> AnyPattern | None:
     angle = turned(element.number("angle", 0.0, -1e6, 1e6, "°"))
     seed = element.point("seed", (0.0, 0.0))
     make = partial(LinearGrating, wave_angle_deg=angle or None, start_mm=seed)
-    return _graded(make, _wave(element, 8.0, "mm"), element, context)
+    return _graded(make, _wave(element, 8.0, "mm", context), element, context)
 
 
 def _radial(element: GenElement, context: GenContext) -> AnyPattern | None:
     make = partial(RadialGrating, center_mm=element.point("seed", (0.0, 0.0)))
-    return _graded(make, _wave(element, 8.0, "mm"), element, context)
+    return _graded(make, _wave(element, 8.0, "mm", context), element, context)
 
 
 def _axial(element: GenElement, context: GenContext) -> AnyPattern | None:
     seed = element.point("seed", (0.0, 0.0))
     start = turned(element.number("seed_angle", 0.0, -1e6, 1e6, "°"))
     make = partial(AxialGrating, center_mm=seed, start_deg=start, whole_cycles=False)
-    wave = _wave(element, 36.0, "°")
+    wave = _wave(element, 36.0, "°", context)
     if isinstance(wave, dict):
         if wave["ridge_deg"] + wave["gap_deg"] > 360.0:
             wave["gap_deg"] = 360.0 - wave["ridge_deg"]
@@ -131,16 +132,16 @@ def _graded(
     if wave is None:
         return None
     if isinstance(wave, Uniform):
-        element.skip("motion")  # the same everywhere
+        element.skip("motion", "td_centric")  # the same everywhere
         return _changed(wave, element, context)
     pattern = make(**wave)
     moved = travelling(pattern, element) if isinstance(pattern, LinearGrating) else None
-    if moved is None:
-        say_motion(element)
-    return _changed(moved or pattern, element, context)
+    return _changed(_carried(moved or pattern, element, moves=moved is None), element, context)
 
 
-def _wave(element: GenElement, usual: float, unit: str) -> dict[str, Any] | Uniform | None:
+def _wave(
+    element: GenElement, usual: float, unit: str, context: GenContext
+) -> dict[str, Any] | Uniform | None:
     """Waveform of a grating, by the names of its fields here.
 
     It is what is the same everywhere if it is off, and None if it has no ridges.
@@ -164,7 +165,9 @@ def _wave(element: GenElement, usual: float, unit: str) -> dict[str, Any] | Unif
         f"ridge_{name}": ridge,
         f"gap_{name}": gap,
         # OpenLatero ignores it where the frequency changes, too.
-        f"velocity_{name}_s": speed if distortion is None else 0.0,
+        f"velocity_{name}_s": (
+            travelled(speed, ridge + gap, context) if distortion is None else 0.0
+        ),
         "distortion": distortion,
         "inverted": inverted,
     }
@@ -249,43 +252,65 @@ def _double(element: GenElement, context: GenContext) -> AnyPattern | None:
         )
         grating = travelling(grating, element) or grating
         made.append(changed(grating, amplitude, False, None))
-    pattern = joined(element, made)
+    pattern = joined(element, made, context)
     return None if pattern is None else _unread(pattern, element, context)
 
 
 def _combo(element: GenElement, context: GenContext) -> AnyPattern | None:
     parts = [context.pattern(part) for part in element.every("Pattern")]
-    say_motion(element)
-    pattern = joined(element, parts)
-    return None if pattern is None else _changed(pattern, element, context)
+    pattern = joined(element, parts, context)
+    return None if pattern is None else _changed(_carried(pattern, element), element, context)
 
 
 def _blend(element: GenElement, context: GenContext) -> AnyPattern | None:
-    """A texture by the hand's movement, of which the first is shown."""
+    """A texture by the hand's movement."""
     parts = element.every("Pattern")
-    element.say("it depends on the hand's movement there; its first texture is shown")
-    element.part("Modulator").forget()
-    element.skip("Modulator")
-    say_motion(element)
     if len(parts) == 2:
-        parts[1].forget()
-        pattern = context.pattern(parts[0])
+        first, second = map(context.pattern, parts)
     else:
         for part in parts:
             part.forget()
         element.say(f"it has {len(parts)} textures instead of 2; OpenLatero's own are taken")
-        pattern = LinearGrating(ridge_mm=8.0, wave_angle_deg=90.0)
-    return None if pattern is None else _changed(pattern, element, context)
+        first = LinearGrating(ridge_mm=8.0, wave_angle_deg=90.0)
+        second = LinearGrating(ridge_mm=8.0)
+    pattern = reacting(first, second, element.part("Modulator"), context)
+    return _changed(_carried(pattern, element), element, context)
 
 
 def _motion(element: GenElement, context: GenContext) -> AnyPattern | None:
     cue = element.word("cue_type", _CUES, "none")
-    element.skip("direction", "velocity")
-    if cue != "none":
-        element.say(f'the moving bands of its cue "{cue}" are not shown')
+    angle = turned(element.number("direction", 0.0, -1e6, 1e6, "°"))
+    speed = element.number("velocity", 50.0, -_MOST_MM_S, _MOST_MM_S, "mm/s")
     part = element.one("Pattern")
     pattern = LinearGrating(ridge_mm=8.0) if part is None else context.pattern(part)
-    return None if pattern is None else _unread(pattern, element, context)
+    if pattern is None:
+        return None
+    if cue != "none":
+        element.say(
+            f'the moving bands of its cue "{cue}" are {_BAND_MM:g} mm wide here, {_BAND_GAP_MM:g} '
+            "apart, and may be wider there"
+        )
+        pattern = _cued(pattern, cue, angle, speed)
+    return _unread(_carried(pattern, element), element, context)
+
+
+def _cued(pattern: AnyPattern, cue: str, angle_deg: float, speed_mm_s: float) -> Group:
+    """Texture over which bands move under the finger, whether the hand moves or not: 9.3."""
+    wave = LinearGrating(
+        ridge_mm=_BAND_MM,
+        gap_mm=_BAND_GAP_MM,
+        wave_angle_deg=angle_deg or None,
+        velocity_mm_s=speed_mm_s,
+    )
+    bands = Moving(part=wave, array_at_mm=(0.0, 0.0))
+    if cue in ("vibration bands", "blending bands"):
+        to = UniformVibration() if cue == "vibration bands" else Uniform(level=0.5)
+        return Group(operation="blend", parts=(pattern, to), by=bands)
+    if cue == "disabling bands":
+        return Group(operation="multiply", parts=(pattern, replace(bands, inverted=True)))
+    swing = Vibration() if cue == "superposed vibration bands" else None
+    weak = replace(bands, amplitude=_BAND_AMPLITUDE, vibration=swing)
+    return Group(operation="add", parts=(pattern, weak))
 
 
 def _tile(element: GenElement, context: GenContext) -> AnyPattern | None:
@@ -303,7 +328,10 @@ def _tile(element: GenElement, context: GenContext) -> AnyPattern | None:
     if context.as_shown and found is not None:
         # It reads the changes of its pattern as its own.
         tile = _changed(tile, found, context)
-    return _unread(tile, element, context)
+    if context.as_shown:
+        element.skip("motion")
+        return _unread(tile, element, context)
+    return _unread(_carried(tile, element), element, context)
 
 
 def _changed(pattern: AnyPattern, element: GenElement, context: GenContext) -> AnyPattern:
@@ -315,7 +343,6 @@ def _changed(pattern: AnyPattern, element: GenElement, context: GenContext) -> A
 
 def _unread(pattern: AnyPattern, element: GenElement, context: GenContext) -> AnyPattern:
     """Pattern with changes that an element names, although OpenLatero does not read them there."""
-    moves = isinstance(pattern, Tile)
     made = _changed(pattern, element, context)
     if made is not pattern:
         names = "its amplitude, invert and vibration"
@@ -324,18 +351,24 @@ def _unread(pattern: AnyPattern, element: GenElement, context: GenContext) -> An
             made = pattern
         else:
             element.say(f"{names} are as the file says; OpenLatero does not read them here")
-    if moves:
-        say_motion(element)
     return made
 
 
-def say_motion(element: GenElement) -> None:
-    """Say that a texture's motion is not shown, if it has one."""
-    motion = element.one("motion")
-    if motion is not None:
-        if motion.switch("enable", False):
-            motion.say("its motion is not shown")
+def _carried(pattern: AnyPattern, element: GenElement, *, moves: bool = True) -> AnyPattern:
+    """Texture that moves as a whole (eq. 9.1), or stands where the array is, as an element says."""
+    velocity = (0.0, 0.0)
+    motion = element.one("motion") if moves else None
+    if motion is not None and motion.switch("enable", False):
+        speed = motion.number("velocity", 50.0, -_MOST_MM_S, _MOST_MM_S, "mm/s")
+        direction = math.radians(motion.number("direction", 0.0, -1e6, 1e6, "°"))
+        velocity = speed * math.cos(direction), speed * math.sin(direction)
+    elif motion is not None:
         motion.forget()
+    center = element.one("td_centric")
+    if center is None and velocity == (0.0, 0.0):
+        return pattern
+    place = None if center is None else center.place((0.0, 0.0))
+    return Moving(part=pattern, velocity_mm_s=velocity, array_at_mm=place)
 
 
 _READERS: dict[str, Callable[[GenElement, GenContext], AnyPattern | None]] = {

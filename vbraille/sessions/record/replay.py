@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.engine.record import FLAGS, FLOATS, INTS, LINE, Flag
-from vbraille.engine.ticks import replay
+from vbraille.engine.ticks import recall, replay
 from vbraille.render import work
 from vbraille.render.program import nothing, scratch_for
 from vbraille.sessions.record.progress import stimulus_of
@@ -49,7 +49,7 @@ class Replay:
         self._shape = display.shape
         self._output, self._held, self._target = np.zeros((3, *display.shape))
         self._scratch = scratch_for(display.shape)
-        self._at = np.zeros(work.AT)
+        self._at, self._remembered = np.zeros((2, work.AT))
         self._next = 0
 
     def frames(self, ticks: NDArray[np.void]) -> NDArray[np.float64]:
@@ -81,6 +81,7 @@ class Replay:
                 self._held.fill(np.nan)
             resting = (ints[first:end, FLAGS] & _RESTING).all()
             program = self._nothing if resting else self._picture_of(int(ints[first, LINE]))
+            recall(program.numbers, ints[first:end], floats[first:end], self._remembered)
             replay(
                 program.numbers,
                 program.table,
