@@ -60,8 +60,10 @@ def study_of(protocol, people=2, state="ended"):
         )
         for who in range(people)
     )
-    columns = ["condition", *(f"factor_{factor.name}" for factor in protocol.factors)]
-    columns += [f"item_{name}" for name in protocol.item_columns]
+    columns = [
+        "condition",
+        *map(protocol.planned_analysis.column, protocol.planned_analysis.factors),
+    ]
     frame = pd.DataFrame(
         {"participant": ["P0", "P1"], "protocol": protocol.name}
         | {name: ["one", "two"] for name in columns}

@@ -11,15 +11,16 @@ from scipy.special import expit, logit
 
 from tests.conftest import SEED
 from vbraille.analysis.statistics.bradleyterry import preferred
+from vbraille.analysis.statistics.comparisons import CellDesign, CellScores
 from vbraille.analysis.statistics.intervals import (
     MEANS,
     SPREADS,
+    Interval,
     Unanswerable,
     log_likelihood,
     mean_duration,
     quantiles,
 )
-from vbraille.analysis.statistics.paired import paired_t
 
 PEOPLE = (3, 5, 6, 10, 20)
 SPREAD = (0.5, 1.0, 1.5)
@@ -99,13 +100,14 @@ def differences(people: int, share: float, sd: float, studies: int) -> Found:
     truth = mean_of(centre, sd) - mean_of(centre - 0.5, float(apart))
     first, second = (random.binomial(40, expit(at)) / 40 for at in (own, other))
     given = held = 0
-    for one, two in zip(first, second, strict=True):
-        try:
-            test = paired_t(one, two)
-        except Unanswerable:
+    design, cells = CellDesign(np.array([[0], [1]])), np.zeros(2, np.int64)
+    for each in np.stack([first, second], axis=-1):
+        scores = CellScores(each, design, np.zeros(people, np.int64), cells, Interval(0.0, 1.0))
+        found = scores.contrast(np.array([1.0, -1.0]))
+        if found.low is None or found.high is None:
             continue
         given += 1
-        held += test.low <= truth <= test.high
+        held += found.low <= truth <= found.high
     return Found(given, held, studies)
 
 

@@ -2,16 +2,20 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import load_scene
 from vbraille.render import MODELS
+from vbraille.render.scene.compiling import SceneMap
 from vbraille.scene.bounds import around
 from vbraille.scene.checking import check_scene
 from vbraille.scene.patterns import Circle, Polygon
+from vbraille.scene.signals import packed
 
 SAMPLES = Path(__file__).parents[2] / "texts" / "scenes"
-NAMES = ("house", "chart", "map", "shapes-vibration", "shapes-dots", "shapes-gratings")
+NAMES = ("house", "chart", "map", "world", "shapes-vibration", "shapes-dots", "shapes-gratings")
 # The source's outlines of 1.5 mm are thinner than what its later chapters recommend.
 MEANT = {"shapes-vibration": ("has a stroke of 1.5 mm",)}
 
@@ -62,3 +66,22 @@ def test_the_shapes_are_drawn_by_the_sources_three_methods():
         texture = shape.fill.texture
         assert (shape.stroke, texture.ridge_mm, texture.gap_mm) == (None, 2, 0)
         assert texture.ridge_angle_deg == 90
+
+
+def test_the_world_has_two_views_by_a_key():
+    """Lévesque 2009, 9.5: textured continents, or textured regions; coasts vibrate in both."""
+    loaded = load("world")
+    drawn, signals = SceneMap(loaded.scene, loaded.assets), loaded.scene.signals
+    elements = {element.id: element for element in loaded.scene.elements}
+    across = np.arange(-5.0, 5.0, 0.5)
+    for name, views in (("siberia", (6.0, 10.0)), ("amazon", (6.0, 3.0))):
+        x, y = elements[name].center_mm
+        for view, wave in enumerate(views):
+            switches = packed({1: view}, signals)
+            shown = drawn.deflections(x + across, np.array([y]), switches=switches)[0]
+            spectrum = np.abs(np.fft.rfft(shown - shown.mean(), 2000))
+            assert 2000 * 0.5 / spectrum.argmax() == pytest.approx(wave, rel=0.3), (name, view)
+    index = SceneIndex(loaded.scene, loaded.assets, loaded.boxes())
+    assert index.here(*elements["amazon"].center_mm).name == "South America"
+    index.switches = packed({1: 1}, signals)
+    assert index.here(*elements["amazon"].center_mm).name == "Amazon"

@@ -39,7 +39,7 @@ from vbraille.analysis.results import Chapter, Column, Kind, Results, Schema
 from vbraille.analysis.statistics.intervals import METHODS, Interval, adjust
 from vbraille.errors import InputError
 from vbraille.sessions.planning.analysis import CONDITION, MEASURES, PlannedAnalysis, Task
-from vbraille.sessions.planning.questions import NameQuestion, RatingQuestion
+from vbraille.sessions.planning.questions import NameQuestion, OneOfTwo, RatingQuestion
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -47,6 +47,7 @@ if TYPE_CHECKING:
 
     from vbraille.analysis.input.study import Study
     from vbraille.analysis.results import ReportFigure, ResultTable
+    from vbraille.sessions.planning.protocol import Protocol
 
 SEED = 20090618
 MOST_LEVELS = 50  # a factor with more levels was not varied by an experimenter
@@ -296,12 +297,10 @@ def _measured(study: Study, places: Places | None, plan: FollowedPlan) -> dict[s
 
 def _chance(study: Study, analysis: PlannedAnalysis) -> tuple[str, ...]:
     """Sentence on what guessing would give, where a share is compared."""
-    names = [each.protocol.asks for each in study.sessions]
-    if names and all(isinstance(each, NameQuestion) for each in names):
-        share = max(1 / math.prod(len(one.names) for one in each.choices) for each in names)
-        return (f"Guessing alone would give {100 * share:.2g} %.",)
     if analysis.measure == "right":
-        return ("Guessing alone would give 50 % where both answers are right equally often.",)
+        protocols = [session.protocol for session in study.sessions]
+        ways = guesses_of(protocols[0]) if protocols else 2
+        return (f"Guessing alone would give {100 / ways:.2g} %.",)
     if analysis.measure != "legibility" or study.trials is None:
         return ()
     shown = study.trials["presented"].nunique()
@@ -309,6 +308,14 @@ def _chance(study: Study, analysis: PlannedAnalysis) -> tuple[str, ...]:
         f"Guessing among the {count(shown, 'string')} that were shown would give "
         f"{100 / shown:.2g} %.",
     )
+
+
+def guesses_of(protocol: Protocol) -> int:
+    """Number of answers that a trial may have, among which a guess is made."""
+    question = protocol.asks
+    if isinstance(question, NameQuestion):
+        return math.prod(len(choice.names) for choice in question.choices)
+    return 2 if isinstance(question, OneOfTwo) else max(2, protocol.intervals)
 
 
 def _told(

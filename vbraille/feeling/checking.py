@@ -66,6 +66,11 @@ class _Part:
     solid: NDArray[np.bool_]
 
     @property
+    def layer(self) -> str:
+        """Signal by which the part comes and goes; empty if it is always there."""
+        return self.pattern.factor
+
+    @property
     def where(self) -> tuple[slice, slice]:
         """Rows and columns of the masks on the canvas."""
         rows, columns = self.felt.shape
@@ -142,7 +147,8 @@ class _Check:
         columns = np.arange(float(left), min(math.ceil(box.right / step), self._size[1]))
         alone = replace(self._scene, elements=(pattern,), operation="overwrite")
         shown = SceneMap(alone, self._loaded.assets)
-        hides = shown.opacity((columns + 0.5) * step, (rows + 0.5) * step)
+        places = (columns + 0.5) * step, (rows + 0.5) * step
+        hides = shown.opacity(*places, every_layer=True)
         felt = hides >= _FELT
         if isinstance(pattern, Label):
             felt = np.ones_like(felt)
@@ -159,7 +165,7 @@ class _Check:
                     part.pattern,
                     "is wholly hidden by what is written after it; write it later, or leave it out",
                 )
-            if part.covers:
+            if part.covers and not part.layer:
                 under |= part.solid
 
     def _beside(self, parts: list[_Part]) -> Iterator[str]:
@@ -167,6 +173,8 @@ class _Check:
         reach = math.ceil(LEAST_BLANK_MM / self._step_mm) + 1
         told = 0
         for first, second in combinations(parts, 2):
+            if first.layer and second.layer and first.layer != second.layer:
+                continue  # they may never be there together
             (rows, columns), (other_rows, other_columns) = first.where, second.where
             if (
                 rows.start - reach >= other_rows.stop

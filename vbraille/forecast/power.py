@@ -18,12 +18,12 @@ from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, wilson
 from vbraille.errors import InputError, VbrailleError, check_range
 from vbraille.forecast.studies import ALPHA, StudyPlan, StudyTask, count_found, log_odds_of
 from vbraille.forecast.workers import KeptResults, work_on
-from vbraille.sessions.planning.analysis import CONDITION, MEASURES
+from vbraille.sessions.planning.analysis import CONDITION, ITEM, MEASURES
 from vbraille.sessions.planning.making import make_plan
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from vbraille.forecast.workers import Workers
@@ -38,6 +38,8 @@ PORTION = 125  # studies of a task, however many workers there are
 SEED = 20090618
 OF_GROUP = ":"  # between a group and its condition
 ODDS_RATIO = "odds-ratio"
+# Group, condition, and levels of items that the measure is compared by.
+Stratum = tuple[str, str, tuple[str, ...]]
 _EFFECT = setting("effect")
 
 
@@ -213,7 +215,7 @@ class PowerQuestion:
             correction=self.analysis.correction,
         )
 
-    def _trials(self, strata: list[tuple[str, str]]) -> tuple[tuple[int, ...], ...]:
+    def _trials(self, strata: list[Stratum]) -> tuple[tuple[int, ...], ...]:
         """Trials of each participant in each condition, by the participant's own plan.
 
         Catch trials are left out, as the analysis does. A score is one in each condition.
@@ -222,42 +224,65 @@ class PowerQuestion:
         for number in range(1, max(self.sizes) + 1):
             if self.shares:
                 plan = make_plan(self.protocol, f"P{number}", self.seed)
-                shown = [(plan.group, trial.condition) for trial in plan.trials if not trial.catch]
+                items = _items(self.analysis)
+                shown = [
+                    (plan.group, trial.condition, _levels(columns, items))
+                    for trial in plan.trials
+                    if not trial.catch
+                    for columns in (self.protocol.columns_of(trial.item),)
+                ]
                 counted.append(tuple(shown.count(stratum) for stratum in strata))
             else:
                 groups = self.protocol.groups or ("",)
                 group = groups[(number - 1) % len(groups)]
-                counted.append(tuple(int(own == group) for own, _ in strata))
+                counted.append(tuple(int(own == group) for own, *_ in strata))
         return tuple(counted)
+
+
+def _items(analysis: PlannedAnalysis) -> list[str]:
+    """Columns of the file of items that the measure is compared by."""
+    named = analysis.factors or ()
+    return [factor.removeprefix(ITEM) for factor in named if factor.startswith(ITEM)]
+
+
+def _levels(columns: Mapping[str, str], items: Sequence[str]) -> tuple[str, ...]:
+    return tuple(str(columns[item]) for item in items)
+
+
+def _name(condition: str, own: tuple[str, ...], protocol: Protocol) -> str:
+    """Name of a condition, and of items in it by the levels that they have."""
+    parts = (condition,) if len(protocol.conditions) > 1 or not own else ()
+    return "-".join((*parts, *own))
 
 
 def _cells(
     protocol: Protocol, analysis: PlannedAnalysis
 ) -> tuple[
-    list[tuple[str, str]],
+    list[Stratum],
     tuple[int, ...],
     tuple[tuple[int, ...], ...],
     tuple[tuple[str, ...], ...],
 ]:
-    """Groups and conditions, the cell of each in the analysis, and the levels of cells by name.
+    """What has a value of its own, the cell of each in the analysis, and cells' levels by name.
 
     Conditions are one where the measure is found along them.
     """
     factors = analysis.factors or ()
     names = [condition.name for condition in protocol.conditions]
     along = analysis.measure == "threshold" and not protocol.adaptive and CONDITION not in factors
+    items = _items(analysis)
+    shown = dict.fromkeys(_levels(row.columns, items) for row in protocol.item_rows) or {(): None}
     strata = [
-        (group, name)
+        (group, name, own)
         for group in protocol.groups or ("",)
         for name in (names[:1] if along and not protocol.factors else names)
+        for own in (shown if items else ((),))
     ]
-    told = [
-        tuple(
-            name if factor == CONDITION else protocol.assigned(group).levels(name)[factor]
-            for factor in factors
-        )
-        for group, name in strata
-    ]
+    told = []
+    for group, name, own in strata:
+        levels_of = protocol.assigned(group).levels(name) | {CONDITION: name}
+        levels_of |= dict(zip((f"{ITEM}{item}" for item in items), own, strict=True))
+        told.append(tuple(levels_of[factor] for factor in factors))
     levels = tuple(
         tuple(sorted({levels[at] for levels in told}, key=natural)) for at in range(len(factors))
     )
@@ -378,6 +403,16 @@ def _about(question: PowerQuestion, plan: StudyPlan, studies: int) -> tuple[tupl
     )
 
 
+def names_of(protocol: Protocol, analysis: PlannedAnalysis) -> list[str]:
+    """Names of what has a value: conditions, or the levels of items in them."""
+    return list(dict.fromkeys(name for _, name in _named(protocol, analysis)))
+
+
+def _named(protocol: Protocol, analysis: PlannedAnalysis) -> list[tuple[str, str]]:
+    strata, *_ = _cells(protocol, analysis)
+    return [(group, _name(condition, own, protocol)) for group, condition, own in strata]
+
+
 def values_of(
     protocol: Protocol, analysis: PlannedAnalysis, effect: Mapping[str, str]
 ) -> dict[str, float]:
@@ -398,9 +433,9 @@ def values_of(
     InputError
         If a condition is not known, has no value, or its value is none.
     """
-    strata, *_ = _cells(protocol, analysis)
+    strata = _named(protocol, analysis)
     share = MEASURES[analysis.measure or ""].scale == "share"
-    names = list(dict.fromkeys(name for _, name in strata))
+    names = names_of(protocol, analysis)
     given = {name: text for name, text in effect.items() if name != ODDS_RATIO}
     if len(names) == 1 and analysis.measure in given:
         given[names[0]] = given.pop(analysis.measure or "")

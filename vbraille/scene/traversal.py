@@ -208,7 +208,9 @@ def _places(pattern: AnyPattern, move_mm: Point) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for name in pattern.__struct_fields__:
         value = getattr(pattern, name)
-        if name in ONE and value is not None:
+        if value is None:
+            continue
+        if name in ONE:
             found[name] = (value[0] + dx_mm, value[1] + dy_mm)
         elif name in SEVERAL:
             found[name] = tuple((x + dx_mm, y + dy_mm) for x, y in value)

@@ -8,8 +8,8 @@ from scipy import stats
 
 from vbraille.analysis.statistics.anova import anova
 from vbraille.analysis.statistics.comparisons import CellDesign, CellScores, CellShares, effects
+from vbraille.analysis.statistics.effectsizes import hedges_correction
 from vbraille.analysis.statistics.intervals import Interval, adjust
-from vbraille.analysis.statistics.paired import paired_t
 
 ANY = Interval(-math.inf, math.inf)
 TWO_BY_THREE = np.array([[a, b] for a in range(2) for b in range(3)])
@@ -33,18 +33,47 @@ def random():
     return np.random.default_rng(5)
 
 
+@pytest.mark.parametrize("n", [3, 6, 20])
+def test_two_levels_within_people_are_pingouins_paired_t(random, pingouin, n):
+    scores = random.normal([50, 56], 10, (n, 2))
+    told = within(scores, [[0], [1]]).contrast(np.array([1.0, -1.0]))
+    theirs = pingouin.ttest(scores[:, 0], scores[:, 1], paired=True).iloc[0]
+    assert (told.t, told.df, told.p) == pytest.approx((theirs["T"], theirs["dof"], theirs["p_val"]))
+    assert (told.low, told.high) == pytest.approx(tuple(theirs["CI95"]), abs=0.006)
+
+
+@pytest.mark.parametrize(("t", "p"), [(-3.246, 0.023), (-4.456, 0.007), (-1.745, 0.141)])
+def test_six_readers_with_the_published_t_have_the_published_p(random, t, p):
+    """Lévesque 2009, 4.3."""
+    second, spread = random.normal(60, 10, 6), random.normal(size=6)
+    spread -= spread.mean()
+    # Differences of sd √6 and mean t have exactly this t.
+    first = second + t + spread * np.sqrt(6) / spread.std(ddof=1)
+    told = within(np.column_stack([first, second]), [[0], [1]]).contrast(np.array([1.0, -1.0]))
+    assert told.t == pytest.approx(t)
+    assert round(told.p, 3) == p
+
+
+def test_the_corrected_effect_is_unbiased(random):
+    d = random.normal(0.8, 1, (4000, 6))
+    weights = np.array([1.0, -1.0])
+    each = [within(np.column_stack([own, 0 * own]), [[0], [1]]).contrast(weights) for own in d]
+    assert np.mean([one.size for one in each]) == pytest.approx(0.8, abs=0.03)
+
+
 def test_two_levels_within_people_are_the_paired_t(random):
     scores = random.normal([3, 4], 1, (8, 2))
     (effect,) = effects(within(scores, [[0], [1]]), "holm")
     ((pair, told, p),) = effect.pairs
-    test = paired_t(scores[:, 0], scores[:, 1])
+    test = stats.ttest_rel(scores[:, 0], scores[:, 1])
+    ends, apart = test.confidence_interval(), scores[:, 0] - scores[:, 1]
     assert (pair.first, pair.second) == (0, 1)
-    assert (told.value, told.low, told.high) == pytest.approx(
-        (test.mean_difference, test.low, test.high)
+    assert (told.value, told.low, told.high) == pytest.approx((apart.mean(), ends.low, ends.high))
+    assert (told.t, told.df, told.p) == pytest.approx((test.statistic, test.df, test.pvalue))
+    assert told.size == pytest.approx(apart.mean() / apart.std(ddof=1) * hedges_correction(7))
+    assert (effect.test.f, effect.p, p) == pytest.approx(
+        (test.statistic**2, test.pvalue, test.pvalue)
     )
-    assert (told.t, told.df, told.p) == pytest.approx((test.t, test.df, test.p))
-    assert told.size == pytest.approx(test.g_z)
-    assert (effect.test.f, effect.p, p) == pytest.approx((test.t**2, test.p, test.p))
 
 
 def test_two_groups_are_welchs_t(random):
@@ -84,9 +113,10 @@ def test_an_interaction_with_groups_is_welchs_t_of_their_differences(random):
     assert found[0, 1].test.f == pytest.approx(test.statistic**2)
     assert found[0, 1].test.p == pytest.approx(test.pvalue)
     at_first = found[0, 1].pairs[0]
-    alone = paired_t(data.scores[:5, 0], data.scores[:5, 2])
+    alone = stats.ttest_rel(data.scores[:5, 0], data.scores[:5, 2])
+    apart = (data.scores[:5, 0] - data.scores[:5, 2]).mean()
     assert at_first[0].at == (1, 0)
-    assert (at_first[1].value, at_first[1].p) == pytest.approx((alone.mean_difference, alone.p))
+    assert (at_first[1].value, at_first[1].p) == pytest.approx((apart, alone.pvalue))
 
 
 def test_shares_have_the_same_effects_by_single_trials(random):

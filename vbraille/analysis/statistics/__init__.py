@@ -3,8 +3,8 @@
 `intervals`
     Intervals of proportions, means, shares and correlations; corrections of p; the error of a
     question that the scores cannot answer.
-`paired`, `anova`, `effectsizes`
-    Tests between conditions, and between groups beside them.
+`comparisons`, `anova`, `effectsizes`
+    Means, effects and differences in the cells of a design.
 `bradleyterry`
     Scales and preferred values of paired comparisons.
 `trialsmodel`

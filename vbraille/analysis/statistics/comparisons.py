@@ -22,6 +22,7 @@ from scipy.special import expit
 from scipy.stats import t as student
 
 from vbraille.analysis.statistics.anova import anova, orthonormal_contrasts
+from vbraille.analysis.statistics.effectsizes import hedges_correction
 from vbraille.analysis.statistics.intervals import (
     FEWEST_PARTICIPANTS,
     ROUNDING,
@@ -33,7 +34,6 @@ from vbraille.analysis.statistics.intervals import (
     mean_share,
     too_few,
 )
-from vbraille.analysis.statistics.paired import hedges_correction
 from vbraille.analysis.statistics.trialsmodel import (
     compare,
     compare_all,
@@ -266,6 +266,9 @@ class CellShares:
             df=float(test.degrees[0]),
             p=float(test.p_values()[0]),
         )
+        sides = [(self.asked[:, side] > 0).any(axis=1).sum() for side in (weights > 0, weights < 0)]
+        if min(sides) < FEWEST_PARTICIPANTS:
+            return made._replace(note="no interval: a group has fewer than three participants")
         if not tells_difference(self.correct[:, told], self.asked[:, told]):
             return made._replace(note=f"no interval: {_FEW_DIFFER}")
         low, high = difference(self.fit, weights)

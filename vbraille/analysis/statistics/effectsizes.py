@@ -1,56 +1,37 @@
-"""Intervals of effect sizes: the noncentralities under which the test would be as it came out."""
+"""Effect sizes: Hedges's correction, and intervals by noncentral distributions."""
 
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
-import numpy as np
 from scipy.optimize import root_scalar
-from scipy.special import chdtrc, ndtr
-from scipy.stats import chi2, ncf
+from scipy.special import gammaln
+from scipy.stats import ncf
 
 from vbraille.analysis.statistics.intervals import TAIL, Interval, Unanswerable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
-LARGEST = 1e4  # t or F beyond this is not of this world, and its interval neither
+LARGEST = 1e4  # F beyond this is not of this world, and its interval neither
 _TRIES = 60
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(120)
-_FAR = 9.0  # standard deviations, beyond which a normal variable is not looked for
 
 
-def d_z_interval(t: float, n: int) -> Interval:
-    """Interval of Cohen's d of paired differences.
+def hedges_correction(df: int) -> float:
+    """Factor that makes a standardised mean difference unbiased, below 1.
 
-    d_z = t / √n, and t is noncentral with δ = √n times the population's d_z (Cumming and
-    Finch 2001; Steiger and Fouladi 1997), if differences are normal.
-
-    Parameters
-    ----------
-    t
-        Student's t of the differences.
-    n
-        Number of participants, 2 or more.
+    J = Γ(df/2) / (√(df/2) · Γ((df - 1)/2)), Hedges 1981, equation 6e. This is the
+    exact factor, not its approximation 1 - 3/(4 df - 1).
 
     Raises
     ------
-    Unanswerable
-        If t is beyond ±10⁴.
+    ValueError
+        If `df` is below 2.
     """
-    if abs(t) > LARGEST:
-        raise Unanswerable(f"t is beyond {LARGEST:g}")
-    # Where t is negative, the interval is that of -t with its ends turned round.
-    ends = [
-        _root(lambda delta, p=p: noncentral_t_cdf(abs(t), n - 1, delta) - p, abs(t) - 1, abs(t) + 1)
-        for p in (1 - TAIL, TAIL)
-    ]
-    low, high = (end / math.sqrt(n) for end in ends)
-    return Interval(low, high) if t >= 0 else Interval(-high, -low)
+    if df < 2:
+        raise ValueError(f"{df} degrees of freedom; the correction needs two")
+    return math.exp(float(gammaln(df / 2) - gammaln((df - 1) / 2)) - math.log(df / 2) / 2)
 
 
 def partial_eta2_interval(ratio: float, df1: int, df2: int) -> Interval:
@@ -84,40 +65,6 @@ def partial_eta2_interval(ratio: float, df1: int, df2: int) -> Interval:
         ends.append(found / (found + df1 + df2 + 1))
     estimate = df1 * ratio / (df1 * ratio + df2)
     return Interval(min(ends[0], estimate), max(ends[1], estimate))
-
-
-def noncentral_t_cdf(t: float, df: int, delta: float) -> float:
-    """Probability that noncentral t is at most t, for t of 0 or more.
-
-    With Z normal and s² chi-square over its degrees of freedom, t is (Z + δ) / s. The integral is
-    over whichever of Z and s makes the integrand smoother. scipy's ``nct`` has no value where δ is
-    negative and t is large, or both are large.
-
-    Parameters
-    ----------
-    t, df, delta
-        Value of t, degrees of freedom, noncentrality.
-    """
-    if t >= 1:
-        # No s is below 0, whatever Z is, so that the integrand has a kink where Z is -δ.
-        parts = sorted({-_FAR, min(max(-delta, -_FAR), _FAR), _FAR})
-        return sum(_integral(_given_z, *ends, t, df, delta) for ends in pairwise(parts))
-    ends = (math.sqrt(chi2.isf(p, df) / df) for p in (1 - 1e-13, 1e-13))
-    return _integral(_given_s, *ends, t, df, delta)
-
-
-def _given_z(z: NDArray, t: float, df: int, delta: float) -> NDArray:
-    s = np.maximum(z + delta, 0) / t
-    return np.exp(-(z**2) / 2) / math.sqrt(2 * math.pi) * chdtrc(df, df * s**2)
-
-
-def _given_s(s: NDArray, t: float, df: int, delta: float) -> NDArray:
-    return 2 * df * s * chi2.pdf(df * s**2, df) * ndtr(t * s - delta)
-
-
-def _integral(density: Callable[..., NDArray], low: float, high: float, *given: float) -> float:
-    at = (low + high) / 2 + (high - low) / 2 * _NODES
-    return float((high - low) / 2 * (_WEIGHTS @ density(at, *given)))
 
 
 def _root(falling: Callable[[float], float], low: float, high: float) -> float:

@@ -49,7 +49,7 @@ def settings(parser: CommandParser) -> None:
     """Add the options of ``vbraille settings``, which are those of reading."""
     parser.take(*TEXT)
     _reading(parser)
-    parser.flag("--path", "Print where the settings file is, and nothing else.")
+    parser.flag("--where", "Print where the settings file is, and nothing else.")
 
 
 def tune(parser: CommandParser) -> None:
@@ -165,7 +165,7 @@ def plot(parser: CommandParser) -> None:
     )
     parser.flag("--csv", "Print the picture's numbers as CSV, and draw nothing.")
     parser.option(
-        "--at",
+        "--x",
         "MM",
         "Of a page: put the array's left column at this place, in mm.",
         number,
@@ -315,15 +315,21 @@ def device_calibrate(parser: CommandParser) -> None:
 def tables(parser: CommandParser) -> None:
     """Add the options of ``vbraille tables``."""
     parser.option("--language", "TAG", "List only tables of this language, such as fr or fr-CA.")
+    parser.flag("--json", "Print the same as JSON.")
+
+
+def device_list(parser: CommandParser) -> None:
+    """Add the options of ``vbraille device list``."""
+    parser.flag("--json", "Print the same as JSON.")
 
 
 def monitor(parser: CommandParser) -> None:
     """Add the options of ``vbraille monitor``."""
-    parser.option(
-        "--play",
-        "FILE",
-        "Play back what vbraille render wrote, the directory of a session, or one of its traces "
-        "(default: nothing is played).",
+    parser.add_argument(
+        "file",
+        nargs="?",
+        metavar="FILE",
+        help="Play back what vbraille render wrote, the folder of a session, or one of its traces.",
     )
     parser.take(*ADDRESS)
 
@@ -383,7 +389,7 @@ def feel(parser: CommandParser) -> None:
     parser.take(*HAND)
     parser.set_defaults(hand=None, seed=None)
     parser.option(
-        "--at",
+        "--y",
         "MM",
         "On a device of one axis: feel the picture at this height, from its top "
         "(default: where it is felt, near its middle).",

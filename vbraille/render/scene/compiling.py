@@ -298,11 +298,13 @@ class SceneMap:
         noise_seed: int | None = None,
         velocity_mm_s: Point = (0.0, 0.0),
         switches: int = 0,
+        every_layer: bool = False,
     ) -> NDArray[np.float32]:
         """Compute the opacity mask of the scene at the places of a raster: Lévesque 2009, 8.4.5.
 
-        The arguments are those of `deflections`; only the mask of a blend that is chosen by what
-        moves depends on the time. A scene of one element has the mask of that.
+        The arguments are those of `deflections`, and whether all signals are 1, so that every layer
+        is there; only the mask of a blend that is chosen by what moves depends on the time. A scene
+        of one element has the mask of that.
 
         Returns
         -------
@@ -312,6 +314,8 @@ class SceneMap:
         if self._hiding is None:
             self._hiding = self._assemble(self._mask())
         given = self._given(time_s, velocity_mm_s, switches)
+        if every_layer:
+            given[: work.MOST_SIGNALS] = 1.0
         return _raster(self._hiding, x_mm, y_mm, time_s, parity, noise_seed, given)
 
     def _mask(self) -> Flat | None:

@@ -108,8 +108,8 @@ def layer(pattern: AnyPattern, assets: Assets) -> Node:
     """Tree of a pattern as a layer over others: its deflection and what it hides."""
     if is_everywhere(pattern) and not pattern.factor:
         return replace(deflection(pattern, assets), pushes=Pushes.COVER)
-    shape = isinstance(pattern, ShapeOrDots) and not is_everywhere(pattern)
-    if shape and not is_apart(pattern):
+    is_everything = is_everywhere(pattern)
+    if isinstance(pattern, ShapeOrDots) and not is_everything and not is_apart(pattern):
         own = _leaf(pattern, assets)
         if _is_plain(pattern) and is_own_mask(pattern):
             return own
@@ -411,12 +411,12 @@ def is_apart(pattern: ShapeOrDots) -> bool:
 
 def _with_clock(pattern: ShapeOrDots, assets: Assets) -> ShapeOrDots:
     """Shape in which a signal that moves a texture along it has its number for its name."""
-    along = pattern.stroke.along if isinstance(pattern, AnyShape) and pattern.stroke else None
-    if along is None or not along.velocity_by:
+    stroke = None if isinstance(pattern, Dots) else pattern.stroke
+    along = None if stroke is None else stroke.along
+    if stroke is None or along is None or not along.velocity_by:
         return pattern
     along = msgspec.structs.replace(along, velocity_by=str(_clock(along.velocity_by, assets)))
-    stroke = msgspec.structs.replace(pattern.stroke, along=along)
-    return msgspec.structs.replace(pattern, stroke=stroke)
+    return msgspec.structs.replace(pattern, stroke=msgspec.structs.replace(stroke, along=along))
 
 
 def shape_apart(shape: AnyShape, texture: Node | None, assets: Assets) -> Node:

@@ -113,7 +113,8 @@ def joined(
         modulator = element.part("operation").part("Modulator")
         if len(parts) != 2:
             element.say(f"a reactive group is of 2 patterns, and this has {len(parts)}")
-        return reacting(*(*parts, None)[:2], modulator, context)
+        first, second = (*parts, None)[:2]
+        return reacting(first, second, modulator, context)
     if name == "blend":
         return _blended(element, parts)
     if name == "multiply" and None in parts:
