@@ -530,6 +530,20 @@ def scene_map(parser: CommandParser) -> None:
     )
     parser.option("--seed", "N", "Seed the noise.", seed, default=0)
     parser.option(
+        "--velocity",
+        "X,Y",
+        "Draw what is felt by a hand that goes on so, right and down in mm/s, where signals of the "
+        "picture depend on that (default: a hand that stands still).",
+        velocity,
+    )
+    parser.option(
+        "--switch",
+        "K=N[,…]",
+        "Draw the picture with the switch of key K in its state N, from 1, such as 1=2 "
+        "(default: each in its first).",
+        switch_states,
+    )
+    parser.option(
         "--array",
         "X,Y[,θ]",
         "Draw the array over the picture with its centre at this place, in mm, turned by θ "
@@ -549,6 +563,33 @@ def scene_map(parser: CommandParser) -> None:
         "Draw what is felt in black on white instead, true to scale, for eyes and for swell "
         "paper (default: a deflection map).",
     )
+
+
+_MOST_MM_S = 1000
+
+
+def velocity(text: str) -> tuple[float, ...]:
+    """Read a velocity X,Y in mm/s."""
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) != 2 or not all(abs(value) <= _MOST_MM_S for value in values):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no velocity; give X,Y in mm/s, each from -{_MOST_MM_S} to {_MOST_MM_S}"
+        )
+    return values
+
+
+def switch_states(text: str) -> dict[int, int]:
+    """Read states of switches K=N,…, from 1, as states from 0 by their keys."""
+    found = re.fullmatch(r"[1-8]=[1-8](?:,[1-8]=[1-8])*", text)
+    if found is None:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no state of a switch; give K=N with a key and a state from 1, such as 1=2"
+        )
+    pairs = (one.split("=") for one in text.split(","))
+    return {int(key): int(state) - 1 for key, state in pairs}
 
 
 def place(text: str) -> tuple[float, ...]:
