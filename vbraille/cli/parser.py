@@ -44,6 +44,7 @@ _READERS = {int: whole, float: number}
 # Options that there were, and what does the same.
 _GONE = {
     "--at": "--y chooses the height of the line that is felt, and --x the place of an array",
+    "--plain": "progress is lines, at a terminal or with --verbose",
     "--play": "give the recording by itself, as in vbraille monitor reading.h5",
     "--abstract": "--outline draws what is felt",
     "--raised": "--outline draws what is felt, black on white, for swell paper",

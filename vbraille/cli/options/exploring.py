@@ -144,7 +144,6 @@ def render(parser: CommandParser) -> None:
     parser.option("--out", "FILE.h5", "Write to this file.", required=True)
     parser.take(*PAGE, "force")
     path(parser)
-    parser.flag("--plain", "Print progress as lines, without a bar.")
 
 
 def plot(parser: CommandParser) -> None:
