@@ -458,9 +458,11 @@ class Session:
                     warn(f"seed: {self.plan.seed}")
                 say(f"session: {self.folder}")
             # Its journal is read again once it is locked; all else cannot change meanwhile.
+            known = self.progress if self._resumed is not None else None
             record, self._resumed = self._resumed or self.record, None
             self.progress = apparatus.run(
                 record,
+                known,
                 why="start" if begins else "resume",
                 spec=self.conditions.device,
                 hand=self.conditions.hand,
