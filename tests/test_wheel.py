@@ -63,7 +63,7 @@ def call(tmp_path_factory):
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
-            timeout=300,
+            timeout=600,  # compiling takes a minute where nothing else runs
             check=False,
         )
 
@@ -115,7 +115,7 @@ def test_another_python_reads_with_all_that_pip_installs(tmp_path, name):
     for line in HEAVY:
         done = subprocess.run(
             [python, "-m", "vbraille", *line.split()],
-            cwd=tmp_path, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300,
+            cwd=tmp_path, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=600,
             check=False,
         )  # fmt: skip
         assert done.returncode == 0, done.stderr

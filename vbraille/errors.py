@@ -45,11 +45,11 @@ def check_range(what: str, value: float | None, low: float, high: float, unit: s
         raise ValueError(f"{what} is {value:g}{unit}; it must be {low:g} to {high:g}{unit}")
 
 
-# Extras of pyproject.toml by the modules that they bring; scipy comes with two of them.
+# Extras of pyproject.toml by the modules that they bring; two modules come with two of them.
 EXTRAS = {
     "contourpy": "pictures",
     "joblib": "analysis",
-    "matplotlib": "pictures",
+    "matplotlib": "all",
     "pandas": "analysis",
     "resvg_py": "pictures",
     "scipy": "all",

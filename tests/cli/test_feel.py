@@ -85,7 +85,7 @@ def test_a_hand_that_moves_by_itself_ends_the_feeling(scene):
 
 @heavy  # a host more
 def test_on_a_slider_one_line_of_the_picture_is_felt_and_keys_choose_it(scene):
-    arguments = ("feel", scene, "--model", "stress2", "--at", "55", "--cues", "none")
+    arguments = ("feel", scene, "--model", "stress2", "--y", "55", "--cues", "none")
     with program.Terminal(*arguments) as terminal:
         terminal.until("one axis: .* now at 55 mm from the top; down and up choose another")
         terminal.type("\x1b[B")
@@ -162,8 +162,8 @@ def test_what_cannot_be_felt_is_one_sentence(call, scene, tmp_path):
         ((tmp_path / "none.scene",), "there is no"),
         ((large, "--hand", "wide"), "the scene's canvas is 1200 × 90 mm, and the carriage of"),
         ((scene,), "nothing would move the hand: start vbraille feel at a terminal"),
-        ((scene, "--at", "3"), "--at is for a device of one axis"),
-        ((scene, "--model", "stress2", "--at", "95"), "--at is 95 mm; it must be 0 to 90 mm"),
+        ((scene, "--y", "3"), "--y is for a device of one axis"),
+        ((scene, "--model", "stress2", "--y", "95"), "--y is 95 mm; it must be 0 to 90 mm"),
         ((scene, "--hand", "spot:3"), "the place is '3'; write it as X,Y in mm"),
         ((scene, "--hand", "wide:0"), "spacing is 0 mm; it must be 0.5 to 1000 mm"),
         ((scene, "--device", "latero:127.0.0.1", "--hand", "wide"), "--hand is for the simulated"),

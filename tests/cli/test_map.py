@@ -279,3 +279,54 @@ def test_a_file_is_replaced_only_if_asked(scene, call, tmp_path):
     assert out.read_text() == "mine"
     assert call("map", scene, "--out", out, "--force").code == 0
     assert pixels_of(out).shape == (120, 160)
+
+
+ANSWERS = """
+canvas = { width_mm = 40, height_mm = 30 }
+[signals.slow]
+kind = "speed"
+[signals.view]
+kind = "switch"
+levels = [1, 0.5]
+[[elements]]
+kind = "uniform"
+factor = "view"
+[[elements]]
+kind = "uniform"
+level = 0.25
+factor = "slow"
+"""
+
+
+@pytest.mark.parametrize(
+    ("options", "level"),
+    [
+        ((), 0.25),
+        (("--velocity", "30,-4"), 1.0),
+        (("--velocity", "30,0", "--switch", "1=2"), 0.5),
+        (("--velocity", "4.5,6"), 0.625),
+    ],
+)
+def test_a_map_is_what_a_hand_feels_that_goes_so_with_switches_so(options, level, call, tmp_path):
+    """Lévesque 2009, 9.6: a reactive picture as the map for a velocity."""
+    path, out = tmp_path / "answers.scene", tmp_path / "a.png"
+    path.write_text(ANSWERS)
+    assert call("map", path, "--out", out, *options).code == 0
+    np.testing.assert_allclose(pixels_of(out), 255 * (1 - level), atol=1)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--switch", "1=3"), "key 1 has 2 states"),
+        (("--switch", "2=1"), "key 2 is none of this picture"),
+        (("--switch", "one"), "is no state of a switch"),
+        (("--velocity", "3"), "is no velocity"),
+    ],
+)
+def test_a_hand_or_a_switch_that_cannot_be_is_refused(options, words, call, tmp_path):
+    path = tmp_path / "answers.scene"
+    path.write_text(ANSWERS)
+    done = call("map", path, "--out", tmp_path / "a.png", *options)
+    assert done.code == 2
+    assert words in done.err

@@ -44,7 +44,7 @@ def talk(port, *requests):
 
 @pytest.mark.parametrize("path", [RECORDING, pytest.param(SESSION, marks=heavy)], ids=["h5", "s"])
 def test_a_page_sees_the_recording_until_ctrl_c(path):
-    process = program.start("monitor", "--play", str(path))
+    process = program.start("monitor", str(path))
     try:
         said = process.stdout.readline().decode()
         port = re.fullmatch(r"live view: http://127\.0\.0\.1:(\d+)/\n", said)[1]
@@ -77,8 +77,8 @@ def test_what_cannot_be_played_is_said_in_a_sentence(call, tmp_path):
     assert refused(call("monitor")).startswith("nothing is to be played; give a recording or a")
     (tmp_path / "empty").touch()
     for name, said in (("none.h5", "there is no file"), ("empty", f"{tmp_path}/empty is empty")):
-        assert refused(call("monitor", "--play", tmp_path / name)).startswith(said)
-    play = ("monitor", "--play", RECORDING)
+        assert refused(call("monitor", tmp_path / name)).startswith(said)
+    play = ("monitor", RECORDING)
     assert refused(call(*play, "--port", "70000")).startswith("--port is 70000; it must be")
     assert refused(call(*play, "--host", "192.0.2.1")).startswith("192.0.2.1 is not an address of")
     with socket.create_server(("127.0.0.1", 0)) as taken:

@@ -57,11 +57,11 @@ def test_a_page_says_how_many_lines_it_has(call, text, options, said):
 
 
 def test_the_array_of_a_page_stands_with_its_left_column_where_it_is_told_to(call, text):
-    said = call("plot", "page", text, "--at", "12.5", "--csv").out
+    said = call("plot", "page", text, "--x", "12.5", "--csv").out
     rows = list(csv.DictReader(io.StringIO(said)))
     left = [float(row["x_mm"]) for row in rows if row["column"] == "0"]
     assert left == [12.5] * 6
-    drawn = call("plot", "page", text, "--at", "12.5")
+    drawn = call("plot", "page", text, "--x", "12.5")
     assert ", left column at 12.5 mm, " in drawn.out.splitlines()[0]
 
 

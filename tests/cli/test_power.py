@@ -11,7 +11,7 @@ FEW = [*ASKED, "--studies", "60"]
 
 
 def test_each_comparison_has_a_line(call):
-    said = call(*FEW)
+    said = call(*FEW, "--verbose")
     assert said.code == 0
     lines = said.out.splitlines()
     assert lines[0] == "protocol: letters, 78 trials of each person"

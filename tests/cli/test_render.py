@@ -5,6 +5,7 @@ import json
 import re
 import signal
 import subprocess
+import sys
 
 import h5py
 import numpy as np
@@ -16,6 +17,7 @@ from tests.shown import rendered, twin
 from tests.tiers import by_tier, heavy
 from vbraille import __version__
 from vbraille.braille.geometry import PRESETS, Geometry
+from vbraille.cli.terminal import WorkProgress
 from vbraille.layout.pages import Layout
 from vbraille.render import MAPPINGS, MODELS, Tuning, single_row
 from vbraille.translate import Book, BrailleTable, Document
@@ -152,13 +154,14 @@ def test_a_hand_s_chances_come_from_the_seed(call, tmp_path, text):
 def test_progress_in_lines(call, tmp_path, texts):
     arguments = ("render", texts / "english.txt", "--out", tmp_path / "out.h5", "--force")
     fast = ("--hand", "sweep:1000", "--rate", "100")
-    whole = call(*arguments, *fast, "--plain")
+    whole = call(*arguments, *fast, "--verbose")
     tenths = [f"{tenth}0 percent" for tenth in range(1, 10)]
     said = whole.err.splitlines()
-    assert [line for line in said if "percent" in line][:9] == tenths
+    told = [line.partition(",")[0] for line in said if "percent" in line]
+    assert told[:9] == tenths
     assert all("percent" in line for line in said[1:10])  # after the width, before other notes
-    some = call(*arguments, *fast, "--plain", "--lines", "11-14")
-    said = [line for line in some.err.splitlines() if "percent" in line]
+    some = call(*arguments, *fast, "--verbose", "--lines", "11-14")
+    said = [line.partition(",")[0] for line in some.err.splitlines() if "percent" in line]
     assert said == ["20 percent", "50 percent", "70 percent", "100 percent"]
     without = call(*arguments, *fast, "--lines", "11-14")
     assert "percent" not in without.err
@@ -250,12 +253,12 @@ def test_a_full_disk_leaves_the_old_file_and_no_part_of_the_new(old, tmp_path, t
 
 def half_done(texts, out):
     """Start a long run, and wait until it was estimated and a part of it is written."""
-    options = "--force --hand sweep:1000 --plain --model vbd --rate 10000 --dot-width 2"
+    options = "--force --hand sweep:1000 --verbose --model vbd --rate 10000 --dot-width 2"
     process = program.start("render", texts / "english.txt", "--out", out, *options.split())
     said = b""
     for line in process.stderr:
         said += line
-        if b"\n10 percent\n" in said and b"\nestimate: about " in said:
+        if b"\n10 percent" in said and b"\nestimate: about " in said:
             return process
     raise AssertionError(said)
 
@@ -343,3 +346,16 @@ def test_a_height_that_no_page_has_is_refused(call, tmp_path, height):
     said = call("render", "texts/english.txt", "--out", out, "--height", height)
     assert (said.code, said.out, out.exists()) == (2, "", False)
     assert "--height is" in said.err
+
+
+def test_progress_says_how_long_the_rest_takes_once_work_is_long(capsys, monkeypatch):
+    times = iter([0.0, 0.5, 4.0, 6.0, 9.9])
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    progress = WorkProgress(verbose=False, now_s=times.__next__)
+    for share in (0.1, 0.15, 0.4, 0.6, 1.0):
+        progress.at(share)
+    assert capsys.readouterr().err.splitlines() == [
+        "40 percent, about 6 s left",
+        "60 percent, about 4 s left",
+        "100 percent",
+    ]

@@ -41,7 +41,7 @@ def test_each_frame_is_what_the_twin_has_at_its_pose_and_time(call, scene, tmp_p
     out = tmp_path / "house.h5"
     hand = tmp_path / "hand.csv"
     hand.write_text("t_s,x_mm,y_mm,theta_deg\n0,80,10,0\n0.3,90,30,20\n")
-    done = call("render", scene, "--path", f"recorded:{hand}", "--out", out, "--plain")
+    done = call("render", scene, "--path", f"recorded:{hand}", "--out", out, "--verbose")
     assert (done.code, done.err.splitlines()[-1]) == (0, "100 percent")
     assert done.out == "rendered: 301 frames, 0.3 s on the path\n"
     resolved = open_scene(scene).resolved

@@ -55,7 +55,7 @@ def test_each_setting_is_said_with_where_it_comes_from(call, settings):
 
 def test_the_path_is_said_even_of_a_file_that_cannot_be_used(call, settings):
     settings.write_text("[raed]\n")
-    said = call("settings", "--settings", settings, "--path")
+    said = call("settings", "--settings", settings, "--where")
     assert (said.code, said.out, said.err) == (0, f"{settings}\n", "")
     for command in (("settings",), ("read", "none.txt"), ("page", "none.txt"), ("tune",)):
         said = call(*command, "--settings", settings)

@@ -1,5 +1,7 @@
 """``vbraille tables``, and the sentences that name the nearest of them."""
 
+import json
+
 from vbraille.translate import BrailleTable, list_tables
 
 
@@ -33,3 +35,21 @@ def test_a_language_that_is_not_there_names_the_nearest(call):
     said = call("tables", "--language", "frr")
     assert (said.code, said.out) == (2, "")
     assert said.err.startswith("vbraille: there is no table for language 'frr'; the nearest is fr ")
+
+
+def test_tables_and_ports_are_printed_as_json(call):
+    told = json.loads(call("tables", "--language", "fr", "--json").out)
+    assert told["usual"] == "fr-bfu-comp6.utb"
+    assert len(told["tables"]) == len(call("tables", "--language", "fr").out.splitlines()) - 1
+    assert {"name", "title", "language", "grade", "dots", "kind"} == set(told["tables"][0])
+    assert isinstance(json.loads(call("device", "list", "--json").out), list)
+
+
+def test_an_option_under_its_former_name_says_the_present_one(call):
+    for old, said in (
+        (("monitor", "--play", "reading.h5"), "vbraille monitor reading.h5"),
+        (("feel", "house.scene", "--at", "12"), "--y chooses"),
+    ):
+        refused = call(*old)
+        assert refused.code == 2
+        assert said in refused.err

@@ -11,6 +11,7 @@ from vbraille.scene.patterns import (
     Group,
     Image,
     Label,
+    Moving,
     Polygon,
     StraightLine,
     Tile,
@@ -21,6 +22,7 @@ from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
     RadialGrating,
+    SignalLevel,
     Uniform,
     UniformVibration,
 )
@@ -33,6 +35,11 @@ CANVAS = Canvas(width_mm=100, height_mm=80)
     [
         (Uniform(level=0.5, id="a"), "a, uniform deflection 0.5"),
         (UniformVibration(frequency_hz=20), "uniform vibration at 20 Hz"),
+        (Uniform(factor="slow"), "uniform deflection 1, times signal slow"),
+        (
+            Moving(part=SignalLevel(name="slow"), velocity_mm_s=(3, 0), array_at_mm=(0, 0)),
+            "signal slow, moving by (3, 0) mm/s, not by the hand",
+        ),
         (
             LinearGrating(ridge_mm=2, gap_mm=1, ridge_angle_deg=0, title="waves", id="w"),
             "waves, ridges of 2 mm with gaps of 1 mm, the wave at 90°",

@@ -65,5 +65,5 @@ def test_a_switch_that_a_picture_has_not_is_said(felt):
 def test_a_picture_that_is_read_again_begins_as_at_first(felt):
     felt.press("1")
     assert felt.engine.switches
-    felt.press("r")
+    felt.feeler.reload()
     assert not felt.engine.switches

@@ -9,6 +9,7 @@ from tests.reading.held import Held
 from tests.render.scene.lanes import lane_places
 from tests.render.scene.twin import deflections
 from tests.tiers import heavy
+from vbraille.feeling.index import SceneIndex
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import choose_table
 from vbraille.reading.bookfigures import BookFigures
@@ -250,7 +251,9 @@ def test_a_key_feels_it_alone_and_leads_back(tmp_path):
     assert said[0] == "picture: Water cycle"
     assert said[-1] == "shift-g or escape goes back to the text"
     frame = bench.to(12.0, 0.0)
-    wanted = twin(bench, 12.0, 15.0).reshape(frame.shape)
+    loaded = bench.figures.find("water.scene").loaded
+    height_mm = SceneIndex(loaded.scene, loaded.assets, loaded.boxes()).inside()[1]
+    wanted = twin(bench, 12.0, height_mm).reshape(frame.shape)
     assert wanted.max() > 0.5
     np.testing.assert_allclose(frame, wanted, rtol=0, atol=1e-6)
     assert bench.press("i")[0] == "here: edge of lake"

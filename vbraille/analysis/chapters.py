@@ -20,6 +20,7 @@ from vbraille.analysis.measures import (
     legibility,
     movement,
     naming,
+    passages,
     preferences,
     rated,
     scaling,
@@ -529,6 +530,8 @@ def _of_judgements(study: Study, judgements: pd.DataFrame, plan: FollowedPlan) -
     compared = [table for table in (points, means, apart, exponents) if len(table)]
     if compared:
         told.append(Chapter("Scaling", tuple(compared)))
+    if "read" in asked:
+        told.append(Chapter("Reading speed", (passages.reading_speed(judgements),)))
     if "rating" in asked:
         told.append(Chapter("Ratings", rated.ratings(judgements, scales)))
     if "magnitude" in asked:

@@ -65,6 +65,7 @@ The {varied} of each trial was chosen by the answers before it, by {procedure}
 It was made harder after {right} running, and easier after {wrong}
 A condition was to end by {stops}
 Reading was ended by {keys}; response times are to there
+What was shown could be felt for {exposure_s} s, which were over before the answer in {over}
 {practice}
 {breaks}
 {unanswered} had no answer
@@ -188,6 +189,8 @@ def facts_of(sessions: Sequence[SessionTrials]) -> Facts:
         **_order(sessions, answered),
         **_procedure(protocol),
         "keys": _keys(rows),
+        "exposure_s": None if (limit := protocol.trial.exposure_s) is None else f"{limit:g}",
+        "over": of_all(sum(row["ended_by"] == "exposure" for row in rows), rows, "trial"),
         "practice": f"Before them came {_span(practised, 'trial')} of practice{silent}"
         if any(practised)
         else "There was no practice",
@@ -479,12 +482,13 @@ def _keys(rows: Rows) -> str | None:
     """Words for the participant's own key."""
     keys = Counter(row["ended_by"] for row in rows if row["ended_by"])
     answered = keys.pop("answer", 0)
+    keys.pop("exposure", 0)  # which ends no response
     told = [
         f"{name.replace(':', ' ')} in {of_all(number, rows, 'trial')}"
         for name, number in sorted(keys.items())
     ]
     told += [f"their answer in {of_all(answered, rows, 'trial')}"] if answered else []
-    return ", by ".join(told) or None
+    return ", by ".join(told) or None if keys else None
 
 
 def _troubles(sessions: Sequence[SessionTrials], rows: Rows) -> Facts:

@@ -43,6 +43,9 @@ def _with_default(text: str, default: object) -> str:
 _READERS = {int: whole, float: number}
 # Options that there were, and what does the same.
 _GONE = {
+    "--at": "--y chooses the height of the line that is felt, and --x the place of an array",
+    "--plain": "progress is lines, at a terminal or with --verbose",
+    "--play": "give the recording by itself, as in vbraille monitor reading.h5",
     "--abstract": "--outline draws what is felt",
     "--raised": "--outline draws what is felt, black on white, for swell paper",
     "--sheet": "print an --outline without scaling",
@@ -279,12 +282,12 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
     "monitor": (
         "Play back a recording or a session in a browser, until Ctrl-C.",
         exploring.monitor,
-        "vbraille monitor --play reading.h5",
+        "vbraille monitor reading.h5",
     ),
     "plot": (
         "Draw a picture of what the display does, or print its numbers.",
         exploring.plot,
-        "vbraille plot page book.txt --lines 1-4 --at 120 --out page.png",
+        "vbraille plot page book.txt --lines 1-4 --x 120 --out page.png",
     ),
     "map": (
         "Draw a tactile picture: its deflections, what it is made of, or raised lines for paper.",
@@ -363,7 +366,7 @@ SCENE_ACTIONS: dict[str, tuple[str, Options, str]] = {
 DEVICE_ACTIONS: dict[str, tuple[str, Options, str]] = {
     "list": (
         "List the serial ports, with their names and ids.",
-        exploring.nothing,
+        exploring.device_list,
         "vbraille device list",
     ),
     "info": (

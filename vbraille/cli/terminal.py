@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import sys
-from typing import TYPE_CHECKING, Self
+import time
+from typing import TYPE_CHECKING, Final
 
-from vbraille.wording import printable
+from vbraille.wording import duration, printable
 
 if TYPE_CHECKING:
-    from tqdm import tqdm
+    from collections.abc import Callable
+
+_SHORT_S: Final = 2.0  # which is soon over, so that nothing is said of it
 
 
 def say_line(sentence: str, *, aside: bool = False) -> None:
@@ -31,39 +34,37 @@ def print_json(value: object, indent: int = 2) -> None:
 
 
 class WorkProgress:
-    """Teller of how much of some work is done. A context manager.
+    """Teller of how much of some work is done, a line for each tenth, on standard error.
+
+    Work of less than two seconds says nothing, and neither does work whose standard error is no
+    terminal, unless more is to be said.
 
     Parameters
     ----------
-    bar
-        Whether to draw a bar at a terminal.
-    lines
-        Whether to print lines where there is no bar.
+    verbose
+        Whether each tenth is told in any case.
+    now_s
+        Clock in seconds that does not go back.
     """
 
-    def __init__(self, *, bar: bool = True, lines: bool = True) -> None:
-        self._bar: tqdm | None = None
-        self._said = 0 if lines else 100
-        if sys.stderr.isatty() and bar:
-            from tqdm import tqdm
-
-            self._bar = tqdm(total=100, unit="%", bar_format="{percentage:3.0f}% |{bar}|")
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._bar is not None:
-            self._bar.close()
+    def __init__(self, *, verbose: bool, now_s: Callable[[], float] = time.monotonic) -> None:
+        self._verbose, self._now_s = verbose, now_s
+        self._told = verbose or sys.stderr.isatty()
+        self._begun_s = now_s()
+        self._said = 0
 
     def at(self, share: float) -> None:
-        """Tell that a share of the work is done, 0 to 1."""
+        """Tell that a share of the work is done, 0 to 1, and about how long the rest takes."""
         percent = round(100 * share)
-        if self._bar is not None:
-            self._bar.update(percent - self._bar.n)
-        elif percent >= self._said + 10:
-            self._said = percent - percent % 10
-            print(f"{self._said} percent", file=sys.stderr, flush=True)
+        if not self._told or percent < self._said + 10:
+            return
+        self._said = percent - percent % 10
+        passed_s = self._now_s() - self._begun_s
+        if passed_s < _SHORT_S and not self._verbose:
+            return
+        left_s = passed_s * (1 - share) / share
+        left = f", about {duration(left_s)} left" if left_s >= _SHORT_S else ""
+        print(f"{self._said} percent{left}", file=sys.stderr, flush=True)
 
     def of(self, done: int, parts: int) -> None:
         """Tell that so many of all parts of the work are done."""

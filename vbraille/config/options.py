@@ -498,7 +498,7 @@ OPTIONS = {
             "Take what options do not say from this settings file.",
             str,
             "FILE.toml",
-            usual="the one that vbraille settings --path names",
+            usual="the one that vbraille settings --where names",
         ),
         Option(
             "lines",

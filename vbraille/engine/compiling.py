@@ -1,6 +1,13 @@
-"""Compile all that a reading calls, so that the first one does not wait for it."""
+"""Compile all that a reading calls, so that the first one does not wait for it.
+
+What all kernels share, the frames, is compiled first. Then three processes go on, each with a part
+of the rest: `python -m vbraille.engine.compiling ticks` compiles one part.
+"""
 
 from __future__ import annotations
+
+import subprocess
+import sys
 
 import numpy as np
 
@@ -16,25 +23,41 @@ from vbraille.scene.textures import Uniform
 
 
 def compile_all() -> None:
-    """Compile the ticks, the frames of `vbraille render`, those of a replay, and pictures."""
-    scene = Scene(canvas=Canvas(width_mm=10.0, height_mm=10.0), elements=(Uniform(),))
-    SceneMap(scene).deflections(np.zeros(1), np.zeros(1))
+    """Compile the ticks, the frames of `vbraille render`, those of a replay, and pictures.
+
+    Raises
+    ------
+    subprocess.CalledProcessError
+        If one of the processes fails, which says why on standard error.
+    """
+    # The frames were compiled with the modules above, which name the types of their numbers.
+    first, *others = _PARTS
+    processes = [
+        subprocess.Popen([sys.executable, "-m", "vbraille.engine.compiling", part])
+        for part in others
+    ]
+    try:
+        _PARTS[first]()
+    finally:
+        codes = [process.wait() for process in processes]
+    for process, code in zip(processes, codes, strict=True):
+        if code:
+            raise subprocess.CalledProcessError(code, process.args)
+
+
+def _compile_ticks() -> None:
+    """Ticks of each display, and the frames of a replay."""
     for model in MODELS.values():
-        display, style = model.display, model.style
+        display = model.display
         warm_up(display, Extent(display.rows, display.columns, 0, 2))
-        line = style.render(np.zeros(1, np.uint8), display)
-        line.path(np.zeros(1))
-        line.poses(np.zeros(1), np.zeros(1))
-        line.frame(0.0, np.zeros(display.shape))
-        compile_scene(scene, display).poses(np.zeros(1), np.zeros(1))
+        line = model.style.render(np.zeros(1, np.uint8), display)
         ints, floats = np.zeros((1, len(INTS)), np.int64), np.zeros((1, len(FLOATS)))
         frames = np.zeros((4, 1, *display.shape))
-        scratch = scratch_for(display.shape)
         output, held, target = frames[1:, 0]
         ticks.replay(
             line.numbers,
             line.table,
-            scratch,
+            scratch_for(display.shape),
             ints,
             floats,
             np.zeros(work.AT),
@@ -43,3 +66,25 @@ def compile_all() -> None:
             target,
             frames[0],
         )
+
+
+def _compile_pictures() -> None:
+    """Frames of lines and pictures along a path."""
+    for model in MODELS.values():
+        line = model.style.render(np.zeros(1, np.uint8), model.display)
+        line.path(np.zeros(1))
+        line.poses(np.zeros(1), np.zeros(1))
+        line.frame(0.0, np.zeros(model.display.shape))
+        compile_scene(_SCENE, model.display).poses(np.zeros(1), np.zeros(1))
+
+
+def _compile_maps() -> None:
+    """Maps of pictures, and the grids that frames of pictures are found by."""
+    SceneMap(_SCENE).deflections(np.zeros(1), np.zeros(1))
+
+
+_SCENE = Scene(canvas=Canvas(width_mm=10.0, height_mm=10.0), elements=(Uniform(),))
+_PARTS = {"ticks": _compile_ticks, "pictures": _compile_pictures, "maps": _compile_maps}
+
+if __name__ == "__main__":
+    _PARTS[sys.argv[1]]()

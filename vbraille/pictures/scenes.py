@@ -17,6 +17,7 @@ from PIL.PngImagePlugin import PngInfo
 from vbraille.errors import InputError
 from vbraille.pictures.words import plain
 from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
+from vbraille.scene.signals import Pulse
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating
 from vbraille.scene.traversal import each, vibrations
 from vbraille.wording import setting
@@ -110,6 +111,7 @@ def slowest_s(scene: Scene) -> float | None:
     """Longest period of what vibrates or moves in a scene, in s; None if nothing does."""
     swings = [swing.frequency_hz for one in scene.elements for swing in vibrations(one)]
     periods = [1.0 / frequency_hz for frequency_hz in swings]
+    periods += [one.period_s for one in scene.signals.values() if isinstance(one, Pulse)]
     for part in each(*scene.elements):
         match part:
             case LinearGrating() | RadialGrating() if part.velocity_mm_s:

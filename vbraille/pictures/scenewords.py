@@ -13,6 +13,7 @@ from vbraille.scene.patterns import (
     Image,
     ImageDots,
     Label,
+    Moving,
     PathShape,
     Polygon,
     StraightLine,
@@ -23,6 +24,7 @@ from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
     RadialGrating,
+    SignalLevel,
     Uniform,
     UniformVibration,
 )
@@ -86,6 +88,8 @@ def pattern_words(pattern: AnyPattern) -> str:
         words.append("inverted")
     if pattern.vibration is not None:
         words.append(f"vibrating: {_swing_words(pattern.vibration)}")
+    if pattern.factor:
+        words.append(f"times signal {plain(pattern.factor)}")
     name = plain(name_of(pattern))
     return (f"{name}, " if name else "") + ", ".join(words)
 
@@ -94,6 +98,10 @@ def _kind_words(pattern: AnyPattern) -> str:
     match pattern:
         case Uniform():
             return f"uniform deflection {pattern.level:g}"
+        case SignalLevel():
+            return f"signal {plain(pattern.name)}"
+        case Moving():
+            return _moving_words(pattern)
         case UniformVibration():
             return f"uniform vibration at {pattern.frequency_hz:g} Hz"
         case LinearGrating() | RadialGrating() | AxialGrating():
@@ -119,6 +127,15 @@ def _kind_words(pattern: AnyPattern) -> str:
             return f"{plain(pattern.name)} again"
         case StraightLine() | Circle() | Polygon() | PathShape():
             return _shape_words(pattern)
+
+
+def _moving_words(moving: Moving) -> str:
+    """Tell how a texture moves, and what it is."""
+    right, down = moving.velocity_mm_s
+    moves = f"moving by ({right:g}, {down:g}) mm/s"
+    if moving.array_at_mm is not None:
+        moves += ", not by the hand"
+    return f"{pattern_words(moving.part)}, {moves}"
 
 
 def _grating_words(grating: LinearGrating | RadialGrating | AxialGrating) -> str:

@@ -162,11 +162,11 @@ class _OnDisplay(Output):
         """Give the display back."""
         self._display.close()
 
-    def _press(self, view: Any, key: KeyPressed) -> None:
+    def _press(self, view: Any, key: KeyPressed, /) -> None:
         """Do what a key of the display says."""
         raise NotImplementedError
 
-    def _cells(self, view: Any) -> bytes:
+    def _cells(self, view: Any, /) -> bytes:
         """Give the dot masks that are to stand there."""
         raise NotImplementedError
 

@@ -458,9 +458,11 @@ class Session:
                     warn(f"seed: {self.plan.seed}")
                 say(f"session: {self.folder}")
             # Its journal is read again once it is locked; all else cannot change meanwhile.
+            known = self.progress if self._resumed is not None else None
             record, self._resumed = self._resumed or self.record, None
             self.progress = apparatus.run(
                 record,
+                known,
                 why="start" if begins else "resume",
                 spec=self.conditions.device,
                 hand=self.conditions.hand,
@@ -507,14 +509,15 @@ def usual_engine(
         return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
     find_driver(spec)  # before anything is compiled for what is not there
     inherited = [channel.descriptor for channel in channels]
-    return Host(spec, wanted, _room(protocol, plan, wanted), pass_fds=inherited)
+    return Host(spec, wanted, room_for(protocol, plan, wanted), pass_fds=inherited)
 
 
-def _room(protocol: Protocol, plan: Plan, wanted: Display) -> int:
-    """Bytes of the largest program of a plan."""
+def room_for(protocol: Protocol, plan: Plan, wanted: Display) -> int:
+    """Bytes of the largest program of a plan, at any contrast and texture."""
     if protocol.pictures:
         different = {(s.scene, s.picture): s for s in plan.stimuli()}.values()
-        return max(protocol.program(s, s.tuning).nbytes for s in different)
+        # A picture of less than full contrast is a group, which takes a little more.
+        return max(protocol.program(s, replace(s.tuning, contrast=0.5)).nbytes for s in different)
     most = max(len(protocol.line(stimulus.masks)) for stimulus in plan.stimuli())
     return protocol.model.style.room(wanted, most)
 

@@ -10,12 +10,13 @@ from tests.sessions.sittings import Person, crash, of
 from vbraille.devices import open_device
 from vbraille.engine.batch import BatchEngine
 from vbraille.errors import InputError
+from vbraille.render import Tuning
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.protocolfiles import load_protocol
 from vbraille.sessions.record import bids
 from vbraille.sessions.record.folder import check_folder, load
 from vbraille.sessions.record.replay import frames
-from vbraille.sessions.session import Session
+from vbraille.sessions.session import Session, room_for
 
 SCENE = """
 [canvas]
@@ -135,6 +136,20 @@ def test_killed_and_resumed_nothing_is_lost(tmp_path):
         assert again.progress.ended
         assert [row["answered"] for row in again.trials] == whole
         assert len([e for e in again.record.journal.events if e.kind == "answer"]) == len(kept)
+
+
+def test_the_contrast_of_pictures_is_set_while_they_are_felt(tmp_path):
+    session = begun(tmp_path)
+    for stimulus in session.plan.stimuli():
+        for contrast in (0.0, 0.3, 1.0):
+            program = session.protocol.program(stimulus, Tuning(texture=1.0, contrast=contrast))
+            room = room_for(session.protocol, session.plan, session.protocol.model.display)
+            assert program.nbytes <= room
+    said = sit(session, ("cue: practice 1", "begin"), ("cue: trial 1", "contrast 0.5"),
+               ("contrast: 0.5", "c"), ("chosen", ""), ("answer: trial 1", "stop"))  # fmt: skip
+    assert "contrast: 0.5" in said
+    weak = [d.max() for line, _, d in frames(session.record) if line == 3]
+    assert max(weak) <= 0.5 + 1e-6
 
 
 def test_a_dataset_of_pictures_is_valid(tmp_path):

@@ -319,6 +319,7 @@ def _trials(whole: pd.DataFrame) -> pd.DataFrame:
 
 USUAL = ("identify", "which")  # questions whose answers are trials or comparisons
 _NUMBERS = [name for name, kind in KINDS.items() if kind.numeric]
+PASSAGE_COLUMNS = ("words_per_minute", "hand_pauses", "regressions")  # numbers of passages
 LEVELS = (
     "contrast", "texture", "dot_width_mm", "dot_spacing_mm", "cell_gap_mm", "row_spacing_mm",
 )  # fmt: skip
@@ -389,7 +390,7 @@ def read_judgements(sheet: Sheet, rows: pd.DataFrame, who: pd.DataFrame) -> pd.D
         outcome=outcome,
         confidence=confidence,
         parameter=rows.get("parameter", empty).fillna("").astype(str).str.strip(),
-        **{name: _levels(sheet, rows.get(name, empty)) for name in LEVELS},
+        **{name: _levels(sheet, rows.get(name, empty)) for name in (*LEVELS, *PASSAGE_COLUMNS)},
     )
     bad = kept & (kinds == "magnitude") & (number <= 0)
     if bad.any():

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli.commands.calibrate import calibrate, say_calibration
 from vbraille.cli.exploring import opened_in_time
-from vbraille.cli.terminal import say_line
+from vbraille.cli.terminal import print_json, say_line
 from vbraille.devices.registry import find_driver
 from vbraille.devices.sentences import say
 from vbraille.engine.checkup import check, warm_up
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def run(arguments: argparse.Namespace) -> int:
     """List, describe or check."""
     if arguments.action == "list":
-        return _list()
+        return _list(as_json=arguments.json)
     if arguments.action == "calibrate":
         return calibrate(arguments, _wanted(arguments))
     if arguments.action == "check":
@@ -45,10 +45,23 @@ def run(arguments: argparse.Namespace) -> int:
             EAR.close()  # so that the array goes to rest
 
 
-def _list() -> int:
+def _list(*, as_json: bool) -> int:
     from serial.tools import list_ports
 
     ports = sorted(list_ports.comports())
+    if as_json:
+        print_json(
+            [
+                {
+                    "device": f"serial:{port.device}",
+                    "name": None if port.description == "n/a" else port.description,
+                    "id": None if port.vid is None else f"{port.vid:04x}:{port.pid:04x}",
+                    "serial_number": port.serial_number,
+                }
+                for port in ports
+            ]
+        )
+        return 0
     for port in ports:
         ids = "" if port.vid is None else f", id {port.vid:04x}:{port.pid:04x}"
         number = f", serial number {port.serial_number}" if port.serial_number else ""

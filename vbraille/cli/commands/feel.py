@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
     find_driver(arguments.device)
     loaded = load_scene(arguments.file, model_of(wanted).style)
     if is_simulated(arguments.device):
-        _check(loaded, wanted, arguments.at)
+        _check(loaded, wanted, arguments.y)
     with Keyboard() as keyboard:
         still = isinstance(moved, Still) and has_hand(arguments.device)
         if still and not (keyboard.attached or arguments.monitor):
@@ -64,9 +64,9 @@ def run(arguments: argparse.Namespace) -> int:
             display = device.find()
             if arguments.model is not None:
                 check_actuators(display, wanted)
-            _check(loaded, display, arguments.at)
+            _check(loaded, display, arguments.y)
             model = model_of(display)
-            program = compose(loaded, display, rate_hz=rate_hz, own_y_mm=arguments.at)
+            program = compose(loaded, display, rate_hz=rate_hz, own_y_mm=arguments.y)
             room = max(_SPARE * program.nbytes, _LEAST_ROOM)
             device.start(model, room)
             keys = around.keys()
@@ -78,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
                 bound=BOUND,
                 room=room,
                 cue=outputs.cue,
-                at_mm=arguments.at,
+                at_mm=arguments.y,
                 entering=arguments.say_entering,
                 watched=True,
                 goes=not still,
@@ -100,10 +100,10 @@ def _check(loaded: LoadedScene, display: Display, at_mm: float | None) -> None:
     height_mm = loaded.scene.canvas.height_mm
     if at_mm is not None and display.height_mm:
         raise InputError(
-            f"--at is for a device of one axis, and {display.name} has two; leave --at out"
+            f"--y is for a device of one axis, and {display.name} has two; leave --y out"
         )
     if at_mm is not None and not 0 <= at_mm <= height_mm:
-        raise InputError(f"--at is {at_mm:g} mm; it must be 0 to {height_mm:g} mm")
+        raise InputError(f"--y is {at_mm:g} mm; it must be 0 to {height_mm:g} mm")
 
 
 def _show_live(live: LiveView, device: OpenDevice, view: SceneView, hand: str) -> None:

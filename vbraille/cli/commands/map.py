@@ -12,6 +12,7 @@ from vbraille.files import write_file, write_files
 from vbraille.pictures import scenes
 from vbraille.pictures.scenewords import scene_lines, scene_text
 from vbraille.render import MODELS
+from vbraille.scene.signals import Switch, packed
 from vbraille.wording import count, spelled
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from vbraille.feeling.loading import LoadedScene
     from vbraille.pictures.drawings import ArrayOnMap, Figure
+    from vbraille.scene.scene import Scene
 
 _KINDS = ("png", "svg", "csv", "pdf", "gif")
 _FRAMES, _MOST_FRAMES = 8, 500
@@ -121,6 +123,23 @@ def _check(arguments: argparse.Namespace, kind: str) -> None:
         raise InputError(f"--frames is {arguments.frames}; it must be 2 to {_MOST_FRAMES}")
 
 
+def _scene_of(arguments: argparse.Namespace, loaded: LoadedScene) -> Scene:
+    """Scene as it is under the hand, and in the states, that the options say."""
+    scene, states = loaded.scene, arguments.switch or {}
+    switches = {
+        one.key: len(one.levels) for one in scene.signals.values() if isinstance(one, Switch)
+    }
+    for key, state in states.items():
+        if state >= switches.get(key, 0):
+            there = f"has {switches[key]} states" if key in switches else "is none of this picture"
+            raise InputError(f"--switch has {key}={state + 1}, and key {key} {there}")
+    if not scene.signals:
+        return scene
+    from vbraille.render.scene.compiling import settled  # loads the kernels
+
+    return settled(scene, arguments.velocity or (0.0, 0.0), packed(states, scene.signals))
+
+
 class _Drawing:
     """A scene as the options have it drawn.
 
@@ -136,7 +155,8 @@ class _Drawing:
 
     def __init__(self, arguments: argparse.Namespace, kind: str, loaded: LoadedScene) -> None:
         self._arguments, self._kind = arguments, kind
-        self._scene, self._assets, self._title = loaded.scene, loaded.assets, loaded.title
+        self._scene = _scene_of(arguments, loaded)
+        self._assets, self._title = loaded.assets, loaded.title
         self._frames, self._parity = arguments.frames or _FRAMES, arguments.parity or 0
         self._per_mm = arguments.resolution
         if arguments.outline:

@@ -15,7 +15,6 @@ from vbraille.live.monitor import has_desktop
 from vbraille.live.server import LiveServer
 from vbraille.playback import open_recording
 from vbraille.signals import EAR
-from vbraille.wording import setting
 
 if TYPE_CHECKING:
     import argparse
@@ -29,12 +28,12 @@ _HEED_S = 0.1
 def run(arguments: argparse.Namespace) -> int:
     """Serve a recording until a signal says to stop."""
     check_live_options(arguments)
-    if arguments.play is None:
+    if arguments.file is None:
         raise InputError(
-            f"nothing is to be played; give a recording or a session by {setting('play')}: what is "
-            f"read now is shown by vbraille read FILE --monitor"
+            "nothing is to be played; give a recording or a session, as in vbraille monitor "
+            "reading.h5: what is read now is shown by vbraille read FILE --monitor"
         )
-    source = open_recording(arguments.play)
+    source = open_recording(arguments.file)
     for note in source.notes:
         print(f"note: {note}", file=sys.stderr)
     with EAR.deferred():

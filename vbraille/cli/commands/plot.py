@@ -86,13 +86,13 @@ def _table(arguments: argparse.Namespace) -> FigureTable:
             if model is VBD:
                 raise InputError("the VBD has one row; the mappings are of displays of several")
             return pictures.mapping(style, **_letter(arguments), model=model)
-    if not math.isfinite(arguments.at):
-        raise InputError(f"--at is {arguments.at}; it must be a number of mm")
+    if not math.isfinite(arguments.x):
+        raise InputError(f"--x is {arguments.x}; it must be a number of mm")
     page = lay_out(arguments, build_book(arguments), shown)
     lines = list(islice(page.lines(), None if page.last else _LINES))
     page.say_note()
     page.say_unknown()
-    return pictures.page(lines, shown, x_mm=arguments.at + shown.display.span_mm / 2)
+    return pictures.page(lines, shown, x_mm=arguments.x + shown.display.span_mm / 2)
 
 
 def _letter(arguments: argparse.Namespace) -> dict:

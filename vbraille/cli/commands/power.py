@@ -35,8 +35,8 @@ def run(arguments: argparse.Namespace) -> int:
     )
     workers = Workers(arguments.workers)
     keep = None if arguments.keep is None else Path(arguments.keep)
-    with WorkProgress() as progress:
-        table = power(question, workers, keep=keep, report=progress.of)
+    progress = WorkProgress(verbose=arguments.verbose)
+    table = power(question, workers, keep=keep, report=progress.of)
     if arguments.json:
         print_json(table.to_json(), indent=1)
     elif arguments.csv:

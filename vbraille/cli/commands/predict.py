@@ -26,8 +26,8 @@ def run(arguments: argparse.Namespace) -> int:
         check_free(out)
     workers = Workers(arguments.workers)
     keep = None if arguments.keep is None else Path(arguments.keep)
-    with WorkProgress() as progress:
-        grid, found, ended = predict(arguments.grid, workers, keep=keep, report=progress.of)
+    progress = WorkProgress(verbose=arguments.verbose)
+    grid, found, ended = predict(arguments.grid, workers, keep=keep, report=progress.of)
     if out is not None:
         write_folder(out, {"predictions.csv": _csv(found).encode()})
     if arguments.json:

@@ -79,10 +79,10 @@ def run(arguments: argparse.Namespace) -> int:
     lines = frames = 0
     estimate = _Estimate(rate_hz)
     too_fast: str | None = None
+    progress = WorkProgress(verbose=arguments.verbose)
     with (
         EAR.deferred(),
         new_file(arguments.out, replace=arguments.force) as file,
-        WorkProgress(bar=not arguments.plain, lines=arguments.plain) as progress,
     ):
         recorder = Recorder(file, display, page.layout.width)
         recorder.describe(

@@ -52,10 +52,10 @@ def run(arguments: argparse.Namespace) -> int:
         say_line(f"note: {note}", aside=True)
     frames = path.t_s.size
     velocities = hand_velocities(path.x_mm, path.y_mm, rate_hz)
+    progress = WorkProgress(verbose=arguments.verbose)
     with (
         EAR.deferred(),
         new_file(arguments.out, replace=arguments.force) as file,
-        WorkProgress(bar=not arguments.plain, lines=arguments.plain) as progress,
     ):
         recorder = Recorder(file, display, 1)
         recorder.describe_scene(

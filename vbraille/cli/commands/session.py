@@ -172,16 +172,16 @@ def _pilot(arguments: argparse.Namespace) -> int:
     protocol = load_protocol(arguments.protocol)
     folder = Path(arguments.out or f"pilot-{protocol.name}")
     workers = Workers(arguments.workers)
-    with WorkProgress() as progress:
-        report = pilot(
-            protocol,
-            arguments.participants,
-            folder,
-            workers,
-            noise=arguments.noise,
-            seed=arguments.seed,
-            report=progress.of,
-        )
+    progress = WorkProgress(verbose=arguments.verbose)
+    report = pilot(
+        protocol,
+        arguments.participants,
+        folder,
+        workers,
+        noise=arguments.noise,
+        seed=arguments.seed,
+        report=progress.of,
+    )
     _say(f"pilot: {arguments.participants} sessions of {protocol.name}; {MARK}")
     _say(f"written: {report / 'report.html'}")
     return 0

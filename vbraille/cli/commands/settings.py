@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print a line for each setting, or the path of the file."""
-    if arguments.path:
+    if arguments.where:
         say_line(str(settings_path(arguments.settings)))
         return 0
     settings = load_settings(arguments.settings)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
+from vbraille.cli.terminal import print_json
 from vbraille.translate import find_table, list_tables, tables_of
 
 if TYPE_CHECKING:
@@ -14,12 +16,14 @@ if TYPE_CHECKING:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print a line for each table; for a language also the table that is taken by default."""
-    if arguments.language is None:
-        for table in list_tables():
-            print(_describe(table))
+    language = arguments.language
+    tables = list_tables() if language is None else tables_of(language)[1]
+    usual = None if language is None else find_table(language)
+    if arguments.json:
+        print_json({"usual": usual, "tables": [asdict(table) for table in tables]})
         return 0
-    _, tables = tables_of(arguments.language)
-    print(f"usual: {find_table(arguments.language)}")
+    if usual is not None:
+        print(f"usual: {usual}")
     for table in tables:
         print(_describe(table))
     return 0

@@ -49,7 +49,7 @@ def settings(parser: CommandParser) -> None:
     """Add the options of ``vbraille settings``, which are those of reading."""
     parser.take(*TEXT)
     _reading(parser)
-    parser.flag("--path", "Print where the settings file is, and nothing else.")
+    parser.flag("--where", "Print where the settings file is, and nothing else.")
 
 
 def tune(parser: CommandParser) -> None:
@@ -144,7 +144,6 @@ def render(parser: CommandParser) -> None:
     parser.option("--out", "FILE.h5", "Write to this file.", required=True)
     parser.take(*PAGE, "force")
     path(parser)
-    parser.flag("--plain", "Print progress as lines, without a bar.")
 
 
 def plot(parser: CommandParser) -> None:
@@ -165,7 +164,7 @@ def plot(parser: CommandParser) -> None:
     )
     parser.flag("--csv", "Print the picture's numbers as CSV, and draw nothing.")
     parser.option(
-        "--at",
+        "--x",
         "MM",
         "Of a page: put the array's left column at this place, in mm.",
         number,
@@ -315,15 +314,21 @@ def device_calibrate(parser: CommandParser) -> None:
 def tables(parser: CommandParser) -> None:
     """Add the options of ``vbraille tables``."""
     parser.option("--language", "TAG", "List only tables of this language, such as fr or fr-CA.")
+    parser.flag("--json", "Print the same as JSON.")
+
+
+def device_list(parser: CommandParser) -> None:
+    """Add the options of ``vbraille device list``."""
+    parser.flag("--json", "Print the same as JSON.")
 
 
 def monitor(parser: CommandParser) -> None:
     """Add the options of ``vbraille monitor``."""
-    parser.option(
-        "--play",
-        "FILE",
-        "Play back what vbraille render wrote, the directory of a session, or one of its traces "
-        "(default: nothing is played).",
+    parser.add_argument(
+        "file",
+        nargs="?",
+        metavar="FILE",
+        help="Play back what vbraille render wrote, the folder of a session, or one of its traces.",
     )
     parser.take(*ADDRESS)
 
@@ -383,7 +388,7 @@ def feel(parser: CommandParser) -> None:
     parser.take(*HAND)
     parser.set_defaults(hand=None, seed=None)
     parser.option(
-        "--at",
+        "--y",
         "MM",
         "On a device of one axis: feel the picture at this height, from its top "
         "(default: where it is felt, near its middle).",
@@ -524,6 +529,20 @@ def scene_map(parser: CommandParser) -> None:
     )
     parser.option("--seed", "N", "Seed the noise.", seed, default=0)
     parser.option(
+        "--velocity",
+        "X,Y",
+        "Draw what is felt by a hand that goes on so, right and down in mm/s, where signals of the "
+        "picture depend on that (default: a hand that stands still).",
+        velocity,
+    )
+    parser.option(
+        "--switch",
+        "K=N[,…]",
+        "Draw the picture with the switch of key K in its state N, from 1, such as 1=2 "
+        "(default: each in its first).",
+        switch_states,
+    )
+    parser.option(
         "--array",
         "X,Y[,θ]",
         "Draw the array over the picture with its centre at this place, in mm, turned by θ "
@@ -543,6 +562,33 @@ def scene_map(parser: CommandParser) -> None:
         "Draw what is felt in black on white instead, true to scale, for eyes and for swell "
         "paper (default: a deflection map).",
     )
+
+
+_MOST_MM_S = 1000
+
+
+def velocity(text: str) -> tuple[float, ...]:
+    """Read a velocity X,Y in mm/s."""
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) != 2 or not all(abs(value) <= _MOST_MM_S for value in values):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no velocity; give X,Y in mm/s, each from -{_MOST_MM_S} to {_MOST_MM_S}"
+        )
+    return values
+
+
+def switch_states(text: str) -> dict[int, int]:
+    """Read states of switches K=N,…, from 1, as states from 0 by their keys."""
+    found = re.fullmatch(r"[1-8]=[1-8](?:,[1-8]=[1-8])*", text)
+    if found is None:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no state of a switch; give K=N with a key and a state from 1, such as 1=2"
+        )
+    pairs = (one.split("=") for one in text.split(","))
+    return {int(key): int(state) - 1 for key, state in pairs}
 
 
 def place(text: str) -> tuple[float, ...]:

@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 
 from vbraille.render import work
@@ -177,6 +178,27 @@ def _signal(one: OrderedSignal) -> tuple[float, ...]:
     return (signalkernels.INTEGRAL, 1.0, float(one.of[0]))
 
 
+def settled(scene: Scene, velocity_mm_s: Point = (0.0, 0.0), switches: int = 0) -> Scene:
+    """Make the scene as it is under a hand that goes on at one velocity: Lévesque 2009, 9.6.
+
+    Signals by the hand and by switches are as they have become then, and change no more.
+
+    Parameters
+    ----------
+    scene
+        A resolved scene.
+    velocity_mm_s, switches
+        The velocity, and states of the switches, as `vbraille.scene.signals.packed` has them.
+    """
+    values = SceneMap(scene).signal_values(0.0, velocity_mm_s, switches)
+    signals = {
+        one.name: Switch(levels=(value, value))
+        for one, value in zip(ordered(scene.signals), values.tolist(), strict=False)
+        if isinstance(one.signal, Speed | Direction | Switch)
+    }
+    return msgspec.structs.replace(scene, signals={**scene.signals, **signals})
+
+
 def highest_hz(pattern: AnyPattern, number: int, rate_hz: float) -> float:
     """Find the highest frequency of what moves in an element by itself; 0 if nothing does.
 
@@ -285,7 +307,7 @@ class SceneMap:
         """
         if self._shown is None:
             self._shown = self._assemble(flatten_scene(self._scene, self._assets))
-        given = self._given(time_s, velocity_mm_s, switches)
+        given = self.signal_values(time_s, velocity_mm_s, switches)
         return _raster(self._shown, x_mm, y_mm, time_s, parity, noise_seed, given)
 
     def opacity(
@@ -313,7 +335,7 @@ class SceneMap:
         """
         if self._hiding is None:
             self._hiding = self._assemble(self._mask())
-        given = self._given(time_s, velocity_mm_s, switches)
+        given = self.signal_values(time_s, velocity_mm_s, switches)
         if every_layer:
             given[: work.MOST_SIGNALS] = 1.0
         return _raster(self._hiding, x_mm, y_mm, time_s, parity, noise_seed, given)
@@ -327,8 +349,10 @@ class SceneMap:
         tree = mask(elements[0] if len(elements) == 1 else whole, assets)
         return flatten(ONE if tree is None else tree)
 
-    def _given(self, time_s: float, velocity_mm_s: Point, switches: int) -> NDArray[np.float64]:
-        """Values of the signals, and no centre of an array: float64[n]."""
+    def signal_values(
+        self, time_s: float, velocity_mm_s: Point, switches: int
+    ) -> NDArray[np.float64]:
+        """Compute the signals, in their order; then NaN, as no array has a centre: float64[10]."""
         at = np.zeros(work.AT)
         if self._scene.signals:
             at[work.TIME], at[work.SWITCHES] = time_s, switches

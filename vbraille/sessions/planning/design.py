@@ -216,6 +216,9 @@ class StringList(_Design, frozen=True, tag="list"):
         Dot masks of the strings.
     reorder
         Whether the cells of a string are shown in another order each time.
+    passage
+        Whether each string is a passage: a text that is broken into lines, which are read one
+        after the other in one trial.
 
     Raises
     ------
@@ -225,6 +228,7 @@ class StringList(_Design, frozen=True, tag="list"):
 
     strings: tuple[Masks, ...]
     reorder: bool = False
+    passage: bool = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -408,9 +412,13 @@ class ItemList(_Design, frozen=True, tag="items"):
     ----------
     reorder
         Whether the cells of an item are shown in another order each time.
+    passage
+        Whether each item is a passage: a text that is broken into lines, which are read one after
+        the other in one trial.
     """
 
     reorder: bool = False
+    passage: bool = False
 
     def strings_of(self, strings: tuple[Masks, ...]) -> StringList:
         """Design that shows some strings as this one shows its items."""

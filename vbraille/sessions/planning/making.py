@@ -16,7 +16,7 @@ from vbraille.sessions.planning.nexttrial import varied
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.sequencing import arranged
 from vbraille.sessions.planning.spellings import WrittenText
-from vbraille.sessions.planning.stimuli import Stimuli, Trial, check_participant, check_seed
+from vbraille.sessions.planning.stimuli import Stimuli, Trial, check_participant, check_seed, joined
 from vbraille.tomlfile import which
 from vbraille.wording import setting
 
@@ -111,7 +111,12 @@ def check_plan(protocol: Protocol, plan: Plan) -> None:
     InputError
         If the plan was altered; the sentence says where.
     """
-    cells = {(s.text, s.table): s.masks for s in plan.stimuli() if s.text and s.table}
+    trials = (*plan.practice, *plan.trials)
+    cells = {
+        (first.text, first.table): joined(trial.stimuli)
+        for trial in trials
+        if (first := trial.stimuli[0]).text and first.table
+    }
     protocol = structs.replace(protocol, cells=cells)
     try:
         again = make_plan(
@@ -303,6 +308,10 @@ def _trial(protocol: Protocol, item: Item, condition: Condition, block: int) -> 
         shown = [(item if text else (*before, *map(int, item), *after), None)]
         asked = (len(before), len(before) + len(item))
     stimuli = Stimuli(protocol.shown(condition, masks, value) for masks, value in shown)
+    if protocol.passages:
+        stimuli = protocol.broken(stimuli[0])
+        asked = (0, min(len(stimulus.masks) for stimulus in stimuli))
+        return Trial(1, block, condition.name, asked, stimuli)
     if stimuli[0].text is not None or stimuli[0].picture is not None:
         asked = (0, len(stimuli[0].masks))
     return Trial(1, block, condition.name, asked, stimuli)

@@ -49,9 +49,14 @@ from vbraille.sessions.planning.pace import (
 from vbraille.sessions.planning.pictures import PictureScene, picture_scene
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
 from vbraille.sessions.planning.questionnaire import AnyItem
-from vbraille.sessions.planning.questions import AnyQuestion, CellSpelling, usual_question
+from vbraille.sessions.planning.questions import (
+    AnyQuestion,
+    CellSpelling,
+    ReadQuestion,
+    usual_question,
+)
 from vbraille.sessions.planning.spellings import SpellingKeys, WrittenText, cells_of
-from vbraille.sessions.planning.stimuli import Stimulus, with_value
+from vbraille.sessions.planning.stimuli import Stimuli, Stimulus, broken, with_value
 from vbraille.sessions.planning.style import (
     CONVENTIONAL,
     Condition,
@@ -307,7 +312,20 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
     @property
     def asks(self) -> AnyQuestion:
         """Question that is asked of each trial."""
-        return self.question or usual_question(self.intervals)
+        usual = ReadQuestion() if self.passages else usual_question(self.intervals)
+        return self.question or usual
+
+    @property
+    def passages(self) -> bool:
+        """True if each trial shows a passage, line by line."""
+        return isinstance(self.design, StringList) and self.design.passage
+
+    def broken(self, stimulus: Stimulus) -> Stimuli:
+        """Lines of a passage, of which the first has its text."""
+        room = stimulus.geometry.cells_per_line(self.model.display.span_mm) - self.lead_cells
+        lines = broken(stimulus.masks, room)
+        first = replace(stimulus, masks=lines[0])
+        return Stimuli([first, *(replace(stimulus, masks=m, text=None) for m in lines[1:])])
 
     @property
     def intervals(self) -> int:

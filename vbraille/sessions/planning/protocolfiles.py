@@ -469,6 +469,15 @@ def _check_varies(protocol: Protocol) -> None:
 
 def _check_question(protocol: Protocol) -> None:
     form = protocol.design.form if isinstance(protocol.design, Choice) else ""
+    form = "passage" if protocol.passages else form
+    there = any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions)
+    if protocol.passages and (not protocol.written or there or protocol.medium == "paper"):
+        raise ValueError(
+            "[design] passage is of texts with a braille table, read line by line on a device; "
+            "leave it out, or give [display] table"
+        )
+    if protocol.passages and (protocol.design.catch is not None or protocol.adaptive):
+        raise ValueError("[design] passage goes with neither catch nor [procedure]; leave it out")
     with _naming("[question]"):
         protocol.asks.check(protocol.intervals, form, adaptive=protocol.adaptive)
     if getattr(protocol.asks, "buttons", False) and protocol.trial.button is not None:
@@ -494,7 +503,6 @@ def _check_question(protocol: Protocol) -> None:
         raise ValueError("[trial] end is of a device; on paper Enter ends reading, leave it out")
     if protocol.asks.turns and protocol.medium == "paper":
         raise ValueError("[question] kind is 'adjust', which turns what a device shows; leave it")
-    there = any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions)
     if protocol.trial.exposure_s is not None and (there or protocol.medium == "paper"):
         raise ValueError(
             "[trial] exposure_s is of a device, and strings stand on paper or on a conventional "
@@ -719,7 +727,8 @@ def _cells(protocol: Protocol, condition: Condition) -> dict[str, tuple[frozense
         with _naming(f"{name} in the condition {condition.name}:"):
             lines = [cells_of(str(text), table) for text in strings]
         masks = frozenset(mask for line in lines for mask in line)
-        found[name] = (masks, max(map(len, lines), default=0))
+        longest = max(map(len, lines), default=0)
+        found[name] = (masks, min(longest, 1) if design.passage else longest)
     return found
 
 

@@ -1076,6 +1076,38 @@ class AdjustQuestion(QuestionTable, frozen=True, kw_only=True, tag="adjust"):
         return ("-" if apart > 0 else "+") * max(steps, 1)
 
 
+class ReadQuestion(QuestionTable, frozen=True, kw_only=True, tag="read"):
+    """The request to read a passage, and to say that it was read."""
+
+    stimuli: ClassVar[tuple[int, ...]] = (1,)
+    forms: ClassVar[tuple[str, ...]] = ("passage",)
+    words: ClassVar[tuple[str, ...]] = ("read", "broken off")
+    typed: ClassVar[str] = "read, or broken off (r or b)"
+
+    def check(self, stimuli: int, form: str, *, adaptive: bool) -> None:
+        """Check that this question can be asked of trials; see `QuestionTable.check`."""
+        super().check(stimuli, form, adaptive=adaptive)
+        if form != "passage":
+            raise ValueError("kind is 'read', which is asked of passages; give passage = true")
+
+    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
+        """Read one of the two words, or its first letter."""
+        word = " ".join(text.lower().split())
+        for known in self.words:
+            if word in (known, known[0]):
+                return known
+        raise ValueError(f"{quoted(text)}type {self.typed}")
+
+    def describe(self, rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
+        """Sentence on the passages."""
+        read = sum(row["answered"] == self.words[0] for row in rows)
+        return f"They read passages, line by line, {of_all(read, rows, 'passage')} to the end"
+
+    def simulate(self, _felt: FeltTrial, _noise: float, _random: np.random.Generator, /) -> str:
+        """Say that it was read."""
+        return self.words[0]
+
+
 class FreeQuestion(QuestionTable, frozen=True, kw_only=True, tag="free"):
     """A question that is answered in words, which are not scored."""
 
@@ -1106,6 +1138,7 @@ AnyQuestion = (
     | RatingQuestion
     | MagnitudeQuestion
     | AdjustQuestion
+    | ReadQuestion
     | NameQuestion
     | FreeQuestion
 )

@@ -111,6 +111,36 @@ class Stimuli(tuple[Stimulus, ...]):
     __slots__ = ()
 
 
+def joined(stimuli: Stimuli) -> tuple[int, ...]:
+    """Dot masks of all lines of a text, with a blank cell where a line ends."""
+    masks: tuple[int, ...] = ()
+    for stimulus in stimuli:
+        masks += (0, *stimulus.masks) if masks else stimulus.masks
+    return masks
+
+
+def broken(masks: tuple[int, ...], room: int) -> list[tuple[int, ...]]:
+    """Lines of a text, broken at blank cells; words that are too long are cut.
+
+    >>> broken((1, 0, 2, 2, 0, 3, 3, 3, 3, 3), 4)
+    [(1, 0, 2, 2), (3, 3, 3, 3), (3,)]
+    """
+    words: list[tuple[int, ...]] = [()]
+    for mask in masks:
+        if mask:
+            words[-1] += (mask,)
+        elif words[-1]:
+            words.append(())
+    lines: list[tuple[int, ...]] = [()]
+    for word in filter(None, words):
+        if lines[-1] and len(lines[-1]) + 1 + len(word) <= room:
+            lines[-1] += (0, *word)
+            continue
+        parts = [word[at : at + room] for at in range(0, len(word), room)]
+        lines[-1:] = [lines[-1], *parts] if lines[-1] else parts
+    return lines
+
+
 class Trial(Struct, frozen=True, forbid_unknown_fields=True):
     """A trial: stimuli in the order in which they are shown. Files have its fields in this order.
 
@@ -181,6 +211,8 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
         stimulus = self.stimuli[0]
         if stimulus.picture is not None:
             return stimulus.answer or stimulus.picture
+        if stimulus.text is not None and len(self.stimuli) > 1:
+            return to_braille(joined(self.stimuli))
         return to_braille(self.stimuli[0].masks[slice(*self.asked)])
 
 

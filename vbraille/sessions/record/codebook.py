@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from vbraille.files import no_formula
+from vbraille.sessions.record.passages import COLUMNS as PASSAGE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -94,6 +95,7 @@ FURTHER = {
     "scene": "file of the scene that the picture is of",
     "picture": "ids of the elements of the scene that were shown",
     "late": "1 if the answer came after the time that the protocol gives for it, or not at all",
+    **PASSAGE,
 }
 
 

@@ -20,6 +20,8 @@ from vbraille.sessions.planning.style import TUNED
 from vbraille.sessions.record.codebook import ASKED, COLUMNS, CORRECT, designed
 from vbraille.sessions.record.events import AnyTime, JournalEvent, Note, Presented
 from vbraille.sessions.record.folder import Record, read_told_trace
+from vbraille.sessions.record.passages import COLUMNS as PASSAGE
+from vbraille.sessions.record.passages import read_so, spans_of
 from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
 
 if TYPE_CHECKING:
@@ -226,6 +228,8 @@ def walk(
         if isinstance(seen, Trajectory):
             row["duration_s"] = round(seen.duration.seconds, 6)
             row["returned"] = int(seen.duration.returned)
+        if record.protocol.passages and told.answer is not None:
+            row |= _passage(record, trial, told, traces)
         if told.lost:
             # One of the lost events may be a pause, or a new attempt at the trial.
             seen = f"events of the journal are lost: {spans(told.lost)}"
@@ -241,6 +245,7 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     protocol, geometries = record.protocol, [stimulus.geometry for stimulus in trial.stimuli]
     row: dict[str, Any] = dict.fromkeys(COLUMNS, "")
     row |= designed(protocol, trial)
+    row |= dict.fromkeys(PASSAGE, "") if protocol.passages else {}
     row |= {
         "session": record.folder.resolve().name,
         "participant": record.plan.participant,
@@ -338,6 +343,16 @@ def _replies(record: Record, progress: Progress, trial: Trial) -> dict[str, Any]
             good = item.good(answer, columns) if answer else None
             cells[f"{name}{CORRECT}"] = "" if good is None else int(good)
     return cells
+
+
+def _passage(record: Record, trial: Trial, told: TrialRecord, traces: Traces) -> dict[str, Any]:
+    """Cells of a trial's row for how a passage was read."""
+    numbers = {showing.stimulus: showing.line for showing in told.last_attempt}
+    lines = [] if told.trace is None else [
+        traces.of(told.trace, [numbers[n]]) for n in range(len(trial.stimuli)) if n in numbers
+    ]  # fmt: skip
+    whole = [ticks for ticks in lines if ticks is not None]
+    return read_so(trial, told, spans_of(record.journal.events, told), whole)
 
 
 def _noted(notes: list[PlacedNote], trial: int) -> dict[str, str]:

@@ -371,7 +371,7 @@ class Progress:
             case events.Fault() if record:
                 record.faults.append(event.what)
             case events.Read() if record and record.showings:
-                if record.shown.stimuli[0].conventional:
+                if record.trial.stimuli[0].conventional:
                     record.unread_s = record.paused_s
             case events.Tuning():
                 self.tuning = event.tuning

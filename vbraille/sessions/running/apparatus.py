@@ -100,13 +100,17 @@ class Apparatus:
         engine.start()
         check_room(engine.display, protocol, plan)
 
-    def run(self, record: Record, *, why: str, spec: str, hand: str) -> Progress:
+    def run(
+        self, record: Record, known: Progress | None = None, *, why: str, spec: str, hand: str
+    ) -> Progress:
         """Conduct the session until it ends or is stopped, and return how far it has come.
 
         Parameters
         ----------
         record
             Content of the session's directory.
+        known
+            Progress after the events of this record; None if it has to be found.
         why, spec, hand
             Fields of the run's event: why it began, spec of the device, and simulated hand.
         """
@@ -114,7 +118,10 @@ class Apparatus:
             check_end(record.folder, book.contents)
             torn_bytes = book.set_torn_aside()
             self.open(record.protocol, record.plan)
-            progress = Progress(record.plan, book.contents.events, record.procedure)
+            # Another console may have gone on with the session before its journal was locked.
+            progress = known if book.contents.crcs == record.journal.crcs else None
+            if progress is None:
+                progress = Progress(record.plan, book.contents.events, record.procedure)
             device = self._device(record, book)
             sound = self.sound()
             runner = Runner(

@@ -263,7 +263,8 @@ class Runner:
     @property
     def prompt(self) -> str:
         """Words for an answer that the experimenter is to type."""
-        return "the answer" if self.protocol.question is None else self.protocol.question.prompt()
+        usual = self.protocol.question is None and not self.protocol.passages
+        return "the answer" if usual else self.protocol.asks.prompt()
 
     @property
     def elapsed_s(self) -> float:
