@@ -19,11 +19,17 @@ from vbraille.render.braille.style import Profile
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Collection, Iterator, Mapping, MutableMapping
+    from pathlib import Path
+
     from vbraille.braille.geometry import Geometry
     from vbraille.config.options import StyleKnob
     from vbraille.display import Display
-    from vbraille.render.braille.mappings import Mapping
-    from vbraille.render.braille.style import BrailleStyle
+    from vbraille.render import BrailleStyle, Model
+    from vbraille.render.braille.mappings import Mapping as DotMapping
+
+    Values = dict[str, float | int | str]
 
 
 _CELL = ("dot_width_mm", "dot_spacing_mm", "cell_gap_mm")
@@ -58,7 +64,7 @@ def obstacle(knob: StyleKnob, geometry: Geometry, display: Display, value: float
     return ""
 
 
-def mappings_for(style: BrailleStyle, display: Display) -> list[Mapping]:
+def mappings_for(style: BrailleStyle, display: Display) -> list[DotMapping]:
     """Mappings that can take the place of a style's own on a display, which is one of them.
 
     A style that shows one row of dots has one for each row; on another display they are those of
@@ -70,7 +76,7 @@ def mappings_for(style: BrailleStyle, display: Display) -> list[Mapping]:
     return [mapping for mapping in MAPPINGS.values() if mapping.rows <= rows]
 
 
-def next_mapping(style: BrailleStyle, display: Display) -> Mapping:
+def next_mapping(style: BrailleStyle, display: Display) -> DotMapping:
     """Mapping after a style's own, in turn, of those that the display can show."""
     mappings = mappings_for(style, display)
     names = [mapping.name for mapping in mappings]
@@ -78,7 +84,7 @@ def next_mapping(style: BrailleStyle, display: Display) -> Mapping:
     return mappings[(at + 1) % len(mappings)]
 
 
-def say_mapping(mapping: Mapping) -> str:
+def say_mapping(mapping: DotMapping) -> str:
     """Words for a mapping: "mapping: sheared", or "dot row: 2" where it shows one row of dots."""
     if mapping.rows == 1:
         return f"dot row: {mapping.left[0] + 1}"
@@ -129,9 +135,9 @@ def with_values(
     return style.replace(**changes)
 
 
-def _mapping(style: BrailleStyle, display: Display, name: str, value: object) -> Mapping:
+def _mapping(style: BrailleStyle, display: Display, name: str, value: object) -> DotMapping:
     """Mapping that a settings file names; InputError if the display cannot show it."""
-    allowed: dict[object, Mapping] = {
+    allowed: dict[object, DotMapping] = {
         (m.left[0] + 1 if m.rows == 1 else m.name): m for m in mappings_for(style, display)
     }
     own = "dot_row" if style.mapping.rows == 1 else "mapping"
@@ -144,15 +150,6 @@ def _mapping(style: BrailleStyle, display: Display, name: str, value: object) ->
         raise InputError(f"{name.replace('_', ' ')} is {value!r}; it must be one of {names}")
     return allowed[value]
 
-
-if TYPE_CHECKING:
-    import argparse
-    from collections.abc import Collection, Iterator, Mapping, MutableMapping
-    from pathlib import Path
-
-    from vbraille.render import BrailleStyle, Model
-
-    Values = dict[str, float | int | str]
 
 DEFAULT_PROFILE = "default"
 

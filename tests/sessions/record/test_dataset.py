@@ -9,7 +9,12 @@ import pytest
 from msgspec import structs
 
 from tests.sessions.bidsvalid import complaints
-from tests.sessions.sittings import Session
+from tests.sessions.running.test_adjusting import ADJUST
+from tests.sessions.running.test_intervals import FORMS
+from tests.sessions.running.test_passages import PASSAGES
+from tests.sessions.running.test_questionnaire import ALL
+from tests.sessions.sittings import MINI, Session
+from tests.tiers import heavy
 from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.record import bids
 from vbraille.sessions.record.folder import alike, label_of
@@ -119,3 +124,12 @@ def test_without_times_no_file_tells_when_or_where(record, tmp_path):
             assert not re.search(rf"{year}-\d\d|\d\d:\d\d:\d\d", text), path
             assert str(record.folder) not in text
             assert "trace-001" not in text
+
+
+@heavy
+def test_each_paradigm_is_a_valid_dataset(tmp_path):
+    limits = MINI + "[trial]\nexposure_s = 0.6\nanswer_s = 5.0\n"
+    for number, toml in enumerate((ALL, limits, *FORMS.values(), ADJUST, PASSAGES)):
+        named = re.sub('name = "[a-z-]+"', f'name = "task{number}"', toml, count=1)
+        bids.write(Session(tmp_path / f"{number}", named).sit().record, tmp_path / "set")
+    assert complaints(tmp_path / "set") == ""

@@ -181,8 +181,9 @@ def _constant(part: pd.DataFrame, standard: float) -> Row:
     Unanswerable
         If the answers do not tell them.
     """
-    first = part["values"].map(lambda pair: pair[0])
-    second = part["values"].map(lambda pair: pair[1])
+    pairs: list[tuple[float, float]] = part["values"].tolist()
+    first = pd.Series([pair[0] for pair in pairs], part.index)
+    second = pd.Series([pair[1] for pair in pairs], part.index)
     other = first.where(first != standard, second)
     chosen = pd.to_numeric(part["answered"]) == other
     larger = chosen == (other > standard)  # if the larger of the two was chosen
@@ -264,7 +265,8 @@ def apart(judgements: pd.DataFrame) -> ResultTable:
             row = whose | {"question": question, "trials": len(part), "guesses": guess}
             row |= {"right": float(right.mean()), "right_low": shares.low}
             row |= {"right_high": shares.high}
-            off = part["values"].map(lambda values, s=standard: max(abs(v - s) for v in values))
+            shown: list[tuple[float, ...]] = part["values"].tolist()
+            off = pd.Series([max(abs(v - standard) for v in each) for each in shown], part.index)
             counts = right.groupby(off.round(9)).agg(["sum", "size"])
             try:
                 fit = fit_psychometric(
@@ -289,7 +291,10 @@ def exponents(judgements: pd.DataFrame) -> ResultTable:
     rows: list[Row] = []
     asked = judgements[judgements["question"] == "magnitude"]
     values = _values(asked["presented"])
-    last = values.map(lambda shown: shown[-1] if shown else math.nan).astype(np.float64)
+    texts: list[tuple[float, ...]] = values.tolist()
+    last = pd.Series(
+        [shown[-1] if shown else math.nan for shown in texts], values.index, np.float64
+    )
     for (protocol,), own in groups(asked.assign(value=last), "protocol"):
         parameter, value = _varied(own)
         if not parameter:
@@ -342,6 +347,9 @@ def _slope(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, Inter
     """
     if x.size < 3 or np.ptp(x) == 0:
         raise Unanswerable("there are fewer than three estimates, or one value")
-    line = stats.linregress(x, y)
-    half = float(stats.t.ppf(1 - TAIL, x.size - 2)) * float(line.stderr)
-    return float(line.slope), Interval(float(line.slope) - half, float(line.slope) + half)
+    apart = x - x.mean()
+    slope = float((apart * y).sum() / (apart**2).sum())
+    off = y - y.mean() - slope * apart
+    error = math.sqrt(float((off**2).sum()) / (x.size - 2) / float((apart**2).sum()))
+    half = float(stats.t.ppf(1 - TAIL, x.size - 2)) * error
+    return slope, Interval(slope - half, slope + half)

@@ -176,7 +176,7 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
         """
         if stimuli not in self.stimuli:
             more = " or more" if len(self.stimuli) > 1 else ""
-            fewest = self.stimuli[0]
+            fewest = min(self.stimuli)
             wanted = "one stimulus" if fewest == 1 else f"{_NUMBERS[fewest]} stimuli{more}"
             given = _NUMBERS[stimuli]
             raise ValueError(

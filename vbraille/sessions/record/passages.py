@@ -67,7 +67,7 @@ def read_so(
     """
     words = len((trial.stimuli[0].text or "").split())
     row: dict[str, Any] = {"lines": len(trial.stimuli), "words": words}
-    known = [spans.get(n, ()) for n in range(len(trial.stimuli))]
+    known: list[list[int]] = [spans.get(n, []) for n in range(len(trial.stimuli))]
     if not known[0] or len(known[-1]) < 2:
         return row
     seconds = (known[-1][1] - known[0][0]) / 1e9 - told.paused_s
