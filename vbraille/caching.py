@@ -27,8 +27,8 @@ _PROCESSOR_LINES = ("vendor_id", "cpu family", "model", "stepping", "flags", "Fe
 # Libraries that numba would load for what no kernel here needs, and its modules that look for them:
 # linear algebra, and declarations in C. Together they take a third of the time of loading it.
 _LEFT_OUT = (("scipy.linalg", "numba.np.arraymath"), ("cffi", "numba.core.typing.cffi_utils"))
-# The files that hold kernels, and what kernels call.
-_ROOMS = ("render/**/*.py", "devices/**/*.py", "engine/*.py")
+# The files that hold kernels, and what kernels call or take numbers from.
+_ROOMS = ("render/**/*.py", "devices/**/*.py", "engine/*.py", "scene/signals.py")
 
 
 @cache
