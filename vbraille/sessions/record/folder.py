@@ -422,7 +422,8 @@ def check(record: Record) -> Iterator[Finding]:
     progress = Progress(record.plan, contents.events, record.procedure)
     yield from _check_traces(record, progress)
     yield from _check_choices(record, progress)
-    state = f"ended, {progress.why}" if progress.ended else "not ended, session resume goes on"
+    why = f", {progress.why}" if progress.why else ""
+    state = f"ended{why}" if progress.ended else "not ended, session resume goes on"
     yield Finding(f"answers: {progress.of_all(progress.done)}; the session is {state}")
 
 

@@ -180,7 +180,7 @@ class Progress:
         Answers to the questionnaire, by the question's name and the number of the trial or block
         that it was asked after; 0 at the beginning and the end.
     why : str
-        Reason for the end; empty before.
+        Reason for which the participant stopped for good; empty if that is not so.
     """
 
     def __init__(
@@ -398,7 +398,7 @@ class Progress:
                 self.replies[event.name, event.trial or event.block] = event.answer
                 self._end_pause(record, event)
             case events.End():
-                self.ended, self.why = True, event.said
+                self.ended, self.why = True, event.said if event.reason else ""
             case events.Lost():
                 self._lost.append(event.n)
                 self._unasked = self.procedure.trials is None
