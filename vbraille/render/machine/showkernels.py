@@ -17,7 +17,7 @@ from vbraille.render.machine import words as w
 from vbraille.render.machine.scenekernels import evaluate
 from vbraille.render.machine.signalkernels import begin, compute, shut_gates
 from vbraille.render.waves import compiled
-from vbraille.render.work import MEMORY, MOST_SIGNALS, SIGNAL, THETA, TIME, X, Y
+from vbraille.render.work import AT, MEMORY, MOST_SIGNALS, SIGNAL, THETA, TIME, X, Y
 
 _NAME = "vbraille_evaluate_scene"
 _I64, _F64 = ir.IntType(64), ir.DoubleType()
@@ -164,7 +164,9 @@ def show_all(numbers, table, rows, at, out):
     for n in range(count):
         if numbers[w.SIGNALS] != 0.0:
             if n:
-                at[n, MEMORY:] = at[n - 1, MEMORY:]
+                # A slice given to a slice would be compiled with all words of its refusal.
+                for k in range(MEMORY, AT):
+                    at[n, k] = at[n - 1, k]
                 compute(numbers, at[n], max(at[n, TIME] - at[n - 1, TIME], 0.0))
             elif at[0, MEMORY] != at[0, MEMORY]:
                 begin(numbers, at[0])
