@@ -163,7 +163,7 @@ def test_a_difference_is_told_with_interval_effect_size_and_both_kinds_of_people
     results = analyse(written(tmp_path / "eight.csv", rows))
     assert "these 8 participants" in results.findings[0]
     assert "people like them" in results.findings[0]
-    assert "differs by condition" in results.findings[1]
+    assert "a difference by condition is shown" in results.findings[1]
     assert "points" in results.findings[2]
     assert results.shown.headings[3] == "odds ratio"
     row = results.table("primary").iloc[-1]

@@ -581,13 +581,12 @@ class ComparedMeasure(NamedTuple):
             if single is not None and single[1].low is not None:
                 difference = self._with_ends(single[1], difference=True)
                 at_most = f"; {self.pair_name(single[0])}: {difference}"
-            yield f"{words} is not shown to differ by {name} ({numbers}{at_most})."
+            yield f"{words}: no difference by {name} is shown ({numbers}{at_most})."
             return
-        what = "the effect of one depends on the other" if len(effect.factors) > 1 else "differs"
         yield (
-            f"{words} {what} by {name} ({numbers})."
+            f"{words}: a difference by {name} is shown ({numbers})."
             if len(effect.factors) == 1
-            else f"{words}: {name} act together, {what} ({numbers})."
+            else f"{words}: {name} the effect of one depends on the other ({numbers})."
         )
         for pair, told, p in effect.pairs:
             if _sure(p) and told.value is not None:
@@ -607,7 +606,12 @@ class ComparedMeasure(NamedTuple):
                 if (number := int((self.cells.own[:, at] == end).sum()))
                 and (known := int((~np.isnan(self.cells.own[:, at])).sum()))
             ]
-            if told:
+            if len(told) > MOST_TOLD:
+                yield (
+                    f"In {len(told)} of the {len(self.means)} cells some participants have all of it "
+                    f"{word}, so that their differences cannot be seen."
+                )
+            elif told:
                 yield (
                     f"Participants with everything {word}, whose differences cannot be seen: "
                     f"{'; '.join(told)}."
@@ -672,12 +676,11 @@ class ComparedMeasure(NamedTuple):
         unit = "%" if cells.scale == "share" else cells.unit.strip()
         label = f"{cells.words} ({unit})" if unit else cells.words
         across = cells.factors[0] if cells.factors else ""
+        means = [f"{cells.name(at)} {self._with_ends(mean)}" for at, mean in enumerate(self.means)]
         text = (
             f"Bars are means over participants with 95 % intervals, circles are participants"
             f"{', joined within each' if len(first) > 1 else ''}. "
-            + "; ".join(
-                f"{cells.name(at)} {self._with_ends(mean)}" for at, mean in enumerate(self.means)
-            )
+            + ("; ".join(means) if len(means) <= MOST_TOLD else "The table has all numbers")
             + "."
         )
         title = self.title()
