@@ -608,7 +608,7 @@ class ComparedMeasure(NamedTuple):
             ]
             if len(told) > MOST_TOLD:
                 yield (
-                    f"In {len(told)} of the {len(self.means)} cells some participants have all of it "
+                    f"In {len(told)} of the {len(self.means)} cells some participants have all "
                     f"{word}, so that their differences cannot be seen."
                 )
             elif told:
