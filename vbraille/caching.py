@@ -64,7 +64,7 @@ def is_compiled() -> bool:
 
 
 def compiling_note() -> str | None:
-    """What to say before a first reading, which takes a while; None if nothing is to compile."""
+    """Sentence before a first reading, which takes a while; None if nothing is to compile."""
     if is_compiled():
         return None
     return "compiling: what drives the actuators, once, in up to a minute; then it begins"
@@ -123,7 +123,7 @@ def _processor() -> str:
 @cache
 def keep_fonts() -> None:
     """Give matplotlib a folder for its list of fonts; to be called before it is imported."""
-    # matplotlib's warnings go to whoever keeps a log, and not to a reader's terminal.
+    # matplotlib's warnings go to a log, if one is kept, and not to a reader's terminal.
     logging.getLogger("matplotlib").addHandler(logging.NullHandler())
     usual = [_user_folder("CACHE", ".cache"), _user_folder("CONFIG", ".config")]
     if "MPLCONFIGDIR" in os.environ or all(_is_writable(place / "matplotlib") for place in usual):
@@ -156,7 +156,7 @@ def _is_writable(folder: Path) -> bool:
 def _private_folder() -> Path | None:
     """Make a temporary folder that only this user can write to; None if that is not possible.
 
-    Code is loaded from it, so a folder there that somebody else has made is never used.
+    Code is loaded from it, so a folder there that another user has made is never used.
     """
     try:
         folder = Path(tempfile.gettempdir()) / f"vbraille-{os.getuid()}"

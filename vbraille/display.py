@@ -1,4 +1,4 @@
-"""What a laterotactile display is: its actuators, and the carriage that they stand on.
+"""A laterotactile display: its actuators, and the carriage that they stand on.
 
 A device offers its `Display` and gives a `Pose` at each tick. Pages are laid out for a display, and
 pictures are compiled for it.
@@ -133,7 +133,7 @@ class Display:
         return np.arange(self.rows, dtype=np.float64) * self.row_pitch_mm
 
 
-USUAL_RATE_HZ = 1000.0  # of a loop, unless somebody asks for another, or its device takes fewer
+USUAL_RATE_HZ = 1000.0  # of a loop, unless a caller asks for another, or its device takes fewer
 
 
 def check_rate(rate_hz: float) -> float:
@@ -150,7 +150,7 @@ def check_rate(rate_hz: float) -> float:
 
 
 class Pose(NamedTuple):
-    """Where the array is, and when.
+    """Place of the array at a time.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Everything that vbraille tells a user it cannot do, a package of an extra that is missing too.
 
 The message is one sentence that says what to do. `main` prints it on stderr
-and leaves with ``exit_code``; a traceback reaches nobody.
+and leaves with ``exit_code``; no user sees a traceback.
 """
 
 from __future__ import annotations

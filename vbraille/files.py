@@ -154,7 +154,7 @@ def write_files(files: Iterable[tuple[Path, bytes]], *, replace: bool = False) -
 def _take_back(path: Path) -> None:
     """Undo that a file got its name; what it replaced has it again."""
     with suppress(OSError):
-        # A file that somebody else made meanwhile is theirs.
+        # A file that another process made meanwhile is left alone.
         if _partial(path).exists() and path.exists() and not path.samefile(_partial(path)):
             return
         path.unlink(missing_ok=True)
@@ -270,13 +270,13 @@ def check_free(folder: Path, name: str = "out") -> None:
     folder
         The directory.
     name
-        What whoever chooses it calls it.
+        What the caller calls it.
 
     Raises
     ------
     InputError
-        If something exists at the path, nobody can see whether it does, or what it would stand
-        in is no directory.
+        If something exists at the path, or may exist unseen, or what it would stand in is no
+        directory.
     """
     try:
         above = next(parent for parent in folder.absolute().parents if parent.exists())

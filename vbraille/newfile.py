@@ -1,7 +1,7 @@
 """HDF5 files that get their names only once they are whole.
 
 HDF5 would crash the process some time after a failed write; what is written goes through a file of
-our own, which keeps the failure until somebody asks.
+our own, which keeps the failure until a caller asks.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def new_file(path: Path | str, *, replace: bool = False) -> Iterator[NewFile]:
             target.check()
         except _DiskError as error:
             raise VbrailleError(f"{path} could not be written: {error}") from None
-        check_unused(path, replace=replace)  # somebody may have made one meanwhile
+        check_unused(path, replace=replace)  # another process may have made one meanwhile
 
 
 class NewFile(h5py.File):

@@ -5,7 +5,7 @@ is left in order. Where an exception out of nowhere would do harm it waits for a
 better place (HDF5), or ends the program at once, if nothing is open that has to
 be left in order (imports, numba's compiler).
 
-Ctrl-Z and its kin only ask; whoever runs the program's loop stops it, at a moment that suits. The
+Ctrl-Z and its kin only ask; the program's loop stops it, at a moment that suits. The
 host process goes on meanwhile: it takes no such signals, and keeps the array at rest.
 """
 
@@ -31,7 +31,7 @@ _AGAIN_S = 0.001
 
 
 class Stopped(BaseException):
-    """Somebody ended the program by a signal."""
+    """A signal ended the program."""
 
 
 class _Ear:
@@ -120,8 +120,8 @@ class Suspension:
     asked : bool
         Whether the process is to stop, which `stop` does.
     continued : bool
-        Whether it was continued after a stop that it did not hear of (SIGSTOP); reset by
-        whoever has looked.
+        Whether it was continued after a stop that it did not hear of (SIGSTOP); reset by the caller
+        that has looked.
     """
 
     def __init__(self) -> None:
@@ -129,7 +129,7 @@ class Suspension:
         self._before = {}
 
     def __enter__(self) -> Self:
-        # Without job control whoever started us may have us ignore it: so be it.
+        # Without job control the process that started us may have us ignore it: so be it.
         if signal.getsignal(signal.SIGTSTP) is not signal.SIG_IGN:
             self._before = {
                 signal.SIGTSTP: signal.signal(signal.SIGTSTP, self._ask),

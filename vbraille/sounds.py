@@ -47,7 +47,7 @@ class Sound(Protocol):
 
 
 class Silence:
-    """Sound device that plays nothing, where nobody listens."""
+    """Sound device that plays nothing, where there is no listener."""
 
     name = "none"
 

@@ -348,7 +348,7 @@ class TomlFile:
             label, rest = f"[[{path[0]}]] number {int(path[1]) + 1}", path[2:]
         else:
             label, rest = "", path
-        # Of tables that nest deep nobody follows the whole way; the line says where it ends.
+        # No user follows the whole way into tables that nest deep; the line says where it ends.
         begin, left_out, end = rest, "", ()
         if len(rest) > _MOST_STEPS:
             begin, left_out, end = rest[:2], " …", rest[-2:]

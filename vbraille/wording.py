@@ -1,4 +1,4 @@
-"""How messages say counts, durations, and characters that a terminal would obey."""
+"""Words for counts, durations, and characters that a terminal would obey."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def printable(text: str) -> str:
 def setting(name: str) -> str:
     """A setting of the program in a message, by its name alone; `spelled` says how it is given.
 
-    What is below the command line does not know how anybody gives it: there, a message names it
-    so, and stays readable to whoever calls without a command line.
+    What is below the command line does not know how a user gives it: there, a message names it so,
+    and stays readable to callers without a command line.
     """
     return f"\u2039{name}\u203a"
 
@@ -58,7 +58,7 @@ def nearest(name: str, names: Iterable[str], most: int = 1, lead: str = "; ") ->
     Parameters
     ----------
     name
-        Name that somebody wrote.
+        Name that the user wrote.
     names
         All names that there are.
     most

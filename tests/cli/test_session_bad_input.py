@@ -146,7 +146,7 @@ def test_enter_alone_is_no_choice(room):
         "--field", "masking_noise=yes", "--field", "hand=right", stdin=None, input="\n", cwd=room,
     )  # fmt: skip
     assert done.returncode == 2
-    assert "nobody said finger" in done.stderr
+    assert "finger was not answered" in done.stderr
     assert not (room / "s").exists()
 
 
@@ -163,7 +163,7 @@ def test_a_field_that_nobody_fills_in(call, room):
     (room / "asks.toml").write_text(asks)
     said = call("session", "run", "asks.toml", "--participant", "P07", "--seed", "1", "--out", "s")
     assert (said.code, said.out) == (2, "Age:\n")
-    assert said.err == "vbraille: nobody said age; give --field age=…\n"
+    assert said.err == "vbraille: age was not answered; give --field age=…\n"
     said = call("session", "run", "asks.toml", "--participant", "P07", "--out", "full")
     assert "full is there already" in refused(said)  # before anything is asked
     (room / "asks.toml").unlink()

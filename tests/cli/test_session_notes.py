@@ -106,7 +106,7 @@ def test_a_note_between_trials_and_in_practice_is_tied_to_what_is_beside_it():
 def test_anonymous_tables_tell_no_time_of_day_no_path_and_no_note(call, noted, tmp_path):
     said = call("session", "export", noted, "--anonymous", "--out", tmp_path / "t.csv")
     assert said.code == 0
-    assert said.err == "left out: 4 notes, since nobody knows what is in them\n"
+    assert said.err == "left out: 4 notes, since they may hold anything\n"
     text = (tmp_path / "t.csv").read_text()
     day = json.loads((noted / "journal.jsonl").read_text().splitlines()[0])["wall"][:10]
     for told in (day, str(tmp_path), "answers\n", "trace-", "after the last", "cue_time"):

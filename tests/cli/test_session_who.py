@@ -18,13 +18,13 @@ FAST = ("--answers", "simulated", "--fast", "--hand", "sweep:150")
 
 
 @pytest.mark.parametrize("other", ["p07", "P7", "P-07"])
-def test_a_script_is_refused_unless_it_says_that_it_is_somebody_else(call, tmp_path, other):
+def test_a_script_is_refused_unless_it_says_that_it_is_another_person(call, tmp_path, other):
     assert call(*session(tmp_path, "P07", "one"), *FAST).code == 0
     said = call(*session(tmp_path, other, "two"), *FAST)
     assert (said.code, said.out) == (2, "")
     assert said.err == (
         f"vbraille: {other} is new here, and P07 has the session one; give --participant P07, "
-        f"or --another if {other} is somebody else\n"
+        f"or --another if {other} is another person\n"
     )
     assert not (tmp_path / "two").exists()
     assert call(*session(tmp_path, other, "two"), *FAST, "--another").code == 0
@@ -37,7 +37,7 @@ def test_a_script_is_refused_unless_it_says_that_it_is_somebody_else(call, tmp_p
 def test_at_a_terminal_it_is_asked_and_an_answer_taken(call, tmp_path):
     assert call(*session(tmp_path, "P07", "one"), *FAST).code == 0
     with Terminal(*session(tmp_path, "p7", "two"), "--sound", "none") as terminal:
-        terminal.until(r"is p7 somebody else\? \(yes or no\):")
+        terminal.until(r"is p7 another person\? \(yes or no\):")
         terminal.type("perhaps\n")
         terminal.until("type yes or no:")
         terminal.type("no\n")
@@ -45,7 +45,7 @@ def test_at_a_terminal_it_is_asked_and_an_answer_taken(call, tmp_path):
         assert "nothing was begun; give --participant P07" in terminal.printed
     assert not (tmp_path / "two").exists()
     with Terminal(*session(tmp_path, "p7", "two"), "--sound", "none") as terminal:
-        terminal.until("somebody else")
+        terminal.until("another person")
         terminal.type("yes\n")
         terminal.until("session: ")
         terminal.type("stop\n")

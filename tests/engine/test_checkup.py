@@ -112,7 +112,7 @@ def clock_at(speed):
 FAR_OFF = "its carriage is at 5005.0 mm from the left stop, where it cannot be; see to the"
 A_BIT_OFF = "its carriage is at -2.5 mm from the left stop, where it cannot be"
 UNTAKEN = "it acknowledges none of the frames that it is sent; see to its frame_sequence"
-MISSING = "its watchdog does not trip in time when no frame comes; nobody may read on it"
+MISSING = "its watchdog does not trip in time when no frame comes; do not read on it"
 LATE = "its watchdog trips after 81 ms, too late; 50 ms are right"
 HALF_AS_FAST = "its clock goes 0.50 times as fast as it should; see to its time_us"
 A_BIT_SLOW = "its clock goes 0.97 times as fast as it should; see to its time_us"

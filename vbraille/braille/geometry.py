@@ -1,4 +1,4 @@
-"""Where the dots of a line stand on the virtual surface.
+"""Places of a line's dots on the virtual surface.
 
 Lengths are in millimetres, x grows to the reader's right, and x = 0 is the left
 edge of the line's first cell, which is the left edge of its left dot column.

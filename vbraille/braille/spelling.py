@@ -1,4 +1,4 @@
-"""How cells are spelled in a protocol, typed as an answer, and said."""
+"""Spellings of cells: in a protocol, typed as an answer, and said."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from vbraille.display import Display
 
 @dataclass(frozen=True, slots=True)
 class Carrier:
-    """What a display stands on, and what that measures.
+    """A carrier: it moves a display, and measures where it is.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How finely two arms measure, what they reach, and how long they must be for a page.
+"""Resolution and reach of two arms, and how long they must be for a page.
 
 The equations are those of Lévesque 2009, 7.4 and A.20-A.74. The scan has lost the signs and Greek
 letters of many; where they are not ours to see, they are set as continuity and geometry force them,
@@ -62,7 +62,7 @@ def error_mm(
 
 @dataclass(frozen=True, slots=True)
 class Demands:
-    """What arms are made for: a page, and what must not touch what (A, "Linkage optimization").
+    """Demands on arms: a page, and what must not touch what (A, "Linkage optimization").
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def shortest(ratio: float, demands: Demands = LETTER) -> Arms:
 
 @dataclass(frozen=True, slots=True)
 class ResolutionSpan:
-    """How finely arms measure at the nearest and at the farthest place of the page, in mm."""
+    """Resolution of arms at the nearest and at the farthest place of the page, in mm."""
 
     arms: Arms
     best_mm: float

@@ -34,7 +34,7 @@ _HALF, _WHOLE = 1 << 31, 1 << 32  # the encoders count modulo 2³²
 
 
 def pose_at(first: float, second: float, third: float) -> tuple[float, float, float]:
-    """Where the array is at three joint angles, counted from the root, in radians.
+    """Pose of the array at three joint angles, counted from the root, in radians.
 
     Returns
     -------

@@ -47,7 +47,7 @@ def arms_at(x_mm: float, y_mm: float) -> tuple[float, float]:
 
 
 def pose_at(alpha: float, beta: float, gamma: float) -> tuple[float, float, float]:
-    """Where the array is at the angles of its joints, in radians (eq. 7.1).
+    """Pose of the array at the angles of its joints, in radians (eq. 7.1).
 
     Parameters
     ----------

@@ -219,7 +219,7 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
         If an option or the text cannot be used.
     """
     if arguments.file == "-" and arguments.form is None:
-        build_table(arguments)  # nobody types a text for a table that is not there
+        build_table(arguments)  # before a user types a text for a table that is not there
     return book_of(_open(arguments), arguments, six_dots=six_dots)
 
 

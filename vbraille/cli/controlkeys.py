@@ -40,7 +40,7 @@ class ControlKeys:
     def pressed(self) -> list[str]:
         """Keys typed since the last call; none in the background."""
         if self._keyboard is None or not self.attached:
-            self._taken = False  # whoever has the terminal meanwhile sets it as he wants it
+            self._taken = False  # the program that has the terminal now sets it as it likes
             return []
         if not self._taken:
             self._keyboard.take()

@@ -51,7 +51,7 @@ def export(arguments: argparse.Namespace, say: Callable[[str], None]) -> int:
         faults = _to_table(given, arguments, say)
     notes = sum(len(read_notes(one.journal.events)) for one in given)
     if arguments.anonymous and notes:
-        told = f"left out: {count(notes, 'note')}, since nobody knows what is in them"
+        told = f"left out: {count(notes, 'note')}, since they may hold anything"
         print(told, file=sys.stderr)
     # Where the table is printed, nothing else may be between it and who reads it.
     told = sys.stdout if arguments.out else sys.stderr

@@ -76,8 +76,8 @@ def _hold_descriptors() -> None:
 
 def _set_streams() -> None:
     """Have all three streams; those of output take any text, lone surrogates and all."""
-    # None stands for a stream that was closed by whoever started us. There is nobody to be told
-    # of what goes to stderr, but whoever closed the output has lost what was asked for.
+    # None stands for a stream that the caller closed. No reader is left for stderr, but a caller
+    # who closed the output has lost what was asked for.
     if sys.stdin is None:
         sys.stdin = os.fdopen(0, closefd=False)
     if sys.stdout is None:
@@ -114,7 +114,7 @@ def _run(argv: Sequence[str] | None) -> tuple[str, int]:
         with needing_extras():
             code = _call(argv)
         sys.stdout.flush()
-    except BrokenPipeError:  # whoever read our output has enough, and needs no sentence
+    except BrokenPipeError:  # the program that read our output has enough: no sentence
         return "", EXIT_CODE
     except VbrailleError as error:
         return spelled(str(error)), error.exit_code
@@ -147,7 +147,7 @@ def _call(argv: Sequence[str] | None) -> int:
             want_tracebacks()
     with ExitStack() as begun:
         if arguments.command in ("read", "feel", "tune"):
-            # A hand on a picture may stand still, and waits for somebody.
+            # A hand on a picture may stand still, and waits for a person.
             pointed = arguments.monitor or arguments.command == "feel"
             arguments.pointer = _pointer() if pointed else None
             arguments.begun = _begin_host(arguments) if _may_begin(arguments) else None

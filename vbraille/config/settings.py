@@ -309,7 +309,7 @@ def with_profile(settings: Settings, profile: str, model: Model) -> Model:
 
 
 def missing_profile(settings: Settings, profile: str) -> str:
-    """Sentence on a profile that somebody names and is not there; empty if it is."""
+    """Sentence on a profile that the user names and is not there; empty if it is."""
     if profile in settings.profiles:
         return ""
     near = nearest(profile, settings.profiles)

@@ -70,7 +70,7 @@ def check_name(name: str) -> None:
         raise ValueError(f"profile is {name!r}; it must be a name of letters and digits")
 
 
-# Options of `vbraille read` for whoever does not give them, and how braille is shown on a display.
+# Options of `vbraille read` where none are given, and how braille is shown on a display.
 ReadTable = _table("ReadTable", FILE, _check_read)
 ProfileTable = _table("ProfileTable", PROFILE, _check_profile)
 _TABLES = ("read", "keys", "buttons", "profile")

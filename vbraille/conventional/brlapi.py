@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class CellsWanted(msgspec.Struct, frozen=True):
-    """What is to stand on the display.
+    """Cells that are to stand on the display.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ class CellsWanted(msgspec.Struct, frozen=True):
         Number of what is shown; it grows.
     cells
         Dot masks of the cells from the left, as many as there are; the others are blank. None to
-        give the display back to whoever else shows something on it, until cells are wanted again.
+        give the display back to other programs until cells are wanted again.
     """
 
     number: int
@@ -259,7 +259,7 @@ class BrlapiDisplay:
     Raises
     ------
     DisplayGoneError
-        If no BRLTTY answers, it lets nobody in, or it has no display.
+        If no BRLTTY answers, it lets no program in, or it has no display.
     InputError
         If its library is not installed.
     """
@@ -347,7 +347,7 @@ class BrlapiDisplay:
                 yield KeyTyped(key)
 
     def _online(self) -> bool:
-        """Whether the display is plugged in; writing to one that is not succeeds all the same."""
+        """Tell whether the display is plugged in; writing to one that is not succeeds, too."""
         online = ctypes.c_uint8(1)
         size = self._library.brlapi__getParameter(
             self._handle, _ONLINE, 0, _GLOBAL, ctypes.byref(online), 1

@@ -85,7 +85,7 @@ class ConventionalDisplay:
         return self._want(cells)
 
     def rest(self) -> None:
-        """Give the display back to whoever else shows something on it, until `show` is called."""
+        """Give the display back to other programs until `show` is called."""
         self._given_back = True
         self.standing = None
         self._want(None)

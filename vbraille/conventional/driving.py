@@ -116,7 +116,7 @@ def main() -> int:
     orders, told = begin(CellsWanted, _URGENT)
     try:
         Driving(orders, told.put, partial(BrlapiDisplay, sys.argv[2])).run()
-    except BrokenPipeError:  # whoever was told is gone
+    except BrokenPipeError:  # the parent is gone
         return 1
     return 0
 

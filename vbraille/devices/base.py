@@ -1,4 +1,4 @@
-"""What every device is: a place read, a frame written, rest on close."""
+"""A device: a place read, a frame written, rest on close."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _DOUBLE = np.dtype(np.float64)
 
 @dataclass(frozen=True, slots=True)
 class Particulars:
-    """What a device may say of itself that only its builder asks for, and reading does not.
+    """Facts of a device that only its builder asks for, and reading does not.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class Device(ABC):
 
     @property
     def has_own_gains(self) -> bool:
-        """Whether the device itself makes up for actuators that differ, so that no host must."""
+        """Tell whether the device itself makes up for unequal actuators, so that no host must."""
         told = self.particulars
         return told is not None and bool(told.disabled or told.inverted)
 

@@ -1,4 +1,4 @@
-"""What was found of each actuator of a device, and deflections that make up for it."""
+"""Findings on each actuator of a device, and deflections that make up for them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _TURN_S = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Tried:
-    """What was found of one actuator.
+    """Findings on one actuator.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Tried:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """What was found of the actuators of a device; one that was not tried is taken to be well.
+    """Findings on the actuators of a device; one that was not tried is taken to be well.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a device, or the engine that drives it, has to tell: facts with numbers, no sentences.
+"""Events of a device, or of the engine that drives it: facts with numbers, no sentences.
 
 `vbraille.devices.sentences` makes sentences of them. What has no kind of its own here, a driver
 tells as a `Notice`.
@@ -19,7 +19,7 @@ SERIAL_VERSION: Final = 2
 
 
 class Placing(IntEnum):
-    """What a device waits for before it knows where its carriage is."""
+    """Act that a device waits for before it knows where its carriage is."""
 
     DONE = 0  # nothing: it knows
     MARK = 1  # the reader moves the carriage over the encoder's mark
@@ -45,7 +45,7 @@ class Event:
 
     @property
     def tells_place(self) -> bool:
-        """Whether an event tells where something is, so that only the last of its kind matters."""
+        """Tell whether an event says where something is: only the last of its kind matters."""
         return False
 
 
@@ -260,7 +260,7 @@ class Knob(Event):
 
 @dataclass(frozen=True, slots=True)
 class Placed(Event):
-    """What the device waits for, before it knows its place, has changed.
+    """The device waits for another act before it knows its place.
 
     Parameters
     ----------
@@ -278,12 +278,12 @@ class Placed(Event):
 
 @dataclass(frozen=True, slots=True)
 class HandHeld(Event):
-    """Somebody has taken the hand of a simulated device in the live view, or has let it go.
+    """A person has taken the hand of a simulated device in the live view, or has let it go.
 
     Parameters
     ----------
     held
-        Whether somebody holds the hand now.
+        Whether a person holds the hand now.
     """
 
     held: bool
@@ -343,7 +343,7 @@ _KINDS: Final = {
 
 
 def is_known(event: object) -> bool:
-    """Whether something is an event of a kind defined here, which every part of a program knows."""
+    """Tell whether an event is of a kind defined here, which every part of a program knows."""
     return type(event) in _KINDS.values()
 
 
@@ -389,7 +389,7 @@ def _value(name: str, value: Any) -> Any:
 
 
 EVERY_NS: Final = 1_000_000_000
-PLACE_EVERY_NS: Final = 20_000_000  # of a knob: it is felt at once, whoever turns it
+PLACE_EVERY_NS: Final = 20_000_000  # of a knob: a finger feels each change at once
 # So many kinds are told apart at a time; further ones share a kind.
 _MOST_KINDS = 16
 _OTHERS = "others"

@@ -1,4 +1,4 @@
-"""What is done to each frame on its way to actuators, compiled.
+"""Compiled steps of each frame on its way to actuators.
 
 These functions fill what they are given and allocate nothing. `vbraille.devices.serial.wire.Levels`
 packs the same as `fill` in numpy.

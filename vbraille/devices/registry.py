@@ -83,12 +83,12 @@ def opened_device(
 ) -> Iterator[Device]:
     """Open the device of a spec; on leaving, close it.
 
-    An exception of somebody else's driver in between names the driver.
+    An exception of another package's driver in between names the driver.
 
     Raises
     ------
     InputError, DeviceError
-        In the cases of `open_device`; `DeviceError` also for any exception of somebody else's
+        In the cases of `open_device`; `DeviceError` also for any exception of another package's
         driver.
     """
     with _naming(find_driver(spec)), open_device(spec, wanted, fits=fits, often=often) as device:
@@ -113,7 +113,7 @@ def find_driver(spec: str) -> EntryPoint:
 
 @contextmanager
 def _naming(driver: EntryPoint, *, opening: bool = False) -> Iterator[None]:
-    """Turn whatever somebody else's driver raises into a `DeviceError` that names the driver.
+    """Turn what another package's driver raises into a `DeviceError` that names the driver.
 
     Errors that are sentences pass, and so do those of vbraille's own drivers and an OSError in
     which the driver has no part, such as one of our own output.

@@ -1,4 +1,4 @@
-"""What devices and engines tell, in sentences: the one place that has words for events."""
+"""Sentences for the events of devices and engines: the one place that has words for them."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ class BatchEngine:
     Parameters
     ----------
     device
-        An open device, which is left to whoever opened it to close. From now on it goes by the
+        An open device, which its opener closes. From now on it goes by the
         engine's clock.
     rate_hz
         Ticks a second.
@@ -99,7 +99,7 @@ class BatchEngine:
 
     @property
     def x_mm(self) -> float | None:
-        """Where the array's centre was along x at the last poll; None before it is known."""
+        """Place of the array's centre along x at the last poll; None before it is known."""
         return place_of(self.newest)
 
     @property
@@ -143,7 +143,7 @@ class BatchEngine:
         poses[:, POSED] = 1.0
         poses[:, POSE_X : POSE_THETA + 1] = self.device.poses_at(due_ns).T
         self._clock.sleep_until_ns(int(due_ns[-1]))
-        self.device.read()  # this tells whoever steers the hand that it has come to its end
+        self.device.read()  # this tells the caller that steers the hand that it has ended
         # Views of a single record would be contiguous, for which ticks would be compiled again: so
         # there is room for one more.
         room = np.zeros(due_ns.size + 1, self._dtype)
@@ -160,7 +160,7 @@ class BatchEngine:
         """Do nothing: ticks are done by `poll` alone."""
 
     def close(self) -> None:
-        """Do nothing: whoever opened the device closes it."""
+        """Do nothing: the device's opener closes it."""
 
     def __enter__(self) -> Self:
         return self

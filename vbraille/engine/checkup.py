@@ -64,7 +64,7 @@ _MOST_OF_TICK = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Rate:
-    """How well a device held a rate of frames.
+    """Result of a test of how well a device holds a rate of frames.
 
     Parameters
     ----------
@@ -250,7 +250,7 @@ def _longest_ms(ticks: NDArray[np.void]) -> float:
 
 
 def _clock_s(ticks: NDArray[np.void]) -> float:
-    """How far the device's clock goes in a second of the computer's; NaN if it never told a time.
+    """Way of the device's clock in a second of the computer's; NaN if it never told a time.
 
     Compares how far the device's clock is ahead in the first third of the samples and in the last.
     Medians are taken, so that samples which came late, as after a stall, weigh little.
@@ -354,12 +354,12 @@ SWINGS = 4  # how often an actuator swings before it rests again
 class ActuatorSwings:
     """Actuators of a device that swing one after the other.
 
-    Whoever has one calls `tick` again and again; each call waits for its time.
+    The caller calls `tick` again and again; each call waits for its time.
 
     Parameters
     ----------
     device
-        Open device, whose correction is that of whoever opened it.
+        Open device, whose correction is that of its opener.
     clock
         Clock by which ticks are due.
     begun
@@ -656,7 +656,7 @@ class _Check:
         tripped = [ms for ms in taken if ms is not None]
         if not tripped:
             self._say("watchdog: no trip was reported")
-            return ["its watchdog does not trip in time when no frame comes; nobody may read on it"]
+            return ["its watchdog does not trip in time when no frame comes; do not read on it"]
         median = float(np.median(tripped))
         promised_ms = WATCHDOG_MS + RAMP_MS + 1000 / self._device.display.rate_hz
         self._say(

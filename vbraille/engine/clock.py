@@ -46,7 +46,7 @@ class RealClock:
 
 
 class ManualClock:
-    """A clock that goes only when somebody sleeps on it or turns it."""
+    """A clock that goes only when a caller sleeps on it or turns it."""
 
     def __init__(self) -> None:
         self._now_ns = 0

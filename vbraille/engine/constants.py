@@ -1,4 +1,4 @@
-"""What the engine goes by: fades, rest, and what counts as motion."""
+"""Constants of the engine: fades, rest, and what counts as motion."""
 
 from typing import Final
 

@@ -30,7 +30,7 @@ HOME_MM = 1.0
 
 
 class Engine(Protocol):
-    """A loop with its device, as seen by whoever gives it lines to show and watches it."""
+    """A loop with its device, as seen by a caller that gives it lines to show and watches it."""
 
     @property
     def display(self) -> Display:
@@ -44,7 +44,7 @@ class Engine(Protocol):
 
     @property
     def x_mm(self) -> float | None:
-        """Where the array's centre was at the last poll; None before it is known."""
+        """Place of the array's centre at the last poll; None before it is known."""
         ...
 
     @property

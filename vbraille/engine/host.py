@@ -55,7 +55,7 @@ def too_slow(device: str, what: str) -> DeviceError:
     """Fault of a driver that has not opened its device, or done a first tick, in `OPEN_S`."""
     return DeviceError(
         f"the driver {device.partition(':')[0]} did not {what} within {OPEN_S:g} s; see whether "
-        f"the device is there and switched on, or tell whoever wrote the driver"
+        f"the device is there and switched on, or tell the driver's author"
     )
 
 
@@ -264,7 +264,7 @@ class Host:
 
     @property
     def x_mm(self) -> float | None:
-        """Where the array's centre was at the last poll; None before it is known."""
+        """Place of the array's centre at the last poll; None before it is known."""
         return place_of(self.newest)
 
     @property
@@ -442,8 +442,8 @@ class Host:
             if self._fault is None and self._at_driver:
                 self._fault = DeviceError(
                     f"the driver {self._driver} did not let the device go within {_END_S:g} s, "
-                    f"and was ended; switch the device off if it does not rest, and tell whoever "
-                    f"wrote the driver"
+                    f"and was ended; switch the device off if it does not rest, and tell the "
+                    f"driver's author"
                 )
             return self._process.wait()
 

@@ -1,4 +1,4 @@
-"""What runs in the host process: the loop, its device and its mailbox, and nothing else.
+"""The host process: it runs the loop, its device and its mailbox, and nothing else.
 
 `vbraille.engine.spawning` starts it, and `vbraille.engine.host` sends it two lines of JSON on
 standard input: which device to open, and, perhaps when that has been answered, how much memory to
@@ -66,7 +66,7 @@ _log = logging.getLogger(__name__)
 
 
 class Channel:
-    """The line to the parent: this process's standard output, which nobody else gets."""
+    """The line to the parent: this process's standard output, which no other code gets."""
 
     def __init__(self) -> None:
         # Neither a driver nor a program that it starts may get at it; 0 to 2 are not for it.
@@ -129,7 +129,7 @@ class OrderedLoop:
 
     @property
     def wanted(self) -> bool:
-        """Tell whether to go on: nobody has said to stop, and the parent lives."""
+        """Tell whether to go on: no order to stop has come, and the parent lives."""
         return not (self._ended or self._mailbox.stopped) and os.getppid() == self._parent
 
     def run(self) -> None:

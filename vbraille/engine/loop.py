@@ -45,8 +45,8 @@ class Loop:
     Parameters
     ----------
     device
-        An open device. The loop writes rest before it lets go of it, and leaves closing to
-        whoever opened it.
+        An open device. The loop writes rest before it lets go of it, and leaves closing to its
+        opener.
     clock
         The clock by which ticks are due.
     rate_hz
@@ -125,7 +125,7 @@ class Loop:
 
     @property
     def x_mm(self) -> float | None:
-        """Where the array's centre is along x; None before the first pose."""
+        """Place of the array's centre along x; None before the first pose."""
         now = self.state.now
         return float(now["x_mm"]) if now["placed"] else None
 
@@ -356,7 +356,7 @@ class LocalEngine(Loop):
     Parameters
     ----------
     device
-        An open device, which is left to whoever opened it to close.
+        An open device, which its opener closes.
     clock
         The clock by which ticks are due.
     rate_hz
@@ -405,5 +405,5 @@ class LocalEngine(Loop):
         self.restart_clock()
 
     def close(self) -> None:
-        """Have the array fade to rest; whoever opened the device closes it."""
+        """Have the array fade to rest; the device's opener closes it."""
         self.fade_to_rest()

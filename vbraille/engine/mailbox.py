@@ -1,4 +1,4 @@
-"""What the loop is to show, in memory that another process writes.
+"""Programs for the loop to show, in memory that another process writes.
 
 One side posts, the other looks each tick; neither waits for the other. Programs
 go into two slots in turn, each with a checksum: one that is in the writing, or
@@ -6,8 +6,8 @@ seen in the wrong order, is left for the next tick. A picture may take some MB, 
 which a tick has time for a part only: so the loop takes it piece by piece.
 
 A host process and its parent share one piece of memory: a mailbox, and behind it the ring of
-records. It is not `multiprocessing.shared_memory`: whoever attaches to that by name destroys it
-when it exits. This has no name; a descriptor is inherited.
+records. It is not `multiprocessing.shared_memory`: a process that attaches to that by name destroys
+it when it exits. This has no name; a descriptor is inherited.
 """
 
 from __future__ import annotations
@@ -275,7 +275,7 @@ RING_S = 8.0
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """What decides how much memory is shared.
+    """Sizes that decide how much memory is shared.
 
     Parameters
     ----------
@@ -322,6 +322,6 @@ def divide(memory: memoryview, extent: Extent) -> tuple[Mailbox, Ring]:
 
 
 def watch(memory: memoryview, extent: Extent) -> tuple[Mailbox, RingReader]:
-    """Mailbox and a reader of the ring, for whoever gives orders; others may watch, too."""
+    """Mailbox and a reader of the ring, for the process that gives orders; others may watch."""
     mailbox = Mailbox(memory[: extent.mailbox_bytes], extent.room)
     return mailbox, RingReader(memory[extent.mailbox_bytes :], extent.shape, extent.ticks)

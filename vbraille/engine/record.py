@@ -94,7 +94,7 @@ def columns_of(
 
 @dataclass(slots=True)
 class Tally:
-    """What happened so far, in numbers.
+    """Counts of what happened so far.
 
     Parameters
     ----------

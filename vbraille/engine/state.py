@@ -74,7 +74,7 @@ _STATE = np.dtype(
 
 
 class LoopState:
-    """What one loop knows from tick to tick, and the compiled ticks that work on it.
+    """State of one loop from tick to tick, and the compiled ticks that work on it.
 
     Parameters
     ----------

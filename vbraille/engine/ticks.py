@@ -1,4 +1,4 @@
-"""What a tick does, compiled: the one place that says so, for the loop, for blocks and for replay.
+"""The compiled tick: the one place that says what it does, for loop, blocks and replay.
 
 `advance` takes where the array is and what is wanted, decides what belongs under the hand, makes
 the frame and fills the tick's record; `replay` makes the frames again from records. Both show a

@@ -333,7 +333,7 @@ class LaidBlock:
         return [self._first, *edges, *last]
 
     def _edge(self, start: int, stop: int) -> int:
-        """Where a line's text begins: its cells begin at `start`, those before end at `stop`."""
+        """Start of a line's text: its cells begin at `start`, those before end at `stop`."""
         text, starts = self.block.text, self.cells.starts
         if start == starts.size:
             return len(text)

@@ -102,7 +102,7 @@ def brf_lines(rows: Iterable[Row]) -> bytes:
 
 @dataclass(frozen=True, slots=True)
 class Imprint:
-    """What a written book says of itself.
+    """Title and other facts that a written book says of itself.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ _PIECES_BACK = 2
 
 
 class LaidRun:
-    """Blocks in lines, without a gap, as many as somebody has looked at.
+    """Blocks in lines, without a gap, as many as were looked at.
 
     Parameters
     ----------
@@ -242,15 +242,15 @@ def _first_character(text: Text) -> int:
 __all__ = ["NEAR", "Layout", "Line", "locate", "place_of"]
 
 # Number of characters; what is no farther away is laid out from where blocks are already, and so
-# has its number. What is farther away would take longer than somebody waits for a line.
+# has its number. What is farther away would take longer than a reader waits for a line.
 NEAR = 65_536
-# Lines that nobody has counted are numbered from a multiple of this; no book has half as many.
+# Lines that were not counted are numbered from a multiple of this; no book has half as many.
 _PROVISIONAL = 1 << 40
 _RUNS = 256
 
 
 class Layout:
-    """A book laid out in lines of a width, only as far as somebody looks.
+    """A book laid out in lines of a width, only as far as its lines are looked at.
 
     Words wrap whole; a word that is longer than a line is cut between two of its characters and
     goes on in the next line. The indent depends on the kind of block. A paragraph begins with two
@@ -258,8 +258,8 @@ class Layout:
     is indented.
 
     What is asked for far away from all that is laid out is not reached by laying out what is
-    between: the layout begins there once more, and goes backward and forward from there. As long
-    as nobody has counted the lines before, lines there have provisional numbers, far above any
+    between: the layout begins there once more, and goes backward and forward from there. As long as
+    the lines before are not counted, lines there have provisional numbers, far above any
     true number; they follow each other in the same way. A very long paragraph that is entered in
     its middle begins on a line of its own.
 

@@ -1,6 +1,6 @@
 """Rights to see the live view and to steer, and the addresses by which the server is called.
 
-A page of another site must not reach a server on this machine through somebody's browser: neither
+A page of another site must not reach a server on this machine through a user's browser: neither
 by its own name that leads here (the Host header is checked), nor from its own page (the Origin
 header is checked). `docs/live-view.md` tells the rules.
 """
@@ -31,7 +31,7 @@ class Right(Enum):
 
 
 def new_token() -> str:
-    """Make a token that nobody guesses."""
+    """Make a token that cannot be guessed."""
     return secrets.token_urlsafe(16)
 
 
@@ -89,7 +89,7 @@ class Admission:
         return not self.on_loopback or owner in (None, 0, os.getuid())
 
     def right(self, token: str, *, from_page: bool) -> Right:
-        """Right of whoever sends this token.
+        """Right of a page that sends this token.
 
         Parameters
         ----------
@@ -140,7 +140,7 @@ def owner_of(peer: tuple[Any, ...], local: tuple[Any, ...]) -> int | None:
     Returns
     -------
     int or None
-        Number of the user; None if the other end is on another machine, or nobody knows.
+        Number of the user; None if the other end is on another machine, or unknown.
     """
     table = "tcp6" if ":" in peer[0] else "tcp"
     with suppress(OSError, ValueError):

@@ -70,7 +70,7 @@ class Asks(msgspec.Struct, frozen=True, tag=True):
 
 
 class Says(msgspec.Struct, frozen=True, tag=True):
-    """A sentence of the server for whoever reads.
+    """A sentence of the server for the reader.
 
     Parameters
     ----------

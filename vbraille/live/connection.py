@@ -186,7 +186,7 @@ class Talk:
         if len(owed) > MOST_QUEUED:
             await asyncio.sleep(_LOOK_S)
         else:
-            # Whoever steers must not wait until something new is to be seen.
+            # A page that steers must not wait until something new is to be seen.
             with suppress(TimeoutError):
                 async with asyncio.timeout(_LOOK_S):
                     request = await self._receive()
@@ -225,7 +225,7 @@ class Talk:
     async def _steer(self, request: Steering) -> None:
         if self._right is not Right.STEER:
             await self._refuse(
-                "nobody steers what is played back"
+                "no page can steer what is played back"
                 if self._source.playback
                 else "this page may only watch; steering needs the other address"
             )

@@ -155,7 +155,7 @@ class DeviceSource:
     Parameters
     ----------
     forward
-        Function that takes commands and turned knobs, for whoever reads.
+        Function that takes commands and turned knobs, for the reader.
     hand
         What holds the simulated hand; None if no page may be the hand.
     blind

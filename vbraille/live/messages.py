@@ -299,7 +299,7 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
     facts
         Name and value of whatever else is shown, such as the trial of a session.
     blind
-        Whether stimuli are hidden, since somebody is to answer about them.
+        Whether stimuli are hidden, since a participant is to answer about them.
     done
         Whether reading is over.
     scene

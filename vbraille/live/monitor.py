@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def has_desktop() -> bool:
-    """Tell whether somebody sits here who would see a browser that opens."""
+    """Tell whether a person sits here who would see a browser that opens."""
     desktop = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
     with suppress(OSError, ValueError, AttributeError):  # there may be no standard input
         return bool(desktop) and sys.stdin.isatty()
@@ -85,7 +85,7 @@ class Monitor:
         if self._process is not None:
             return
         self._line, other = open_line()
-        # What a browser writes is not for whoever reads.
+        # What a browser writes is not for the reader.
         writes = tracebacks_wanted() or kept() == "-"
         begin = msgspec.structs.replace(
             self._begin, line=other.fileno(), opens=has_desktop(), log=kept()
@@ -124,7 +124,7 @@ class Monitor:
         return asked
 
     def notes(self) -> list[str]:
-        """Take the sentences for whoever reads since the last call, oldest first."""
+        """Take the sentences for the reader since the last call, oldest first."""
         self._hear()
         notes, self._notes = self._notes, []
         return notes

@@ -112,7 +112,7 @@ class LiveServer:
     Raises
     ------
     InputError
-        If nobody can listen there; when it is entered.
+        If no server can listen there; when it is entered.
     """
 
     admission: Admission
@@ -262,7 +262,7 @@ def _address(host: str) -> str:
     Raises
     ------
     OSError, UnicodeError
-        If nobody knows the name.
+        If the name is unknown.
     """
     if not host:  # the system would listen everywhere
         raise OSError("no name")
@@ -282,7 +282,7 @@ def _say_nothing(_loop: asyncio.AbstractEventLoop, context: dict[str, object]) -
 
 
 def _why_not(host: str, port: int, error: Exception) -> str:
-    """Sentence on why nobody can listen at a place."""
+    """Sentence on why no server can listen at a place."""
     where = f"port {port}"
     match getattr(error, "errno", None):
         case errno.EADDRINUSE:

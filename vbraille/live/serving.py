@@ -80,7 +80,7 @@ class ServerLine:
             raise InputError("the program is busy; ask again in a moment")
 
     def say(self, sentence: str, *, ends: bool = False) -> None:
-        """Say a sentence to whoever reads."""
+        """Say a sentence to the reader."""
         self._send(Says(sentence, ends))
 
     def _send(self, message: Asks | Says) -> bool:
@@ -138,7 +138,7 @@ async def serve(begin: Begin, line: ServerLine) -> None:
     Raises
     ------
     InputError
-        If nobody can listen where it is to listen.
+        If no server can listen there.
     """
     hand = None if begin.pointer is None else Pointer(begin.pointer)
     source = DeviceSource(line.forward, hand, blind=begin.blind)

@@ -49,7 +49,7 @@ def open_recording(path: Path | str) -> Playback:
 def _open(path: Path) -> Playback:
     start = _start(path)
     if start == _HDF5:
-        # It loads h5py, which nobody needs who plays a session.
+        # It loads h5py, which is not needed to play a session.
         from vbraille.playback.rendered import Rendered
 
         return Rendered(path)

@@ -90,7 +90,7 @@ class Playback(ABC):
     moments : list[PlayedEvent]
         What happened, by time.
     notes : list[str]
-        Sentences for whoever plays it, such as on damage.
+        Sentences for the user who plays it, such as on damage.
     """
 
     playback = True

@@ -229,7 +229,7 @@ class Rendered(Playback):
     def _find_moments(
         self, starts: NDArray[np.int64], lines: NDArray[np.int64]
     ) -> list[PlayedEvent]:
-        """When the hand came to each line."""
+        """Find the moments at which the hand came to each line."""
         every = -(-starts.size // _MOST_MOMENTS)
         # Reading a time takes long; as a rule frames are evenly spaced.
         even = abs(self.length_s * self._rate_hz - (self._count - 1)) < 1e-3

@@ -107,7 +107,7 @@ class SessionRecording(Playback):
             )
         if not self._progress.ended:
             self.notes.append(
-                "the session is not ended; whoever goes on with it should not see this"
+                "the session is not ended; a participant who goes on with it should not see this"
             )
         self._runs: list[_PlayedRun] = []
         runs = [run for run in runs_of(record) if not trace or run.event.trace == trace]
@@ -341,7 +341,7 @@ def _in_trial(event: JournalEvent) -> str:
 
 
 def _say(event: JournalEvent, progress: Progress) -> tuple[str, str] | None:
-    """Kind of the moment of an event, and what happened; None for what nobody looks for."""
+    """Kind of the moment of an event, and what happened; None for an event that is not shown."""
     match event:
         case events.Presented():
             return _say_presented(event, progress)

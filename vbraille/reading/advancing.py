@@ -1,4 +1,4 @@
-"""When the next line comes: a hand at the end of its line or below its page, or time."""
+"""Signs for the next line: a hand at the end of its line or below its page, or time."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 STILL_S = 10.0
 REFUSED_S = 1.0  # time without a frame taken, after which it is said
-HOPELESS_S = 10.0  # time without a frame taken, after which nobody waits any more
+HOPELESS_S = 10.0  # time without a frame taken, after which waiting ends
 # A hand that moves less than this is still.
 STILL_MM = 0.5
 # If a hand turns back so often at the same place, to a millimetre, there is an obstacle.
@@ -47,12 +47,12 @@ class LineWatch:
     by_hand
         Whether the next line comes when the hand returns; otherwise a key brings it.
     key
-        Key that brings the next line; empty if there is nobody at a keyboard.
+        Key that brings the next line; empty if no reader is at a keyboard.
 
     Attributes
     ----------
     hopeless : str or None
-        Reason why the line will not come to its end unless somebody sees to the device: it takes
+        Reason why the line will not come to its end unless a person sees to the device: it takes
         no frames, or the hand turned back at the same place again and again, before the end.
     """
 
@@ -76,7 +76,7 @@ class LineWatch:
         self._backs_mm: list[float] = []
 
     def rest(self) -> None:
-        """Note that somebody wants the array to rest, so that what went before does not count."""
+        """Note that the reader wants the array to rest: what went before does not count."""
         self._since_ns = self._refused_ns = None
 
     def watch(

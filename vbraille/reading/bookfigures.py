@@ -65,7 +65,7 @@ class BookFigure:
     def name_at(self, x_mm: float, y_mm: float) -> str:
         """Name of the element at a place of its canvas, in mm; empty if none has one there."""
         if self._index is None:
-            # It loads numba, which nobody needs who comes to no figure.
+            # It loads numba, which a reader who comes to no figure does not need.
             from vbraille.feeling.index import SceneIndex
 
             loaded = self.loaded
@@ -165,7 +165,7 @@ class BookFigures:
         style: BrailleStyle,
         placed: Sequence[tuple[Any, float]],
     ) -> Program:
-        # It loads numba, which nobody needs who comes to no figure.
+        # It loads numba, which a reader who comes to no figure does not need.
         from vbraille.render.scene.compiling import compile_scene
 
         figures = [

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 HAND = "sweep:60"
 _POLL_S = 0.02
 _AFTER_HOLD_NS = 500_000_000  # as long as speeds are smoothed, and longer
-# A knob that nobody has turned for so long is left where it stands. Long enough for a hand that
+# A knob that no hand has turned for so long is left where it stands. Long enough for a hand that
 # takes a new hold of it, and short enough to be an answer.
 SETTLED_S = 0.3
 _HELD = int(Flag.HELD)  # a plain number, as in `vbraille.reading.reader`
@@ -102,7 +102,7 @@ class KnobTurns:
 
 
 class OpenDevice:
-    """A device that somebody reads on. A context manager; on exit the actuators fade to rest.
+    """A device that a person reads on. A context manager; on exit the actuators fade to rest.
 
     `vbraille.open` makes one that is ready to `show`. A program with an order of its own makes
     it of its parts: `find` the device, `start` it with a model, `show`.
@@ -125,27 +125,27 @@ class OpenDevice:
     say
         Function that is called with each thing that the reader should hear.
     attended
-        Whether somebody is at a keyboard, who can end a line that no hand ends.
+        Whether a person is at a keyboard, who can end a line that no hand ends.
     begun
         Host process that was begun for the device, and the steering of a simulated hand that it
         inherited, with the pointer if there is one; None to begin it now.
     pointer
-        Where somebody may hold the hand of a simulated device; None if nobody can.
+        Where a person may hold the hand of a simulated device; None if no person can.
     on_share
         Function that is called with the memory that a host process shares; see `Host`.
 
     Attributes
     ----------
     attended : bool
-        Whether somebody is at a keyboard.
+        Whether a person is at a keyboard.
     engine : Host or LocalEngine
-        Engine that drives the device, for whoever shows pictures that are no lines.
+        Engine that drives the device, for callers that show pictures and not lines.
     placing : Placing
         What the device waits for before it knows where its carriage is; see `set_zero`.
     steering : Steering or None
         Channel of orders to the simulated hand; None if a person moves the device.
     pointer : Pointer or None
-        Where somebody may hold the simulated hand; None also if a person moves the device.
+        Where a person may hold the simulated hand; None also if a person moves the device.
     """
 
     def __init__(
@@ -179,7 +179,7 @@ class OpenDevice:
         self._view: View | None = None  # the reader, or something else that is explored
         self._model: Model | None = None
         self._newest: np.void | None = None
-        self._held_ns: int | None = None  # when somebody held the simulated hand last
+        self._held_ns: int | None = None  # when a person held the simulated hand last
         if isinstance(device, Device):
             # Imported here, since it loads compiled code, which a host process loads by itself.
             from vbraille.engine.clock import RealClock
@@ -219,7 +219,7 @@ class OpenDevice:
 
     @property
     def held(self) -> bool:
-        """Tell whether somebody holds the simulated hand."""
+        """Tell whether a person holds the simulated hand."""
         return self.pointer is not None and self.pointer.held
 
     @property
@@ -325,7 +325,7 @@ class OpenDevice:
         """
         self._model = model
         if isinstance(self.engine, Host):
-            # Cells may come closer while somebody reads.
+            # Cells may come closer during reading.
             lines = MOST_LINES if model.display.height_mm else 1
             braille = model.style.room(model.display, MOST_CELLS, lines)
             self.engine.fit(model.display, max(room or 0, braille))
@@ -440,7 +440,7 @@ class OpenDevice:
         Raises
         ------
         VbrailleError
-            If the device is gone, or a line cannot be read to its end and nobody can help.
+            If the device is gone, or a line cannot be read to its end and no person can help.
         """
         if wait_s and isinstance(self.engine, Host):
             time.sleep(wait_s)
@@ -492,9 +492,9 @@ class OpenDevice:
             raise DeviceError(reader.under.hopeless)
 
     def _is_patient(self, now_ns: int) -> bool:
-        """Tell whether the hand's doing at a time is somebody's own.
+        """Tell whether a person decides what the hand does at a time.
 
-        A still hand waits for somebody, and one that was let go just now has not moved by itself.
+        A still hand waits for a person, and one that was let go just now has not moved by itself.
         """
         if self.held:
             self._held_ns = now_ns

@@ -48,7 +48,7 @@ class Exploration:
         Raises
         ------
         HostDiedError
-            If the host is gone, and nobody is there who could begin another.
+            If the host is gone, and no user is there to begin another.
         VbrailleError
             If something else goes wrong with the device.
         """
@@ -122,7 +122,7 @@ class Exploration:
         Raises
         ------
         HostDiedError
-            If there is nobody to ask.
+            If there is no user to ask.
         """
         view = self.view
         self._outputs.stand(f"fault: {fault}")

@@ -2,7 +2,7 @@
 
 Two cards are turned up, one after the other. If they match, a point is scored and both leave the
 table; if not, both are turned back. The source lets a mouse choose the card; here keys do, and all
-is said, so that nobody needs to see.
+is said, so that no player needs to see.
 """
 
 from __future__ import annotations
@@ -295,7 +295,7 @@ class GameView(View):
         winners = [n for n, points in enumerate(self.game.points) if points == best]
         self.say_points()
         if len(self.game.points) > 1:
-            won = f"{self._player(winners[0])} has won" if len(winners) == 1 else "nobody has won"
+            won = f"{self._player(winners[0])} has won" if len(winners) == 1 else "a draw"
             self.say(f"result: {won}")
         again = self.key(("ONE", "TWO")[len(self.game.points) - 1], "1")
         self.say(f"game over: {again} plays again, {self.key('QUIT', 'q')} stops")

@@ -155,7 +155,7 @@ class Keys:
             return [ESCAPE]
         if self._apart and self._tail in (f"{ESC}[", f"{ESC}O") and since_s >= ESCAPE_S:
             after, self._tail = self._tail[1], ""
-            return [ESCAPE, after]  # two keys that somebody pressed quickly
+            return [ESCAPE, after]  # two keys that were pressed quickly
         if since_s >= BROKEN_S:
             ended, self._pasting = self._pasting, False
             tail, self._tail = self._tail, ""
@@ -354,7 +354,7 @@ class Command:
 
 @dataclass(frozen=True, slots=True)
 class Bindings:
-    """Keys and buttons as somebody's settings have them.
+    """Keys and buttons as a user's settings have them.
 
     Parameters
     ----------
@@ -410,7 +410,7 @@ class Bound:
 
 
 def bind(commands: tuple[Command, ...], bindings: Bindings, turned: tuple[str, ...] = ()) -> Bound:
-    """Give commands the keys and buttons of somebody's settings.
+    """Give commands the keys and buttons of a user's settings.
 
     Parameters
     ----------
@@ -506,7 +506,7 @@ def _display_keys(bindings: Bindings, by_name: Mapping[str, Command]) -> dict[st
 
 
 def _sent(name: str, where: str) -> str:
-    """Name that a key has when it is typed, by the one that somebody wrote."""
+    """Name that a key has when it is typed, by the one that a user wrote."""
     if len(name) == 1 or name == ANY:
         return name
     if name.lower() in _TYPED:

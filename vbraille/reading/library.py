@@ -149,7 +149,7 @@ class Store:
 
     @contextmanager
     def patient(self) -> Iterator[None]:
-        """Wait for other processes in a block, as nobody's hand is held up by it."""
+        """Wait for other processes in a block, since this holds up no reader's hand."""
         self._tried_s = None
         self._connection.execute(f"PRAGMA busy_timeout = {_PATIENT_MS}")
         try:
@@ -252,7 +252,7 @@ def _connect(path: Path, wait_ms: int) -> sqlite3.Connection:
     """
     if not path.parent.exists():
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    # It has text of somebody's books in it: nobody else is to read it.
+    # It has text of a user's books in it: no other user is to read it.
     os.close(os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600))
     connection = sqlite3.connect(path, isolation_level=None)
     try:
@@ -376,9 +376,9 @@ class KeptPlace(msgspec.Struct, frozen=True):
     reach
         Number of the source's characters that the text before the place is from.
     line
-        Number of the line, from 1, in lines of `width` cells by `table`; None if nobody counted.
+        Number of the line, from 1, in lines of `width` cells by `table`; None if not counted.
     lines_before
-        Number of such lines before the block; None if nobody counted. A `Layout` can begin there.
+        Number of such lines before the block; None if not counted. A `Layout` can begin there.
     width, table
         Width in cells and name of the table for which these numbers hold.
     page
@@ -571,7 +571,7 @@ class KeptBook:
     place : KeptPlace or None
         Place at which reading goes on; None if the book was not read yet.
     tuning : dict or None
-        How the book's braille was tuned; None if nobody kept that.
+        How the book's braille was tuned; None if that was not kept.
     options : dict
         Options with which the book was opened.
     """

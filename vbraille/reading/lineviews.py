@@ -52,7 +52,7 @@ class TextView:
     by_hand
         Whether the next line comes when the hand returns; otherwise a key brings it.
     key
-        Key that brings the next line; empty if there is nobody at a keyboard.
+        Key that brings the next line; empty if no reader is at a keyboard.
     figures
         Function that gives the figures of the text; None if they stay unfelt.
 
@@ -73,7 +73,7 @@ class TextView:
     alone : View or None
         Figure that is felt in place of the text; None if the text is under the hand.
     patient : bool
-        Whether the hand may do as it likes, since somebody moves it in the live view.
+        Whether the hand may do as it likes, since a person moves it in the live view.
     """
 
     def __init__(
@@ -154,7 +154,7 @@ class TextView:
 
     @property
     def hopeless(self) -> str | None:
-        """Reason why the line will not come to its end unless somebody helps; None without one."""
+        """Reason why the line will not come to its end without help; None without one."""
         return None if self.window is None else self._waiting.hopeless
 
     @property

@@ -332,7 +332,7 @@ def scene_shown(loaded: LoadedScene, image: str) -> SceneShown:
 
 
 _COMMANDS: Final = {command.name: command for command in COMMANDS if command.paged}
-_MOST_NAMED = 40  # characters of a name that nobody knows
+_MOST_NAMED = 40  # characters of an unknown name
 
 
 def obey_page(reader: Reader, asked: PagePress | Turn) -> None:
@@ -411,7 +411,7 @@ class LiveView(Output):
         state = self._state
         if state is None:
             return
-        if not state.standing:  # otherwise nobody can do it now
+        if not state.standing:  # otherwise the reader cannot do it now
             for one in asked:
                 state.obey(one)
         state.see(events)

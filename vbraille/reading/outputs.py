@@ -44,7 +44,7 @@ class Echo(StrEnum):
 
 
 _USUAL_LANGUAGE: Final = "en"
-_CELLS: Final = "cells: "  # begins a sentence of braille signs, which nobody can say
+_CELLS: Final = "cells: "  # begins a sentence of braille signs, which no voice can say
 _APART_S: Final = 0.1  # from one cue to the next
 _CUEING: Final = "vbraille.reading.cueing"
 
@@ -215,7 +215,7 @@ def choose_cues(asked: str | None, *, attended: bool) -> CueKind:
     asked
         Value of a `CueKind` that was asked for; None if none was.
     attended
-        Whether somebody is at a terminal. Nobody else hears cues that were not asked for, and at
+        Whether a reader is at a terminal. Without one, only cues that were asked for are heard; at
         the end of a network the terminal's bell is the only sound that comes through.
     """
     if asked is not None:

@@ -1,4 +1,4 @@
-"""A reader: lines under the hand, and all that somebody may ask for while reading."""
+"""A reader: lines under the hand, and all that a person may ask for while reading."""
 
 from __future__ import annotations
 
@@ -236,7 +236,7 @@ class Reader(View):
         self.followed: Mark | None = None  # link or reference that was followed last
         self.skip_blank = False
         self.lines = 0
-        # Whether lines are as wide as somebody says, and not as wide as the hand can go.
+        # Whether lines are as wide as the user says, and not as wide as the hand can go.
         self._fixed = layout.width != self.under.width
         self._book = layout.book  # which is the one that the other process knows
         self._counting = False

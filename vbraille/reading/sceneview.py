@@ -230,7 +230,7 @@ class SceneView(View):
 
     def step(self, ticks: NDArray[np.void]) -> None:
         """Look where the hand is, and whether the file has changed or the hand is done."""
-        if self._device.held:  # keys move the hand from where somebody else has left it
+        if self._device.held:  # keys move the hand from where another person has left it
             self._aim = None
         self.attend(float(ticks["time_ns"][-1]) / _NS_PER_S)
         if self._watch is not None and self._watch.changed():
@@ -331,7 +331,7 @@ class SceneView(View):
         self.say("go to an element: type its title or id, then enter")
 
     def go_to(self, name: str) -> None:
-        """Go to an element by its name, or say the way there to whoever moves the device."""
+        """Go to an element by its name, or say the way there to the person who moves the device."""
         found = self._index.find(name)
         if found is None:
             self.cue(Cue.NOT_FOUND)

@@ -123,7 +123,7 @@ def address() -> tuple[str, str]:
 
 
 def _connected() -> socket.socket:
-    """Open a socket to the server; start the server if nobody answers there."""
+    """Open a socket to the server; start the server if none answers there."""
     try:
         return _connect()
     except OSError as error:

@@ -130,7 +130,7 @@ class View:
     Attributes
     ----------
     does, doing : str
-        Words for what somebody does here, such as "read" and "reading".
+        Words for what the reader does here, such as "read" and "reading".
     context : Context
         Meaning of the keys at the moment.
     prompt : Prompt or None

@@ -28,7 +28,7 @@ def area_of(display: Display, pitch_mm: float) -> Area | None:
 
 
 class CarriageAt(NamedTuple):
-    """Where a carriage is: how far from its left stop and its far one, and how far turned."""
+    """Place of a carriage: how far from its left stop and its far one, and how far turned."""
 
     way_mm: float
     y_mm: float = 0.0

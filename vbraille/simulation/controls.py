@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 MOST_BUTTONS: Final = 8
 LONGEST_S: Final = 3600.0
-SHORT_S: Final = 0.1  # how long a button is held if nobody says till when
+SHORT_S: Final = 0.1  # how long a button is held if its end is not given
 _TIME = r"([0-9]{1,6}(?:\.[0-9]{1,6})?)s"
 _PRESS = re.compile(rf"([0-9]{{1,3}})@{_TIME}(?:-{_TIME})?")
 
@@ -107,7 +107,7 @@ _LINE = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class ControlEvent:
-    """What is done to a button or a knob, and when.
+    """Move of a button or a knob, and its time.
 
     Parameters
     ----------

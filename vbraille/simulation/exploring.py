@@ -1,4 +1,4 @@
-"""How a hand goes over a picture: the paths on which frames and their cost are taken.
+"""Paths of a hand over a picture, on which frames and their cost are taken.
 
 Lévesque 2009, 8.5.2 and fig. 8.30, has two: *wide* goes round the canvas and then inward in a
 spiral of a chosen density; *spot* swings about one place. Its 9.6 adds disturbances: a path that
@@ -31,7 +31,7 @@ _RATIO = (1 + math.sqrt(5)) / 2
 
 @dataclass(frozen=True, slots=True)
 class Disturbance:
-    """What keeps a path from being even: Lévesque 2009, 9.6.
+    """Disturbances that keep a path from being even: Lévesque 2009, 9.6.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """A simulated controller: what a device does with bytes and time, without I/O.
 
 It is the minimal firmware of `docs/wire-protocol.md`. Its timer is hardware: what was
-due between two ticks happened when it was due, even if whoever calls `tick` is late.
+due between two ticks happened when it was due, even if the call of `tick` is late.
 """
 
 from __future__ import annotations

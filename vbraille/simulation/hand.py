@@ -1,4 +1,4 @@
-"""How a finger moves along a line, and from line to line: sweeping, or reading as people do.
+"""Motions of a finger along a line, and from line to line: sweeping, or reading as people do.
 
 A made-up hand says by where it goes that it is done with a line: it touches
 the end once, as the last thing before it returns to the start. Reading again,
@@ -86,7 +86,7 @@ def area_on(height_mm: float, lines: int, pitch_mm: float, start_mm: float, end_
 
 
 class Drift:
-    """How a hand wanders off a line and turns a little, slowly and within bounds.
+    """Drift of a hand off a line and of its angle, slowly and within bounds.
 
     Parameters
     ----------
@@ -255,7 +255,7 @@ class Sweep:
 
 
 class Still:
-    """A hand that stays where it is, until somebody moves it in the live view."""
+    """A hand that stays where it is, until a person moves it in the live view."""
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
         """Motion that stays at the start of a line; see `Hand`."""

@@ -1,6 +1,6 @@
 """The inside of a simulated Latero: what it answers to a datagram, without I/O and without time.
 
-It is as the real one to the author's own client, which numbers nothing: it answers whoever asks,
+It is as the real one to the author's own client, which numbers nothing: it answers every client,
 shows what it is told last, and has no watchdog.
 """
 

@@ -82,7 +82,7 @@ WAIT_S: Final = 1.0
 
 @dataclass(frozen=True, slots=True)
 class LateroFaults:
-    """What the network does to datagrams, and what else comes along.
+    """Faults of the network: what it does to datagrams, and what else comes along.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ class LateroFaults:
     double
         Chance of a datagram, in either direction, to come twice.
     foreign
-        Chance of a datagram of somebody else's to come with an answer.
+        Chance of another sender's datagram to come with an answer.
     late_s
         How late an answer is, in seconds.
     seed
@@ -120,7 +120,7 @@ class LateroFaults:
 
 @dataclass(slots=True)
 class LateroTally:
-    """How often each fault happened.
+    """Counts of each fault.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ class LateroTally:
 
 
 class Network:
-    """What a network does to the datagrams of a Latero, without one.
+    """Effects of a network on the datagrams of a Latero, without one.
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ class Network:
                 answer[:1] + bytes((VERSION + 1,)) + answer[2:],
                 answer[:2] + b"\x01" + answer[3:],
                 answer + b"\xff",
-                # The right form, and a number that nobody has asked by for a long time.
+                # The right form, and a number that no request has had for a long time.
                 pack_answer(Answer(_far(answer), 0, 0x104, 0x100, (9, 9, 9, 9)), FULLR0),
             )
         )
@@ -352,7 +352,7 @@ class LateroSimulator:
             self._say(f"motor power: {'on' if self._was_powered else f'off, blades {rest}'}")
 
     def _mind(self, now_us: int) -> None:
-        """Let the hand go back once nobody asks, and press what is to be pressed."""
+        """Let the hand go back once no client asks, and press what is to be pressed."""
         if self._ever_us is not None:
             since_s = (now_us - self._ever_us) / 1e6
             self._controls.advance(since_s)
@@ -364,7 +364,7 @@ class LateroSimulator:
             self._asked_us = self._first_us = None
             self.carriage.go_back(now_us)
             if not self.board.at_rest:
-                self._say("nobody asks, and blades are not at rest")
+                self._say("no client asks, and blades are not at rest")
 
     def _deliver(self, now_us: int) -> None:
         while self._on_way and self._on_way[0][0] <= now_us:

@@ -154,7 +154,7 @@ class Way:
 
 
 class Course:
-    """Where a hand is that goes from motion to motion, in the time of a clock.
+    """Course of a hand that goes from motion to motion, in the time of a clock.
 
     Parameters
     ----------

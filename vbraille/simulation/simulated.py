@@ -36,7 +36,7 @@ _Channel = TypeVar("_Channel", Steering, Pointer)
 
 NS_PER_S = 1_000_000_000
 HELD_MM_S = 1000.0  # speed at which a hand goes to where it is put
-# Somebody who holds the hand tells its place some 60 times a second: the hand glides from one place
+# A person who holds the hand tells its place some 60 times a second: the hand glides from one place
 # to the next for so long, rather than jump there and stand still.
 GLIDE_S = 0.012
 
@@ -60,7 +60,7 @@ class SimulatedDevice(Device):
         Orders to the hand, one after the other. Without it the hand sets out with the first frame,
         and reads lines as wide as the travel, one after the other.
     pointer
-        Where somebody holds the hand meanwhile, ahead of all orders: these wait until it is let
+        Where a person holds the hand meanwhile, ahead of all orders: these wait until it is let
         go, and what was not done yet is then done again.
     presses
         When its buttons are held, in seconds since the device was opened; `press`, `let_go` and
@@ -91,7 +91,7 @@ class SimulatedDevice(Device):
         self._hand = hand
         self._steering = steering
         self._pointer = pointer
-        self._at: BeAt | None = None  # where somebody holds the hand
+        self._at: BeAt | None = None  # where a person holds the hand
         self._held_ns = 0  # when that was last told
         self._left: Motion | None = None  # what the hand had not done yet when it was taken
         self._order: HandOrder | None = None
@@ -157,7 +157,7 @@ class SimulatedDevice(Device):
 
     @property
     def pointer(self) -> Pointer | None:
-        """Where somebody may hold the hand."""
+        """Channel by which a person may hold the hand."""
         return self._pointer
 
     def obey(self) -> None:
@@ -183,7 +183,7 @@ class SimulatedDevice(Device):
             steering.answer(self._now_ns())
 
     def _is_held(self, at: BeAt | None) -> bool:
-        """Have the hand go where somebody holds it; False if nobody does."""
+        """Have the hand go where a person holds it; False if no person does."""
         if at is self._at:
             return at is not None
         if (at is None) is not (self._at is None):

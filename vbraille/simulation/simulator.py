@@ -149,7 +149,7 @@ class Simulator:
         Lines of the page that the hand reads, on a carriage of two axes; None where it reads lines
         as wide as the travel.
     controls
-        Moves its buttons and knobs, by the time since a host first greeted it; None for nobody.
+        Moves its buttons and knobs, by the time since a host first greeted it; None for none.
     keys
         Function that gives the keys typed since its last call, which move buttons and knobs.
 

@@ -31,7 +31,7 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
     seed
         Seed of a hand that is drawn at random.
     pointed
-        Whether somebody can move the hand in the live view, without which none may be still.
+        Whether a person can move the hand in the live view, without which none may be still.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def has_hand(device: str) -> bool:
 
 
 def is_simulated(device: str) -> bool:
-    """Whether the spec of a device is that of the simulated one, which follows the settings."""
+    """Tell whether a spec is that of the simulated device, which follows the settings."""
     return device.rstrip(":") == "sim"
 
 

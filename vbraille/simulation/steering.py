@@ -34,7 +34,7 @@ class TwoSlots:
     form
         Form of what is told, as `struct.Struct` takes it, without the order of its bytes.
     spare_bytes
-        Bytes that nobody uses, by which the memory differs in size from that of another purpose.
+        Unused bytes, by which the memory differs in size from that of another purpose.
     descriptor
         Descriptor of memory that another `TwoSlots` has made; None makes new memory.
 
@@ -152,7 +152,7 @@ class ReadPage:
 
 @dataclass(frozen=True, slots=True)
 class BeAt:
-    """Order to go straight to a pose and stay there, as if somebody held the hand.
+    """Order to go straight to a pose and stay there, as if a person held the hand.
 
     Parameters
     ----------
@@ -228,7 +228,7 @@ class Steering:
         self._slots = TwoSlots("steers a hand", f"q{_MOST_NUMBERS}d", descriptor)
         self.descriptor = self._slots.descriptor
         self._words = self._slots.words
-        # Orders that were given before this is opened are not for whoever takes orders from now on.
+        # Orders that were given before this is opened are not for the hand that obeys from now on.
         self._taken = self._words[_GIVEN]
 
     def give(self, order: HandOrder) -> None:
@@ -271,7 +271,7 @@ _LOOKS: Final = 64
 
 
 class Pointer:
-    """Both ends of the channel by which somebody holds a simulated hand.
+    """Both ends of the channel by which a person holds a simulated hand.
 
     Parameters
     ----------
@@ -321,7 +321,7 @@ class Pointer:
 
     @property
     def held(self) -> bool:
-        """Tell whether somebody holds the hand."""
+        """Tell whether a person holds the hand."""
         return self.at() is not None
 
     def _write(self, at: BeAt | None) -> None:
@@ -339,7 +339,7 @@ class Pointer:
 
 
 def _lives(process: int) -> bool:
-    """Tell whether a process has not ended; one that nobody has waited for yet has."""
+    """Tell whether a process has not ended; one that its parent has not waited for yet has."""
     try:
         descriptor = os.pidfd_open(process)
     except OSError:

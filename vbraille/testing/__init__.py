@@ -1,4 +1,4 @@
-"""What the tests of a driver or of a program on vbraille need: checks, devices, hands, a clock.
+"""Tools for tests of a driver or of a program on vbraille: checks, devices, hands, a clock.
 
 `CHECKS` is what every device must do. `simulated_device` is one in memory, `simulated_controller`
 one that speaks the wire protocol at a port, and `parse_hand` gives what moves either.

@@ -1,4 +1,4 @@
-"""What every device must do, as checks that any driver's tests can run.
+"""Checks of what every device must do, which any driver's tests can run.
 
     from vbraille.testing import CHECKS
 
@@ -160,7 +160,7 @@ def _frame(device: Device, share: float) -> NDArray[np.float64]:
 
 
 def _turning_place(device: Device) -> float | None:
-    """Where the carriage turned twice, and never was left of it; None if it did not."""
+    """Place where the carriage turned twice, and never was left of it; None if it did not."""
     least_mm, turns, away = math.inf, 0, False
     until_s = time.monotonic() + _LOOKING_S
     for _ in range(_LOOKS):

@@ -48,7 +48,7 @@ def simulated_device(
     clock
         Clock of the device; None for the machine's.
     pointer
-        Where somebody may hold the hand; None if nobody can.
+        Where a person may hold the hand; None if no person can.
 
     Raises
     ------

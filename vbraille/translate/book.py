@@ -1,4 +1,4 @@
-"""A source in braille, translated only as far as somebody reads."""
+"""A source in braille, translated only as far as it is read."""
 
 from __future__ import annotations
 

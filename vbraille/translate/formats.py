@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class FormatOptions(NamedTuple):
-    """What a user says of how a file is read; see `open_source`."""
+    """Options of a user on how a file is read; see `open_source`."""
 
     encoding: str | None = None
     keep_lines: bool = False
@@ -463,7 +463,7 @@ def _open(
 
 
 def _is_empty(stream: BinaryIO) -> bool:
-    """Whether a stream has no end but its beginning, as that of an empty file or of a device."""
+    """Tell whether a stream ends where it begins, as that of an empty file or of a device."""
     return not stream.seek(0, io.SEEK_END)
 
 

@@ -1,4 +1,4 @@
-"""Which braille table a language takes: what its readers use today.
+"""Braille tables of languages: those that their readers use today.
 
 liblouis's own order of preference does not know that: asked for French it gives eight-dot computer
 braille. The rule here is six dots before eight, literary braille before computer braille, the

@@ -70,7 +70,7 @@ def small_number(text: str, kind: MarkKind) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Indicator:
-    """What a table sets before and after a superscript or subscript.
+    """Cells that a table sets before and after a superscript or subscript.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ class _Indicator:
 
 
 class Superscripts:
-    """How a table writes superscripts and subscripts.
+    """Superscripts and subscripts as a table writes them.
 
     A table with classes of emphasis for these is given those. Otherwise, a table that has signs of
     its own for ² and ³ says by them which indicator it has; what it says nothing of is written as
@@ -183,7 +183,7 @@ class Superscripts:
         return Text(done, places_now, text.end, frozenset(done.tolist())), tuple(told)
 
     def _written(self, part: str, kind: MarkKind, following: str) -> tuple[str, str, str]:
-        """What stands before a part above or below the line, the part, and what stands after it."""
+        """Sign before a part above or below the line, the part, and the sign after it."""
         indicator, own = self._indicators.get(kind), self._own[kind]
         if indicator is None or not _is_number(part):
             if len(part) == 1 and part in own:
@@ -214,7 +214,7 @@ class Superscripts:
 
     @cached_property
     def _indicators(self) -> dict[MarkKind, _Indicator]:
-        """What the table's own signs for 2 and 3 above and below the line say of the others."""
+        """Indicators that the table's own signs for 2 and 3 above and below the line tell."""
         found = {}
         for kind, own in self._own.items():
             indicators = {self._indicator(own, digit) for digit in "23"}

@@ -453,7 +453,7 @@ class BrailleTable:
         return masks, inputs
 
     def _writes(self, code: int) -> bool:
-        """Whether the table has dots of its own for a character, and only dots that it may use."""
+        """Tell whether the table has dots of its own for a character, and only ones it may use."""
         if code in (0, SPACE):
             return code == SPACE
         try:

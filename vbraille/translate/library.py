@@ -85,7 +85,7 @@ class _Caller(Thread):
         self.begun_s = 0.0
 
     def run(self) -> None:
-        # Stopped, it must not be woken by a signal that is for somebody else.
+        # Stopped, it must not be woken by a signal that is for another thread.
         signal.pthread_sigmask(signal.SIG_SETMASK, signal.valid_signals() - {_STOP})
         while True:
             job = self._jobs.get()
@@ -181,7 +181,7 @@ def call(work: Callable[[], _Value], limit_s: float = 60.0) -> _Value:
     Parameters
     ----------
     work
-        Function that calls liblouis. What it changes nobody else may.
+        Function that calls liblouis. No other thread may change what it changes.
     limit_s
         Longest processor time, in seconds.
 

@@ -36,7 +36,7 @@ class OutlineHeading:
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """What a source says of its structure.
+    """Structure of a source, as it says.
 
     Parameters
     ----------

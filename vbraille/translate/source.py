@@ -1,4 +1,4 @@
-"""What a reader reads, whatever file it comes from: numbered blocks of text or of ready cells."""
+"""Text of a book, whatever file it comes from: numbered blocks of text or of ready cells."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ _LEVELLED = (BlockKind.HEADING, BlockKind.ITEM, BlockKind.QUOTE)
 
 
 class MarkKind(Enum):
-    """What is so about a part of a block's text."""
+    """Kind of a mark on a part of a block's text."""
 
     ITALIC = "italic"
     BOLD = "bold"
@@ -216,7 +216,7 @@ class Block:
 
 
 class Index(msgspec.Struct, frozen=True):
-    """What a source knows of where its blocks are, so that a later opening need not find it again.
+    """Places of a source's blocks, so that a later opening need not find them again.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ class Index(msgspec.Struct, frozen=True):
 
 
 class Source(Protocol):
-    """A text as blocks, read only as far as somebody asks.
+    """A text as blocks, read only as far as its blocks are asked for.
 
     Its characters are counted from 0; a block knows which of them it stands for.
     """
@@ -316,7 +316,7 @@ class Source(Protocol):
 
 
 def share_before(source: Source, character: int) -> float:
-    """How much of a source stands before a character, 0 to 1: the measure of all places in a book.
+    """Share of a source before a character, 0 to 1: the measure of all places in a book.
 
     It is counted in characters of the text, which are the same in whatever form the book is; about,
     by the size of what was read, as long as the source is not complete.

@@ -41,7 +41,7 @@ _EMOJI = ((0x231A, 0x23FF), (0x2600, 0x27BF), (0x2B00, 0x2BFF), (0x1F000, 0x1FAF
 
 
 class Undefined(StrEnum):
-    """What is written for a character that the table does not know."""
+    """Replacement of a character that the table does not know."""
 
     MARK = "mark"
     """The same short marker, such as ``[?]``, for each run of them; but an emoji's name."""
@@ -109,7 +109,7 @@ _TRIED = 100  # characters that are translated to learn of one, at most about
 
 
 class Substitutes:
-    """What is known so far of the characters of a table; each is looked at once.
+    """Characters of a table, as far as they are known; each is looked at once.
 
     Parameters
     ----------

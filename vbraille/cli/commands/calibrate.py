@@ -220,7 +220,7 @@ class _Guided:
         self._swinging = ActuatorSwings(device, RealClock(), self._begun)
 
     def run(self) -> None:
-        """Lead through the actuators until all were tried, or somebody leaves."""
+        """Lead through the actuators until all were tried, or the user leaves."""
         say_line(f"device: {name_of(self._device)}")
         say_line("h says the keys")
         found = self._round.found

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from vbraille.reading.liveview import LiveView
 
 _MODEL = "stress2-8x8"
-# A picture may grow while somebody works on it.
+# A picture may grow while its author works on it.
 _SPARE, _LEAST_ROOM = 3, 1 << 21
 
 

@@ -253,7 +253,7 @@ def _ask_who(room: Path, participant: str, answers: Responses) -> None:
     Raises
     ------
     InputError
-        If the participant is one of those, or nobody is there who could be asked.
+        If the participant is one of those, or no experimenter is there to be asked.
     """
     found = nearly_same(room, participant)
     if found is None:
@@ -261,7 +261,7 @@ def _ask_who(room: Path, participant: str, answers: Responses) -> None:
     near, session = found
     told = f"{participant} is new here, and {near} has the session {session}"
     if isinstance(answers, Typed) and sys.stdin.isatty():
-        _say(f"participant: {told}; is {participant} somebody else? (yes or no):")
+        _say(f"participant: {told}; is {participant} another person? (yes or no):")
         while (line := answers.line()) is not None:
             if line.strip().lower() in ("y", "yes"):
                 return
@@ -270,7 +270,7 @@ def _ask_who(room: Path, participant: str, answers: Responses) -> None:
             _say("type yes or no:")
         raise InputError(f"nothing was begun; give --participant {near}")
     raise InputError(
-        f"{told}; give --participant {near}, or --another if {participant} is somebody else"
+        f"{told}; give --participant {near}, or --another if {participant} is another person"
     )
 
 
@@ -288,12 +288,12 @@ def _ask(field: ParticipantField, typed: Typed) -> str:
         _say(f"{field.ask}{choices}:")
         line = typed.line()
         if line is None:
-            raise InputError(f"nobody said {field.name}; give --field {field.name}=…")
+            raise InputError(f"{field.name} was not answered; give --field {field.name}=…")
         text = line.strip()
         if not field.choices or text in field.choices:
             return text
 
 
 def _say(sentence: str) -> None:
-    with suppress(BrokenPipeError):  # a session does not end because nobody listens
+    with suppress(BrokenPipeError):  # a session does not end because its output is closed
         say_line(spelled(sentence))

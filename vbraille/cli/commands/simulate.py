@@ -50,7 +50,7 @@ SERIAL_ONLY: Final[dict[str, object]] = {
 }
 # Above the engine's 40: a real controller has a processor of its own.
 PRIORITY = 41
-# Way of a carriage of two axes across the lines, which nobody gives.
+# Way of a carriage of two axes across the lines, for which there is no option.
 HEIGHT_MM = 200.0
 KEYS = "1 to 8 press a button, a to d turn a knob up, A to D turn it down"
 

@@ -82,7 +82,7 @@ def session_run(parser: CommandParser) -> None:
     parser.option("--rate", "HZ", "Send so many frames a second.", number, default=1000.0)
     parser.flag(
         "--another",
-        "Say that the participant is somebody else than the one of another session here whose "
+        "Say that the participant is not the person of another session here whose "
         "pseudonym is nearly the same.",
     )
     parser.add_argument(

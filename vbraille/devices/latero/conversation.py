@@ -170,7 +170,7 @@ def not_before(sequence: int, other: int) -> bool:
 
 
 class Fate(Enum):
-    """What an answer turned out to be."""
+    """Judgement of an answer by its number."""
 
     NEW = "new"
     LATE = "late"  # it tells an old place, and is dropped
@@ -179,7 +179,7 @@ class Fate(Enum):
 
 
 class RequestNumbering:
-    """Requests that were sent, by their numbers; nobody waits for what is lost.
+    """Requests that were sent, by their numbers; lost ones are not waited for.
 
     Parameters
     ----------
@@ -232,7 +232,7 @@ class RequestNumbering:
         return sequence
 
     def sent_ns(self, sequence: int) -> int:
-        """When a request went out whose answer is new."""
+        """Time at which a request went out whose answer is new."""
         return self._sent_ns[sequence % KEPT]
 
     def judge(self, sequence: int, now_ns: int, late_ns: int = LATE_NS) -> Fate:
@@ -386,7 +386,7 @@ OTHER_VERSION: Final = (
 
 
 class LateroStage(Enum):
-    """Where the talk is."""
+    """Stage of the talk with a Latero."""
 
     ASKING = auto()  # nothing has answered yet
     PROBING = auto()  # it has, and is asked for the register of its motor power
@@ -484,7 +484,7 @@ class LateroConversation:
         self._heard = self._heard_before = False
         self._offer: bytearray | None = None
         self._raw: bytearray | None = None
-        # Power is switched on only by whoever switched it off: at the start, and after a rest.
+        # Power is switched on only where we switched it off: at the start, and after a rest.
         self._may_power = True
         self._told_power = self._told_version = False
         self._versions = 0  # datagrams of another version when the Latero fell silent
@@ -556,7 +556,7 @@ class LateroConversation:
             self._go(LateroStage.RAMPING)
 
     def _do_without_power(self) -> None:
-        """Note that nobody knows the register that switches motor power."""
+        """Note that the register that switches motor power is unknown."""
         self.power = None
         self._tell(Notice(POWER, NO_SWITCH))
 
@@ -575,7 +575,7 @@ class LateroConversation:
     def _mind_power(self, answer: Answer) -> None:
         off = unpowered(answer)
         if self.stage is LateroStage.LIVE and off:
-            self._may_power = False  # somebody else has switched it off
+            self._may_power = False  # it was switched off elsewhere
             self._stop()
         elif self.stage is LateroStage.POWERING and not off:
             self._told_power = False
@@ -639,7 +639,7 @@ class LateroConversation:
             self._tell(Notice(VERSION, OTHER_VERSION))
 
     def _let_go(self) -> None:
-        """Take the buttons for let go: nobody holds those of a device that is not there."""
+        """Take the buttons for let go: no hand holds those of a device that is not there."""
         for n, button in enumerate(self._buttons, start=1):
             if button.let_go():
                 self._tell(Button(n, pressed=False, at_ns=self._now_ns))
@@ -732,7 +732,7 @@ class LateroConversation:
         """Mind what time brings: silence, the ramp, and what must be asked again."""
         self._now_ns = now_ns
         if now_ns - self._tended_ns >= STALL_NS:
-            self._heard_ns = self._begun_ns = now_ns  # nobody has asked meanwhile
+            self._heard_ns = self._begun_ns = now_ns  # no request went out meanwhile
         self._tended_ns = now_ns
         stage = self.stage
         if stage is LateroStage.PROBING and now_ns - self._begun_ns > PROBE_NS:

@@ -62,7 +62,7 @@ class LateroAddress:
     power
         Register of the controller by which motor power is switched; None if it never is.
     trusted
-        Whether somebody said so; otherwise the Latero is asked first.
+        Whether the user said so; otherwise the Latero is asked first.
     """
 
     host: str
@@ -202,7 +202,7 @@ class WatchdogProcess:
                 self._process.kill()
                 self.close()
                 raise DeviceError(
-                    "the Latero's watchdog does not begin to watch, and without it nobody may "
+                    "the Latero's watchdog does not begin to watch, and without it no person may "
                     "read on a Latero; try again"
                 )
 
@@ -329,12 +329,12 @@ class LateroDevice(Device):
         Raises
         ------
         DeviceError
-            If the watchdog has ended, without which nobody may read on a Latero.
+            If the watchdog has ended, without which no person may read on a Latero.
         """
         now_ns = self._now_ns()
         if not self.watchdog.alive:
             raise DeviceError(
-                f"the watchdog of the {NAME} has ended, and without it nobody may read on it; the "
+                f"the watchdog of the {NAME} has ended, and without it no person may read; the "
                 f"blades go to rest, so begin again"
             )
         self._step(now_ns)
@@ -378,7 +378,7 @@ class LateroDevice(Device):
         for _ in range(_MOST_ANSWERS):
             try:
                 size = self._line.recv_into(self._room)
-            except OSError:  # nothing has come, or nobody is there
+            except OSError:  # nothing has come, or no Latero is there
                 return
             self.conversation.hear(self._view[:size], now_ns)
             if self.conversation.numbering.caught_up:  # what may be left is doubled or late
@@ -574,7 +574,7 @@ def _keep_others_away(
 
 
 def _connect(place: LateroAddress, found: tuple[str, int]) -> socket.socket:
-    """Socket that hears nobody but the Latero."""
+    """Socket that hears only the Latero."""
     line = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         line.connect(found)

@@ -71,7 +71,7 @@ def ramped(level, passed_ns):
 
 
 class BladeWatchdog:
-    """What the watchdog does, one step after the other; `watch` does nothing else.
+    """Steps of the watchdog, one after the other; `watch` does nothing else.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def watch(board, lifeline, socket):
         try:  # noqa: SIM105 - contextlib takes time to load
             os.write(socket, datagram)
         except OSError:
-            pass  # nobody hears: the next one may be
+            pass  # no Latero hears it: it may hear the next
 
     def receive():
         try:

@@ -44,7 +44,7 @@ SEQUENCE_AT: Final = 3
 
 
 class Foreign(Enum):
-    """What a datagram is that is no answer of a Latero of this version."""
+    """Kind of a datagram that is no answer of a Latero of this version."""
 
     OTHER = "no Latero's"
     VERSION = "of another version of the protocol"

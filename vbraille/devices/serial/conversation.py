@@ -104,7 +104,7 @@ _US_PER_S: Final = 1_000_000
 
 
 class Stage(Enum):
-    """Where a conversation is; the value says it to those who read the protocol's page."""
+    """Stage of a conversation; the value says it to those who read the protocol's page."""
 
     GREETING = "HELLO is due, and has not gone out yet"
     ASKED = "HELLO went out, and INFO is waited for"
@@ -121,7 +121,7 @@ class Stage(Enum):
 
 
 class Cause(Enum):
-    """What may lead from one stage to another."""
+    """Cause that may lead from one stage to another."""
 
     ASKED = "HELLO has gone out"
     ANSWERED = "INFO came of a device that can be read on"
@@ -314,7 +314,7 @@ class Delivery:
         return Cause.RESTED if rested_us >= self._ramp_us else Cause.RAMPS
 
     def _has_taken(self, sequence: int) -> bool:
-        """Whether the FRAME that holds the device is one of rest, sent since it went to rest."""
+        """Tell whether the FRAME that holds the device is of rest, sent since it went to rest."""
         if self._offered is None:
             return False
         return (sequence - self._offered) & _U16 <= (self._sent - self._offered) & _U16
@@ -456,7 +456,7 @@ class Conversation:
     heard, speaks : bool
         Whether any bytes have come since the start, and any message from a device.
     drop_unsent : bool
-        Whether bytes that wait to be sent must be dropped now; whoever drops them sets it to False.
+        Whether bytes that wait to be sent must be dropped now; the port then sets it to False.
     no_room : bool
         Whether there was no room for the last FRAME.
     taking : bool
@@ -623,7 +623,7 @@ class Conversation:
             self._paused = now_ns, "line"
 
     def _let_go(self, now_ns: int) -> None:
-        """Take the buttons for let go: nobody holds those of a device that is not there."""
+        """Take the buttons for let go: no hand holds those of a device that is not there."""
         for event in self.controls.let_go(now_ns):
             self._tell(event, now_ns)
 

@@ -179,7 +179,7 @@ def _others(was: bytes, now: bytes) -> int:
 
 
 class CountedPlace(NamedTuple):
-    """What the encoders of a carriage say of the array: its centre, in mm, and its angle."""
+    """Place of the array by the encoders of a carriage: its centre, in mm, and its angle."""
 
     x_mm: float
     y_mm: float = 0.0
@@ -231,7 +231,7 @@ class CountedAxis:
 
 
 class CountedTurn:
-    """How far an array is turned, by counts that begin anew with each turn.
+    """Angle of an array, by counts that begin anew with each turn.
 
     Parameters
     ----------
@@ -307,7 +307,7 @@ class CarriagePlace:
 
     @property
     def needs_mark(self) -> bool:
-        """Whether a STATE may say that the place is lost until the carriage passes the mark."""
+        """Tell whether a STATE may say that the place is lost until the mark is passed."""
         return self._encoder is Encoder.INDEX
 
     def take(self, state: State) -> CountedPlace | None:
@@ -412,7 +412,7 @@ class ButtonsAndKnobs:
         yield from self._turn(state.knobs)
 
     def let_go(self, now_ns: int) -> Iterator[Button]:
-        """Tell the buttons that were pressed: nobody holds those of a device that is not there."""
+        """Tell the buttons that were pressed: no hand holds those of an absent device."""
         if self.buttons:
             yield from self._press(0, now_ns)
         self.buttons = None

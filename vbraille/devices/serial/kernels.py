@@ -550,7 +550,7 @@ def sent(now_ns, talk, actuators):
 
 
 class Actuators(NamedTuple):
-    """How FRAMEs are made, and the last of them.
+    """State from which FRAMEs are made, and the last of them.
 
     Parameters
     ----------

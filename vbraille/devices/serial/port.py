@@ -69,8 +69,8 @@ class Address:
     def limits(self) -> bool:
         """Tell whether the baud rate says how much the line carries.
 
-        On a UART it does. With USB CDC, sockets and pseudo-terminals it has no meaning unless
-        somebody gives one.
+        On a UART it does. With USB CDC, sockets and pseudo-terminals it has no meaning unless the
+        user gives one.
         """
         if self.baud is not None:
             return True
@@ -80,7 +80,7 @@ class Address:
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """What identifies a device on USB, wherever it is plugged in.
+    """Identity of a device on USB, wherever it is plugged in.
 
     Parameters
     ----------
@@ -440,7 +440,7 @@ class SerialPort:
             self._line.drop_unsent()
 
     def close(self, pause: Callable[[float], None] = time.sleep) -> None:
-        """Close the port once all is out, or time is up; nobody looks for it after that."""
+        """Close the port once all is out, or time is up; the search for it ends, too."""
         if self._finder is not None:
             self._finder.stop()
             return

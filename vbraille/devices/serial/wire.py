@@ -35,7 +35,7 @@ class WrongLengthError(ValueError):
 
 
 class Field(Protocol):
-    """How one field of a message goes over the wire."""
+    """Form of one field of a message on the wire."""
 
     def check(self, name: str, value: Any, message: Any) -> None:
         """Raise ValueError if the value is out of range, WrongLengthError if its length is."""
@@ -301,14 +301,14 @@ KNOB_STEP: Final = 3
 
 
 class RestSide(IntEnum):
-    """Where an actuator at deflection 0 stands."""
+    """Side at which an actuator at deflection 0 stands."""
 
     LEFT = 0
     RIGHT = 1
 
 
 class Encoder(IntEnum):
-    """What an encoder knows of its place when it is switched on."""
+    """Knowledge that an encoder has of its place when it is switched on."""
 
     ABSOLUTE = 0  # all
     INDEX = 1  # nothing until it has passed its index mark
@@ -316,28 +316,28 @@ class Encoder(IntEnum):
 
 
 class CountSign(IntEnum):
-    """Which way counts grow."""
+    """Direction in which counts grow."""
 
     RIGHTWARD = 1
     LEFTWARD = -1
 
 
 class TurnSign(IntEnum):
-    """Which way the array turns when its counts grow, as the reader sees it."""
+    """Direction in which the array turns when its counts grow, as the reader sees it."""
 
     ANTICLOCKWISE = 1
     CLOCKWISE = -1
 
 
 class YCountSign(IntEnum):
-    """Which way the carriage goes when the counts of y grow: towards the reader, or away."""
+    """Direction of the carriage when the counts of y grow: towards the reader, or away."""
 
     TOWARDS = 1
     AWAY = -1
 
 
 class ErrorCode(IntEnum):
-    """What a device may complain of; it rests, but with a code from `NOTICES` on it goes on."""
+    """Complaints of a device; it rests, but with a code from `NOTICES` on it goes on."""
 
     ENCODER = 1
     ACTUATORS = 2
@@ -658,7 +658,7 @@ class Decoder:
     def take_begun(self) -> bytes | None:
         """Part of a frame that has come, which is forgotten; None while a frame is skipped.
 
-        Whoever takes it feeds it again, or feeds what has become of it.
+        The caller feeds it again, or feeds what has become of it.
         """
         if self._skipping:
             return None

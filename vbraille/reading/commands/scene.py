@@ -1,4 +1,4 @@
-"""The commands of whoever feels a picture: one table of what keys do, for help and documents."""
+"""Commands for feeling a picture: one table of what keys do, for help and documents."""
 
 from __future__ import annotations
 

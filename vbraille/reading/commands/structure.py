@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 HEADING, LIST, TABLE = (kind.value for kind in (BlockKind.HEADING, BlockKind.ITEM, BlockKind.ROW))
 _NAMES = {LIST: "list", TABLE: "table", EACH_ITEM: "item", IMAGE: "figure"}
 _TOGETHER = (LIST, TABLE, BlockKind.QUOTE.value)  # which are gone to as a whole
-_NEAR_LINES = 500  # that are laid out while somebody waits; farther ones are looked for meanwhile
+_NEAR_LINES = 500  # that are laid out while the reader waits; farther ones are looked for meanwhile
 _PAGE_OR_SHARE = re.compile(r"(\d{1,3})(?:[.,](\d))? ?%")
 
 

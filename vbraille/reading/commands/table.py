@@ -70,7 +70,7 @@ EACH_ITEM, LINK, IMAGE = "each item", "link", "image"
 _LEVELS = 6
 # A command that pages of the live view may call, too. Not what asks for a text, which is typed
 # where the reader is; what is kept for another time, and the end of reading, which are the
-# reader's; and what only somebody beside the device can know, such as that its carriage is at rest.
+# reader's; and what only a person beside the device can know, such as that its carriage is at rest.
 shared = partial(Command, paged=True)
 
 
@@ -105,7 +105,7 @@ def bound_for(settings: Settings, keys: str | None = None) -> Bound:
 
 
 def bound_by(bindings: Bindings, keys: str = "usual") -> Bound:
-    """Give the commands somebody's keys and buttons.
+    """Give the commands the keys and buttons of a user.
 
     Parameters
     ----------

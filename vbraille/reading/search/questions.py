@@ -230,7 +230,7 @@ class Cancel(msgspec.Struct, frozen=True, tag="cancel"):
 
 
 class Told(msgspec.Struct, frozen=True):
-    """An answer, with the number of its question; 0 for what nobody asked."""
+    """An answer, with the number of its question; 0 for an answer without one."""
 
     number: int
     answer: Answer

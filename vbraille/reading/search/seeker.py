@@ -72,7 +72,7 @@ def steps(source: Source, query: Place, *, near: bool = False) -> Iterator[Hit |
     Parameters
     ----------
     near
-        Whether the steps are to be small, since somebody waits for them and will not take many.
+        Whether the steps are to be small, since the caller waits for them and will not take many.
 
     Yields
     ------
@@ -171,7 +171,7 @@ class Answering:
     def answer(self, query: Query) -> Iterator[Answer]:
         """Answer a question: `Searched` any number of times, then something else, once.
 
-        The work goes on only while somebody takes the answers.
+        The work goes on only while the caller takes the answers.
 
         Raises
         ------
@@ -330,7 +330,7 @@ class Seeker:
             if not isinstance(answer, Searched):
                 del self._asked[asked[0]]
             elif asked[0]:
-                return  # how far a count is, nobody waits for
+                return  # no reader waits for the progress of a count
         self._answers.append(answer)
 
     def _fail(self, sentence: str) -> None:
@@ -481,7 +481,7 @@ def look_everywhere(source: Source, query: Query) -> Hit | None:
 
 PROGRESS_S = 0.5
 _NICE = 10  # the loop of the display and the reader's keys come first
-_LOOK_S = 0.02  # how often it is looked whether somebody asks; a step of work takes about as long
+_LOOK_S = 0.02  # between two looks for questions; a step of work takes about as long
 
 
 class BookSearch:
@@ -568,7 +568,7 @@ class BookSearch:
             if not isinstance(answer, Searched):
                 self._works[urgency] = None
                 if isinstance(answer, Failed) and not number:
-                    return  # nobody asked; who reads that part is told
+                    return  # no reader asked; a reader of that part is told
                 if answer is not None:
                     self._tell(number, answer)
             elif number and self._now() - self._told_s >= PROGRESS_S:

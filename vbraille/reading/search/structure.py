@@ -56,7 +56,7 @@ def find_kind(source: Source, query: FindKind) -> Iterator[int | float]:
         place of what was found, if anything.
     """
     if isinstance(source, Document) and query.kind in _NOT_PLAIN:
-        return  # nobody waits for the end of a long text that has none
+        return  # a reader does not wait for the end of a long text that has none
     if query.kind in _TOGETHER:
         yield from _find_group(source, query)
         return

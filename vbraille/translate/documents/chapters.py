@@ -59,7 +59,7 @@ class Passage:
 
 
 class _Start(NamedTuple):
-    """Where a piece begins.
+    """Start of a piece.
 
     Parameters
     ----------
@@ -324,7 +324,7 @@ def _blocks(passage: Passage, character: int, groups: int) -> Iterable[Block]:
 
 
 def _cut(text: str, start: int) -> int:
-    """Where a piece of a text ends that begins at an index: after a blank, if it has one."""
+    """End of the piece of a text that begins at an index: after a blank, if it has one."""
     full = start + LONGEST_BLOCK
     if full >= len(text):
         return len(text)

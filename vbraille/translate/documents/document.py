@@ -1,6 +1,6 @@
 """A file of plain text as blocks, each knowing its place in the file.
 
-The file is read a chunk at a time and only as far as somebody asks; a block
+The file is read a chunk at a time and only as far as a caller asks; a block
 already passed is found again by seeking, so that a book need not fit in memory.
 """
 
@@ -148,7 +148,7 @@ _LOOK_AHEAD = max(_WORD, LONGEST_MARKER) + 1
 
 @dataclass(frozen=True, slots=True)
 class Split:
-    """What `split_paragraphs` made of a stretch of characters.
+    """Blocks that `split_paragraphs` made of a stretch of characters.
 
     Parameters
     ----------
@@ -340,7 +340,7 @@ def _joins_words(
     gaps: NDArray[np.intp],
     newlines: NDArray[np.intp],
 ) -> NDArray[np.bool_]:
-    """Whether a line break stands within a word, after a hyphen, so that no space belongs there.
+    """Tell whether a line break stands within a word, after a hyphen: no space belongs there.
 
     This holds after every soft hyphen. It holds after a hyphen between letters, unless the
     hyphen stands for the rest of a word ("pre- and post-war").

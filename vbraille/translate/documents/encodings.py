@@ -121,7 +121,7 @@ def kinds_of(codes: NDArray[np.uint32]) -> NDArray[np.uint8]:
 
 
 class Words:
-    """Where characters that are text stand together in a stretch, and what is between them.
+    """Words of a stretch: where characters of text stand together, and what is between them.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ _UNLIKELY = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Encoding:
-    """How the bytes of a file are read.
+    """Encoding by which the bytes of a file are read.
 
     Parameters
     ----------

@@ -183,7 +183,7 @@ class Archive:
         elif _ADOBE in self:
             lock, program = "Adobe ADEPT", "such as Adobe Digital Editions"
         else:
-            lock, program = "a lock that it does not name", "of whoever sold it"
+            lock, program = "a lock that it does not name", "of its seller"
         raise InputError(
             f"{self.name} is locked by {lock}, so that only a program {program} can read it; ask "
             f"the seller or your library for a copy without a lock"

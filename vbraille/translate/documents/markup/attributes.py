@@ -1,4 +1,4 @@
-"""What the attributes of an element say, whatever markup it is of."""
+"""Attributes of an element, and their meaning, whatever markup it is of."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def named(tag: str) -> str:
 
 
 def known(attributes: Iterable[tuple[Any, Any]]) -> dict[str, str]:
-    """Attributes that somebody asks for, with the usual prefixes of XML and EPUB."""
+    """Attributes that a caller asks for, with the usual prefixes of XML and EPUB."""
     found: dict[str, str] = {}
     for name, value in attributes:
         if name[:1] == "{":

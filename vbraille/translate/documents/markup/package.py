@@ -47,7 +47,7 @@ class BookPart:
 
 @dataclass(frozen=True, slots=True)
 class Package:
-    """What an EPUB says of itself.
+    """Facts that an EPUB says of itself.
 
     Parameters
     ----------
@@ -219,8 +219,8 @@ def anchor_of(member: str, address: str) -> str:
 
     >>> anchor_of("OEBPS/a.xhtml", "b%20c.xhtml#d"), anchor_of("OEBPS/a.xhtml", "#e")
     ('#OEBPS/b c.xhtml#d', '#OEBPS/a.xhtml#e')
-    >>> anchor_of("OEBPS/a.xhtml", "mailto:somebody@example.org")
-    'mailto:somebody@example.org'
+    >>> anchor_of("OEBPS/a.xhtml", "mailto:reader@example.org")
+    'mailto:reader@example.org'
     """
     scheme, colon, _ = address.partition(":")
     if (colon and scheme.isalnum()) or address.startswith("//"):

@@ -134,7 +134,7 @@ _ROMANS = (
 
 @dataclass(slots=True)
 class ListNumbers:
-    """How the items of a list that is being read are numbered.
+    """Numbers of the items of a list that is being read.
 
     Parameters
     ----------

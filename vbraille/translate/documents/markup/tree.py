@@ -185,7 +185,7 @@ def without_entities(text: str, name: str) -> str:
 
 
 def _doctype(text: str) -> tuple[int, int]:
-    """Where the document type begins and ends, after which there is the first element."""
+    """Start and end of the document type, after which there is the first element."""
     found = _BEFORE_ROOT.match(text)
     at = found.end() if found else 0
     if text[at : at + 9].upper() != "<!DOCTYPE":

@@ -68,7 +68,7 @@ class Role:
 
 
 class Writing:
-    """What a reader of markup writes: passages, one after the other.
+    """Passages that a reader of markup writes, one after the other.
 
     Parameters
     ----------

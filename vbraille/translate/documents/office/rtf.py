@@ -78,7 +78,7 @@ _NO_LANGUAGES = frozenset((0, 1024, 4096))
 
 @dataclass(frozen=True, slots=True)
 class _Group:
-    r"""What holds for the text of a group.
+    r"""Properties that hold for the text of a group.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ class _Group:
 
 @dataclass(slots=True)
 class _Told:
-    """What a paragraph says of itself, or has from the one before."""
+    """Properties that a paragraph states, or has from the one before."""
 
     s: int = 0  # style
     outlinelevel: int = 9
@@ -122,7 +122,7 @@ class _Row:
 
 @dataclass(slots=True)
 class _Place:
-    """Where the text goes: a body or a note, and the paragraph and the table that are read."""
+    """Target of the text: a body or a note, and the paragraph and the table that are read."""
 
     flow: BlockFlow
     told: _Told = field(default_factory=_Told)
