@@ -1,8 +1,9 @@
-"""The docstrings of the package: what each begins with, and how wide its lines are."""
+"""Docstrings and comments of the package: first words, subjects, and width of lines."""
 
 import ast
 import inspect
 import re
+import tokenize
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
@@ -12,6 +13,8 @@ import vbraille
 PACKAGE = Path(vbraille.__file__).parent
 WIDEST = 100  # columns
 FRAGMENT = re.compile(r"(?:Of|Its|None of) ")  # a beginning that needs the name before it
+QUESTION = re.compile(r"(?:What|Whether|Who|How|Of|Which|Where|When)\b")  # no verb and no thing
+NO_ONE = re.compile(r"\b(?:nobody|somebody|whoever)\b", re.IGNORECASE)
 SECTIONS = frozenset(("Parameters", "Attributes", "Returns", "Yields", "Raises"))
 
 
@@ -39,6 +42,17 @@ def beginnings(text: str) -> Iterator[str]:
             yield line.strip()
 
 
+def english(path: Path) -> Iterator[tuple[int, str]]:
+    """Line number and text of each docstring and comment of a file."""
+    with tokenize.open(path) as file:
+        source = file.read()
+    for _, text in docstrings(ast.parse(source)):
+        yield text.lineno, str(text.value)
+    for token in tokenize.generate_tokens(iter(source.splitlines(keepends=True)).__next__):
+        if token.type == tokenize.COMMENT:
+            yield token.start[0], token.string
+
+
 def test_docstrings_stand_alone_and_fit_the_page():
     faults = []
     for path in sorted(PACKAGE.rglob("*.py")):
@@ -57,6 +71,36 @@ def test_docstrings_stand_alone_and_fit_the_page():
                 if len(line) > WIDEST
             ]
     assert not faults, "\n".join(faults)
+
+
+def test_docstrings_open_with_a_verb_or_a_thing():
+    faults = []
+    for path in sorted(PACKAGE.rglob("*.py")):
+        for name, text in docstrings(ast.parse(path.read_text(encoding="utf-8"))):
+            opening = next(beginnings(str(text.value)))
+            if QUESTION.match(opening):
+                faults.append(f"{path.relative_to(PACKAGE.parent)}: {name}: {opening}")
+    assert not faults, "\n".join(faults)
+
+
+def test_docstrings_and_comments_name_the_person_or_thing_that_is_meant():
+    faults = [
+        f"{path.relative_to(PACKAGE.parent)}:{line}: {found[0]}"
+        for path in sorted(PACKAGE.rglob("*.py"))
+        for line, text in english(path)
+        if (found := NO_ONE.search(text))
+    ]
+    assert not faults, "\n".join(faults)
+
+
+def test_a_word_is_found_in_docstrings_and_comments_but_not_in_code(tmp_path):
+    path = tmp_path / "one.py"
+    path.write_text(
+        '"""Somebody\'s module."""\n\nnobody = "whoever"  # told to whoever asks\n',
+        encoding="utf-8",
+    )
+    found = [(line, NO_ONE.findall(text)) for line, text in english(path)]
+    assert found == [(1, ["Somebody"]), (3, ["whoever"])]
 
 
 def test_a_fragment_is_found_wherever_it_can_stand():

@@ -263,7 +263,7 @@ def _cells(
     tuple[tuple[int, ...], ...],
     tuple[tuple[str, ...], ...],
 ]:
-    """What has a value of its own, the cell of each in the analysis, and cells' levels by name.
+    """Things with their own values, the cell of each in the analysis, and cells' levels by name.
 
     Conditions are one where the measure is found along them.
     """

@@ -91,7 +91,7 @@ class StudyPlan:
         return CellDesign(np.array(self.levels, np.int64).reshape(len(self.levels), -1))
 
     def compared(self) -> list[tuple[tuple[int, ...], LevelPair | None]]:
-        """What each study tests: every effect, followed by the differences in it."""
+        """Tests of each study: every effect, followed by the differences in it."""
         design = self.design
         return [(own, pair) for own in design.effects() for pair in (None, *design.compared(own))]
 

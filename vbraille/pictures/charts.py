@@ -84,7 +84,7 @@ class Runs:
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """Where the array was in a trial: one panel of `Paths`.
+    """Path of the array in a trial: one panel of `Paths`.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ _LABEL = 24  # characters of a line of a label
 _SAMPLES = 500  # of a path: more than a panel has pixels to show
 _DOT = {"color": MIDDLE, "linewidth": 2.6, "solid_capstyle": "round", "snap": False}
 _PERCENT = (0, 50, 100)
-_JOINED = 12  # groups: points of more are joined by lines that nobody can follow
+_JOINED = 12  # groups: points of more are joined by lines that no eye can follow
 # Width and height of a panel, in inches, by how many stand side by side: all fit upon A4.
 _PANELS = ((5.7, 3.0), (2.9, 2.2), (1.9, 1.7), (1.4, 1.4))
 _WIDEST = 9.0  # inches, of bars: A4 across

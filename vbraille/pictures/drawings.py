@@ -50,7 +50,7 @@ _UP_S = (0.0, 0.005, 0.01, 0.015)
 
 
 class ArrayPlace(NamedTuple):
-    """Where an array stands on a picture: its centre in mm, and how far it is turned, in degrees.
+    """Place of an array on a picture: its centre in mm, and how far it is turned, in degrees.
 
     The angle turns it against the clock, as in `vbraille.display`.
     """

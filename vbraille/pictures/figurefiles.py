@@ -1,4 +1,4 @@
-"""How all figures look and how they are kept: the same figure gives the same bytes."""
+"""Look of all figures, and their files: the same figure gives the same bytes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How kernels are compiled, and the sines, cosines and other curves that they use.
+"""Compilation of kernels, and the sines, cosines and other curves that they use.
 
 The library's sine keeps a loop from becoming vector instructions; polynomials do not. They are good
 to 1e-14.

@@ -1,4 +1,4 @@
-"""Where on the canvas a pattern can be anything but rest, so that it is not looked at elsewhere."""
+"""Bounds of patterns: outside them a pattern rests, so that it is not looked at there."""
 
 from __future__ import annotations
 

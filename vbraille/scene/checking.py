@@ -1,4 +1,4 @@
-"""What a scene holds, and what may be hard to feel: the report for its author."""
+"""Report on a scene for its author: what it holds, and what may be hard to feel."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class ElementReport:
 
 @dataclass(frozen=True, slots=True)
 class SceneReport:
-    """What a scene holds, and what is to be said about it.
+    """Report on a scene: what it holds, and what is to be said about it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where the dots of dotted shapes stand: Lévesque 2009, 8.4.4.
+"""Places of the dots of dotted shapes: Lévesque 2009, 8.4.4.
 
 The source wants a dot on each end of a line and on each vertex of a polygon, the others evenly
 between, and a least separation that also holds across joints. The arithmetic is that of its
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from vbraille.scene.patterns import AnyPattern
 
 _DOTTED = StraightLine | Circle | Polygon | PathShape
-# Whoever feels dots asks for them at each move of the hand.
+# Dots under a hand are asked for at each move of it.
 _KEPT = 100  # shapes
 _CORNER = math.radians(40.0)
 _TOLERANCE = 1.0 - 1e-9  # two dots whose distance is m but for rounding may stay

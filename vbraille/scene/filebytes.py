@@ -1,4 +1,4 @@
-"""Bytes of files that somebody drew, which are no larger than they may be."""
+"""Bytes of files of other programs, which are no larger than they may be."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def read_bytes(path: Path, most: int) -> bytes:
-    """Content of a file that somebody drew.
+    """Content of a file of another program.
 
     Raises
     ------

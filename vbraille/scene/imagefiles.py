@@ -100,7 +100,7 @@ def intensities_of(path: Path, channel: Channel, shape_of: ShapeOf) -> NDArray[n
 
 
 def _is_svg(content: bytes) -> bool:
-    """Whether bytes begin as an SVG does, also a compressed one, of which its reader says more."""
+    """Tell whether bytes begin as an SVG does, or as a compressed one."""
     begins = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"<"
     return begins or content[:2] in (b"\xff\xfe", b"\xfe\xff", b"\x1f\x8b")
 

@@ -1,4 +1,4 @@
-"""Whether the edges of a polygon meet each other."""
+"""Intersections of the edges of a polygon."""
 
 from __future__ import annotations
 

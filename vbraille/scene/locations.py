@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class FoundScene:
-    """What a reader of a format of others gives back.
+    """Scene that a reader of a format of others gives back.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ class LocatedFile:
 
 @dataclass(frozen=True, slots=True)
 class Locations:
-    """Where each element and named texture of a scene is written.
+    """Places where each element and named texture of a scene is written.
 
     Parameters
     ----------

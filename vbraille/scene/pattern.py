@@ -1,4 +1,4 @@
-"""What patterns of every kind have in common."""
+"""Base of patterns of every kind."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from vbraille.tomlfile import Table
 
 
 class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
-    """What patterns of every kind have in common.
+    """Base of patterns of every kind.
 
     The changes are made in this order: amplitude, inversion, vibration, factor.
 
@@ -17,7 +17,7 @@ class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
     id
         Name by which other elements and people call it; empty if it has none.
     title, description
-        What it is, in a word and in a sentence, for whoever feels it; empty for nothing.
+        What it is, in a word and in a sentence, for the person who feels it; empty for nothing.
     amplitude
         Factor of its deflections, from 0 to 1.
     inverted

@@ -152,7 +152,7 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
 
 
 class Shape(Pattern, frozen=True, kw_only=True):
-    """What shapes of every kind have in common: a stroke, or dots in its place.
+    """Base of shapes of every kind: a stroke, or dots in its place.
 
     Parameters
     ----------
@@ -336,7 +336,7 @@ class Image(Pattern, frozen=True, kw_only=True, tag="image"):
 
 
 class Fill(Table, frozen=True, kw_only=True):
-    """What fills a closed shape: Lévesque 2009, fig. 8.21 and eq. 8.20.
+    """Filling of a closed shape: Lévesque 2009, fig. 8.21 and eq. 8.20.
 
     Parameters
     ----------

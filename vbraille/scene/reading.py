@@ -78,7 +78,7 @@ class SceneFile(Table, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, slots=True)
 class Gathered:
-    """What a file holds together with what it includes.
+    """Content of a file together with what it includes.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 # Uses of uses of uses can stand for more than any memory holds.
 MOST_PATTERNS, MOST_POINTS = 200_000, 4_000_000
-MOST_DOTS = 200_000  # along shapes, which nobody has written down
+MOST_DOTS = 200_000  # along shapes, which no author has written down
 MOST_DEPTH = 32
 
 
@@ -68,7 +68,7 @@ def resolve(scene: Scene, folder: Path | None = None, locations: Locations | Non
 
 @dataclass(frozen=True, slots=True)
 class _Body:
-    """What a name stands for, without names, and how much it is."""
+    """Pattern that a name stands for, without names, and how much it is."""
 
     pattern: AnyPattern
     patterns: int

@@ -100,7 +100,7 @@ class Switch(Table, frozen=True, kw_only=True, tag_field="kind", tag="switch"):
     levels
         Levels of the states that the key goes through, and back to the first.
     states
-        What these states are called, for whoever presses the key; empty for their numbers.
+        What these states are called, for the person who presses the key; empty for their numbers.
     title
         What the key changes.
     fade_s

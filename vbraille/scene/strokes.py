@@ -1,4 +1,4 @@
-"""How shapes are drawn: strokes with their profile and textures, dots, and markers at vertices.
+"""Drawing of shapes: strokes with their profile and textures, dots, and markers at vertices.
 
 Lévesque 2009, 8.4.3 and 8.4.4.
 """
@@ -182,7 +182,7 @@ def _check_high(vibration: Vibration | None, what: str) -> None:
 
 
 class DotStyle(Table, frozen=True, kw_only=True):
-    """How dots look: Lévesque 2009, 8.4.4, and eq. 6.1, which is the same with a plateau.
+    """Look of dots: Lévesque 2009, 8.4.4, and eq. 6.1, which is the same with a plateau.
 
     Parameters
     ----------

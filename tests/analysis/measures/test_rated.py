@@ -30,7 +30,8 @@ def test_ties_count_half():
     assert found["note"] == (
         "no interval: one participant; how people differ is seen of three or more"
     )
-    assert compared(rated([1], "a"), rated([1], "b"))["note"] == "no share: nobody rated both"
+    note = compared(rated([1], "a"), rated([1], "b"))["note"]
+    assert note == "no share: no participant rated both"
 
 
 def test_an_interval_of_order_ends_where_shares_do():

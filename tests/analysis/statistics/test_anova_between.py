@@ -160,7 +160,7 @@ def test_what_is_no_mixed_design(change, reason):
 
 def test_a_group_that_nobody_is_in():
     frame = made().assign(other=lambda f: f["group"].map({"G0": "x", "G1": "y", "G2": "x"}))
-    with pytest.raises(Unanswerable, match="nobody with every score is in 'G0, y'"):
+    with pytest.raises(Unanswerable, match="no participant with every score is in 'G0, y'"):
         anova(
             frame["who"].tolist(),
             {"level": frame["level"].tolist()},

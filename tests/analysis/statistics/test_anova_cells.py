@@ -38,7 +38,7 @@ def test_a_repeat_that_is_missing_is_no_repeat():
             r"^one participant, 'a', .* \('b' has none for 'x'\)$",
         ),
         (["a", "b"], ["x", "y"], [1, 2], r"^no participant .*'a' has none for 'y'; 'b' has none"),
-        (["a", "a"], ["x", "y"], [1, np.nan], "nobody has a score for 'y'"),
+        (["a", "a"], ["x", "y"], [1, np.nan], "no participant has a score for 'y'"),
         (list("abcde"), list("xyzxy"), [1] * 5, r"'a' has none for 'y'; 'b' has none for 'x'"),
     ],
 )

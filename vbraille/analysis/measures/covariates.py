@@ -1,4 +1,4 @@
-"""What else right answers go with, by a logistic model of single trials."""
+"""Covariates of right answers, by a logistic model of single trials."""
 
 from __future__ import annotations
 

@@ -111,7 +111,7 @@ CONFIDENCE = Schema(
 WORDS = Schema(
     "words",
     "Answers in words",
-    "As they were typed. Nobody has scored them.",
+    "As they were typed, without a score.",
     (
         PARTICIPANT,
         SESSION,
@@ -240,7 +240,7 @@ def compared(one: pd.DataFrame, two: pd.DataFrame) -> Row:
         ]
     )
     if not own.size:
-        return {"participants": 0, "note": "no share: nobody rated both"}
+        return {"participants": 0, "note": "no share: no participant rated both"}
     return {"participants": own.size, "higher": float(own.mean())} | _ends(own, (0.0, 1.0))
 
 

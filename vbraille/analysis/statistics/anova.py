@@ -428,7 +428,7 @@ def _columns(names: Sequence[str], groups: Sequence[Cell]) -> list[tuple[Cell, F
             raise Unanswerable(f"everybody has the same {name}, '{levels[0]}'")
     for cell in product(*every):
         if cell not in groups:
-            raise Unanswerable(f"nobody with every score is in '{', '.join(cell)}'")
+            raise Unanswerable(f"no participant with every score is in '{', '.join(cell)}'")
     codes = []
     for levels, own in zip(every, zip(*groups, strict=True), strict=True):
         code = np.vstack([np.eye(len(levels) - 1), -np.ones(len(levels) - 1)])
@@ -447,9 +447,9 @@ def _too_few(
     complete: tuple[str, ...], dropped: tuple[tuple[str, tuple[Cell, ...]], ...], cells: list[Cell]
 ) -> str:
     """Reason why there are too few participants to compare."""
-    nobody = [c for c in cells if not complete and all(c in gap for _, gap in dropped)]
-    if nobody:
-        return f"nobody has a score for '{', '.join(nobody[0])}'; each participant needs every cell"
+    empty = [c for c in cells if not complete and all(c in gap for _, gap in dropped)]
+    if empty:
+        return f"no participant has a score for '{', '.join(empty[0])}'; each needs every cell"
     who = f"one participant, '{complete[0]}'," if complete else "no participant"
     why = "; ".join(f"'{name}' has none for '{', '.join(gap[0])}'" for name, gap in dropped[:3])
     return f"{who} has a score in every cell; two are needed" + (f" ({why})" if why else "")

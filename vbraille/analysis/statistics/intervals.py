@@ -105,7 +105,7 @@ def mean_interval(values: ArrayLike) -> Interval:
     Raises
     ------
     Unanswerable
-        If there are fewer than three values, or all are the same: then nobody sees how people
+        If there are fewer than three values, or all are the same: then they do not show how people
         differ.
     """
     row = _differing(finite_scores("values", values))

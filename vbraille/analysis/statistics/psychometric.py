@@ -116,8 +116,8 @@ def fit_psychometric(
     shape
         A key of `SHAPES`.
     guess
-        Share of positive answers where nothing can be felt: 0.5 for which of two, 0 where nobody
-        guesses; None where it is free, as for yes and no.
+        Share of positive answers where nothing can be felt: 0.5 for which of two, 0 without
+        guessing; None where it is free, as for yes and no.
     blanks
         Positive answers to trials without anything to be felt, and all answers to them; they tell
         of free guesses.

@@ -217,8 +217,8 @@ def adjusted_weights(
     adjusted : float64[studies, k, p]
         Weights of the scores.
     alone : bool[studies]
-        Whether a participant alone determines something that l is about, so that nobody sees how
-        people differ in it.
+        Whether a participant alone determines something that l is about, so that people's
+        differences in it do not show.
     """
     whole = np.einsum("spq,sq->sp", fit.spread, weights)
     p = whole.shape[-1]

@@ -1,1 +1,1 @@
-"""How braille is shown: profile, mapping, tuning and style, and the twin in plain numpy."""
+"""Braille as it is shown: profile, mapping, tuning and style, and the twin in plain numpy."""

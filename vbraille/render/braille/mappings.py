@@ -1,4 +1,4 @@
-"""Which dots each actuator row shows, and with which phase: a table per method.
+"""Mappings of dots to actuator rows, with their phases: a table per method.
 
 Lévesque 2009, fig. 4.5. Rows count from 0, the row far from the reader, and dot
 row r owns actuator rows 2r and 2r + 1. Where the source's scan cannot be read
@@ -23,7 +23,7 @@ NONE = -1
 
 @dataclass(frozen=True, slots=True)
 class Mapping:
-    """Which dots each row of actuators shows.
+    """Dots that each row of actuators shows.
 
     Parameters
     ----------

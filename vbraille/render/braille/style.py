@@ -1,4 +1,4 @@
-"""How braille is shown, as one value, which compiles a line or a page of braille."""
+"""Style of braille, as one value, which compiles a line or a page of braille."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Tuning:
 
 
 class Profile(IntEnum):
-    """How the deflection swings across a dot."""
+    """Swing of the deflection across a dot."""
 
     HALF_SINE = 0
     """The profile of the VBD: Lévesque 2009, 3.2; its texture's phase and norm are our choice."""
@@ -120,7 +120,7 @@ MOST_TILT_RAD: Final = math.radians(20.0)
 
 @dataclass(frozen=True, slots=True)
 class Straying:
-    """What a page shows to a finger that strays from the middle of a line.
+    """Response of a page to a finger that strays from the middle of a line.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ class StyleChanges(TypedDict, total=False):
 
 @dataclass(frozen=True, slots=True)
 class BrailleStyle:
-    """How braille is shown on a display.
+    """Style in which braille is shown on a display.
 
     Parameters
     ----------

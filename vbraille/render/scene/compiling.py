@@ -120,7 +120,7 @@ def flatten_scene(scene: Scene, assets: Assets) -> Flat | None:
 
 
 def _with_signals(scene: Scene, assets: Assets) -> Assets:
-    """What a scene takes from elsewhere, with the numbers of its signals by their names."""
+    """Assets of a scene, with the numbers of its signals by their names."""
     if not scene.signals:
         return assets
     numbers = {

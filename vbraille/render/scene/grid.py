@@ -495,7 +495,7 @@ def flatten(tree: Node) -> Flat:
 
 
 class _Flattening:
-    """What has been flattened of a tree so far."""
+    """Part of a tree that has been flattened so far."""
 
     def __init__(self) -> None:
         self.nodes: list[list[float]] = []

@@ -1,4 +1,4 @@
-"""What a scene takes from elsewhere: bitmaps of images, and labels as cells, with their numbers.
+"""Assets of a scene: bitmaps of images, and labels as cells, with their numbers.
 
 A label has a frame of its own: u along its lines and v down across them, in mm, from the top left
 corner of its first cell, which is where the square around dot 1 begins. With angle φ::
@@ -77,7 +77,7 @@ class Written:
 
 @dataclass(frozen=True, slots=True)
 class Assets:
-    """What is needed beside a scene to compile it.
+    """Assets that are needed beside a scene to compile it.
 
     Parameters
     ----------

@@ -121,7 +121,7 @@ class WordBlock:
 
 
 class NodeKind(IntEnum):
-    """How a node makes its deflection."""
+    """Way in which a node makes its deflection."""
 
     LEAF = 0  # by the words of a pattern
     ADD = 1  # from its children's: their sum, at most 1
@@ -134,7 +134,7 @@ class NodeKind(IntEnum):
 
 
 class Pushes(IntEnum):
-    """What a node leaves on the stack, as a child of an OVER."""
+    """Values that a node leaves on the stack, as a child of an OVER."""
 
     ITSELF = 0  # a deflection, which is its own mask
     PAIR = 1  # a deflection and a mask
@@ -142,7 +142,7 @@ class Pushes(IntEnum):
 
 
 class LeafReach(IntEnum):
-    """What encloses a leaf or a part of it."""
+    """Shape that encloses a leaf or a part of it."""
 
     BOX = 0  # left, top, right, bottom
     CAPSULE = 1  # start, end; all that is no farther from the line between them than the reach
@@ -159,7 +159,7 @@ Enclosed = tuple[int, float, float, float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """What must be computed for a pattern, or for what patterns make together.
+    """Step of the computation of a pattern, or of what patterns make together.
 
     Parameters
     ----------

@@ -666,7 +666,7 @@ def say_dots_mask(
 
 
 def is_own_mask(shape: AnyShape | Dots) -> bool:
-    """Whether a shape's deflection is its opacity mask, too, before what all patterns share."""
+    """Tell whether a shape's deflection is its mask, too, before what all patterns share."""
     if isinstance(shape, AnyShape):
         if fill_of(shape) is not None:
             return False

@@ -1,4 +1,4 @@
-"""What all readers of elements share: how the file is read, and what patterns came of it."""
+"""Context of all readers of elements: how the file is read, and what patterns came of it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Reader = Callable[["GenElement", "GenContext"], "AnyPattern | None"]
 
 @dataclass(frozen=True, slots=True)
 class GenContext:
-    """How a file is read.
+    """Options and state of the reading of a file.
 
     Parameters
     ----------

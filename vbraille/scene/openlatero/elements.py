@@ -270,7 +270,7 @@ class GenElement:
             left += element.children
 
     def unasked(self) -> Iterator[GenElement]:
-        """Elements that nobody asked for, but not what is in them."""
+        """Elements that no reader asked for, but not what is in them."""
         left: list[GenElement] = [self]
         while left:
             for child in left.pop().children:

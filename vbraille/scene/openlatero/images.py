@@ -33,7 +33,7 @@ _MOST_BYTES, _MOST_SVG_BYTES = 100 << 20, 10 << 20
 
 @dataclass(frozen=True, slots=True)
 class MaskPicture:
-    """What a picture is, without its pixels.
+    """Facts of a picture, without its pixels.
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ def _in(folder: Path, error: InputError) -> str:
 
 def _size(mask: GenElement, picture: MaskPicture) -> tuple[float, float]:
     """Width and height of an image on the surface, in mm."""
-    mask.skip("lock_aspect_ratio")  # what the program keeps while somebody changes the size
+    mask.skip("lock_aspect_ratio")  # what the program keeps while the user changes the size
     # The largest size that fits on the surface in the picture's shape.
     wide = SURFACE_MM[0] / SURFACE_MM[1] > picture.width_px / picture.height_px
     ratio = picture.width_px / picture.height_px

@@ -40,7 +40,7 @@ _MOST_CYCLES = 49  # on one side of a stroke
 
 @dataclass(frozen=True, slots=True)
 class StrokeLook:
-    """How a shape is drawn.
+    """Look of a shape as it is drawn.
 
     Parameters
     ----------

@@ -78,7 +78,7 @@ class DrawnNode:
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """What elements inherit of those that they stand in.
+    """Properties that elements inherit of those that they stand in.
 
     Parameters
     ----------
@@ -381,7 +381,7 @@ def start(matrix: AffineMap, style: Mapping[str, str], view: Point) -> _Place:
 
 
 def view_of(element: Element) -> tuple[float, float, float, float] | None:
-    """What an attribute viewBox says: left, top, width, height; None for nothing that can be."""
+    """Left, top, width and height of an attribute viewBox; None for nothing that can be."""
     numbers = numbers_of(element.get("viewBox"))
     if len(numbers) != 4 or not all(0 < size < 1e9 for size in numbers[2:]):
         return None

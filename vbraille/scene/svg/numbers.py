@@ -87,7 +87,7 @@ class AffineMap:
         )
 
     def put(self, place: complex) -> complex:
-        """Where a place, as a complex number, comes to be."""
+        """Transform a place, as a complex number."""
         x, y = place.real, place.imag
         return complex(self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f)
 

@@ -1,4 +1,4 @@
-"""What drawn surfaces and lines become: textures by colour, or as a scene says by class."""
+"""Textures of drawn surfaces and lines: by colour, or as a scene says by class."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ _SEPARATOR = re.compile(r"[\s,]+")
 
 
 class ClassLook(Table, frozen=True, kw_only=True):
-    """What the shapes of a class in a drawing become.
+    """Look of the shapes of a class in a drawing.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ class ClassLook(Table, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, slots=True)
 class ShapeLook:
-    """How a shape is drawn here.
+    """Look of a shape as it is drawn here.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How elements of SVG look: their attributes, style sheets, and what they inherit."""
+"""Styles of SVG's elements: their attributes, style sheets, and what they inherit."""
 
 from __future__ import annotations
 
@@ -181,7 +181,7 @@ def styled(element: Element, above: Mapping[str, str], sheet: StyleSheet) -> dic
 
 
 def _end_of_block(css: str, opened: int) -> int:
-    """Where a block of a style sheet ends, that may have blocks in it."""
+    """End of a block of a style sheet, that may have blocks in it."""
     depth = 0
     for found in _BRACE.finditer(css, opened):
         depth += 1 if found[0] == "{" else -1

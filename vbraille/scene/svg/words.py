@@ -55,7 +55,7 @@ def description_of(element: Element) -> str:
 
 
 def id_of(element: Element) -> str:
-    """Id that somebody gave an element; empty if a program did, or nobody."""
+    """Id that an author gave an element; empty if a program did, or it has none."""
     own = element.get("id") or ""
     return "" if _GIVEN.fullmatch(own) or not own.isprintable() else own[:_LONGEST_NAME]
 

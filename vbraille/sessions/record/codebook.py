@@ -62,7 +62,7 @@ COLUMNS = {
     "first_answer": "what had been answered before an undo; else empty",
     "answers_from": "typed, simulated:NOISE for a simulated reader, program, or a file",
     "moved_by": "what moved the carriage: person, simulated for a simulated hand, or "
-    "simulated:pointer if somebody at the live view was that hand in a part of the trial, so that "
+    "simulated:pointer if a person at the live view was that hand in a part of the trial, so that "
     "it is no data about people; empty on paper",
     "attempt": "how often the trial was begun",
     "duration_s": "from the array's first touch of the leftmost dot to its last way back over it "
@@ -147,7 +147,7 @@ _VALUES = {
     "moved_by": {
         "person": "a person's hand",
         "simulated": "a simulated hand",
-        "simulated:pointer": "somebody at the live view, in a part of the trial",
+        "simulated:pointer": "a person at the live view, in a part of the trial",
     },
 }
 

@@ -56,7 +56,7 @@ class TrialRecord:
     source
         Source of the answer: typed, simulated:0.2, or a file's name.
     moved_by
-        What moved the carriage: "person", "simulated", or "simulated:pointer" if somebody at the
+        What moved the carriage: "person", "simulated", or "simulated:pointer" if a person at the
         live view was the hand for a part of the trial, in any attempt; empty on paper.
     lost
         Numbers of the lost events of a salvaged journal that may belong to the trial.

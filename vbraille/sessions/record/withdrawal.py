@@ -39,7 +39,7 @@ _PLAN_LINE = "protocol: "
 
 @dataclass(slots=True)
 class Withdrawal:
-    """What there is of a person.
+    """Data of a person.
 
     Parameters
     ----------

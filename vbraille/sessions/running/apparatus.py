@@ -49,7 +49,7 @@ class Apparatus:
     Parameters
     ----------
     engine
-        Engine that drives the device; None on paper. Whoever made it closes it after a fault.
+        Engine that drives the device; None on paper. Its maker closes it after a fault.
     responses
         Source of the lines.
     steering
