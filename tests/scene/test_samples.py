@@ -15,7 +15,10 @@ from vbraille.scene.patterns import Circle, Polygon
 from vbraille.scene.signals import packed
 
 SAMPLES = Path(__file__).parents[2] / "texts" / "scenes"
-NAMES = ("house", "chart", "map", "world", "shapes-vibration", "shapes-dots", "shapes-gratings")
+NAMES = (
+    "house", "chart", "map", "world", "route", "prices", "triangle",
+    "shapes-vibration", "shapes-dots", "shapes-gratings",
+)  # fmt: skip
 # The source's outlines of 1.5 mm are thinner than what its later chapters recommend.
 MEANT = {"shapes-vibration": ("has a stroke of 1.5 mm",)}
 
