@@ -7,7 +7,7 @@
 import { html } from "./drawing.js";
 
 const PAPER = 4; // pixels of a canvas for one of the page when it is printed
-const MOST = 4; // beyond that nobody sees a difference, and memory grows by the square
+const MOST = 4; // beyond that no eye sees a difference, and memory grows by the square
 
 /** @type {Set<() => void>} */
 const redraw = new Set();

@@ -63,7 +63,7 @@ export class Connection {
   }
 
   /**
-   * Asks for something; false if there is nobody to ask.
+   * Asks for something; false if no server is there to ask.
    * @param {{ask: string} & Record<string, unknown>} request
    */
   ask(request) {
@@ -115,7 +115,7 @@ export class Connection {
   }
 
   #end() {
-    // Who was not let in is told why, and asks again only when somebody wants it.
+    // A page that was not let in is told why, and asks again only when a person wants it.
     const again = this.#welcomed || !this.#refused;
     this.#welcomed = false;
     this.#socket = null;

@@ -18,7 +18,7 @@ const WIDE = 100;
 /** One knob: step buttons, a slider and a number. */
 class Knob {
   #value = 0;
-  busy = false; // whether somebody turns it here
+  busy = false; // whether a person turns it here
   #typing = false; // whether a number is being typed: it stays until it is taken
 
   /**

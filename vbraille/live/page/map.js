@@ -62,7 +62,7 @@ export class DeflectionMap {
     return true;
   }
 
-  /** Forgets what was asked for: nobody will answer. */
+  /** Forgets what was asked for: no answer will come. */
   lost() {
     if (this.#waiting.length) write(byId("map-words"), "");
     this.#waiting = [];

@@ -164,7 +164,7 @@ export function readMap(bytes) {
   return { svg, file: new Blob([bytes.slice(MAP_BYTES, MAP_BYTES + length)], { type }) };
 }
 
-/** Bits of the flags of a frame that somebody should be told: `vbraille.engine.record.Flag`. */
+/** Bits of the flags of a frame that the user should be told: `vbraille.engine.record.Flag`. */
 const FLAGS = /** @type {[number, string][]} */ ([
   [1, "paused"],
   [2, "no place from the device"],

@@ -361,7 +361,7 @@ export class Skin {
     });
   }
 
-  /** Writes what is drawn into the elements, for whoever reads them; a few times a second. */
+  /** Writes what is drawn into the elements, as text; a few times a second. */
   tell() {
     const deflections = this.#frame?.deflections;
     if (deflections?.length !== this.#cells.length) return;
