@@ -2,6 +2,7 @@
 
 import json
 import re
+from pathlib import Path
 
 import pytest
 
@@ -54,6 +55,15 @@ def test_results_as_json(call):
     assert (said.code, said.err) == (0, "")
     found = json.loads(said.out)
     assert [row["correct"] for row in found["tables"]["legibility"]["rows"]] == [1, 0, 0, 1]
+
+
+@pytest.mark.usefixtures("room")
+def test_progress_counts_what_is_read_and_then_what_is_worked_out(call):
+    (more := Path("more.csv")).write_text(TRIALS.format("C,x,ab,ab\n"))
+    said = call("analyse", "good.csv", more, "--json", "--verbose")
+    told = [line.split(",")[0] for line in said.err.splitlines() if "percent" in line]
+    assert told == ["20 percent", "50 percent", "70 percent", "100 percent"]
+    assert json.loads(said.out)["tables"]
 
 
 @pytest.mark.parametrize(

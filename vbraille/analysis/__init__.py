@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from vbraille.analysis.results import Results
 
@@ -41,6 +41,7 @@ def analyse(
     correction: str | None = None,
     marks: Sequence[int] | None = None,
     seed: int | None = None,
+    report: Callable[[int, int], None] = lambda _done, _parts: None,
 ) -> Results:
     """Analyse sessions and tables of trials together.
 
@@ -64,6 +65,9 @@ def analyse(
         given.
     seed
         Seed of random draws; the same one each time if not given.
+    report
+        Told how many parts of the work are done, out of how many: each path that is read is one,
+        and so are the measures that are compared, and all else.
 
     Raises
     ------
@@ -76,7 +80,7 @@ def analyse(
         If a session has lost what it began with.
     """
     # Imported here, so that a program that only offers this function need not wait for statistics.
-    from vbraille.analysis.chapters import analyse_study, options_of
+    from vbraille.analysis.chapters import STAGES, analyse_study, options_of
     from vbraille.analysis.input.study import load_study
 
     options = options_of(
@@ -85,13 +89,15 @@ def analyse(
         marks=marks,
         seed=seed,
     )
-    given = [paths] if isinstance(paths, str | PathLike) else paths
+    given = [Path(p) for p in ([paths] if isinstance(paths, str | PathLike) else paths)]
+    read, parts = len(given), len(given) + STAGES
     study = load_study(
-        [Path(p) for p in given],
+        given,
         exclude=exclude,
         protocol=protocol,
+        report=lambda done: report(done, parts),
     )
-    return analyse_study(study, options)
+    return analyse_study(study, options, lambda done: report(read + done, parts))
 
 
 def analyse_scores(

@@ -43,7 +43,7 @@ from vbraille.sessions.planning.questions import NameQuestion, OneOfTwo, RatingQ
 from vbraille.wording import count
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from vbraille.analysis.input.study import Study
     from vbraille.analysis.results import ReportFigure, ResultTable
@@ -52,6 +52,7 @@ if TYPE_CHECKING:
 SEED = 20090618
 MOST_LEVELS = 50  # a factor with more levels was not varied by an experimenter
 MOST_CELLS = 1_000_000  # cells of all participants together
+STAGES = 2  # of the analysis of a study: measures compared, and all else
 SOURCES = Schema(
     "sources",
     "Data, sessions and versions",
@@ -109,8 +110,15 @@ class FollowedPlan:
     departures: tuple[str, ...]
 
 
-def analyse_study(study: Study, options: Options) -> Results:
+def analyse_study(
+    study: Study, options: Options, report: Callable[[int], None] = lambda _: None
+) -> Results:
     """Analyse trials, comparisons and judgements.
+
+    Parameters
+    ----------
+    report
+        Told after each of the `STAGES` how many are done.
 
     Raises
     ------
@@ -126,6 +134,7 @@ def analyse_study(study: Study, options: Options) -> Results:
     compared = None if primary is None else compare(primary, correction)
     others = [compare(cells, "none") for cells in measured.values()]
     chapters = [_others(others)]
+    report(1)
     if study.trials is not None and places is not None:
         chapters += _of_trials(study, study.trials, places, plan, options)
     if study.comparisons is not None:
@@ -137,6 +146,7 @@ def analyse_study(study: Study, options: Options) -> Results:
         chapters.append(Chapter("Notes", (table,)))
     chapters = _corrected([each for each in map(_filled, chapters) if each.tables], correction)
     about = (*study.about, *_chosen(plan, options))
+    report(STAGES)
     return _told(
         "Report of a study" if compared is None else compared.title(),
         about,

@@ -23,7 +23,7 @@ from vbraille.version import __version__
 from vbraille.wording import count
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
 
     from vbraille.analysis.input.sessions import SessionTrials
@@ -70,6 +70,7 @@ def load_study(
     *,
     exclude: Mapping[str, str] | None = None,
     protocol: str | None = None,
+    report: Callable[[int], None] = lambda _: None,
 ) -> Study:
     """Read sessions' directories and CSV files.
 
@@ -81,6 +82,8 @@ def load_study(
         Participants who are left out, each with the reason.
     protocol
         Name of the protocol whose trials are taken; None takes those of all.
+    report
+        Told after each path how many have been read.
 
     Raises
     ------
@@ -90,7 +93,7 @@ def load_study(
         If a session has lost what it began with.
     """
     _check_paths(paths)
-    sessions, files = _read(paths)
+    sessions, files = _read(paths, report)
     sheets = list(files.values())
     sources = [*(Sheet(one.name, frame_of(one.rows), typed=True) for one in sessions), *sheets]
     apart = told_apart(sessions)
@@ -252,21 +255,24 @@ def _check_paths(paths: Sequence[Path]) -> None:
         seen.add(path.resolve())
 
 
-def _read(paths: Sequence[Path]) -> tuple[list[SessionTrials], dict[Path, Sheet]]:
+def _read(
+    paths: Sequence[Path], report: Callable[[int], None]
+) -> tuple[list[SessionTrials], dict[Path, Sheet]]:
     """Read sessions and tables, each under a name that no other has."""
     names = dict(zip(paths, distinct_names([path.resolve() for path in paths]), strict=True))
-    sessions = [
-        replace(session, name=name, rows=[row | {"session": name} for row in session.rows])
-        for session, name in ((read_session(path), names[path]) for path in paths if path.is_dir())
-    ]
+    sessions: list[SessionTrials] = []
+    files: dict[Path, Sheet] = {}
+    for number, (path, name) in enumerate(names.items(), 1):
+        if path.is_dir():
+            session = read_session(path)
+            rows = [row | {"session": name} for row in session.rows]
+            sessions.append(replace(session, name=name, rows=rows))
+        else:
+            files[path] = replace(read_csv(path), name=name)
+        report(number)
     sessions.sort(key=lambda session: (natural(session.head["participant"]), natural(session.name)))
     check_copies(sessions)
-    files = {
-        path: replace(read_csv(path), name=names[path])
-        for path in sorted(names, key=lambda path: names[path])
-        if not path.is_dir()
-    }
-    return sessions, files
+    return sessions, dict(sorted(files.items(), key=lambda named: named[1].name))
 
 
 def _describe(parts: Sequence[pd.DataFrame | None]) -> str:

@@ -7,11 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.analysis import analyse, analyse_scores
+from vbraille.cli.terminal import WorkProgress
 from vbraille.errors import InputError, VbrailleError
 from vbraille.wording import printable, spelled
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Callable
 
     from vbraille.analysis.results import Results
 
@@ -30,11 +32,14 @@ def run(arguments: argparse.Namespace) -> int:
         from vbraille.files import check_free
 
         check_free(folder)
-    results = _analysed(arguments)
+    writing = folder is not None
+    progress = WorkProgress(verbose=arguments.verbose)
+    results = _analysed(arguments, lambda done, parts: progress.of(done, parts + writing))
     if folder is not None:
         from vbraille.analysis.report.written import write_report
 
         write_report(results, folder)
+        progress.at(1.0)
     if arguments.json:
         from vbraille.analysis.report.totext import to_json
 
@@ -51,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _analysed(arguments: argparse.Namespace) -> Results:
+def _analysed(arguments: argparse.Namespace, report: Callable[[int, int], None]) -> Results:
     correction, seed = arguments.correction, arguments.seed
     if arguments.scores is None:
         return analyse(
@@ -62,6 +67,7 @@ def _analysed(arguments: argparse.Namespace) -> Results:
             correction=correction,
             marks=arguments.marks,
             seed=seed,
+            report=report,
         )
     for name in ("factors", "protocol", "exclude", "marks"):
         if getattr(arguments, name):
