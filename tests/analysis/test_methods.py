@@ -239,6 +239,45 @@ def test_people_practice_repeats_breaks_and_what_is_missing(tmp_path):
     assert "1 trial of s (no answer)" in text
 
 
+def test_limits_of_trials_and_what_came_late_are_told(tmp_path):
+    limits = "[trial]\nexposure_s = 0.3\nanswer_s = 0.3\n"
+    Session(tmp_path / "s", MINI + limits, hand="sweep:60").sit(
+        ("ended: .* by exposure", "c"), ("answer: trial 1", "note in between"),
+        ("late: trial 2", "c"), ("answer: trial 2", "stop"),
+    )  # fmt: skip
+    text = told(tmp_path / "s")
+    assert "felt for 0.3 s from the start signal, which were over before the answer in all 2 t" in (
+        text
+    )
+    assert (
+        "Answers were to come within 0.3 s of the end of the exposure; 1 of 2 answers came later "
+        "(late answers were kept)." in text
+    )
+    Session(tmp_path / "t", MINI + limits + 'late = "missed"\n', hand="sweep:60").sit(
+        ("missed: trial 1", "note slow"), ("ended: .* by exposure", "c"), ("answer: tr", "stop")
+    )
+    assert "without one the trial then ended, as in 1 of 2 trials." in told(tmp_path / "t")
+
+
+def test_a_questionnaire_and_a_participant_who_stopped_are_told(tmp_path):
+    toml = MINI + (
+        '[[questionnaire]]\nkind = "text"\nname = "age"\nwhen = "begin"\nask = "How old?"\n'
+        '[[questionnaire]]\nkind = "text"\nname = "so"\nwhen = "trial"\nask = "How so?"\n'
+        '[[questionnaire]]\nkind = "text"\nname = "end"\nwhen = "end"\nask = "And now?"\n'
+    )
+    Session(tmp_path / "s", toml).sit(
+        ("asked: How old", "30"), ("^read:", "c"), ("asked: How so", "well"), ("^read:", "c"),
+        ("asked: How so", "ill"), ("cue: trial 3", "quit feels ill"),
+    )  # fmt: skip
+    text = told(tmp_path / "s")
+    assert (
+        "A questionnaire asked “How old?” at the beginning (1 answer), and “How so?” after the "
+        "answer to a trial (2 answers)." in text
+    )
+    assert "1 participant stopped for good, before all trials were done." in text
+    assert "feels ill" not in text
+
+
 @heavy  # three sessions
 def test_groups_are_told_with_what_they_differ_in(tmp_path):
     for who in ("P01", "P02", "P04"):

@@ -22,6 +22,7 @@ from vbraille.sessions.planning.nexttrial import varied
 from vbraille.sessions.planning.procedures import QuestProcedure, StaircaseProcedure
 from vbraille.sessions.planning.questions import of_all
 from vbraille.sessions.planning.stimuli import GAP, KNOBS
+from vbraille.sessions.record.codebook import ASKED
 from vbraille.version import __version__
 from vbraille.wording import count
 
@@ -65,10 +66,13 @@ The {varied} of each trial was chosen by the answers before it, by {procedure}
 It was made harder after {right} running, and easier after {wrong}
 A condition was to end by {stops}
 Reading was ended by {keys}; response times are to there
-What was shown could be felt for {exposure_s} s, which were over before the answer in {over}
+What was shown could be felt for {exposure}, which were over before the answer in {over}
+Answers were to come within {answer}; {late}
+A questionnaire asked {asked}
 {practice}
 {breaks}
 {unanswered} had no answer
+{quitters} stopped for good, before all trials were done
 {broken} did not come to the end
 In {faults} the device had a fault
 {repeated} had to be shown again
@@ -189,8 +193,8 @@ def facts_of(sessions: Sequence[SessionTrials]) -> Facts:
         **_order(sessions, answered),
         **_procedure(protocol),
         "keys": _keys(rows),
-        "exposure_s": None if (limit := protocol.trial.exposure_s) is None else f"{limit:g}",
-        "over": of_all(sum(row["ended_by"] == "exposure" for row in rows), rows, "trial"),
+        **_limits(protocol, [row for each in sessions for row in each.rows]),
+        "asked": _asked(sessions) or None,
         "practice": f"Before them came {_span(practised, 'trial')} of practice{silent}"
         if any(practised)
         else "There was no practice",
@@ -491,12 +495,59 @@ def _keys(rows: Rows) -> str | None:
     return ", by ".join(told) or None if keys else None
 
 
+def _limits(protocol: Protocol, planned: Rows) -> Facts:
+    """Facts on how long a trial could be felt and answered, and on what came too late."""
+    limits = protocol.trial
+    facts: Facts = dict.fromkeys(("exposure", "over", "answer", "late"))
+    answered = [row for row in planned if row["answered"] != ""]
+    if limits.exposure_s is not None and answered:
+        since = {"cue": "the start signal", "contact": "the first touch"}[limits.exposure_from]
+        over = sum(row["ended_by"] == "exposure" for row in answered)
+        facts |= {
+            "exposure": f"{limits.exposure_s:g} s from {since}",
+            "over": of_all(over, answered, "trial"),
+        }
+    begun = [row for row in planned if row["answered"] != "" or row.get("late") == 1]
+    if limits.answer_s is not None and begun:
+        since = "the start signal" if limits.exposure_s is None else "the end of the exposure"
+        late = sum(row["late"] == 1 for row in begun)
+        if limits.late == "kept":
+            told = f"{of_all(late, begun, 'answer')} came later (late answers were kept)"
+        else:
+            told = f"without one the trial then ended, as in {of_all(late, begun, 'trial')}"
+        facts |= {"answer": f"{limits.answer_s:g} s of {since}", "late": told}
+    return facts
+
+
+_WHEN = {
+    "begin": "at the beginning",
+    "trial": "after the answer to a trial",
+    "block": "after a block",
+    "end": "at the end",
+}
+
+
+def _asked(sessions: Sequence[SessionTrials]) -> str:
+    """Words for the questions of the questionnaire that were answered, and how often."""
+    told = []
+    for item in sessions[0].protocol.questionnaire:
+        # An answer is in the row of each trial that it goes with.
+        numbers = sum(
+            len({row.get(item.when) for row in each.rows if row[f"{ASKED}{item.name}"] != ""})
+            for each in sessions
+        )
+        if numbers:
+            told.append(f"“{item.ask}” {_WHEN[item.when]} ({count(numbers, 'answer')})")
+    return ", and ".join(told)
+
+
 def _troubles(sessions: Sequence[SessionTrials], rows: Rows) -> Facts:
     """Facts on what did not go as planned."""
     planned = sum(len(session.rows) for session in sessions)
     numbers = {
         "unanswered": (planned - len(rows), "planned trial"),
         "broken": (sum(session.state != "ended" for session in sessions), "session"),
+        "quitters": (len({s.head["participant"] for s in sessions if s.quitted}), "participant"),
         "faults": (sum(row["faults"] != "" for row in rows), "trial"),
         "repeated": (sum(int(row["attempt"] or 0) > 1 for row in rows), "trial"),
         "early": (sum(row["early"] == 1 for row in rows), "answer"),

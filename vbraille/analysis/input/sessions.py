@@ -309,6 +309,8 @@ class SessionTrials:
         What the experimenter wrote down, in order.
     counts
         Number of events of each kind, and of practice trials that were answered: "practice".
+    quitted
+        Whether the participant stopped for good before all trials were done.
     """
 
     folder: Path
@@ -323,6 +325,7 @@ class SessionTrials:
     versions: dict[str, str]
     notes: tuple[PlacedNote, ...] = ()
     counts: Counter[str] = field(default_factory=Counter)
+    quitted: bool = False
 
 
 def read_session(folder: Path) -> SessionTrials:
@@ -367,6 +370,7 @@ def read_session(folder: Path) -> SessionTrials:
         _versions(record, progress),
         tuple(read_notes(record.journal.events)),
         _counts(record.journal.events),
+        progress.ended and bool(progress.why),
     )
 
 
