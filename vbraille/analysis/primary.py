@@ -14,6 +14,7 @@ import pandas as pd
 
 from vbraille.analysis.input.trials import ALL, factor
 from vbraille.analysis.measures.discrimination import sensitivity, thresholds
+from vbraille.analysis.measures.passages import timed
 from vbraille.analysis.measures.preferences import own_values
 from vbraille.analysis.results import (
     NOTE_COLUMN,
@@ -248,6 +249,8 @@ def _bounds(study: Study, measure: str) -> Interval:
     """Ends of the measure's scale."""
     if MEASURES[measure].scale == "share":
         return Interval(0.0, 1.0)
+    if measure == "reading_speed":
+        return Interval(0.0, math.inf)
     if measure == "rating":
         asked = [s.protocol.asks for s in study.sessions]
         scales = [(q.least, q.most) for q in asked if isinstance(q, RatingQuestion)]
@@ -308,6 +311,13 @@ def _number(question: str) -> Callable[[Study, Places | None, list[str]], _Found
         return rows[["participant", *columns]].assign(value=rows["number"]), "", ""
 
     return found
+
+
+def _reading_speed(study: Study, _places: Places | None, columns: list[str]) -> _Found:
+    if study.judgements is None:
+        return None, "", ""
+    read = timed(study.judgements)
+    return read[["participant", *columns]].assign(value=read["words_per_minute"]), "", ""
 
 
 def _d_prime(study: Study, _places: Places | None, columns: list[str]) -> _Found:
@@ -403,6 +413,7 @@ _FRAMES: dict[str, Callable[[Any, Any, list[str]], _Found]] = {
     "preferred": _preferred,
     "rating": _number("rating"),
     "magnitude": _number("magnitude"),
+    "reading_speed": _reading_speed,
 }
 
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from tests.sessions.sittings import MINI, Session, kill_often, of
+from vbraille.analysis.chapters import Options, analyse_study
 from vbraille.analysis.input.study import load_study
-from vbraille.analysis.measures.passages import reading_speed
+from vbraille.analysis.measures.passages import reading_speed, timed
 from vbraille.errors import InputError
 from vbraille.sessions.planning.making import check_plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
@@ -38,6 +39,11 @@ when = "trial"
 ask = "Was it clear?"
 choices = ["yes", "no"]
 right = "yes"
+"""
+SIZES = """
+[[factors]]
+name = "width"
+levels = [{ name = "narrow", dot_width_mm = 1.0 }, { name = "wide", dot_width_mm = 1.5 }]
 """
 
 
@@ -97,6 +103,26 @@ def test_the_speed_of_each_participant_is_found_again(tmp_path):
     assert whole["low"] < whole["speed"] < whole["high"]
 
 
+def test_words_a_minute_are_the_primary_measure(tmp_path):
+    toml = PASSAGES.replace("[[questionnaire]]", SIZES + "[[questionnaire]]", 1)
+    folders = []
+    for number, hand in enumerate(("sweep:100", "sweep:150", "sweep:200"), 1):
+        session = Session(tmp_path / f"{number}", toml, participant=f"P{number}", hand=hand)
+        session.sit()
+        folders.append(session.folder)
+    assert session.protocol.planned_analysis.measure == "reading_speed"
+    study = load_study(folders)
+    results = analyse_study(study, Options())
+    assert results.title == "Reading speed by width"
+    rows = [row for row in results.table("primary").to_dict("records") if row["kind"] == "mean"]
+    own = timed(study.judgements).groupby(["factor_width", "participant"], observed=True)
+    means = own["words_per_minute"].mean().groupby("factor_width").mean()
+    assert {row["of"]: row["value"] for row in rows} == pytest.approx(means.to_dict())
+    assert all(0 <= row["low"] < row["value"] < row["high"] for row in rows)
+    assert "words a minute" in results.findings[0]
+    assert "reading speed" in results.methods
+
+
 def test_ways_back_are_counted_from_half_a_cell():
     there = np.linspace(0, 30, 31)
     back = np.linspace(30, 24, 7)
@@ -111,6 +137,7 @@ def test_ways_back_are_counted_from_half_a_cell():
     [
         (PASSAGES.replace('table = "en-ueb-g1.ctb"', ""), "lank"),
         (MINI + '[question]\nkind = "read"\n', "which is asked of passages"),
+        (PASSAGES + '[analysis]\nmodel = "trials"\n', "shares of right answers, not of reading_s"),
         (PASSAGES + '[question]\nkind = "identify"\n', "which is asked of form"),
         (PASSAGES.replace("passage = true", "passage = true\ncatch = { every = 2 }"), "neither"),
         (PASSAGES.replace('"stress2"', '"stress2"\nmedium = "paper"'), "line by line on a device"),

@@ -38,12 +38,16 @@ READING_SPEED = Schema(
 )
 
 
+def timed(judgements: pd.DataFrame) -> pd.DataFrame:
+    """Judgements of passages that were read to the end, and whose time is known."""
+    asked = judgements[judgements["question"] == "read"]
+    return asked[(asked["answered"] == "read") & asked["words_per_minute"].notna()]
+
+
 def reading_speed(judgements: pd.DataFrame) -> ResultTable:
     """Speed of each participant in each condition, and means over participants."""
     rows: list[Row] = []
-    asked = judgements[judgements["question"] == "read"]
-    asked = asked[(asked["answered"] == "read") & asked["words_per_minute"].notna()]
-    for (protocol, condition), part in groups(asked, "protocol", "condition"):
+    for (protocol, condition), part in groups(timed(judgements), "protocol", "condition"):
         about: Row = {"protocol": protocol, "condition": condition}
         means: list[list[float]] = []
         for (participant,), own in groups(part, "participant"):

@@ -53,6 +53,7 @@ MEASURES = {
     "preferred": Measure("preferred value", "", "linear", ("which",)),
     "rating": Measure("rating", "", "linear", ("rating",)),
     "magnitude": Measure("magnitude", "", "log", ("magnitude",)),
+    "reading_speed": Measure("reading speed", "words a minute", "linear", ("read",)),
 }
 
 
