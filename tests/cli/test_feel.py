@@ -65,6 +65,13 @@ def test_at_a_terminal_keys_move_the_hand_and_say_what_is_there(scene):
         assert re.search(SUMMARY, terminal.printed)
 
 
+def test_a_device_that_a_person_moves_needs_no_hand(call, scene, tmp_path):
+    done = call("feel", scene, "--device", f"serial:{tmp_path}/none")
+    assert done.code == 2
+    assert f"{tmp_path}/none" in done.err
+    assert "hand" not in done.err
+
+
 @heavy  # a host more, and a file that is looked at all the time
 def test_a_file_that_changes_is_read_again_by_itself(scene):
     with program.Terminal("feel", scene, "--cues", "none") as terminal:

@@ -171,7 +171,9 @@ class OpenDevice:
         self._device = device if isinstance(device, Device) else None
         self._closed = False
         self._simulated = isinstance(device, str) and is_simulated(device)
-        moved = parse_hand(hand, seed, pointed=pointer is not None)
+        # A hand that waits to be moved is right where a person moves the device itself.
+        moves = isinstance(device, str) and has_hand(device)
+        moved = parse_hand(hand, seed, pointed=pointer is not None or not moves)
         once = hand.startswith("recorded:")
         self.steering: Steering | None = None
         self.pointer: Pointer | None = None
