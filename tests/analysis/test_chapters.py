@@ -369,3 +369,16 @@ def test_a_duration_of_an_early_answer_is_not_used(tmp_path):
     early, timed = found["trajectories"].records()
     assert early["note"] == "it was answered before it was read to its end"
     assert (early["duration_s"], timed["note"]) == (None, "")
+
+
+def test_a_cell_of_a_key_is_named_by_it(tmp_path):
+    toml = MINI.replace("[keys]", '[keys]\n"é" = "4"\nr = "0"')
+    toml = toml.replace('["a", "c", "4", "0"]', '["a", "é", "c"]')
+    session = Session(tmp_path / "s", toml)
+    session.sit()
+    found = tables(analyse_study(load_study([session.folder]), Options()))
+    named = [(row["name"], row["braille"]) for row in found["characters"].records()]
+    assert named == [("a", "⠁"), ("c", "⠉"), ("é (dot 4)", "⠈")]
+    assert {row["name"] for row in found["strings"].records()} == {"a", "é", "c"}
+    assert "é (dot 4)" in found["confusion_characters"].frame["presented"].tolist()
+    assert "é" in found["trajectories"].frame["presented"].tolist()

@@ -37,7 +37,7 @@ def test_one_press_ends_reading_and_orders_are_typed_as_ever(tmp_path):
         terminal.until("note: is in")
         terminal.type(" ")
         terminal.until("ended: .* s, by key space; type the answer")
-        terminal.type("c\n")
+        terminal.type("a\x7fx y\x17\x7f\x7f\x7fc\n")  # Backspace and Ctrl-W take back what is typed
         terminal.until("answer: trial 1 of 2, c")
         terminal.until("cue: trial 2 of 2")
         terminal.type("pause\n")
@@ -46,7 +46,7 @@ def test_one_press_ends_reading_and_orders_are_typed_as_ever(tmp_path):
         terminal.until("go: on")
         terminal.type(" ")
         terminal.until("ended: .* s, by key space")
-        terminal.type("a\n")
+        terminal.type("note\x15a\n")  # and Ctrl-U the line
         terminal.until("last: all trials are done")
         terminal.type("\n")
         assert terminal.end() == 0

@@ -12,7 +12,7 @@ from msgspec import structs
 
 from vbraille.analysis import figures
 from vbraille.analysis.input.study import excluding
-from vbraille.analysis.input.trials import Places, comparable, written
+from vbraille.analysis.input.trials import Places, cell_keys, comparable, written
 from vbraille.analysis.measures import (
     confusion,
     covariates,
@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from vbraille.analysis.input.study import Study
+    from vbraille.analysis.input.trials import CellKeys
     from vbraille.analysis.results import ReportFigure, ResultTable
     from vbraille.sessions.planning.protocol import Protocol
 
@@ -421,12 +422,13 @@ def _corrected(chapters: Sequence[Chapter], correction: str) -> list[Chapter]:
 def _of_trials(
     study: Study, trials: pd.DataFrame, places: Places, plan: FollowedPlan, options: Options
 ) -> list[Chapter]:
+    keys = cell_keys(session.protocol for session in study.sessions)
     own = legibility.legibility(trials, places)
     averages = legibility.averages(own)
     by_dots, dots_own = legibility.dots(places), legibility.dots_of_participants(places)
     errors, errors_own = confusion.errors(places), confusion.errors_of_participants(places)
     runs, slopes = trends.over_time(trials), trends.slopes(trials)
-    ways = movement.trajectories(study.sessions, trials)
+    ways = movement.trajectories(study.sessions, trials, keys)
     drawn = figures.examples(study.sessions)
     tables, ways_drawn = ((), ()) if drawn is None else ((drawn[0],), (drawn[1],))
     return [
@@ -437,10 +439,15 @@ def _of_trials(
         ),
         Chapter(
             "Characters and strings",
-            (legibility.characters(places), by_dots, dots_own, legibility.strings(trials)),
+            (
+                legibility.characters(places, keys),
+                by_dots,
+                dots_own,
+                legibility.strings(trials, keys),
+            ),
             (figures.dots(by_dots, dots_own),) if len(by_dots) else (),
         ),
-        _confusions(trials, places, options),
+        _confusions(trials, places, keys, options),
         Chapter(
             "Errors",
             (errors, errors_own),
@@ -463,17 +470,17 @@ def _of_trials(
     ]
 
 
-def _confusions(trials: pd.DataFrame, places: Places, options: Options) -> Chapter:
+def _confusions(trials: pd.DataFrame, places: Places, keys: CellKeys, options: Options) -> Chapter:
     tables: list[ResultTable] = [confusion.transmitted(trials, places, seed=options.seed)]
     drawn: list[ReportFigure] = []
     for counts, schema, reason in (
         (
-            confusion.of_characters(places),
+            confusion.of_characters(places, keys),
             confusion.CONFUSION_CHARACTERS,
             "no answer has as many places as its string",
         ),
         (
-            confusion.of_pairs(trials),
+            confusion.of_pairs(trials, keys),
             confusion.CONFUSION_PAIRS,
             "not every string has two places; a matrix is made of pairs alone",
         ),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille.analysis.input.trials import UNREAD, name_string, times
+from vbraille.analysis.input.trials import UNREAD, cell_keys, name_string, times
 from vbraille.analysis.measures.discrimination import SHAPE_OF
 from vbraille.analysis.results import (
     OTHER,
@@ -326,13 +326,14 @@ def examples(sessions: Sequence[SessionTrials]) -> tuple[ResultTable, ReportFigu
     chosen = list(_chosen(sessions))
     if not chosen:
         return None
+    keys = cell_keys(session.protocol for session in sessions)
     rows = [
         {
             "pattern": example.pattern,
             "participant": example.participant,
             "session": session,
             "trial": example.trial,
-            "presented": name_string(example.presented),
+            "presented": name_string(example.presented, keys),
             "time_s": time_s,
             "x_mm": x_mm,
             "counts": int(example.start_s <= time_s <= example.end_s),
@@ -342,7 +343,7 @@ def examples(sessions: Sequence[SessionTrials]) -> tuple[ResultTable, ReportFigu
     ]
     paths = tuple(
         Path(
-            f"{example.pattern}: {example.participant}, {name_string(example.presented)}",
+            f"{example.pattern}: {example.participant}, {name_string(example.presented, keys)}",
             tuple(example.time_s.tolist()),
             tuple(example.left_mm.tolist()),
             example.start_s,
@@ -354,7 +355,7 @@ def examples(sessions: Sequence[SessionTrials]) -> tuple[ResultTable, ReportFigu
     )
     said = "; ".join(
         f"{example.pattern}: participant {example.participant} read "
-        f"{name_string(example.presented)} in "
+        f"{name_string(example.presented, keys)} in "
         f"{to_print(example.end_s - example.start_s, Kind.TENTHS)} s (trial {example.trial} of "
         f"{session})"
         for session, example in chosen

@@ -22,6 +22,7 @@ They have the columns up to ``trial``, and
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
@@ -38,13 +39,16 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from vbraille.sessions.planning.protocol import Protocol
+
 ALL = "all"  # name of the condition in a protocol that compares none
 TRIAL_COLUMNS = (
     "participant", "session", "protocol", "condition", "block", "trial", "presented", "string_set",
     "answered", "correct", "duration_s",
 )  # fmt: skip
+CellKeys = Mapping[int, str]  # a protocol's name of a cell, by its dot mask
+NO_KEYS: CellKeys = {}
 UNREAD_MASK = 0x100  # one more than masks of eight dots
-_LETTER_AT = {UNICODE_BLANK + mask: letter for letter, mask in LETTERS.items()}
 _LETTER_OF = {mask: letter for letter, mask in LETTERS.items()}
 
 
@@ -180,8 +184,8 @@ def comparable(trials: pd.DataFrame) -> list[str]:
 
 
 @cache
-def name_cell(mask: int) -> str:
-    """Name of a cell: its letter, "blank" or its dots: "dot 4", "dots 1-3-4-6"."""
+def _name_plain(mask: int) -> str:
+    """Name of a cell that has no key."""
     if mask == UNREAD_MASK:
         return UNREAD
     if not mask:
@@ -192,17 +196,41 @@ def name_cell(mask: int) -> str:
     return f"dots {dots}" if len(dots) > 1 else f"dot {dots}"
 
 
+def name_cell(mask: int, keys: CellKeys = NO_KEYS) -> str:
+    """Name of a cell: its letter, "blank" or its dots: "dot 4", "dots 1-3-4-6".
+
+    A key of the protocol stands before the dots: "é (dots 1-2-3-4-5-6)".
+    """
+    name = _name_plain(mask)
+    return f"{keys[mask]} ({name})" if mask in keys else name
+
+
+def cell_keys(protocols: Iterable[Protocol]) -> CellKeys:
+    """Keys of protocols by dot mask, of cells that are no letters, by which people know them.
+
+    A key that is one of the letters a to z stands for another cell than its letter, and names
+    none; a cell has the name of a key if all protocols with such a key have the same one.
+    """
+    named: dict[int, set[str]] = {}
+    for protocol in protocols:
+        for key, mask in protocol.keys.items():
+            if mask and mask not in _LETTER_OF and key not in LETTERS:
+                named.setdefault(mask, set()).add(key)
+    return {mask: key for mask, (key, *others) in named.items() if not others}
+
+
 def masks_of(text: str) -> list[int]:
     """Dot mask of each place of Unicode braille; `UNREAD_MASK` for a place that was not read."""
     return [UNREAD_MASK if place == UNREAD else ord(place) - UNICODE_BLANK for place in text]
 
 
-def name_string(text: str) -> str:
-    """Name of a string: "word" if all of it is letters, else its cells' names."""
-    word = text.translate(_LETTER_AT)
-    if word.isascii():
-        return word
-    return ", ".join([name_cell(mask) for mask in masks_of(text)])
+def name_string(text: str, keys: CellKeys = NO_KEYS) -> str:
+    """Name of a string: "word" if all of it is letters and keys, else its cells' names."""
+    masks = masks_of(text)
+    known = [keys.get(mask) or _LETTER_OF.get(mask) for mask in masks]
+    if all(letter or mask == UNREAD_MASK for letter, mask in zip(known, masks, strict=True)):
+        return "".join(letter or UNREAD for letter in known)
+    return ", ".join([name_cell(mask, keys) for mask in masks])
 
 
 def times(number: int) -> str:

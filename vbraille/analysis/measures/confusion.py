@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille.analysis.input.trials import UNREAD_MASK, groups, masks_of, name_cell, name_string
+from vbraille.analysis.input.trials import (
+    NO_KEYS,
+    UNREAD_MASK,
+    groups,
+    masks_of,
+    name_cell,
+    name_string,
+)
 from vbraille.analysis.measures.legibility import cell_order, unequal_notes
 from vbraille.analysis.results import NOTE_COLUMN, PARTICIPANT, Column, Kind, Schema
 from vbraille.analysis.statistics import information
@@ -21,7 +28,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-    from vbraille.analysis.input.trials import Places
+    from vbraille.analysis.input.trials import CellKeys, Places
     from vbraille.analysis.results import ResultTable, Row
 
 MARKS = (4, 9)  # Lévesque 2009, table 4.1
@@ -69,20 +76,20 @@ INFORMATION = Schema(
 )
 
 
-def of_characters(places: Places) -> pd.DataFrame | None:
+def of_characters(places: Places, keys: CellKeys = NO_KEYS) -> pd.DataFrame | None:
     """Counts of characters: presented in rows, answered in columns; None if there are no places.
 
     The columns are the names of the rows, then other answers, and last `UNREAD`.
     """
-    return _confusion(places.frame, cell_order, name_cell)
+    return _confusion(places.frame, cell_order, partial(name_cell, keys=keys))
 
 
-def of_pairs(trials: pd.DataFrame) -> pd.DataFrame | None:
+def of_pairs(trials: pd.DataFrame, keys: CellKeys = NO_KEYS) -> pd.DataFrame | None:
     """Counts of pairs, like `of_characters`; None unless every string has two places."""
     strings = trials[["presented", "answered"]].astype(object)
     if any(len(string) != 2 for string in strings["presented"].unique()):
         return None
-    return _confusion(strings, _string_order, name_string)
+    return _confusion(strings, _string_order, partial(name_string, keys=keys))
 
 
 def to_table(

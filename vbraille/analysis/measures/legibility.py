@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from vbraille.analysis.input.trials import Places, codes, groups, name_cell, name_string
+from vbraille.analysis.input.trials import (
+    NO_KEYS,
+    CellKeys,
+    Places,
+    codes,
+    groups,
+    name_cell,
+    name_string,
+)
 from vbraille.analysis.results import (
     CONDITION,
     NOTE_COLUMN,
@@ -200,7 +208,7 @@ CHARACTERS = Schema(
     "Legibility of each character",
     _ABOUT,
     (
-        Column("name", "character", "letter, or the dots"),
+        Column("name", "character", "letter, key, or the dots"),
         Column("braille", "braille", "Unicode braille"),
         Column("dots", "dots", "how many it has", Kind.COUNT),
         *_COUNTS,
@@ -237,19 +245,19 @@ DOTS_OWN = Schema(
 )
 
 
-def characters(places: Places) -> ResultTable:
+def characters(places: Places, keys: CellKeys = NO_KEYS) -> ResultTable:
     """Table 3.2 of Lévesque 2009: one row for each character."""
     counts = _counts(places.frame["presented"].to_numpy(), places.frame)
     masks = sorted(counts.index.tolist(), key=cell_order)
     counts = counts.loc[masks].assign(
-        name=[name_cell(mask) for mask in masks],
+        name=[name_cell(mask, keys) for mask in masks],
         braille=[chr(UNICODE_BLANK + mask) for mask in masks],
         dots=[mask.bit_count() for mask in masks],
     )
     return CHARACTERS.fill(counts.reset_index(drop=True), _notes(counts, places))
 
 
-def strings(trials: pd.DataFrame) -> ResultTable:
+def strings(trials: pd.DataFrame, keys: CellKeys = NO_KEYS) -> ResultTable:
     """Table 3.3 of Lévesque 2009: one row for each string."""
     sets = trials["string_set"].cat.categories
     shown = trials[["string_set", "presented"]].drop_duplicates()
@@ -258,7 +266,7 @@ def strings(trials: pd.DataFrame) -> ResultTable:
         texts = trials[trials["text"] != ""].drop_duplicates("string_set")
         printed = dict(zip(texts["string_set"].astype(str), texts["text"], strict=True))
     counts = _counts(codes(trials["string_set"]), trials).assign(
-        name=[printed.get(string) or name_string(string) for string in sets],
+        name=[printed.get(string) or name_string(string, keys) for string in sets],
         braille=sets.to_numpy(object),
         orders=shown["string_set"].value_counts(sort=False).to_numpy(),
     )

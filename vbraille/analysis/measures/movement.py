@@ -9,7 +9,15 @@ import numpy as np
 from scipy import stats
 
 from vbraille.analysis.input.sessions import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
-from vbraille.analysis.input.trials import chosen, codes, factor, groups, name_string
+from vbraille.analysis.input.trials import (
+    NO_KEYS,
+    CellKeys,
+    chosen,
+    codes,
+    factor,
+    groups,
+    name_string,
+)
 from vbraille.analysis.results import (
     CONDITION,
     NOTE_COLUMN,
@@ -99,7 +107,9 @@ CORRELATIONS = Schema(
 
 
 def trajectories(
-    sessions: Iterable[SessionTrials], trials: pd.DataFrame | None = None
+    sessions: Iterable[SessionTrials],
+    trials: pd.DataFrame | None = None,
+    keys: CellKeys = NO_KEYS,
 ) -> ResultTable:
     """Table with a row for each trial of a string on a device, by participant, session and trial.
 
@@ -109,6 +119,8 @@ def trajectories(
         Sessions that were read.
     trials
         Trials with the names of conditions, which differ where two protocols share a name.
+    keys
+        Names of cells that protocols give.
     """
     named: dict[Any, str] = {}
     if trials is not None:
@@ -123,7 +135,7 @@ def trajectories(
                 "condition": named.get((told["session"], number), told["condition"]),
                 "session": told["session"],
                 "trial": number,
-                "presented": name_string(told["presented"]),
+                "presented": name_string(told["presented"], keys),
             }
             if isinstance(seen, Reading) and told["paused_s"] > 0:
                 seen = f"it was paused for {to_print(told['paused_s'], Kind.TENTHS)} s"
