@@ -163,7 +163,10 @@ def test_work_that_was_ended_goes_on(tmp_path):
             {"protocol": load_protocol("factors"), "effect": {"far:flat-low": "0.5"}},
             "and a group before a colon",
         ),
-        ({"protocol": load_protocol("icons"), "effect": {"all": "0.5"}}, "a column of its items"),
+        (
+            {"protocol": load_protocol("icons"), "effect": {"all": "0.5"}},
+            "circle-upright-2-mm",
+        ),
     ],
 )  # fmt: skip
 def test_what_cannot_be_asked_is_refused_in_a_sentence(changed, sentence):

@@ -268,11 +268,6 @@ def _cells(
     Conditions are one where the measure is found along them.
     """
     factors = analysis.factors or ()
-    if items := [factor for factor in factors if factor.startswith(ITEM)]:
-        raise InputError(
-            f"power is of conditions and groups, and [analysis] factors of {protocol.name} has "
-            f"{items[0]}, a column of its items; leave it out there"
-        )
     names = [condition.name for condition in protocol.conditions]
     along = analysis.measure == "threshold" and not protocol.adaptive and CONDITION not in factors
     items = _items(analysis)
