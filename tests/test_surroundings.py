@@ -38,3 +38,27 @@ def test_a_process_finds_no_signal_ignored_no_mask_and_no_wish_of_somebody():
     )  # fmt: skip
     assert strange == found('exec "$@"')
     assert strange[0] == [PYTHON_IGNORES, 0, 0o022]
+
+
+COLORAMA = """
+import atexit
+def reset_all():
+    print("\\x1b[0m")
+def init():
+    atexit.register(reset_all)
+"""
+
+
+def test_a_library_of_colors_that_numba_begins_does_not_end_the_output(tmp_path):
+    (tmp_path / "colorama").mkdir()
+    (tmp_path / "colorama" / "__init__.py").touch()
+    (tmp_path / "colorama" / "initialise.py").write_text(COLORAMA)
+    program = (
+        "import colorama.initialise as it, vbraille.cli.main as cli; it.init(); cli.main(['-V'])"
+    )
+    environment = os.environ | {"PYTHONPATH": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.startswith("vbraille ")
+    assert "\x1b" not in done.stdout

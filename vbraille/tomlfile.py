@@ -300,9 +300,10 @@ class TomlFile:
         own = [kind for kind in kinds if not kind.tag_field or table[kind.tag_field] == kind.tag]
         known = {name for kind in own for name in _keys(kind)}
         key = next((key for key in table if key not in known), "")
-        others = [repr(kind.tag) for kind in kinds if key in _keys(kind)]
+        # A kind that several keys may hold is among the kinds several times.
+        others = dict.fromkeys(repr(kind.tag) for kind in kinds if key in _keys(kind))
         if others:
-            (kind,) = own
+            kind = own[0]
             self.fail(
                 (*path, key),
                 f"is of {kind.tag_field} = {' or '.join(others)}; "

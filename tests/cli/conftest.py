@@ -1,13 +1,11 @@
 """The program called here, or in a process of its own, with a text to read."""
 
-import signal
-import sys
 from dataclasses import dataclass
 
 import pytest
 
+from tests.calling import as_before
 from vbraille.cli.main import main
-from vbraille.signals import SIGNALS
 
 TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
 
@@ -23,18 +21,12 @@ class Done:
 
 @pytest.fixture
 def call(capsys):
-    """Call the program's `main` with arguments; this process's signals stay as they were."""
+    """Call the program's `main` with arguments; this process stays as it was."""
 
     def call_main(*arguments):
-        handlers = {number: signal.getsignal(number) for number in (*SIGNALS, signal.SIGALRM)}
-        hook = sys.unraisablehook
         capsys.readouterr()
-        try:
+        with as_before():
             code = main([str(argument) for argument in arguments])
-        finally:
-            sys.unraisablehook = hook
-            for number, handler in handlers.items():
-                signal.signal(number, handler)
         said = capsys.readouterr()
         return Done(code, said.out, said.err)
 

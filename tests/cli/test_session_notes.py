@@ -76,7 +76,7 @@ def test_notes_are_in_the_report(call, noted, tmp_path):
     assert [(row["trial_before"], row["trial"], row["trial_after"]) for row in rows] == [
         ("1", "1", "1"), ("1", "1", "1"), ("2", "2", "2"), ("4", "none", "none"),
     ]  # fmt: skip
-    assert "after the last" in (tmp_path / "report" / "report.html").read_text()
+    assert 'href="tables/notes.csv"' in (tmp_path / "report" / "report.html").read_text()
 
 
 def test_a_note_between_trials_and_in_practice_is_tied_to_what_is_beside_it():

@@ -102,6 +102,11 @@ REFUSED = {
         f"{CANVAS}{CIRCLE}{STROKE}start_mm = [1, 2]\n",
         "line 9: [[elements]] number 1 start_mm is of kind = 'linear-grating' or 'line'; leave",
     ),
+    "a key of another kind, within parts that several kinds have": (
+        f"{CANVAS}{CIRCLE}"
+        'fill.texture = {kind = "group", parts = [{kind = "linear-grating", angle_deg = 9}]}\n',
+        "angle_deg is of kind = 'label'; leave it out of kind = 'linear-grating'",
+    ),
     "nan": (
         f"{CANVAS}{CIRCLE}stroke.width_mm = nan\n",
         "line 8: [[elements]] number 1 stroke width is nan mm; it must be 0.05 to 10000 mm",

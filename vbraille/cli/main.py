@@ -5,6 +5,7 @@ A command's module is imported only when the command is called.
 
 from __future__ import annotations
 
+import atexit
 import errno
 import os
 import sys
@@ -38,6 +39,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     if sentence:
         with suppress(OSError):
             print(f"vbraille: {printable(' '.join(sentence.split()))}", file=sys.stderr)
+    # numba begins colorama where an environment has it, which would end the output by an escape.
+    if (colors := sys.modules.get("colorama.initialise")) is not None:
+        atexit.unregister(colors.reset_all)
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

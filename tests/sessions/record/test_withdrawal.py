@@ -4,6 +4,7 @@ from shutil import copytree
 
 import pytest
 
+from tests.calling import as_before
 from tests.sessions.sittings import MINI, Session
 from vbraille.cli.main import main
 from vbraille.errors import InputError
@@ -109,7 +110,7 @@ def test_the_command_asks_before_and_says_what_it_removed(
 ):
     typed = tmp_path / "typed"
     typed.write_text(f"{answer}\n")
-    with typed.open() as lines:
+    with typed.open() as lines, as_before():
         monkeypatch.setattr("sys.stdin", lines)
         assert main(["session", "withdraw", "P1", str(study)]) == code
     said = capsys.readouterr().out
