@@ -189,6 +189,14 @@ ADVICE = {
         LinearGrating(ridge_mm=10, gap_mm=6),
         "has a grating of 16 mm, which is felt weakly; 2 to 15 mm are felt best",
     ),
+    "a quick flow": (
+        circle(fill=Fill(texture=LinearGrating(ridge_mm=3, gap_mm=2, velocity_mm_s=-40))),
+        "has a grating that moves by 8 waves a second; 1 to 5 are felt best",
+    ),
+    "a quick flow along a stroke": (
+        circle(stroke=Stroke(along=Along(ridge_mm=2, velocity_mm_s=12))),
+        "has a grating along a stroke that moves by 6 waves a second",
+    ),
     "a fine stroke": (
         circle(stroke=Stroke(along=Along(ridge_mm=1.0))),
         "has a grating along a stroke of 1 mm, which is felt as noise",

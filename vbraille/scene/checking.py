@@ -212,6 +212,7 @@ def _grouped(told: Sequence[tuple[int, str]], elements: Sequence[ElementReport])
 LEAST_BLANK_MM = 2.5
 MOST_TEXTURES = 5
 LEAST_WAVE_MM, MOST_WAVE_MM = 2.0, 15.0
+MOST_FLOW_HZ = 5.0
 LEAST_STROKE_MM, MOST_STROKE_MM = 2.0, 10.0
 # Size of the largest array of 8 × 8, the Latero's, which reaches beyond its centre's travel.
 _ARRAY_MM = (9.0, 12.7)
@@ -245,7 +246,9 @@ def _element_advice(element: AnyPattern, box: Box | None, canvas: Canvas) -> Ite
                 yield f"reaches {beyond:.1f} mm beyond the canvas"
     for pattern in each(element):
         if isinstance(pattern, LinearGrating | RadialGrating):
-            yield from _of_wave("a grating", pattern.ridge_mm + pattern.gap_mm)
+            wave_mm = pattern.ridge_mm + pattern.gap_mm
+            yield from _of_wave("a grating", wave_mm)
+            yield from _of_flow("a grating", pattern.velocity_mm_s, wave_mm)
         if isinstance(pattern, Shape) and pattern.stroke is not None:
             stroke = pattern.stroke
             if not LEAST_STROKE_MM <= stroke.width_mm <= MOST_STROKE_MM:
@@ -256,6 +259,7 @@ def _element_advice(element: AnyPattern, box: Box | None, canvas: Canvas) -> Ite
             if stroke.along is not None:
                 length = stroke.along.ridge_mm + stroke.along.gap_mm
                 yield from _of_wave("a grating along a stroke", length)
+                yield from _of_flow("a grating along a stroke", stroke.along.velocity_mm_s, length)
 
 
 def _of_wave(what: str, wave_mm: float) -> Iterator[str]:
@@ -263,6 +267,16 @@ def _of_wave(what: str, wave_mm: float) -> Iterator[str]:
         yield f"has {what} of {wave_mm:g} mm, which is felt as noise; 2 to 15 mm are felt best"
     elif wave_mm > MOST_WAVE_MM:
         yield f"has {what} of {wave_mm:g} mm, which is felt weakly; 2 to 15 mm are felt best"
+
+
+def _of_flow(what: str, velocity_mm_s: float, wave_mm: float) -> Iterator[str]:
+    """Sentences about a flow that is faster than what was felt well: Lévesque 2009, 9.7."""
+    rate_hz = abs(velocity_mm_s) / wave_mm
+    if rate_hz > MOST_FLOW_HZ:
+        yield (
+            f"has {what} that moves by {rate_hz:.3g} waves a second; 1 to {MOST_FLOW_HZ:g} are "
+            "felt best"
+        )
 
 
 def _texture_count(scene: Scene) -> int:
