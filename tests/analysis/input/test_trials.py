@@ -57,7 +57,6 @@ def test_strings_are_sorted_by_code_point():
     ],
 )
 def test_cells_have_names(mask, name):
-    name_cell.cache_clear()  # laws, which are not in coverage, may have asked for it before
     assert name_cell(mask) == name
 
 
