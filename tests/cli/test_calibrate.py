@@ -140,6 +140,7 @@ def test_a_file_that_cannot_be_used_is_one_sentence(spec, tmp_path, call, text, 
     assert said in refused.err
 
 
+@heavy  # it waits for ten seconds; two are waited for in tests/engine/test_host_drivers.py
 def test_a_driver_that_never_opens_its_device_is_named_and_ended(tmp_path):
     module = "import time\n\ndef open_never(address, wanted):\n    time.sleep(600)\n"
     environment = drivers.install(tmp_path, "never", "open_never", module)

@@ -102,6 +102,7 @@ def test_every_frame_that_was_sent_is_made_again_bit_for_bit(tmp_path):
     assert ((ticks["share"] > 0) & (ticks["share"] < 1)).sum() > 20
 
 
+@heavy  # of a reading it is tested in test_rest.py
 def test_a_driver_that_cannot_let_go_is_named_and_the_session_is_whole(tmp_path):
     protocol, answers, log = (tmp_path / name for name in ("p.toml", "answers", "log"))
     protocol.write_text(STRINGS)

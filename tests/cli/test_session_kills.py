@@ -21,9 +21,8 @@ def test_a_session_that_is_killed_goes_on_where_it_was(tmp_path):
     assert tally.most_attempts > 1
 
 
-@pytest.mark.parametrize(
-    "protocol", [ADAPTIVE, pytest.param(STAIRCASES, marks=heavy)], ids=["quest", "staircases"]
-)
+@heavy  # between any two events it is cut in this process, in tests/sessions/running
+@pytest.mark.parametrize("protocol", [ADAPTIVE, STAIRCASES], ids=["quest", "staircases"])
 def test_one_that_goes_by_the_answers_asks_what_it_would_have_asked(protocol, tmp_path):
     print(f"seed: {SEED}")
     tally = kill_often(KILLS_BY_ANSWERS, SEED, tmp_path, protocol)

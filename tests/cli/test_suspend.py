@@ -106,6 +106,7 @@ def test_ctrl_z_rests_the_array_and_fg_gives_the_keys_back(shell, tmp_path, text
     assert not frames(log)[-1].any()
 
 
+@heavy  # with keys it is tested above
 def test_without_keys_the_array_rests_too(shell, tmp_path, text):
     log = tmp_path / "log"
     drivers.install(tmp_path)
