@@ -20,17 +20,18 @@ LIGHT = [
     "page story.txt --format unicode",
     "structure story.txt",
     "session plan letters --participant P01 --seed 1",
-    "scene check house.scene",
     "scene schema",
     "settings",
 ]
 # Each compiles what drives the actuators, which a wheel does not bring, or runs on it.
 HEAVY = [
     "setup",
+    "scene check house.scene",
     "read story.txt --device sim --hand sweep:400 --lines 1",
     "session run rating --participant P1 --answers simulated --device sim --fast --out P1",
     "analyse P1 --out report",
 ]
+TEXTS = (("story.txt", "english.txt"), ("house.scene", "scenes/house.scene"))
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +48,7 @@ def call(tmp_path_factory):
     # A folder that a .pth file names is searched, while .pth files in it, as that of a checkout
     # that can be edited, are not read.
     (packages / "needed.pth").write_text(sysconfig.get_path("purelib"))
-    for name, source in (("story.txt", "english.txt"), ("house.scene", "scenes/house.scene")):
+    for name, source in TEXTS:
         shutil.copy(ROOT / "texts" / source, folder / name)
     environment = {
         "PATH": os.environ["PATH"],
@@ -111,7 +112,8 @@ def test_another_python_reads_with_all_that_pip_installs(tmp_path, name):
         [python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"], text=True
     )
     (Path(place.strip()) / "louis").symlink_to(Path(louis.__file__).parent)
-    shutil.copy(ROOT / "texts" / "english.txt", tmp_path / "story.txt")
+    for name, source in TEXTS:
+        shutil.copy(ROOT / "texts" / source, tmp_path / name)
     for line in HEAVY:
         done = subprocess.run(
             [python, "-m", "vbraille", *line.split()],

@@ -129,7 +129,7 @@ def test_without_keys_the_array_rests_too(shell, tmp_path, text):
 @pytest.mark.parametrize(
     ("command", "begun", "again", "key", "said"),
     [
-        ("feel house.scene --cues none", "h says the keys", "feeling", "t", "picture: A house"),
+        ("feel house.scene --cues none", "h says the keys", "feeling", "V", "picture: A house"),
         ("tune", "now: 1", "reading", " ", "now: 2"),
         ("device calibrate sim: --model vbd", "actuator 1 ", "actuator 1 ", "n", "actuator 2 "),
     ],

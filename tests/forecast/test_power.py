@@ -112,6 +112,7 @@ def test_an_odds_ratio_gives_the_other_shares():
     assert shares == {"T0": 0.75, "T25": 0.5, "T100": 0.75}
 
 
+@heavy  # by a closed form it is tested above
 def test_power_of_a_crossed_design_is_that_of_an_independent_simulation():
     """2 × 3 within people, and 2 groups; bench_power has as many studies as 1.5 points need."""
     studies = by_tier(150, 2000, 10_000)
