@@ -33,6 +33,7 @@ test: .venv/tests
 	@$(MAKE) --no-print-directory -j2 lint tests
 
 tests: .venv/tests .venv/compiled
+	@$(BIN)/vbraille setup  # in a second, where a copy of the checkout has other times of its files
 	$(PYTEST)
 
 # What is heavier than a change's every trial should be: more of each law, coverage by branch, and
