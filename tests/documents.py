@@ -129,7 +129,7 @@ def _usual(field):
 
 
 def _told(kind):
-    """What the docstrings say of the fields of a class, by their names."""
+    """Descriptions of the fields of a class in its docstrings, by name."""
     bases = [base for base in reversed(kind.__mro__) if "Parameters" in (base.__doc__ or "")]
     texts = [pair for base in bases for pair in described(base)[1].items()]
     own = {name: told for names, told in texts for name in names.split(", ")}

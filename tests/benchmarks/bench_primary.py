@@ -80,7 +80,7 @@ def false_findings(name: str, studies: int) -> Result:
 
 
 class Coverage(NamedTuple):
-    """Intervals that held the truth, and those that were given, of so many studies."""
+    """Shares of simulated studies whose interval holds the truth, and whose interval is given."""
 
     what: str
     held: int

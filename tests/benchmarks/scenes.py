@@ -114,7 +114,7 @@ def without_signals(scene: Scene) -> Scene:
 
 
 def hidden(scene: Scene, layers: int) -> Scene:
-    """Scene of which so many of the last layers are off."""
+    """Make a scene whose last layers are switched off, as many as asked for."""
     signals = {"off": Switch(levels=(0.0, 1.0))}
     shown, others = scene.elements[:-layers], scene.elements[-layers:]
     off = tuple(replace(element, factor="off") for element in others)

@@ -70,7 +70,7 @@ def test_shares_differ_as_the_closed_form_says():
 
 @pytest.mark.parametrize("model", ["trials", "means", "scores"])
 def test_a_study_is_tested_as_the_analysis_does(model):
-    """What is found in each study is what the report would find."""
+    """A simulated study finds what its report would find."""
     plan = replace(PLAN, model=model, sizes=(8,))
     found = np.zeros(4, int)
     for study in range(12):

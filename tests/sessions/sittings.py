@@ -157,7 +157,7 @@ def crash(folder, size):
 
 
 def gone_on(session, folder, size, *script, **given):
-    """What comes of a copy of a session whose journal is cut, as by a kill, and that is resumed.
+    """Resume a copy of a session whose journal was cut, as by a kill, and give what comes of it.
 
     Also gives the number of its trials and questions that had an answer before.
     """

@@ -1,4 +1,4 @@
-"""What else right answers go with, of trials in a few words."""
+"""Covariates of right answers, in trials of a few words each."""
 
 import numpy as np
 

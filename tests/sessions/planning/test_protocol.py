@@ -299,7 +299,7 @@ def _geometry(protocol, value):
 
 
 class TestPlannedAnalysis:
-    """What a study asks is fixed in its plan."""
+    """The plan of a session fixes the question of its study."""
 
     @pytest.mark.parametrize("name", builtin_names())
     def test_each_shipped_protocol_plans_one(self, name):
