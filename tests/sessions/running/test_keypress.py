@@ -2,13 +2,17 @@
 
 import os
 import select
+import sys
 import termios
 
 import pytest
 
 from tests.sessions.sittings import MINI, Session, of
+from vbraille.devices import open_device
+from vbraille.engine.batch import BatchEngine
+from vbraille.sessions import session as door
 from vbraille.sessions.record.export import rows
-from vbraille.sessions.running.responses import TerminalKey
+from vbraille.sessions.running.responses import TerminalKey, Typed
 
 
 @pytest.fixture
@@ -81,3 +85,29 @@ def test_where_no_terminal_is_enter_ends_reading_and_the_console_says_so(tmp_pat
     )
     assert [e["by"] for e in of(sat.events, "ended")] == ["key:enter"]
     assert rows(sat.record)[0]["ended_by"] == "key:enter"
+
+
+def test_the_key_types_a_blank_again_before_the_end_of_reading_is_told(
+    tmp_path, terminal, monkeypatch
+):
+    """An answer typed as soon as it is asked for can be erased as a whole, blanks and all."""
+    person, program = terminal
+    typed = {"cue": b"note x\n", "note: is in": b" ", "ended": b"stop\n"}
+    ends = []
+
+    def say(sentence):
+        if sentence.startswith("ended"):
+            ends.append(termios.tcgetattr(program)[6][termios.VEOL])
+        for beginning, keys in typed.items():
+            if sentence.startswith(beginning):
+                os.write(person, keys)
+
+    Session(tmp_path / "s", MINI + '[trial]\nend = "key:space"\n')
+    with os.fdopen(os.dup(program)) as stdin:
+        monkeypatch.setattr(sys, "stdin", stdin)
+        door.Session.resume(
+            tmp_path / "s",
+            fast=False,
+            engine=lambda spec, wanted: BatchEngine(open_device(spec, wanted), poll_ticks=100),
+        ).run(Typed(), say=say)
+    assert ends == [b"\0"]

@@ -600,6 +600,7 @@ class Runner:
             return
         self.log(events.Ended, trial, attempt=self._attempt, stimulus=self.stimulus, by=by, **when)
         self.presenter.end_reading()
+        self.await_key(self.reading)  # an answer may be typed as soon as it is asked for
         self._exposed = None
         key = by.replace(":", " ")
         if self.more_to_come:
