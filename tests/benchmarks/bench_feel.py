@@ -19,11 +19,13 @@ import numpy as np
 from msgspec.structs import replace as replace_fields
 
 from tests.benchmarks.timing import Result
+from vbraille.display import Pose
 from vbraille.engine.host import Host
 from vbraille.engine.record import Flag
 from vbraille.feeling.composing import compose
 from vbraille.feeling.loading import FileWatch, load_scene
 from vbraille.reading.commands.scene import BOUND
+from vbraille.reading.keyboard import POLL_S
 from vbraille.reading.sceneview import SceneView
 from vbraille.render import MODELS
 from vbraille.render.program import Program
@@ -263,6 +265,49 @@ def changes_of_a_file(shapes: int, bar_ms: float) -> Iterator[Result]:
     )
 
 
+def zooms_and_pans(shapes: int, bar_ms: float) -> Iterator[Result]:
+    """From a key that zooms or pans, as `vbraille feel` looks for it, to the fade's first frame."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "a.scene")
+        path.write_text(write_scene(Scene(canvas=REACHED, elements=circles(shapes))))
+        loaded = load_scene(path, MODEL.style)
+        program = compose(loaded, MODEL.display)
+        host, steering = hosted(20 * program.nbytes)
+        waited: dict[str, list[float]] = {"+": [], "]": []}
+        with host:
+            device = SimpleNamespace(engine=host, style=MODEL.style, steering=steering, held=False)
+            device.pose = Pose(0, 100.0, 75.0)
+            feeler = SceneView(
+                loaded,
+                device,
+                rate_hz=1000.0,
+                say=lambda _: None,
+                bound=BOUND,
+                room=20 * program.nbytes,
+            )
+            feeler.start(program)
+            steering.give(ReadPage(20, 10.0, 200.0))
+            _wait(host, 1.0)
+            for key in ("+", "]", "+", "]", "+", "]", "+", "]", "0", "+", "]", "+", "]", "+", "]"):
+                begun_ns = time.monotonic_ns()
+                feeler.press(key)
+                taken = []
+                while feeler._making is not None:
+                    time.sleep(POLL_S)
+                    taken.append(host.poll())
+                    feeler.attend(0.0)
+                taken.append(_wait(host, 0.3))
+                if key in waited:
+                    waited[key].append(_faded_ms(np.concatenate(taken), begun_ns))
+    for key, name, bar in (("+", "zooms", bar_ms), ("]", "pans", 20.0)):
+        yield Result(
+            f"from a key that {name} a picture of {shapes} circles to the first frame, median",
+            f"≤ {bar:g} ms",
+            f"{np.median(waited[key]):.1f} ms (most {max(waited[key]):.1f})",
+            float(np.median(waited[key])) <= bar,
+        )
+
+
 def _wait(host: Host, seconds: float) -> NDArray[np.void]:
     """Let some time go by; the records of its ticks."""
     taken, end_s = [host.poll()], time.monotonic() + seconds
@@ -285,6 +330,8 @@ def run(seconds: float = BLOCK_S) -> Iterator[Result]:
     yield from changes_of_one_shape()
     yield from changes_of_a_file(100, 100.0)
     yield from changes_of_a_file(1000, np.inf)
+    yield from zooms_and_pans(300, 100.0)
+    yield from zooms_and_pans(1000, 250.0)
 
 
 if __name__ == "__main__":

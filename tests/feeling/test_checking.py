@@ -128,3 +128,13 @@ FAST = "{ kind = 'linear-grating', ridge_mm = 1, velocity_mm_s = 900 }"
 def test_what_feel_would_refuse_is_said(tmp_path, element, says):
     (remark,) = [one for one in advice(tmp_path, element) if "cannot be felt" in one]
     assert says in remark
+
+
+def test_each_zoom_from_which_something_is_there_is_looked_at(tmp_path):
+    far = circle(60, 60, 20, "zoom_to = 2")
+    near = circle(60, 60, 5, f"zoom_from = 2, {FILL % (24, 0)}")
+    *_, said = advice(tmp_path, far, near)
+    assert "at a zoom of 2, " in said
+    assert (
+        "line 2: element 2, circle is filled with waves of 24 mm, longer than the 20.0 mm" in said
+    )

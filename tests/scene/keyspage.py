@@ -12,7 +12,7 @@ from vbraille.scene.schema import scene_schema, summary, tables_of, told
 
 PAGE = Path(__file__).parents[2] / "docs" / "scenes.md"
 BEGIN, END = "<!-- keys: made by tests/scene/keyspage.py -->\n", "<!-- end of keys -->\n"
-COMMON = ("id", "title", "description", "amplitude", "inverted", "vibration", "factor")
+COMMON = tuple(Pattern.__struct_fields__)
 WORDS = {"number": "number", "integer": "whole number", "boolean": "true or false"}
 
 

@@ -20,6 +20,7 @@ from vbraille.scene.checking import LEAST_BLANK_MM, frequencies, kind_of
 from vbraille.scene.patterns import Circle, Dots, Group, Label, PathShape, Polygon
 from vbraille.scene.textures import LinearGrating
 from vbraille.scene.traversal import children, each
+from vbraille.scene.zooming import levels
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -88,8 +89,17 @@ def felt_advice(loaded: LoadedScene) -> tuple[str, ...]:
 
     They are about parts that are hidden, too weak or too close together, labels that lie on shapes,
     fills without room, waves that are longer than their shape, and what no display can show.
+
+    Where parts are there at some zooms only, the picture is looked at from each of these on.
     """
-    return tuple(dict.fromkeys(_Check(loaded).advice()))
+    said = dict.fromkeys(_Check(loaded).advice())
+    for zoom in levels(*loaded.opened.resolved.elements):
+        try:
+            advice = [*_Check(loaded.zoomed(zoom)).advice()]
+        except InputError as error:
+            advice = [str(error)]
+        said |= {f"at a zoom of {zoom:g}, {one}": None for one in advice if one not in said}
+    return tuple(said)
 
 
 class _Check:
@@ -132,8 +142,12 @@ class _Check:
         whole = f"{kind_of(element)} {label_of(element)}".strip()
         if pattern is not element:
             whole += f", its {kind_of(pattern)} {label_of(pattern)}".rstrip()
-        place = self._loaded.opened.place(number)
-        return f"{place}: element {number + 1}, {whole} {sentence}"
+        place = self._loaded.place(number)
+        return f"{place}: {self._element(number)}, {whole} {sentence}"
+
+    def _element(self, number: int) -> str:
+        """Words for an element by its number in its file."""
+        return f"element {self._loaded.numbers[number] + 1}"
 
     def _part(self, number: int, pattern: AnyPattern, *, covers: bool) -> _Part | None:
         """Find where a part is felt; None for one that is everywhere, or nowhere on the canvas."""
@@ -205,7 +219,7 @@ class _Check:
                     )
 
     def _called(self, part: _Part) -> str:
-        name = f"element {part.number + 1}"
+        name = self._element(part.number)
         inner = label_of(part.pattern)
         is_whole = part.pattern is self._scene.elements[part.number]
         return name if is_whole else f"the {inner or kind_of(part.pattern)} of {name}"

@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.render import work
+from vbraille.render.machine import words
 from vbraille.render.program import Program
 from vbraille.render.scene.compiling import compile_scene, highest_hz
 from vbraille.scene.patterns import Group
@@ -68,11 +69,24 @@ def _refuse_too_fast(loaded: LoadedScene, rate_hz: float) -> None:
         try:
             highest_hz(element, number + 1, rate_hz)
         except ValueError as error:
-            raise InputError(f"{loaded.opened.place(number)}: {error}") from None
+            raise InputError(f"{loaded.place(number)}: {error}") from None
 
 
-def at_height(program: Program, y_mm: float) -> Program:
-    """Make the same program for an array that is at another height where it measures none."""
+def viewed(
+    program: Program, own_y_mm: float, origin_mm: tuple[float, float] = (0.0, 0.0)
+) -> Program:
+    """Make the same program of a scene for an array that is elsewhere on the canvas.
+
+    Parameters
+    ----------
+    program
+        The program.
+    own_y_mm
+        Height of an array whose carriage measures no y.
+    origin_mm
+        Place of the canvas that is under the array where its carriage is at 0, 0.
+    """
     numbers = program.numbers.copy()
-    numbers[work.OWN_Y] = y_mm
+    numbers[work.OWN_Y] = own_y_mm
+    numbers[words.ORIGIN_X], numbers[words.ORIGIN_Y] = origin_mm
     return Program(numbers, program.table)

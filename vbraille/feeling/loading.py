@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from vbraille.errors import InputError
@@ -14,6 +14,7 @@ from vbraille.scene.images import load_bitmaps
 from vbraille.scene.patterns import Image, Label
 from vbraille.scene.reading import open_scene
 from vbraille.scene.traversal import each
+from vbraille.scene.zooming import levels, zoomed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.render.braille.style import BrailleStyle
+    from vbraille.scene.bitmap import Bitmap
     from vbraille.scene.locations import OpenedScene
     from vbraille.scene.scene import Scene
 
@@ -37,23 +39,45 @@ class LoadedScene:
         The scene, and where it was written.
     assets
         Bitmaps of its images and cells of its labels.
+    scene
+        The scene as it is shown, with what is there at its zoom.
+    numbers
+        Numbers of the elements in the file, from 0.
     notes
         What was ignored, or cannot be felt as it stands, each in one sentence.
+    zoom
+        Zoom of the scene; 1 as the file has it.
     """
 
     opened: OpenedScene
     assets: Assets
-    notes: tuple[str, ...] = field(default=())
-
-    @property
-    def scene(self) -> Scene:
-        """The scene as it is shown."""
-        return self.opened.resolved
+    scene: Scene
+    numbers: tuple[int, ...]
+    notes: tuple[str, ...] = ()
+    zoom: float = 1.0
 
     @property
     def title(self) -> str:
         """Title of the scene, or the name of its file."""
         return self.scene.title or self.opened.path.name
+
+    def place(self, number: int) -> str:
+        """File and line of an element as it is shown, by its number from 0."""
+        return self.opened.place(self.numbers[number])
+
+    def zoomed(self, zoom: float) -> LoadedScene:
+        """Make the scene, which is as its file has it, at a zoom; see `vbraille.scene.zooming`.
+
+        Images are read again: the nearer one is, the more of them is to be felt.
+
+        Raises
+        ------
+        InputError
+            If it would be too large or too small, or an image cannot be read any more.
+        """
+        if zoom == 1.0:
+            return self
+        return shown_at(self.opened, self.assets, self.notes, zoom)
 
     def boxes(self) -> Mapping[Image | Label, Box]:
         """Boxes of its images and labels, which `vbraille.scene.bounds` cannot know."""
@@ -91,14 +115,41 @@ def with_assets(opened: OpenedScene, style: BrailleStyle) -> LoadedScene:
     scene = opened.resolved
     kinds = {type(pattern) for pattern in each(*scene.elements)}
     if kinds.isdisjoint((Image, Label)):  # Places take as long as all the rest of it.
-        return LoadedScene(opened, Assets(), opened.warnings)
+        return shown_at(opened, Assets(), opened.warnings)
     places = opened.places
     bitmaps = load_bitmaps(scene, opened.folder, places)
     if Label not in kinds:
-        return LoadedScene(opened, Assets(bitmaps), opened.warnings)
+        return shown_at(opened, Assets(bitmaps), opened.warnings)
     written = write_labels(scene, style, places)
-    notes = (*opened.warnings, *label_warnings(scene, written, places))
-    return LoadedScene(opened, Assets(bitmaps, written), notes)
+    notes = dict.fromkeys(opened.warnings)
+    for zoom in (1.0, *levels(*scene.elements)):
+        made = zoomed(scene, zoom, bitmaps)
+        there = {new: written[old] for new, old in made.labels.items()}
+        notes |= dict.fromkeys(label_warnings(made.scene, there, [places[n] for n in made.numbers]))
+    return shown_at(opened, Assets(bitmaps, written), tuple(notes))
+
+
+def shown_at(
+    opened: OpenedScene, assets: Assets, notes: tuple[str, ...] = (), zoom: float = 1.0
+) -> LoadedScene:
+    """Make a scene at a zoom, of the assets that it has as its file has it.
+
+    Raises
+    ------
+    InputError
+        If it would be too large or too small, or an image cannot be read any more.
+    """
+    try:
+        made = zoomed(opened.resolved, zoom, assets.bitmaps)
+    except ValueError as error:
+        raise InputError(f"{opened.path} at a zoom of {zoom:g}: {error}") from None
+    written = {new: assets.written[old] for new, old in made.labels.items()}
+    bitmaps: Mapping[Image, Bitmap] = {new: assets.bitmaps[old] for new, old in made.images.items()}
+    if zoom != 1.0 and bitmaps:
+        bitmaps = load_bitmaps(made.scene, opened.folder)
+    # Others are there at other zooms.
+    known = Assets({**assets.bitmaps, **bitmaps}, {**assets.written, **written})
+    return LoadedScene(opened, known, made.scene, made.numbers, notes, zoom)
 
 
 def check_fits(scene: Scene, display: Display) -> None:

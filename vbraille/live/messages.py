@@ -208,6 +208,8 @@ class SceneShown(msgspec.Struct, frozen=True):
     image
         Address of its deflection map, as a rule with the PNG in it (``data:``); white is rest, and
         black is full deflection. Empty where there is none.
+    left_mm, top_mm
+        Place of the canvas where the carriage is at 0, 0.
     """
 
     title: str
@@ -215,6 +217,8 @@ class SceneShown(msgspec.Struct, frozen=True):
     width_mm: float
     height_mm: float
     image: str = ""
+    left_mm: float = 0.0
+    top_mm: float = 0.0
 
 
 class PlayedEvent(msgspec.Struct, frozen=True):

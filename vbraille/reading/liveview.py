@@ -8,6 +8,8 @@ from abc import ABC, abstractmethod
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final, Self
 
+from msgspec.structs import replace
+
 from vbraille.config.settings import KNOBS, say_mapping
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Changed, Silent, Stalled, Stranger, Unplugged
@@ -302,14 +304,15 @@ class FeltState(ExploredState):
         """Take note of events of the device, all of which are said."""
 
     def _compared(self) -> tuple[object, ...]:
-        return self._feeler.loaded, self._feeler.under
+        return self._feeler.shown, self._feeler.aperture, self._feeler.under
 
     def _parts(self) -> dict[str, Any]:
-        under, loaded = self._feeler.under, self._feeler.loaded
+        under, shown, aperture = self._feeler.under, self._feeler.shown, self._feeler.aperture
+        scene = self._scene(shown)
         return {
-            "title": loaded.title,
+            "title": shown.title,
             "place": "" if under is None else f"here: {under.name}",
-            "scene": self._scene(loaded),
+            "scene": replace(scene, left_mm=aperture.left_mm, top_mm=aperture.top_mm),
         }
 
     def _scene(self, loaded: LoadedScene) -> SceneShown:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from vbraille.errors import InputError
-from vbraille.feeling.composing import at_height, compose
+from vbraille.feeling.aperture import ZOOMS, Aperture
+from vbraille.feeling.composing import compose, viewed
 from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import FileWatch, check_fits, load_scene
 from vbraille.reading.keys import Context
 from vbraille.reading.view import Cue, Prompt, View
 from vbraille.scene.checking import kind_of
+from vbraille.scene.measures import MOST_MM
 from vbraille.scene.signals import Switch, packed
 from vbraille.scene.traversal import each
 from vbraille.simulation.steering import GlideTo, ReadPage
@@ -20,6 +23,7 @@ from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from concurrent.futures import Future
 
     import numpy as np
     from numpy.typing import NDArray
@@ -30,7 +34,6 @@ if TYPE_CHECKING:
     from vbraille.reading.device import OpenDevice
     from vbraille.reading.keys import Bound
     from vbraille.render.program import Program
-    from vbraille.scene.bounds import Box
 
 _EVERY_S: Final = 1.0
 _NS_PER_S: Final = 1_000_000_000
@@ -54,18 +57,20 @@ class Guide:
     ----------
     there : bool
         Whether the finger has come to the place.
+    at_mm : tuple[float, float]
+        The place.
     """
 
     def __init__(self, name: str, at_mm: tuple[float, float], *, down: bool = True) -> None:
         self.there = False
+        self.at_mm = at_mm
         self._name = name
-        self._at_mm = at_mm
         self._down = down
         self._said_s = -math.inf
 
     def sentence(self, place: tuple[float, float], now_s: float) -> str:
         """Words for the way from a place in mm; empty if nothing is to be said now."""
-        to = self._at_mm if self._down else (self._at_mm[0], place[1])
+        to = self.at_mm if self._down else (self.at_mm[0], place[1])
         if math.dist(to, place) <= _THERE_MM:
             self.there = True
             return f"there: {self._name}"
@@ -88,21 +93,13 @@ def _way(place: tuple[float, float], to: tuple[float, float]) -> str:
     return ", ".join(ways) or "less than 1 mm"
 
 
-def _placed(x_mm: float, y_mm: float) -> str:
-    return f"{x_mm:.0f} mm from the left, {y_mm:.0f} mm from the top"
-
-
-def _sized(box: Box) -> str:
-    return f"{box.right - box.left:.0f} mm × {box.bottom - box.top:.0f} mm"
-
-
-def _looks(element: NamedElement) -> str:
+def _looks(element: NamedElement, aperture: Aperture) -> str:
     """Words for an element that says nothing of itself: its kind, its size and its textures."""
     pattern = element.pattern
     kinds = [kind_of(one).replace("-", " ") for one in each(pattern)]
     inner = dict.fromkeys(kind for kind in kinds[1:] if kind != "use")
     parts = f"{' with ' + ', '.join(inner) if inner else ''}"
-    return f"{kinds[0]}, {_sized(element.box)}{parts}"
+    return f"{kinds[0]}, {aperture.sized(element.box)}{parts}"
 
 
 # Ours: as a hand that explores goes, and one that is led somewhere.
@@ -141,11 +138,19 @@ class SceneView(View):
     goes
         Whether a simulated hand goes over the picture by itself; without anybody at a keyboard
         that is all.
+    zoom
+        Zoom to begin with.
 
     Attributes
     ----------
+    aperture : Aperture
+        Zoom, and which part of the picture is within reach.
     contrast : float
         Factor of all deflections, from 0 to 1.
+    loaded : LoadedScene
+        The scene as its file has it.
+    shown : LoadedScene
+        The scene at its zoom.
     under : NamedElement or None
         Element that was under the finger when that was last looked for.
     """
@@ -166,16 +171,21 @@ class SceneView(View):
         entering: bool = False,
         watched: bool = False,
         goes: bool = False,
+        zoom: float = 1.0,
     ) -> None:
         super().__init__(device.engine, say, bound, cue)
         self.loaded = loaded
+        self.shown = loaded.zoomed(zoom)
+        reach_mm = device.engine.display.travel_mm, device.engine.display.height_mm
+        self.aperture = Aperture(reach_mm, zoom)
         self.contrast = 1.0
         self.entering = entering
         self.under: NamedElement | None = None
         self._device = device
         self._room = room
         self._rate_hz = rate_hz
-        self._at_mm = loaded.scene.canvas.height_mm / 2 if at_mm is None else at_mm
+        # Of the canvas at its zoom, as all places here but those that are said.
+        self._at_mm = zoom * (loaded.scene.canvas.height_mm / 2 if at_mm is None else at_mm)
         self._chosen = at_mm is not None
         self._outside = False  # whether it is to be seen if a person's finger is on the picture
         self._aim: tuple[float, float] | None = None  # where keys have sent the hand
@@ -185,7 +195,11 @@ class SceneView(View):
         self._spot: Spot | None = None  # what the finger was on when that was last looked for
         self._element = -1  # number of the element that was gone to last
         self._states: dict[int, int] = {}  # of the picture's switches, by their keys
-        self._index = self._index_of(loaded)
+        self._index = self._index_of(self.shown)
+        self._whole: tuple[LoadedScene, float, Program] | None = None  # at a contrast
+        self._maker = ThreadPoolExecutor(1)  # makes the picture at another zoom meanwhile
+        self._making: Future[tuple[LoadedScene, Program]] | None = None
+        self._zoom_wanted = zoom
         self._watch = FileWatch(Path(loaded.opened.path)) if watched else None
         self._goes = goes and device.steering is not None
 
@@ -198,21 +212,24 @@ class SceneView(View):
     def place(self) -> tuple[float, float] | None:
         """Place of the array's centre on the canvas, in mm; None before it is known."""
         pose = self._device.pose
-        return None if pose is None else (pose.x_mm, pose.y_mm)
+        return None if pose is None else self.aperture.on_canvas(pose.x_mm, pose.y_mm)
 
     def start(self, program: Program) -> None:
-        """Put the scene under the hand, where something of it is felt, and say what it is."""
+        """Put the scene under the hand, where something of it is felt, and say what it is.
+
+        The program is that of the scene as its file has it.
+        """
         self._set_switches()
         if not (self.display.height_mm or self._chosen):
             self._at_mm = self._index.inside()[1]
-            program = at_height(program, self._at_mm)
-        self._show(program)
+        self._whole = self.loaded, self.contrast, program
+        self._show(program if self.shown is self.loaded else self._compose(self.shown))
         self.steer()
         self.say_scene()
         if not self.display.height_mm:
             self.say(
                 "one axis: this device's carriage goes along x only, so that one line of the "
-                f"picture is felt at a time, now at {self._at_mm:.0f} mm from the top; "
+                f"picture is felt at a time, now at {self._height()}; "
                 f"{self.key('DOWN', 'down')} and {self.key('UP', 'up')} choose another"
             )
 
@@ -241,6 +258,7 @@ class SceneView(View):
 
     def attend(self, now_s: float) -> None:
         """Do what is done by time: say what the finger comes to, and the way to what is sought."""
+        self._take_zoom()
         place = self.place
         if place is None:
             return
@@ -279,6 +297,13 @@ class SceneView(View):
         if scene.description:
             self.say(f"description: {scene.description}")
         self.say(f"size: {scene.canvas.width_mm:g} mm × {scene.canvas.height_mm:g} mm")
+        if not self.aperture.is_whole:
+            self.say_aperture()
+
+    def say_aperture(self) -> None:
+        """Say the zoom, and which part of the picture is within reach."""
+        words = self.aperture.words(self.shown.scene.canvas)
+        self.say(f"zoom: {self.aperture.zoom:g}, within reach {words}")
 
     def say_here(self) -> None:
         """Say what is under the middle of the array, and where that is."""
@@ -292,7 +317,7 @@ class SceneView(View):
         else:
             where = {"edge": "edge of ", "inside": "inside "}.get(spot.where, "")
             self.say(f"here: {where}{spot.element.name}")
-        self.say(f"place: {_placed(*place)}")
+        self.say(f"place: {self.aperture.placed(*place)}")
 
     def _say_nearest(self, place: tuple[float, float]) -> None:
         """Say that nothing is here, and which element is nearest."""
@@ -308,7 +333,7 @@ class SceneView(View):
         spot = None if place is None else self._index.where(*place)
         if spot is not None:
             element = spot.element
-            self.say(f"{element.name}: {element.description or _looks(element)}")
+            self.say(f"{element.name}: {element.description or _looks(element, self.aperture)}")
         elif place is None:
             self.say("place: not known yet")
         else:
@@ -321,7 +346,8 @@ class SceneView(View):
         for element in self._index.elements:
             box = element.box
             middle = (box.left + box.right) / 2, (box.top + box.bottom) / 2
-            place = "outside" if box.is_empty else f"{_sized(box)}, middle {_placed(*middle)}"
+            said = f"{self.aperture.sized(box)}, middle {self.aperture.placed(*middle)}"
+            place = "outside" if box.is_empty else said
             self.say(f"element: {element.name}, {place}")
 
     def ask_element(self) -> None:
@@ -388,7 +414,7 @@ class SceneView(View):
 
     def go_to_middle(self) -> None:
         """Go to the middle of the canvas."""
-        canvas = self.loaded.scene.canvas
+        canvas = self.shown.scene.canvas
         self._lead("middle", (canvas.width_mm / 2, canvas.height_mm / 2))
 
     def turn_contrast(self, step: int) -> None:
@@ -398,7 +424,8 @@ class SceneView(View):
             self.cue(Cue.LIMIT)
         else:
             self.contrast = contrast
-            self._show(self._compose(self.loaded))
+            self._show(self._compose(self.shown))
+            self._make_again()
         self.say(f"contrast: {self.contrast:g}")
 
     def switch(self, key: int) -> None:
@@ -429,7 +456,8 @@ class SceneView(View):
         try:
             loaded = load_scene(self.loaded.opened.path, self._device.style)
             check_fits(loaded.scene, self.display)
-            program = self._compose(loaded)
+            shown = loaded.zoomed(self.aperture.zoom)
+            program = self._compose(shown)
             if program.nbytes > self._room:
                 raise InputError("the picture has become too large; begin anew with it")
         except InputError as error:
@@ -438,24 +466,140 @@ class SceneView(View):
             self.say("picture: as it was")
             return
         self._show(program)  # what can wait comes after it
-        self.loaded = loaded
-        self._index = self._index_of(loaded)
-        self._looked_at = (math.nan, math.nan)
+        self.loaded, self.shown = loaded, shown
+        self._make_again()
         self._element = -1
         self._states = {}
-        self._set_switches()
+        self._look_anew()
         self.say(f"reloaded: {loaded.title}")
         for note in loaded.notes:
             self.say(f"note: {note}")
 
     def _choose_height(self, y_mm: float) -> None:
         """Show the line of the picture at another height."""
-        self._at_mm = min(max(y_mm, 0.0), self.loaded.scene.canvas.height_mm)
-        self._show(at_height(self._program, self._at_mm))
-        self.say(f"height: {self._at_mm:.0f} mm from the top")
+        self._at_mm = min(max(y_mm, 0.0), self.shown.scene.canvas.height_mm)
+        self._show(self._program)
+        self.say(f"height: {self._height()}")
+
+    def _height(self) -> str:
+        return f"{self._at_mm / self.aperture.zoom:.0f} mm from the top"
+
+    # Zoom and pan
+
+    def zoom(self, step: int) -> None:
+        """Have the picture nearer or farther by a step, about the finger."""
+        canvas, now = self.loaded.scene.canvas, self._zoom_wanted
+        most = MOST_MM / max(canvas.width_mm, canvas.height_mm)
+        others = [zoom for zoom in ZOOMS if zoom <= most and (zoom - now) * step > 0]
+        if others:
+            self._want_zoom(min(others) if step > 0 else max(others))
+        else:
+            self.cue(Cue.LIMIT)
+            self.say(f"zoom: {now:g}, no {'nearer' if step > 0 else 'farther'}")
+
+    def _want_zoom(self, zoom: float) -> None:
+        """Begin to make the picture at a zoom; what is felt stays until that is done."""
+        loaded = self.loaded
+
+        def make() -> tuple[LoadedScene, Program]:
+            shown = loaded.zoomed(zoom)
+            return shown, self._compose(shown)
+
+        self._stop_making()
+        self._zoom_wanted = zoom
+        self._making = self._maker.submit(make)
+
+    def _stop_making(self) -> None:
+        """Make no picture at another zoom any more."""
+        if self._making is not None:
+            self._making.cancel()  # unless it has begun
+        self._making, self._zoom_wanted = None, self.aperture.zoom
+
+    def _make_again(self) -> None:
+        """Begin anew with a picture that is being made of what was felt before."""
+        wanted, is_made = self._zoom_wanted, self._making is not None
+        self._stop_making()
+        if is_made:
+            self._want_zoom(wanted)
+
+    def _take_zoom(self) -> None:
+        """Show the picture at the zoom that is wanted, once it is made."""
+        if self._making is None or not self._making.done():
+            return
+        making = self._making
+        try:
+            shown, program = making.result()
+            if program.nbytes > self._room:
+                raise InputError("the picture would be too large there")
+        except InputError as error:
+            self._stop_making()
+            self.cue(Cue.NOT_FOUND)
+            self.say(f"zoom: still {self.aperture.zoom:g}; {spelled(str(error))}")
+            return
+        pose = self._device.pose
+        at_mm = (0.0, 0.0) if pose is None else (pose.x_mm, pose.y_mm)
+        self._show_zoomed(shown, program, self.aperture.zoomed(shown.zoom, at_mm))
+
+    def _show_zoomed(self, shown: LoadedScene, program: Program, aperture: Aperture) -> None:
+        """Show the picture at another zoom."""
+        share = aperture.zoom / self.aperture.zoom
+        self._at_mm *= share
+        self.aperture = aperture
+        self._show(program)  # what can wait comes after it
+        self._stop_making()
+        self.shown = shown
+        if self._guide is not None:
+            self._guide.at_mm = self._guide.at_mm[0] * share, self._guide.at_mm[1] * share
+        self._look_anew()
+        self.say_aperture()
+
+    def show_whole(self) -> None:
+        """Show the picture as it is written, from its top left corner on."""
+        whole = Aperture(self.aperture.reach_mm)
+        if self.shown.zoom == 1.0:
+            self._stop_making()
+            self._look_from(whole)
+            return
+        if self._whole is None or self._whole[:2] != (self.loaded, self.contrast):
+            self._whole = self.loaded, self.contrast, self._compose(self.loaded)
+        self._show_zoomed(self.loaded, self._whole[2], whole)
+
+    def pan(self, right: float, down: float) -> None:
+        """Move the part that is within reach, by shares of that."""
+        if down and not self.display.height_mm:
+            self._choose_height(self._at_mm + math.copysign(_LINE_MM, down))
+            return
+        moved = self.aperture.panned(right, down, self.shown.scene.canvas)
+        if moved == self.aperture:
+            self.cue(Cue.LIMIT)
+        self._look_from(moved)
+
+    def _look_from(self, aperture: Aperture) -> None:
+        """Show the picture from elsewhere on the canvas, at the same zoom."""
+        if aperture != self.aperture:
+            self.aperture = aperture
+            self._aim = None
+            self._looked_at = (math.nan, math.nan)
+            self._show(self._program)
+        self.say_aperture()
+
+    def _look_anew(self) -> None:
+        """Look for elements in what is shown from now on."""
+        before = self._index.elements[self._element].name if self._element >= 0 else ""
+        self._index = self._index_of(self.shown)
+        names = [element.name for element in self._index.elements]
+        self._element = names.index(before) if before in names else -1
+        self._spot = self._aim = None
+        self._set_switches()
 
     def _lead(self, name: str, to: tuple[float, float]) -> None:
-        """Have a simulated hand go to a place, or say the way there; one axis takes its height."""
+        """Have a simulated hand go to a place, or say the way there; one axis takes its height.
+
+        Where the place is out of reach, the picture is moved so that it is within.
+        """
+        brought = self.aperture.reaching(*to)
+        if brought != self.aperture:
+            self._look_from(brought)
         if not self.display.height_mm:
             self._choose_height(to[1])
         if self._device.steering is not None:
@@ -465,9 +609,10 @@ class SceneView(View):
 
     def _glide(self, to: tuple[float, float], speed_mm_s: float) -> None:
         display = self.display
-        x_mm = min(max(to[0], -display.span_mm / 2), display.travel_mm - display.span_mm / 2)
-        y_mm = min(max(to[1], 0.0), display.height_mm)
-        self._aim = x_mm, y_mm
+        x_mm, y_mm = self.aperture.of_carriage(*to)
+        x_mm = min(max(x_mm, -display.span_mm / 2), display.travel_mm - display.span_mm / 2)
+        y_mm = min(max(y_mm, 0.0), display.height_mm)
+        self._aim = self.aperture.on_canvas(x_mm, y_mm)
         steering = self._device.steering
         if steering is not None:
             steering.give(GlideTo(x_mm, y_mm, speed_mm_s))
@@ -478,12 +623,12 @@ class SceneView(View):
             self.display,
             rate_hz=self._rate_hz,
             contrast=self.contrast,
-            own_y_mm=self._at_mm,
         )
 
     def _show(self, program: Program) -> None:
         self._program = program
-        self.engine.show(program, 1)
+        origin_mm = self.aperture.left_mm, self.aperture.top_mm
+        self.engine.show(viewed(program, self._at_mm, origin_mm), 1)
 
     def _index_of(self, loaded: LoadedScene) -> SceneIndex:
         return SceneIndex(loaded.scene, loaded.assets, loaded.boxes())

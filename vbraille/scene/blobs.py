@@ -14,6 +14,7 @@ from vbraille.errors import InputError, needing_extras
 from vbraille.scene.bitmap import WHOLE
 from vbraille.scene.imagefiles import intensities_of
 from vbraille.scene.images import MOST_PER_MM, named, naming, shape_of, size_mm
+from vbraille.scene.pattern import Pattern
 from vbraille.scene.patterns import Dots, Group
 
 if TYPE_CHECKING:
@@ -174,10 +175,7 @@ def _drawn(pattern: ImageDots, dots: list[_Dot]) -> AnyPattern:
         alike[round(dot.radius_mm / _RADIUS_MM), round(dot.amplitude * _LEVELS)].append(
             dot.center_mm
         )
-    own = {
-        name: getattr(pattern, name)
-        for name in ("id", "title", "description", "amplitude", "inverted", "vibration")
-    }
+    own = {name: getattr(pattern, name) for name in Pattern.__struct_fields__}
     parts = [
         Dots(
             centers_mm=tuple(centers),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from vbraille.carriers.carrier import LATERO, PANTOGRAPH, TACTOGRAPH
-from vbraille.scene.bounds import Box, bounds
+from vbraille.scene.bounds import EMPTY, Box, bounds
 from vbraille.scene.patterns import (
     Circle,
     Group,
@@ -32,6 +32,7 @@ from vbraille.scene.traversal import (
     vibrations,
     with_children,
 )
+from vbraille.scene.zooming import is_there
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -170,12 +171,17 @@ def _advice(scene: Scene, elements: Sequence[ElementReport]) -> Iterator[str]:
     yield from _canvas_advice(scene.canvas)
     if not elements:
         yield "the scene has no elements, so nothing can be felt; write some under [[elements]]"
+    # Where what is not there as the picture is written has its place depends on the zoom.
+    there = [is_there(element, 1.0) for element in scene.elements]
+    boxes = [element.box for element in elements]
     told = [
         (number, sentence)
-        for number, element in enumerate(scene.elements)
-        for sentence in dict.fromkeys(_element_advice(element, elements[number].box, scene.canvas))
+        for number, (element, box) in enumerate(zip(scene.elements, boxes, strict=True))
+        for sentence in dict.fromkeys(
+            _element_advice(element, box if there[number] else None, scene.canvas)
+        )
     ]
-    told += _hidden(scene, [element.box for element in elements])
+    told += _hidden(scene, [box if at else EMPTY for box, at in zip(boxes, there, strict=True)])
     yield from _grouped(told, elements)
     textures = _texture_count(scene)
     if textures > MOST_TEXTURES:

@@ -16,6 +16,7 @@ LEAST_MM = 0.05
 # Two points of a path that are nearer are one: there is no direction between them.
 LEAST_APART_MM = 1e-6
 LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ = 0.1, 50.0
+LEAST_ZOOM, MOST_ZOOM = 0.5, 16.0
 
 
 def check_length(what: str, value_mm: float | None, least_mm: float = LEAST_MM) -> None:
@@ -50,6 +51,23 @@ def check_share(what: str, value: float | None) -> None:
         If it is not from 0 to 1.
     """
     check_range(what, value, 0.0, 1.0)
+
+
+def check_zooms(begins: float | None, ends: float | None) -> None:
+    """Check the zooms from which on a pattern is there, and is not; None for no such limit.
+
+    Raises
+    ------
+    ValueError
+        If one is beyond what pictures are zoomed to, or it would never be there.
+    """
+    check_range("zoom_from", begins, LEAST_ZOOM, MOST_ZOOM)
+    check_range("zoom_to", ends, LEAST_ZOOM, MOST_ZOOM)
+    if begins is not None and ends is not None and begins >= ends:
+        raise ValueError(
+            f"zoom_to is {ends:g}, and zoom_from {begins:g}, so that it is never there; "
+            "give zoom_to a larger number"
+        )
 
 
 def check_angle(what: str, value_deg: float | None) -> None:

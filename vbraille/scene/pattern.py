@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from vbraille.scene.measures import check_share
+from vbraille.scene.measures import check_share, check_zooms
 from vbraille.scene.strokes import Vibration
 from vbraille.tomlfile import Table
 
@@ -27,6 +27,9 @@ class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
     factor
         Name of a signal by which its deflections, and what it hides of others, are multiplied;
         empty for none.
+    zoom_from, zoom_to
+        Zooms of the picture from which on it is there, and from which on it is not; None for no
+        such limit. The picture as it is written has a zoom of 1.
 
     Raises
     ------
@@ -41,6 +44,9 @@ class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
     inverted: bool = False
     vibration: Vibration | None = None
     factor: str = ""
+    zoom_from: float | None = None
+    zoom_to: float | None = None
 
     def __post_init__(self) -> None:
         check_share("amplitude", self.amplitude)
+        check_zooms(self.zoom_from, self.zoom_to)

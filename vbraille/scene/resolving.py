@@ -202,7 +202,8 @@ class _Resolving:
             self._fail(steps, f"cannot be moved so far: {error}")
         title = use.title or pattern.title
         description = use.description or pattern.description
-        if use.amplitude == 1.0 and not use.inverted and not (use.vibration or use.factor):
+        changed = use.amplitude != 1.0 or use.inverted or use.vibration or use.factor
+        if not changed and use.zoom_from is None and use.zoom_to is None:
             return _called(pattern, use.id, title, description)
         return Group(
             operation="maximum",
@@ -211,6 +212,8 @@ class _Resolving:
             inverted=use.inverted,
             vibration=use.vibration,
             factor=use.factor,
+            zoom_from=use.zoom_from,
+            zoom_to=use.zoom_to,
             id=use.id,
             title=title,
             description=description,

@@ -196,24 +196,24 @@ def moved(pattern: AnyPattern, move_mm: Point) -> AnyPattern:
     """
     if move_mm == (0.0, 0.0):
         return pattern
-    here = replace(pattern, **_places(pattern, move_mm))
+    dx_mm, dy_mm = move_mm
+    here = replace(pattern, **placed(pattern, lambda x, y: (x + dx_mm, y + dy_mm)))
     if isinstance(here, Tile):
         return here
     return with_children(here, lambda _, part: moved(part, move_mm))
 
 
-def _places(pattern: AnyPattern, move_mm: Point) -> dict[str, Any]:
-    """Fields of a pattern that are places, moved."""
-    dx_mm, dy_mm = move_mm
+def placed(pattern: AnyPattern, place: Callable[[float, float], Point]) -> dict[str, Any]:
+    """Fields of a pattern that are places, each where a function has it."""
     found: dict[str, Any] = {}
     for name in pattern.__struct_fields__:
         value = getattr(pattern, name)
         if value is None:
             continue
         if name in ONE:
-            found[name] = (value[0] + dx_mm, value[1] + dy_mm)
+            found[name] = place(*value)
         elif name in SEVERAL:
-            found[name] = tuple((x + dx_mm, y + dy_mm) for x, y in value)
+            found[name] = tuple(place(x, y) for x, y in value)
         elif name in LISTS:
-            found[name] = tuple(tuple((x + dx_mm, y + dy_mm) for x, y in one) for one in value)
+            found[name] = tuple(tuple(place(x, y) for x, y in one) for one in value)
     return found

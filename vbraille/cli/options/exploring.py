@@ -394,6 +394,12 @@ def feel(parser: CommandParser) -> None:
         "(default: where it is felt, near its middle).",
         number,
     )
+    parser.option(
+        "--zoom",
+        "N",
+        "Begin with the picture so many times as near, 0.5 to 16 (default: 1).",
+        number,
+    )
     parser.flag("--say-entering", "Say the name of each element when the finger comes to it.")
     parser.take(*HEARD, *LIVE)
 

@@ -38,6 +38,8 @@ const MAP_BYTES = 8;
  * @property {number} width_mm
  * @property {number} height_mm
  * @property {string} image
+ * @property {number} left_mm
+ * @property {number} top_mm
  *
  * @typedef {object} KnobShown
  * @property {string} name

@@ -23,14 +23,17 @@ const RIGHT_PX = 14;
 const LEAST_FINGER_PX = 32; // to be hit by a real finger
 
 /**
- * A tactile picture from above, on its canvas.
+ * A tactile picture from above, on its canvas; of one that is larger, what the carriage reaches.
  * @param {import("./messages.js").SceneShown} scene
+ * @param {import("./messages.js").ArrayShown} array
  */
-function picture(scene) {
+function picture(scene, array) {
   const { width_mm: width, height_mm: height, image: href } = scene;
-  const canvas = svg("rect", { class: "canvas", width, height });
-  return svg("g", { class: "scene" }, canvas,
-    ...(href ? [svg("image", { width, height, href, preserveAspectRatio: "none" })] : []));
+  const at = { x: -scene.left_mm, y: -scene.top_mm, width, height };
+  const drawn = svg("g", { class: "scene" }, svg("rect", { class: "canvas", ...at }),
+    ...(href ? [svg("image", { ...at, href, preserveAspectRatio: "none" })] : []));
+  const reach = { width: Math.max(array.travel_mm, 1), height: array.height_mm || height };
+  return svg("svg", { ...reach, overflow: "hidden" }, drawn);
 }
 
 export class Sheet {
@@ -122,7 +125,7 @@ export class Sheet {
   #tallOf(state, d) {
     const array = /** @type {import("./messages.js").ArrayShown} */ (state.array);
     return Math.max(array.height_mm && !state.lines.length ? array.height_mm : 0, d?.line ?? 0,
-      state.scene?.height_mm ?? 0,
+      array.height_mm || (state.scene?.height_mm ?? 0),
       state.lines.length ? 0 : array.rows * array.row_pitch_mm + 6);
   }
 
@@ -136,7 +139,7 @@ export class Sheet {
     const { right } = this.span ?? { right: 0 };
     const from = Math.min(0, ...state.lines.map((line) => line.start_mm));
     const group = svg("g", { "font-size": 12 * px });
-    if (state.scene) group.append(picture(state.scene));
+    if (state.scene && state.array) group.append(picture(state.scene, state.array));
     const end = Math.max(right, state.array?.travel_mm && !state.lines.length ? state.array.travel_mm : 0);
     for (const line of d ? state.lines : []) group.append(this.#line(/** @type {Distances} */ (d), line));
     group.append(ruler(Math.floor(from / 10) * 10, end, first - 6 * px, false, this.#px_mm));

@@ -11,6 +11,7 @@ from vbraille.reading.keys import ANY, Bindings, Command, Context, bind
 from vbraille.scene.signals import MOST_KEYS
 
 STEP_MM, FAR_MM = 1.0, 10.0
+PAN = 0.5  # of what is within reach
 # Buttons of the device, by their numbers.
 BUTTONS = {"1": "HERE", "2": "DESCRIBE", "3": "PAUSE", "4": "SWITCH_1", "5": "SWITCH_2"}
 
@@ -88,6 +89,21 @@ COMMANDS = (
         methodcaller("move", 0, -FAR_MM),
     ),
     Command("MIDDLE", ("home",), "go to the middle of the picture", methodcaller("go_to_middle")),
+    Command("ZOOM_IN", ("+", "="), "nearer, about the finger", methodcaller("zoom", 1)),
+    Command("ZOOM_OUT", ("-",), "farther, about the finger", methodcaller("zoom", -1)),
+    Command("WHOLE", ("0",), "the whole picture again, as written", methodcaller("show_whole")),
+    *(
+        Command(f"PAN_{way.upper()}", keys, f"the part that is {said}", methodcaller("pan", *by))
+        for way, keys, said, by in (
+            ("right", ("ctrl-right", "]"), "farther right", (PAN, 0.0)),
+            ("left", ("ctrl-left", "["), "farther left", (-PAN, 0.0)),
+            ("down", ("ctrl-down", "}"), "farther down; one axis: 10 mm lower", (0.0, PAN)),
+            ("up", ("ctrl-up", "{"), "farther up; one axis: 10 mm higher", (0.0, -PAN)),
+        )
+    ),
+    Command(
+        "APERTURE", ("z",), "say the zoom, and what is within reach", methodcaller("say_aperture")
+    ),
     Command("CONTRAST_UP", ("c",), "more contrast", methodcaller("turn_contrast", 1)),
     Command("CONTRAST_DOWN", ("C",), "less contrast", methodcaller("turn_contrast", -1)),
     *(

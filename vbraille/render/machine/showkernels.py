@@ -145,8 +145,9 @@ def _is_out_of_reach(numbers, at, gates, left, right, top, bottom):
 @compiled
 def show(numbers, table, rows, at, out):
     """Fill a frame with the deflections of a scene at a pose and a time."""
-    start = _words_at(numbers, at[X], at[Y])
-    if start == 0 or not _show_tile(numbers, table, rows, start, at, out):
+    x, y = at[X] + numbers[w.ORIGIN_X], at[Y] + numbers[w.ORIGIN_Y]
+    start = _words_at(numbers, x, y)
+    if start == 0 or not _show_tile(numbers, table, rows, start, x, y, at, out):
         above, across = out.shape
         for i in range(above):
             for j in range(across):
@@ -171,18 +172,21 @@ def show_all(numbers, table, rows, at, out):
             elif at[0, MEMORY] != at[0, MEMORY]:
                 begin(numbers, at[0])
                 compute(numbers, at[0], 0.0)
-        start = _words_at(numbers, at[n, X], at[n, Y])
-        if start == 0 or not _show_tile(numbers, table, rows, start, at[n], out[n]):
+        x, y = at[n, X] + numbers[w.ORIGIN_X], at[n, Y] + numbers[w.ORIGIN_Y]
+        start = _words_at(numbers, x, y)
+        if start == 0 or not _show_tile(numbers, table, rows, start, x, y, at[n], out[n]):
             for i in range(above):
                 for j in range(across):
                     out[n, i, j] = 0.0
 
 
 @compiled
-def _show_tile(numbers, table, rows, start, at, out):
-    """Fill a frame by the words of a tile; False, and nothing is done, if nothing is in reach."""
+def _show_tile(numbers, table, rows, start, x, y, at, out):
+    """Fill a frame by the words of a tile; False, and nothing is done, if nothing is in reach.
+
+    The array's centre is at x, y on the canvas.
+    """
     above, across = out.shape
-    x, y = at[X], at[Y]
     lanes = above * across
     cosine, sine = 1.0, 0.0
     theta = at[THETA]

@@ -21,9 +21,11 @@ from vbraille.render.work import MOST_SIGNALS, OWN
     TILES_PER_MM,
     GRID_COLUMNS,
     GRID_ROWS,
+    ORIGIN_X,  # place of the canvas under an array at 0, 0
+    ORIGIN_Y,
     SIGNALS,  # how many signals there are, and then each as `SIGNAL_NUMBERS` numbers
     SIGNAL_ROWS,
-) = range(OWN, OWN + 13)
+) = range(OWN, OWN + 15)
 SIGNAL_NUMBERS = 12
 # Place of the first of the numbers that say, for each tile, where its words begin.
 GRID = SIGNAL_ROWS + MOST_SIGNALS * SIGNAL_NUMBERS

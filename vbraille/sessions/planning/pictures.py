@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from msgspec import structs
 
 from vbraille.errors import InputError
-from vbraille.feeling.loading import LoadedScene, check_fits
+from vbraille.feeling.loading import check_fits, shown_at
 from vbraille.render.scene.labels import Assets
 from vbraille.scene.patterns import Image, ImageDots, Label
 from vbraille.scene.reading import open_text
@@ -61,7 +61,7 @@ class PictureScene:
         # This loads what compiles, which a command that renders nothing must not wait for.
         from vbraille.feeling.composing import compose
 
-        loaded = LoadedScene(self._only(picture), Assets())
+        loaded = shown_at(self._only(picture), Assets())
         return compose(loaded, display, rate_hz=display.rate_hz, contrast=contrast)
 
     def _only(self, picture: str) -> OpenedScene:
