@@ -8,7 +8,6 @@ from vbraille.cli.commands.calibrate import calibrate, say_calibration
 from vbraille.cli.exploring import opened_in_time
 from vbraille.cli.terminal import print_json, say_line
 from vbraille.devices.registry import find_driver
-from vbraille.devices.sentences import say
 from vbraille.engine.checkup import check, warm_up
 from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time
@@ -123,5 +122,5 @@ def _places(actuators: Sequence[tuple[int, int]], info: Display) -> str:
 def _check(device: Device) -> int:
     refused = go_real_time()
     if refused is not None:
-        say_line(say(refused))
+        say_line(refused.say())
     return check(device, RealClock(), say_line)

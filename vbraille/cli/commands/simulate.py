@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     info = _info(arguments, display)
     hand = parse_hand(arguments.hand, arguments.seed)
     script = () if arguments.script is None else load_script(arguments.script)
-    controls = Controls(script, parse_presses(arguments.press))
+    controls = Controls((*script, *parse_presses(arguments.press)))
     area = area_of(display, MODELS[arguments.model].style.geometry.line_pitch_mm)
     if arguments.unplug_every and arguments.link is None:
         raise InputError("--unplug-every needs --link, for the port has a new name each time")
