@@ -13,6 +13,7 @@ from vbraille.sessions.record import journal
 from vbraille.sessions.record.bids import write
 from vbraille.sessions.record.codebook import asked_in, entry_of, to_codebook
 from vbraille.sessions.record.export import (
+    ROWS_NEED,
     Traces,
     anonymous,
     encode,
@@ -135,7 +136,7 @@ def _to_table(
     table: list[dict[str, Any]] = []
     asked: dict[str, str] = {}
     for one in given:
-        traces = Traces(one, salvaged=arguments.salvage)
+        traces = Traces(one, salvaged=arguments.salvage, upto=ROWS_NEED)
         exported = rows(one, traces)
         if arguments.anonymous:
             exported = anonymous(one, exported)
