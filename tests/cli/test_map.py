@@ -65,7 +65,7 @@ def test_a_map_has_a_gray_for_each_place_and_words(scene, call, tmp_path):
         f"drawn: {out}",
         "shown: a deflection map, rest white and full swing black",
         "pixels: 160 × 120, 4 a mm",
-        "vibration: as noise, seed 0",
+        "vibration: as noise, seed 1",
     ]
     assert "size: 40 × 30 mm" in lines
     assert lines[-1] == "vibrates: element ring, 25 Hz"
@@ -136,7 +136,7 @@ def test_a_sequence_is_numbered_files_over_one_period(scene, call, tmp_path, suf
 
 
 def test_each_of_a_sequence_says_its_number_and_its_time(scene, call, tmp_path):
-    options = ("--array", "12,15", "--axes")
+    options = ("--array", "12,15", "--rulers")
     assert call("map", scene, "--out", tmp_path / "r.png", *SEQUENCE, *options).code == 0
     told = []
     for number in (1, 2, 3, 4):
@@ -198,7 +198,7 @@ def test_the_array_is_drawn_where_it_is(scene, call, tmp_path):
 
 def test_a_drawing_in_svg_says_what_it_shows(scene, call, tmp_path):
     for name, options in {
-        "map": ("--axes", "--array", "20,15"),
+        "map": ("--rulers", "--array", "20,15"),
         "outline": ("--outline",),
     }.items():
         out = tmp_path / f"{name}.svg"
@@ -237,18 +237,18 @@ def test_a_pdf_has_the_size_of_the_paper(scene, call, tmp_path):
         (("--out", "a.png", "--array", "2,15"), "the array is not on the canvas at 2,15"),
         (("--out", "a.png", "--array", "nan,15"), "the array is not on the canvas"),
         (("--out", "a.png", "--array", "5"), "'5' is no place; give X,Y in mm"),
-        (("--out", "a.png", "--outline", "--axes"), "are for maps; leave out either these or"),
+        (("--out", "a.png", "--outline", "--rulers"), "are for maps; leave out either these or"),
         (("--out", "a.csv", "--outline"), "--outline is no map; end --out in .svg"),
         (("--out", "a.png", "--raised"), "--raised is gone; --outline draws what is felt"),
         (
-            ("--out", "a.gif", "--vibration", "sequence", "--axes"),
-            "an animation has maps alone; leave out --array and --axes, or end --out in .png",
+            ("--out", "a.gif", "--vibration", "sequence", "--rulers"),
+            "an animation has maps alone; leave out --array and --rulers, or end --out in .png",
         ),
         (("--out", "a.gif"), "GIF is for --vibration sequence"),
         (("--out", "a.png", "--frames", "4"), "--frames and --parity are for --vibration sequ"),
         (("--out", "a.png", "--vibration", "sequence", "--frames", "1"), "--frames is 1; it must"),
         (("--out", "a.png", "--outline", "--sheet", "a4"), "--sheet is gone; print an --outline"),
-        (("--out", "a.csv", "--axes"), "CSV has the map's numbers alone"),
+        (("--out", "a.csv", "--rulers"), "CSV has the map's numbers alone"),
     ],
 )
 def test_what_cannot_be_drawn_is_refused_in_a_sentence(

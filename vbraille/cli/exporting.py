@@ -148,12 +148,12 @@ def _to_table(
     if arguments.out is None:
         sys.stdout.write(text)
     else:
-        write_file(Path(arguments.out), encode(text))
+        write_file(Path(arguments.out), encode(text), replace=arguments.force)
         say(f"written: {arguments.out}, {len(table)} rows")
     if arguments.codebook is not None:
         name = _TRIALS if arguments.out is None else Path(arguments.out).name
         book = to_codebook({name: [entry_of(column, asked) for column in columns]})
-        write_file(Path(arguments.codebook), encode(book))
+        write_file(Path(arguments.codebook), encode(book), replace=arguments.force)
         if arguments.out is not None:
             say(f"written: {arguments.codebook}, {len(columns)} rows")
     return faults

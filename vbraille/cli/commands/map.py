@@ -99,13 +99,13 @@ def _check(arguments: argparse.Namespace, kind: str) -> None:
             "--outline is no map; end --out in .svg, .pdf or .png",
         ),
         (
-            arguments.outline and (arguments.array or arguments.axes or sequence),
-            "--array, --axes and --vibration sequence are for maps; leave out either these or "
+            arguments.outline and (arguments.array or arguments.rulers or sequence),
+            "--array, --rulers and --vibration sequence are for maps; leave out either these or "
             "--outline",
         ),
         (
-            kind == "gif" and (arguments.array or arguments.axes),
-            "an animation has maps alone; leave out --array and --axes, or end --out in .png",
+            kind == "gif" and (arguments.array or arguments.rulers),
+            "an animation has maps alone; leave out --array and --rulers, or end --out in .png",
         ),
         (
             not sequence and (arguments.frames is not None or arguments.parity is not None),
@@ -113,8 +113,8 @@ def _check(arguments: argparse.Namespace, kind: str) -> None:
         ),
         (kind == "gif" and not sequence, "GIF is for --vibration sequence; end --out in .png"),
         (
-            kind == "csv" and (arguments.array or arguments.axes),
-            "CSV has the map's numbers alone; leave out --array and --axes",
+            kind == "csv" and (arguments.array or arguments.rulers),
+            "CSV has the map's numbers alone; leave out --array and --rulers",
         ),
     ):
         if wrong:
@@ -314,7 +314,7 @@ class _Drawing:
         self, deflections: NDArray[np.float32], over: ArrayOnMap | None, said: list[str]
     ) -> bytes:
         """Make the file of one map, with what is over it and around it."""
-        axes = self._arguments.axes
+        axes = self._arguments.rulers
         if self._kind == "csv":
             return scenes.map_csv(deflections, self._per_mm)
         if self._kind == "png" and over is None and not axes:
