@@ -3,12 +3,17 @@
 import base64
 import csv
 import io
+import os
 import re
+import subprocess
+import sys
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from PIL import Image
+
+from tests.tiers import heavy
 
 SCENE = """
 title = "A ring"
@@ -330,3 +335,56 @@ def test_a_hand_or_a_switch_that_cannot_be_is_refused(options, words, call, tmp_
     done = call("map", path, "--out", tmp_path / "a.png", *options)
     assert done.code == 2
     assert words in done.err
+
+
+def test_axes_that_nobody_could_read_are_refused(scene, call, tmp_path):
+    done = call("map", scene, "--axes", "--resolution", "0.11", "--out", tmp_path / "ring.png")
+    assert done.code == 2
+    assert "--resolution is 0.11" in done.err
+    assert (
+        call("map", scene, "--axes", "--resolution", "0.11", "--out", tmp_path / "x.svg").code == 0
+    )
+
+
+# The kernel's own word: `ru_maxrss` would begin with what the tests' process has.
+MEASURED = """
+import sys
+from pathlib import Path
+from vbraille.cli.main import main
+assert main(sys.argv[1:]) == 0
+print(Path("/proc/self/status").read_text().partition("VmHWM:")[2].split()[0])
+"""
+
+
+@heavy
+@pytest.mark.parametrize(
+    ("kind", "options"),
+    [
+        ("svg", ["--outline"]),
+        ("pdf", ["--outline"]),
+        ("png", ["--outline", "--resolution", "0.36"]),
+        ("svg", ["--resolution", "0.19"]),
+        ("pdf", ["--resolution", "0.14"]),
+        ("png", ["--resolution", "0.36"]),
+        ("png", ["--array", "5000,5000", "--resolution", "0.11"]),
+        ("csv", ["--resolution", "0.31"]),
+    ],
+)
+def test_ten_metres_are_drawn_within_300_mb(tmp_path, kind, options):
+    scene = tmp_path / "hall.scene"
+    scene.write_text("""
+        canvas = { width_mm = 10_000, height_mm = 10_000 }
+        [[elements]]
+        kind = "linear-grating"
+        ridge_mm = 50
+        gap_mm = 30
+        vibration = { frequency_hz = 50 }
+    """)
+    told = subprocess.run(
+        [sys.executable, "-c", MEASURED, "map", scene, "--out", tmp_path / f"x.{kind}", *options],
+        capture_output=True,
+        text=True,
+        check=True,
+        env=os.environ,
+    )
+    assert int(told.stdout.split()[-1]) < 300_000  # kB
