@@ -139,7 +139,7 @@ def _acknowledged(folder: Path) -> Result:
     ours, bare = [], []
     command = vbraille("session", "run", *_who(protocol, session), "--hand", "sweep:150")
     with subprocess.Popen(
-        [*command, "--sound", "none"],
+        [*command, "--cues", "none"],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
@@ -189,12 +189,12 @@ def _resumed(folder: Path) -> Result:
         resume = vbraille("session", "resume", str(session))
         subprocess.run(resume, check=True, stdout=subprocess.PIPE)
     few = folder / "few"
-    begin = vbraille("session", "run", *_who(_protocol(folder, 12), few), "--sound", "none")
+    begin = vbraille("session", "run", *_who(_protocol(folder, 12), few), "--cues", "none")
     taken, new, started = [], [], []
     for number in range(RESUMES):
         copy = folder / f"copy-{number}"
         shutil.copytree(session, copy)
-        resume = vbraille("session", "resume", str(copy), "--answers", "typed", "--sound", "none")
+        resume = vbraille("session", "resume", str(copy), "--answers", "typed", "--cues", "none")
         taken.append(_ready_s(resume, f"ready: trial {LONG_ANSWERS + 1} of {LONG_TRIALS}"))
         new.append(_ready_s(begin, "ready: trial 1 of 12"))
         shutil.rmtree(few)

@@ -138,7 +138,7 @@ def _call(argv: Sequence[str] | None) -> int:
         from vbraille.cli.parser import parse, read_instead
     try:
         arguments = parse(argv)
-        if arguments.command == "books" and arguments.number is not None:
+        if arguments.command == "books" and arguments.number is not None and not arguments.forget:
             arguments = read_instead(arguments)
     except SystemExit:  # --help and --version have been printed
         return 0

@@ -345,10 +345,9 @@ class Session:
 
         The columns are described in `vbraille.sessions.record.codebook.COLUMNS`.
         """
-        from vbraille.sessions.record.export import Traces, rows
+        from vbraille.sessions.record.export import rows
 
-        record = self.record
-        return rows(record, Traces(record))
+        return rows(self.record)
 
     def tell(self, fields: Mapping[str, str]) -> None:
         """Answer what the protocol asks about the participant.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from vbraille.cli.commands.calibrate import calibrate, say_calibration
@@ -34,6 +35,10 @@ def run(arguments: argparse.Namespace) -> int:
         with EAR.at_once():
             warm_up(_wanted(arguments) or MODELS["stress2"].display)
     with opened_in_time(arguments.spec, _wanted(arguments)) as device:
+        if arguments.action == "info" and arguments.json:
+            told = device.particulars
+            print_json({"display": asdict(device.display), "particulars": told and asdict(told)})
+            return 0
         _describe(device)
         if arguments.action == "info":
             say_calibration(device, settings_path())

@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.cli.exploring import around_device, say_summary
-from vbraille.cli.options.exploring import check_live_options
 from vbraille.cli.terminal import say_line
 from vbraille.devices.registry import check_actuators, find_driver
 from vbraille.display import check_rate
@@ -42,7 +41,6 @@ _SPARE, _LEAST_ROOM = 3, 1 << 21
 
 def run(arguments: argparse.Namespace) -> int:
     """Have a picture under the hand until a key says so, or a hand that moves by itself is done."""
-    check_live_options(arguments)
     rate_hz = check_rate(arguments.rate)
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
     hand = STILL if arguments.hand is None else arguments.hand

@@ -33,10 +33,10 @@ def run(arguments: argparse.Namespace, priority: int) -> int:
             raise InputError(f"{arguments.script} turns a knob, and a Latero has none")
         if event.number > len(BUTTONS):
             raise InputError(f"button is {event.number}; a Latero has 1 and 2, left and right")
-    port = PORT if arguments.port is None else arguments.port
+    port = PORT if arguments.udp_port is None else arguments.udp_port
     if not 0 <= port <= _MOST_PORT:
         raise InputError(f"port is {port}; it must be 0 to {_MOST_PORT}")
-    lines = 1 if arguments.lines is None else arguments.lines
+    lines = 1 if arguments.page_lines is None else arguments.page_lines
     pitch_mm = LATERO.style.geometry.line_pitch_mm
     most = int(DISPLAY.height_mm / pitch_mm)
     if not 1 <= lines <= most:
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace, priority: int) -> int:
             drop=arguments.drop,
             late=arguments.late or 0.0,
             double=arguments.double or 0.0,
-            foreign=arguments.foreign or 0.0,
+            foreign=arguments.stray or 0.0,
             seed=arguments.seed,
         )
     except ValueError as error:
