@@ -208,11 +208,11 @@ def _resumed(folder: Path) -> Result:
     return Result(
         f"resume of a session of {LONG_TRIALS} trials, {LONG_ANSWERS} answered, to its first "
         f"ready, median of {RESUMES}",
-        "≤ 1.5 s",
+        "≤ 1.0 s",
         f"{statistics.median(taken):.2f} s (best {min(taken):.2f} s; a new session of 12 trials "
         f"{statistics.median(new):.2f} s; vbraille --version {version:.2f} s, imports "
         f"{imports:.2f} s, the host's start {host:.2f} s)",
-        statistics.median(taken) <= 1.5,
+        statistics.median(taken) <= 1.0,
     )
 
 

@@ -112,6 +112,7 @@ def _run(arguments: argparse.Namespace) -> int:
         **_chances(arguments),
         fields=arguments.field,
         conditions=Conditions(rate_hz=arguments.rate, fast=arguments.fast, **_chosen(arguments)),
+        begun=arguments.begun,
     )
     answers = session.answers()
     if not arguments.another:
@@ -125,7 +126,7 @@ def _resume(arguments: argparse.Namespace) -> int:
     from vbraille.sessions.session import Session
 
     fast = {"fast": True} if arguments.fast else {}
-    session = Session.resume(arguments.folder, **fast, **_chosen(arguments))
+    session = Session.resume(arguments.folder, begun=arguments.begun, **fast, **_chosen(arguments))
     return _conduct(session, session.answers())
 
 
