@@ -2,11 +2,10 @@
 
 import argparse
 import sys
-from contextlib import redirect_stdout, suppress
-from io import StringIO
 from pathlib import Path
 
-from vbraille.cli.parser import ACTIONS, COMMANDS, GROUPS, CommandParser
+from vbraille.cli.commandtable import ACTIONS, COMMANDS, GROUPS
+from vbraille.cli.parser import CommandParser
 from vbraille.version import __version__
 
 
@@ -24,13 +23,10 @@ def _heading(name, text):
     ]
 
 
-def _parser(words, text, add_options, example):
+def _parser(words, command):
     """The parser of a command, with its options added."""
-    parser = CommandParser(
-        prog=" ".join(words), description=text, epilog=example, add_help=False, options=add_options
-    )
-    with redirect_stdout(StringIO()), suppress(SystemExit):
-        parser.parse_args(["--help"])  # adds the options
+    parser = CommandParser(prog=" ".join(words), command=command)
+    parser.complete()
     return parser
 
 
@@ -55,21 +51,21 @@ def _positional(action):
     )
 
 
-def _command_page(words, text, add_options, example):
-    parser = _parser(words, text, add_options, example)
+def _command_page(words, command):
+    parser = _parser(words, command)
     given = [action for action in parser._actions if not action.option_strings]
     usage = [*words, "[options]", *(_positional(action) for action in given)]
     return [
-        *_heading("-".join(words), text),
+        *_heading("-".join(words), command.does),
         ".SH SYNOPSIS",
         _plain(" ".join(usage)),
         ".SH DESCRIPTION",
-        _plain(text),
+        _plain(command.does),
         ".SH OPTIONS",
         *_arguments(parser),
         ".SH EXAMPLE",
         ".EX",
-        _plain(example),
+        _plain(command.example),
         ".EE",
         ".SH SEE ALSO",
         "\\fBvbraille\\fR(1)",
@@ -83,7 +79,7 @@ def pages():
     for group, names in GROUPS.items():
         page.append(f".SH {group.upper()}")
         for name in names:
-            page += [".TP", f"\\fBvbraille\\-{_plain(name)}\\fR(1)", _plain(COMMANDS[name][0])]
+            page += [".TP", f"\\fBvbraille\\-{_plain(name)}\\fR(1)", _plain(COMMANDS[name].does)]
     page += [
         ".SH EXIT STATUS",
         "0 where all went well, 1 for a fault at run time, 2 for something that cannot be used; "
@@ -93,16 +89,15 @@ def pages():
         "\\fBvbraille settings\\fR says where.",
     ]
     yield "vbraille.1", "\n".join(page) + "\n"
-    for name, (text, add_options, example) in COMMANDS.items():
+    for name, command in COMMANDS.items():
         if name not in ACTIONS:
-            made = _command_page(("vbraille", name), text, add_options, example)
-            yield f"vbraille-{name}.1", "\n".join(made) + "\n"
+            yield f"vbraille-{name}.1", "\n".join(_command_page(("vbraille", name), command)) + "\n"
             continue
-        made = [*_heading(f"vbraille-{name}", text), ".SH ACTIONS"]
-        for action, (said, add, shown) in ACTIONS[name].items():
+        made = [*_heading(f"vbraille-{name}", command.does), ".SH ACTIONS"]
+        for action, each in ACTIONS[name].items():
             words = ("vbraille", name, action)
-            made += [".TP", f"\\fBvbraille\\-{name}\\-{action}\\fR(1)", _plain(said)]
-            yield f"{'-'.join(words)}.1", "\n".join(_command_page(words, said, add, shown)) + "\n"
+            made += [".TP", f"\\fBvbraille\\-{name}\\-{action}\\fR(1)", _plain(each.does)]
+            yield f"{'-'.join(words)}.1", "\n".join(_command_page(words, each)) + "\n"
         yield f"vbraille-{name}.1", "\n".join(made) + "\n"
 
 

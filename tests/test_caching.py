@@ -63,7 +63,7 @@ def test_without_a_home_kernels_are_kept_in_a_private_temporary_folder(sealed, t
 
 
 def test_without_a_home_pictures_are_drawn_and_nothing_is_said_of_it(sealed, tmp_path):
-    done = run(sealed, tmp_path, *VBRAILLE, "plot", "profile", "--out", "profile.svg")
+    done = run(sealed, tmp_path, *VBRAILLE, "plot", "deflection", "--out", "profile.svg")
     assert (done.returncode, done.stderr) == (0, "")
     assert (tmp_path / "profile.svg").stat().st_size > 1000
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from vbraille.cli.parser import ACTIONS, COMMANDS
+from vbraille.cli.commandtable import ACTIONS, COMMANDS
 
 SCRIPT = Path(__file__).parents[1] / "packaging" / "manual.py"
 

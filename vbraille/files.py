@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
     from typing import BinaryIO
 
+    Content = bytes | Iterable[bytes]
+
 _MOST_TEXT_BYTES = 1_000_000
 SETTINGS = "settings.toml"
 SETTINGS_VARIABLE = "VBRAILLE_SETTINGS"  # of the environment, with the path of the settings file
@@ -57,7 +59,7 @@ def whole_file(path: Path, *, replace: bool = False) -> Iterator[Path]:
 
 def write_file(
     path: Path,
-    content: bytes,
+    content: Content,
     *,
     replace: bool = False,
     durable: bool = False,
@@ -67,7 +69,7 @@ def write_file(
     Parameters
     ----------
     path, content
-        Path of the file, and its content.
+        Path of the file, and its content, whole or in parts that are made while they are asked for.
     replace
         Whether an existing file may be replaced.
     durable
@@ -98,7 +100,7 @@ def write_file(
         raise VbrailleError(f"{path} could not be written: {error.strerror}") from None
 
 
-def write_files(files: Iterable[tuple[Path, bytes]], *, replace: bool = False) -> None:
+def write_files(files: Iterable[tuple[Path, Content]], *, replace: bool = False) -> None:
     """Write several files: all of them whole, or none of them.
 
     No file gets its name before all are written. If one cannot have its name, those that already
@@ -307,8 +309,8 @@ def _begin(path: Path, *, private: bool) -> BinaryIO:
     return path.open("wb")
 
 
-def _fill(file: BinaryIO, content: bytes, *, durable: bool) -> None:
-    file.write(content)
+def _fill(file: BinaryIO, content: Content, *, durable: bool) -> None:
+    file.writelines([content] if isinstance(content, bytes) else content)
     if durable:
         file.flush()
         os.fsync(file.fileno())

@@ -49,13 +49,13 @@ def test_for_another_program(call, kept):
 
 
 def test_forgetting(call, kept):
-    assert call("books", "--forget", "1").out == "forgotten: Second\n"
+    assert call("books", "1", "--forget").out == "forgotten: Second\n"
     assert len(call("books").out.splitlines()) == 1
     for number in ("0", "2"):
-        said = call("books", "--forget", number)
+        said = call("books", number, "--forget")
         assert (said.code, said.out) == (2, "")
         assert f"there is no book {number}; there is 1 book" in said.err
-    assert call("books", "--forget", "1").code == 0
+    assert call("books", "1", "--forget").code == 0
     assert call("books").out == "books: none\n"
     assert (kept / "first.txt").exists()
 
@@ -73,7 +73,7 @@ def test_what_cannot_be_written_is_not_said_to_be_forgotten(call):
     before = call("books").out
     limited = ["sh", "-c", 'ulimit -f 0; exec "$@"', "sh", *program.PROGRAM]
     done = subprocess.run(
-        [*limited, "books", "--forget", "1"], check=False, capture_output=True, encoding="utf-8"
+        [*limited, "books", "1", "--forget"], check=False, capture_output=True, encoding="utf-8"
     )
     assert (done.returncode, done.stdout) == (1, "")
     assert "could not be forgotten" in done.stderr

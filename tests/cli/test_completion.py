@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from vbraille.cli.commands.completion import candidates
-from vbraille.cli.parser import ACTIONS, COMMANDS, GROUPS
+from vbraille.cli.commandtable import ACTIONS, COMMANDS, GROUPS
 
 
 @pytest.mark.parametrize(

@@ -3,12 +3,17 @@
 import base64
 import csv
 import io
+import os
 import re
+import subprocess
+import sys
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from PIL import Image
+
+from tests.tiers import heavy
 
 SCENE = """
 title = "A ring"
@@ -65,7 +70,7 @@ def test_a_map_has_a_gray_for_each_place_and_words(scene, call, tmp_path):
         f"drawn: {out}",
         "shown: a deflection map, rest white and full swing black",
         "pixels: 160 × 120, 4 a mm",
-        "vibration: as noise, seed 0",
+        "vibration: as noise, seed 1",
     ]
     assert "size: 40 × 30 mm" in lines
     assert lines[-1] == "vibrates: element ring, 25 Hz"
@@ -136,7 +141,7 @@ def test_a_sequence_is_numbered_files_over_one_period(scene, call, tmp_path, suf
 
 
 def test_each_of_a_sequence_says_its_number_and_its_time(scene, call, tmp_path):
-    options = ("--array", "12,15", "--axes")
+    options = ("--array", "12,15", "--rulers")
     assert call("map", scene, "--out", tmp_path / "r.png", *SEQUENCE, *options).code == 0
     told = []
     for number in (1, 2, 3, 4):
@@ -198,7 +203,7 @@ def test_the_array_is_drawn_where_it_is(scene, call, tmp_path):
 
 def test_a_drawing_in_svg_says_what_it_shows(scene, call, tmp_path):
     for name, options in {
-        "map": ("--axes", "--array", "20,15"),
+        "map": ("--rulers", "--array", "20,15"),
         "outline": ("--outline",),
     }.items():
         out = tmp_path / f"{name}.svg"
@@ -237,18 +242,18 @@ def test_a_pdf_has_the_size_of_the_paper(scene, call, tmp_path):
         (("--out", "a.png", "--array", "2,15"), "the array is not on the canvas at 2,15"),
         (("--out", "a.png", "--array", "nan,15"), "the array is not on the canvas"),
         (("--out", "a.png", "--array", "5"), "'5' is no place; give X,Y in mm"),
-        (("--out", "a.png", "--outline", "--axes"), "are for maps; leave out either these or"),
+        (("--out", "a.png", "--outline", "--rulers"), "are for maps; leave out either these or"),
         (("--out", "a.csv", "--outline"), "--outline is no map; end --out in .svg"),
         (("--out", "a.png", "--raised"), "--raised is gone; --outline draws what is felt"),
         (
-            ("--out", "a.gif", "--vibration", "sequence", "--axes"),
-            "an animation has maps alone; leave out --array and --axes, or end --out in .png",
+            ("--out", "a.gif", "--vibration", "sequence", "--rulers"),
+            "an animation has maps alone; leave out --array and --rulers, or end --out in .png",
         ),
         (("--out", "a.gif"), "GIF is for --vibration sequence"),
         (("--out", "a.png", "--frames", "4"), "--frames and --parity are for --vibration sequ"),
         (("--out", "a.png", "--vibration", "sequence", "--frames", "1"), "--frames is 1; it must"),
         (("--out", "a.png", "--outline", "--sheet", "a4"), "--sheet is gone; print an --outline"),
-        (("--out", "a.csv", "--axes"), "CSV has the map's numbers alone"),
+        (("--out", "a.csv", "--rulers"), "CSV has the map's numbers alone"),
     ],
 )
 def test_what_cannot_be_drawn_is_refused_in_a_sentence(
@@ -330,3 +335,56 @@ def test_a_hand_or_a_switch_that_cannot_be_is_refused(options, words, call, tmp_
     done = call("map", path, "--out", tmp_path / "a.png", *options)
     assert done.code == 2
     assert words in done.err
+
+
+def test_axes_that_nobody_could_read_are_refused(scene, call, tmp_path):
+    done = call("map", scene, "--axes", "--resolution", "0.11", "--out", tmp_path / "ring.png")
+    assert done.code == 2
+    assert "--resolution is 0.11" in done.err
+    assert (
+        call("map", scene, "--axes", "--resolution", "0.11", "--out", tmp_path / "x.svg").code == 0
+    )
+
+
+# The kernel's own word: `ru_maxrss` would begin with what the tests' process has.
+MEASURED = """
+import sys
+from pathlib import Path
+from vbraille.cli.main import main
+assert main(sys.argv[1:]) == 0
+print(Path("/proc/self/status").read_text().partition("VmHWM:")[2].split()[0])
+"""
+
+
+@heavy
+@pytest.mark.parametrize(
+    ("kind", "options"),
+    [
+        ("svg", ["--outline"]),
+        ("pdf", ["--outline"]),
+        ("png", ["--outline", "--resolution", "0.36"]),
+        ("svg", ["--resolution", "0.19"]),
+        ("pdf", ["--resolution", "0.14"]),
+        ("png", ["--resolution", "0.36"]),
+        ("png", ["--array", "5000,5000", "--resolution", "0.11"]),
+        ("csv", ["--resolution", "0.31"]),
+    ],
+)
+def test_ten_metres_are_drawn_within_300_mb(tmp_path, kind, options):
+    scene = tmp_path / "hall.scene"
+    scene.write_text("""
+        canvas = { width_mm = 10_000, height_mm = 10_000 }
+        [[elements]]
+        kind = "linear-grating"
+        ridge_mm = 50
+        gap_mm = 30
+        vibration = { frequency_hz = 50 }
+    """)
+    told = subprocess.run(
+        [sys.executable, "-c", MEASURED, "map", scene, "--out", tmp_path / f"x.{kind}", *options],
+        capture_output=True,
+        text=True,
+        check=True,
+        env=os.environ,
+    )
+    assert int(told.stdout.split()[-1]) < 300_000  # kB

@@ -1,7 +1,8 @@
-"""``vbraille render`` and ``vbraille profile`` of a tactile picture, and its recording played."""
+"""``vbraille render`` and ``scene cost`` of a tactile picture, and its recording played."""
 
 import csv
 import hashlib
+import json
 from types import SimpleNamespace
 
 import h5py
@@ -41,7 +42,7 @@ def test_each_frame_is_what_the_twin_has_at_its_pose_and_time(call, scene, tmp_p
     out = tmp_path / "house.h5"
     hand = tmp_path / "hand.csv"
     hand.write_text("t_s,x_mm,y_mm,theta_deg\n0,80,10,0\n0.3,90,30,20\n")
-    done = call("render", scene, "--path", f"recorded:{hand}", "--out", out, "--verbose")
+    done = call("render", scene, "--hand", f"recorded:{hand}", "--out", out, "--verbose")
     assert (done.code, done.err.splitlines()[-1]) == (0, "100 percent")
     assert done.out == "rendered: 301 frames, 0.3 s on the path\n"
     resolved = open_scene(scene).resolved
@@ -80,7 +81,7 @@ def test_each_frame_is_what_the_twin_has_at_its_pose_and_time(call, scene, tmp_p
 
 def test_a_recording_of_a_picture_is_played_with_the_picture(call, scene, tmp_path):
     out = tmp_path / "house.h5"
-    assert call("render", scene, "--path", "spot", "--seconds", "1", "--out", out).code == 0
+    assert call("render", scene, "--hand", "spot", "--seconds", "1", "--out", out).code == 0
     played = Rendered(out)
     state = played.describe(1)
     assert state.title == "A house"
@@ -94,8 +95,8 @@ def test_a_recording_of_a_picture_is_played_with_the_picture(call, scene, tmp_pa
 
 def test_what_frames_cost_is_said_and_written(call, scene, tmp_path):
     out, drawn = tmp_path / "cost.csv", tmp_path / "cost.png"
-    path = ("--path", "spot", "--seconds", "0.2")
-    done = call("profile", scene, *path, "--elements", "--out", out, "--map", drawn)
+    path = ("--hand", "spot", "--seconds", "0.2")
+    done = call("scene", "cost", scene, *path, "--elements", "--out", out, "--map", drawn)
     assert done.code == 0, done.err
     said = SimpleNamespace(lines=done.out.splitlines())
     for begun in ("frames: 192", "timed: ", "clock: ", "frame: median", "most: ", "actuator: "):
@@ -107,18 +108,21 @@ def test_what_frames_cost_is_said_and_written(call, scene, tmp_path):
     assert len(rows) == 12
     assert (np.array(rows, float)[:, 2] >= 0).all()
     assert drawn.read_bytes().startswith(b"\x89PNG")
-    assert "is there already" in call("profile", scene, *path, "--out", out).err
+    assert "is there already" in call("scene", "cost", scene, *path, "--out", out).err
+    again = call("scene", "cost", scene, *path, "--json", "--out", out, "--force")
+    assert json.loads(again.out)["frames"] == 192
+    assert again.err == f"written: {out}\n"
 
 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ("render {scene} --path round --out {out}", "there is no path 'round'"),
-        ("render {scene} --radius 3 --out {out}", "--radius is not for the path wide"),
-        ("render {text} --radius 3 --out {out}", "--radius is for the path over a tactile picture"),
-        ("render {none} --path wide --out {out}", "No such file"),
-        ("profile {scene} --out {text}", "does not end in .csv"),
-        ("profile {scene} --path spot --seconds 0", "duration is 0 s"),
+        ("render {scene} --hand round --out {out}", "the hand 'round' does not go over"),
+        ("render {scene} --radius 3 --out {out}", "--radius is not for the hand wide"),
+        ("render {text} --radius 3 --out {out}", "--radius is for a way over a tactile picture"),
+        ("render {none} --hand wide --out {out}", "No such file"),
+        ("scene cost {scene} --out {text}", "does not end in .csv"),
+        ("scene cost {scene} --hand spot --seconds 0", "duration is 0 s"),
     ],
 )
 def test_what_cannot_be_is_one_sentence(call, scene, tmp_path, text, arguments, said):

@@ -8,6 +8,7 @@ import re
 import resource
 import shutil
 import subprocess
+import sys
 from functools import partial
 from pathlib import Path
 
@@ -344,3 +345,16 @@ def test_a_session_without_a_name_is_named_after_who_and_what_and_when(call, tmp
     assert re.fullmatch(r"seed: \d+\n", said.err)
     name = re.match(r"session: (P07-mini-\d{8}-\d{6})\n", said.out)[1]
     assert (tmp_path / name / "journal.jsonl").is_file()
+
+
+def test_a_session_of_strings_loads_nothing_heavy():
+    code = "import vbraille.cli.commands.session, vbraille.sessions.session, sys\n"
+    code += "from vbraille.sessions.planning.protocolfiles import load_protocol\n"
+    code += "import vbraille.sessions.running.apparatus; load_protocol('legibility')\n"
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}print(*sys.modules)"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    loaded = set(done.stdout.split())
+    assert "vbraille.sessions.session" in loaded
+    assert not loaded & {"numba", "louis", "scipy", "pandas", "matplotlib", "h5py", "serial"}

@@ -108,7 +108,7 @@ def test_protocols_of_no_use(call, room, old, new, pattern):
         ("--rate 0", "rate is 0 Hz; it must be 1 to 10000 Hz"),
         ("--rate nan", "rate is nan Hz"),
         ("--rate 1e9", "it must be 1 to 10000 Hz"),
-        ("--sound drum", "argument --sound: invalid choice: 'drum'"),
+        ("--cues drum", "argument --cues: invalid choice: 'drum'"),
         ("--out full", "full is there already; give a new directory with --out"),
         ("--out few", "few is there already; give a new directory with --out"),
         ("--out few/s", "few/s cannot be written: Not a directory"),

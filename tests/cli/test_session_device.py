@@ -224,7 +224,7 @@ def test_fast_and_in_real_time_the_answers_are_the_same(tmp_path, mini):
 
 def test_an_experimenter_at_a_terminal(tmp_path, mini):
     mini.write_text(mini.read_text() + '[[fields]]\nname = "hand"\nask = "Reading hand"\n')
-    arguments = session(mini, tmp_path / "s", "--hand", "sweep:200", "--sound", "bell")
+    arguments = session(mini, tmp_path / "s", "--hand", "sweep:200", "--cues", "bell")
     with Terminal(*arguments) as terminal:
         terminal.until("Reading hand:")
         terminal.type("left\n")

@@ -25,7 +25,7 @@ end = "key:space"
 def arguments(folder: Path):
     (folder / "mine.toml").write_text(MINE)
     session = folder / "s"
-    named = ["--participant", "P01", "--seed", "1", "--hand", "sweep:60", "--sound", "none"]
+    named = ["--participant", "P01", "--seed", "1", "--hand", "sweep:60", "--cues", "none"]
     return ["session", "run", folder / "mine.toml", "--out", session, *named]
 
 

@@ -31,7 +31,7 @@ from vbraille.sessions.record.export import rows
 from vbraille.sessions.record.folder import check, load
 
 SEEING = MINI + "[session]\nblind = false\n"
-HOW = ("--participant", "P07", "--seed", "1", "--hand", "sweep:150", "--sound", "none")
+HOW = ("--participant", "P07", "--seed", "1", "--hand", "sweep:150", "--cues", "none")
 
 
 @contextmanager

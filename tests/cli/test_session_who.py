@@ -36,7 +36,7 @@ def test_a_script_is_refused_unless_it_says_that_it_is_another_person(call, tmp_
 
 def test_at_a_terminal_it_is_asked_and_an_answer_taken(call, tmp_path):
     assert call(*session(tmp_path, "P07", "one"), *FAST).code == 0
-    with Terminal(*session(tmp_path, "p7", "two"), "--sound", "none") as terminal:
+    with Terminal(*session(tmp_path, "p7", "two"), "--cues", "none") as terminal:
         terminal.until(r"is p7 another person\? \(yes or no\):")
         terminal.type("perhaps\n")
         terminal.until("type yes or no:")
@@ -44,7 +44,7 @@ def test_at_a_terminal_it_is_asked_and_an_answer_taken(call, tmp_path):
         assert terminal.end() == 2
         assert "nothing was begun; give --participant P07" in terminal.printed
     assert not (tmp_path / "two").exists()
-    with Terminal(*session(tmp_path, "p7", "two"), "--sound", "none") as terminal:
+    with Terminal(*session(tmp_path, "p7", "two"), "--cues", "none") as terminal:
         terminal.until("another person")
         terminal.type("yes\n")
         terminal.until("session: ")

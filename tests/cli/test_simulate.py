@@ -15,13 +15,13 @@ import numpy as np
 import pytest
 
 from tests.cli import program
+from tests.packing import packed
 from vbraille.devices.serial.wire import (
     Decoder,
     Encoder,
     Frame,
     Hello,
     Info,
-    Levels,
     State,
     Watchdog,
     encode,
@@ -52,7 +52,7 @@ class Host:
         info = self.of(Info)[0]
         levels = np.full(info.rows * info.columns, 0 if self.of(State)[-1].resting else 512)
         self.sequence += 1
-        self.say(Frame(self.sequence, Levels(levels.size, info.top_level).pack(levels)))
+        self.say(Frame(self.sequence, packed(levels, info.top_level)))
 
     def until(self, found, step=lambda: None):
         """Hear until something comes true, doing something every few milliseconds."""

@@ -9,15 +9,16 @@ import pytest
 from tests.cli import program
 from tests.tiers import heavy
 from vbraille.cli.commands.simulate import LATERO_ONLY, SERIAL_ONLY
-from vbraille.cli.options.exploring import simulate
+from vbraille.cli.commandtable import COMMANDS
 from vbraille.cli.parser import CommandParser
+from vbraille.config.options import COMMON
 
 
 class Simulated:
     """The process, and the spec by which it is found."""
 
     def __init__(self, *options):
-        command = [*program.PROGRAM, "simulate", "latero", "--port", "0", *options]
+        command = [*program.PROGRAM, "simulate", "latero", "--udp-port", "0", *options]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         self.spec = self.process.stdout.readline().strip().partition(": ")[2]
 
@@ -72,9 +73,9 @@ def test_a_text_is_read_on_it_to_its_end(tmp_path):
         ("latero --rate 500", "--rate is not for a simulated latero"),
         ("latero --unplug-every 5s", "--unplug-every is not for a simulated latero"),
         ("serial --late 0.1", "--late is not for a simulated serial"),
-        ("--port 8900", "--port is not for a simulated serial"),
-        ("latero --port 70000", "port is 70000"),
-        ("latero --lines 99", "lines are 99"),
+        ("--udp-port 8900", "--udp-port is not for a simulated serial"),
+        ("latero --udp-port 70000", "port is 70000"),
+        ("latero --page-lines 99", "lines are 99"),
         ("latero --late 2", "late is 2"),
         ("latero --press 3@1s", "a Latero has 1 and 2"),
     ],
@@ -87,11 +88,10 @@ def test_what_it_cannot_be_is_said_in_a_sentence(call, options, why):
 
 
 def test_each_option_is_of_one_kind_of_device_or_of_both():
-    parser = CommandParser()
-    simulate(parser)
+    parser = CommandParser(command=COMMANDS["simulate"])
     options = vars(parser.parse_args([]))
     of_both = {"what", "hand", "seed", "script", "press", "drop"}
-    assert set(options) == LATERO_ONLY.keys() | SERIAL_ONLY.keys() | of_both
+    assert set(options) - {*COMMON} == LATERO_ONLY.keys() | SERIAL_ONLY.keys() | of_both
     assert {**LATERO_ONLY, **SERIAL_ONLY}.items() <= options.items()
 
 

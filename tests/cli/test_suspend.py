@@ -160,7 +160,7 @@ def test_whoever_else_is_at_a_device_has_the_keys_back(
 
 def test_a_session_pauses(shell, tmp_path):
     (tmp_path / "mini.toml").write_text(MINI)
-    options = ["--participant", "P1", "--seed", "3", "--sound", "none", "--out", tmp_path / "s"]
+    options = ["--participant", "P1", "--seed", "3", "--cues", "none", "--out", tmp_path / "s"]
     command = [*program.PROGRAM, "session", "run", tmp_path / "mini.toml", *options]
     shell.type(f"{shlex.join(map(str, command))}\n")
     shell.until("cue: ")

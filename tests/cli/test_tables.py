@@ -49,6 +49,11 @@ def test_an_option_under_its_former_name_says_the_present_one(call):
     for old, said in (
         (("monitor", "--play", "reading.h5"), "vbraille monitor reading.h5"),
         (("feel", "house.scene", "--at", "12"), "--y chooses"),
+        (("render", "house.scene", "--path", "wide"), "--hand wide"),
+        (("session", "run", "letters", "--sound", "bell"), "--cues"),
+        (("simulate", "latero", "--port", "0"), "--udp-port"),
+        (("profile", "house.scene"), "vbraille scene cost"),
+        (("plot", "profile"), "vbraille plot deflection"),
     ):
         refused = call(*old)
         assert refused.code == 2

@@ -10,8 +10,8 @@ from vbraille.config.options import OPTIONS, PROFILE, held_in, knobs
 from vbraille.config.settings import (
     kept_values,
     parse_settings,
-    say_settings,
-    say_tuning,
+    settings_said,
+    tuning_said,
     with_profile,
 )
 from vbraille.config.settingsfile import ProfileTable, ReadTable
@@ -27,12 +27,12 @@ def test_the_file_of_the_page_is_read_as_the_page_says():
     settings = parse_settings(TOML, FILE)
     model = with_profile(settings, settings.profile, STRESS2)
     said = [
-        *say_tuning(settings, settings.profile, STRESS2, model.style),
-        *say_settings(settings, {}),
+        *tuning_said(settings, settings.profile, STRESS2, model.style),
+        *settings_said(settings, {}),
     ]
     shown, faulty = re.findall(r"^```text\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
     for line in shown.splitlines():
-        assert line in said
+        assert line in map(str, said)
     with pytest.raises(InputError) as refused:
         parse_settings(TOML.replace("\ncontrast = 1.0", "\ncontrst = 1.0"), FILE)
     assert str(refused.value).startswith(faulty.removeprefix("vbraille: ").rstrip("…\n"))

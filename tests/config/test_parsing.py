@@ -5,13 +5,13 @@ from pathlib import Path
 import pytest
 
 from vbraille.config.settings import (
+    bindings_said,
     display_name,
     load_settings,
     missing_profile,
     parse_settings,
-    say_bindings,
-    say_settings,
-    say_tuning,
+    settings_said,
+    tuning_said,
     with_profile,
 )
 from vbraille.errors import InputError
@@ -61,7 +61,7 @@ def test_what_a_file_says_and_where():
 def test_each_setting_is_one_line_with_where_it_comes_from():
     settings = parse_settings(TEXT, FILE)
     style = STRESS2.style.replace(texture=0.8, dot_width_mm=2.2, cell_gap_mm=7.0)
-    assert list(say_tuning(settings, "evening", STRESS2, style)) == [
+    assert list(map(str, tuning_said(settings, "evening", STRESS2, style))) == [
         "texture: 0.8 (profile evening, settings.toml line 14)",
         "contrast: 1 (default)",
         "texture cycles: 7 (default)",
@@ -71,16 +71,16 @@ def test_each_setting_is_one_line_with_where_it_comes_from():
         "line pitch: 14 mm (default)",
         "mapping: alternate (option)",
     ]
-    given = list(say_tuning(settings, "evening", STRESS2, style, ("texture",)))
+    given = list(map(str, tuning_said(settings, "evening", STRESS2, style, ("texture",))))
     assert given[0] == "texture: 0.8 (option)"
-    said = list(say_settings(settings, {"device": "sim:", "grade": None}))
+    said = list(map(str, settings_said(settings, {"device": "sim:", "grade": None})))
     assert said[:3] == [
         "device: sim: (option)",
         "language: fr (settings.toml line 3)",
         "grade: what is usual in the language (default)",
     ]
     assert "keep lines: yes (settings.toml line 5)" in said
-    assert list(say_bindings(settings)) == [
+    assert list(map(str, bindings_said(settings))) == [
         "keys of LNDN: n, j (settings.toml line 8)",
         "button 1: LNDN (settings.toml line 10)",
         "knob 1: CONTRAST (settings.toml line 11)",

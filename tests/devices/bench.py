@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tests.engine.test_loop import info
-from vbraille.devices.sentences import told
+from vbraille.devices.events import told
 from vbraille.devices.serial.device import begin
 from vbraille.devices.serial.port import parse_address
 from vbraille.devices.serial.wire import Decoder, Encoder

@@ -20,8 +20,7 @@ from tests.devices.pagecontroller import (
     stuffed,
     unstuffed,
 )
-from vbraille.devices.events import Button, Knob
-from vbraille.devices.sentences import told
+from vbraille.devices.events import Button, Knob, told
 from vbraille.devices.serial.wire import Decoder
 from vbraille.simulation.firmware import Controller
 

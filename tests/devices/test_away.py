@@ -4,7 +4,7 @@ import pytest
 
 from tests.devices.bench import AWAY, HOME_MM, Bench, shown
 from vbraille.devices.base import Placing
-from vbraille.devices.sentences import told
+from vbraille.devices.events import told
 from vbraille.devices.serial.wire import (
     CountSign,
     Encoder,

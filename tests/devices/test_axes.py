@@ -6,8 +6,7 @@ import pytest
 
 from tests.devices.bench import HALF, HOME_MM, Bench
 from vbraille.devices.base import Placing
-from vbraille.devices.events import Knob
-from vbraille.devices.sentences import told
+from vbraille.devices.events import Knob, told
 from vbraille.devices.serial.hardware import turned
 from vbraille.devices.serial.wire import CountSign, Encoder, TurnSign, YCountSign
 from vbraille.errors import DeviceError

@@ -6,8 +6,7 @@ import pytest
 
 from tests.devices.bench import Bench
 from vbraille.devices.base import Placing
-from vbraille.devices.events import Back, Button, Placed, Silent, Unplugged, WatchdogTripped
-from vbraille.devices.sentences import told
+from vbraille.devices.events import Back, Button, Placed, Silent, Unplugged, WatchdogTripped, told
 from vbraille.devices.serial.wire import Encoder, Error, encode
 from vbraille.errors import DeviceError
 

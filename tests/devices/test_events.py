@@ -26,11 +26,12 @@ from vbraille.devices.events import (
     WatchdogTripped,
     from_json,
     is_known,
+    placing_sentence,
     shortened,
     to_json,
+    told,
 )
 from vbraille.devices.latero.device import DISPLAY as LATERO
-from vbraille.devices.sentences import placing_sentence, say, told
 from vbraille.display import Display
 
 SAID = [
@@ -100,7 +101,7 @@ SAID = [
 
 @pytest.mark.parametrize(("event", "sentence"), SAID)
 def test_each_has_a_sentence_and_comes_through_json_as_it_is(event, sentence):
-    assert say(event) == sentence
+    assert event.say() == sentence
     assert is_known(event)
     back = from_json(json.loads(json.dumps(to_json(event))))
     assert back == event
@@ -118,8 +119,8 @@ def test_what_a_reader_hears_of_otherwise_is_not_said():
 
 def test_texts_are_cut_and_nothing_else():
     event = Stranger("a" * 9, "b", (Difference("name", "c" * 9, 2.5),), 7, times=3)
-    assert shortened(event, 3) == Stranger(
-        "aaa", "b", (Difference("name", "ccc", 2.5),), 7, times=3
+    assert shortened(event, 4) == Stranger(
+        "aaaa", "b", (Difference("name", "cccc", 2.5),), 7, times=3
     )
 
 
@@ -131,7 +132,7 @@ def test_a_driver_s_own_kind_is_not_known():
     assert not is_known(Own())
     assert not is_known("a sentence")
     with pytest.raises(TypeError, match="no words for"):
-        say(Own())
+        Own().say()
 
 
 SLIDER = Display("slider", rows=6, columns=10, column_pitch_mm=1.2, row_pitch_mm=1.6)

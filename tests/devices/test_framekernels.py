@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.packing import packed
 from vbraille.devices import framekernels
 from vbraille.devices.serial.wire import Levels
 
@@ -29,12 +30,12 @@ def test_it_is_the_formula_packed_by_the_codec(rows, columns, top, seed):
     deflections = random.choice([0.0, 1.0, *random.random(5)], (rows, columns))
     gain = random.integers(0, 256, (rows, columns))
     inverted = random.integers(0, 2, (rows, columns))
-    levels, wanted, felt, packed = fill(deflections, top, gain=gain, inverted=inverted)
+    levels, wanted, felt, line = fill(deflections, top, gain=gain, inverted=inverted)
     want = np.rint(deflections * (gain / 255 * top)).astype(int)
     want = np.where(inverted, top - want, want)
     np.testing.assert_array_equal(levels, want)
     np.testing.assert_array_equal(wanted, deflections)
-    assert packed == Levels(levels.size, top).pack(want)
+    assert line == packed(want.ravel(), top)
     assert felt == bool(deflections.any())
 
 

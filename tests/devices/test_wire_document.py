@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 from zlib import crc32
 
-import numpy as np
 import pytest
 from cobs import cobs
 
+from tests.packing import packed as packed_levels
 from vbraille.devices.serial import wire
 from vbraille.devices.serial.conversation import TRANSITIONS, Stage
 from vbraille.devices.serial.device import LOWEST_RATE_HZ
@@ -326,7 +326,7 @@ def test_levels():
     levels = [int(word) for word in level.split()[:6]]
     assert [int(word, 2) for word in bits.split()[:6]] == levels
     assert int(bits.replace(" ", ""), 2).to_bytes(8, "big") == bytes.fromhex(packed)
-    assert Levels(6, 1023).pack(np.array(levels)) == bytes.fromhex(packed)
+    assert packed_levels(levels, 1023) == bytes.fromhex(packed)
     assert example_of(Frame)[0].packed == bytes.fromhex(packed)
 
 
@@ -340,7 +340,7 @@ def test_times():
 def test_bandwidth():
     told = {row[0]: [cell.strip("*") for cell in row[1:]] for row in rows_of("Bandwidth")}
     levels = Levels(60, 1023)
-    frame = Frame(0, levels.pack(np.full(60, 1023)))
+    frame = Frame(0, packed_levels([1023] * 60, 1023))
     state = State(0, 0, 0, 0, 0, 0, None, 0, 0, 0)
     sizes = [len(encode(message)) for message in (frame, state)]
     assert sizes == [line_bytes(3 + levels.packed_bytes), line_bytes(29)]

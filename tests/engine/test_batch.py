@@ -291,8 +291,7 @@ def test_a_poll_is_over_when_the_hand_is_done():
         assert not engine.device.steering.done_at(blocks[-1]["device_ns"][-2])
         assert [block.size for block in blocks[:-1]] == [700] * (len(blocks) - 1)
         assert blocks[-1].size < 700
-        assert engine.newest is not None
-        assert engine.newest["tick"] == engine.tally.ticks - 1
+        assert blocks[-1]["tick"][-1] == engine.tally.ticks - 1
         assert engine.x_mm == pytest.approx(-5.4, abs=1 / 200)
     assert engine.poll().size == 700  # done since long
 
@@ -300,23 +299,22 @@ def test_a_poll_is_over_when_the_hand_is_done():
 def test_it_says_what_a_host_says():
     engine = batch(poll_ticks=1500)
     assert engine.x_mm is None
-    assert engine.newest is None
-    with engine:
-        engine.start()
-        assert not engine.paused
-        show(full(), 1)(engine)
-        ticks = engine.poll()
-        engine.set_zero()
+    engine.start()
+    assert not engine.paused
+    show(full(), 1)(engine)
+    ticks = engine.poll()
+    engine.set_zero()
     assert engine.display.columns == 10
     assert (engine.lost, engine.counts, list(engine.take_events())) == (0, {}, [])
-    assert engine.newest is not None
-    assert engine.newest["tick"] == ticks["tick"][-1]
+    assert engine.calibration is None
     assert engine.tally.ticks == ticks.size
     assert engine.tally.forward_mm == pytest.approx(LINE_MM + 10.8, abs=0.1)
     assert engine.tally.scanning_mm_s == pytest.approx(60, rel=0.02)
     assert engine.device.frames == 1
     want = np.rint(ticks["frame"][-1].astype(float) * 1023)
     np.testing.assert_array_equal(engine.device.levels, want)
+    engine.close()
+    assert not engine.device.levels.any()
 
 
 def test_a_device_that_is_closed_takes_no_frames():

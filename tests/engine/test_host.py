@@ -255,12 +255,11 @@ def test_a_killed_parent_leaves_no_host_and_no_actuator_deflected(tmp_path):
 def test_without_the_right_to_real_time_a_sentence_says_how_to_get_it():
     script = (
         "import os, resource\n"
-        "from vbraille.devices.sentences import say\n"
         "from vbraille.engine.realtime import go_real_time\n"
         "resource.setrlimit(resource.RLIMIT_MEMLOCK, (65536, 65536))\n"
         "resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))\n"
         "if os.geteuid() == 0: os.setuid(65534)\n"
-        "print(say(go_real_time()))\n"
+        "print(go_real_time().say())\n"
     )
     said = subprocess.run(
         [sys.executable, "-c", script], check=True, capture_output=True, text=True

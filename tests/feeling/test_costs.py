@@ -20,7 +20,7 @@ from vbraille.feeling.paths import PathOptions, path_of
 from vbraille.render import MODELS
 from vbraille.scene.scene import Canvas
 
-SPOT = PathOptions("spot", at="60,50", seconds=0.2)
+SPOT = PathOptions("spot:60,50", seconds=0.2)
 
 
 @pytest.fixture

@@ -58,7 +58,7 @@ def test_the_spot_path_fills_the_square_about_its_place():
 
 
 def test_poses_are_those_of_the_path_at_even_times(tmp_path):
-    path = path_of(PathOptions("wide", spacing=20), CANVAS, 8.4, 500.0)
+    path = path_of(PathOptions("wide:20"), CANVAS, 8.4, 500.0)
     np.testing.assert_allclose(np.diff(path.t_s), 1 / 500)
     assert (path.x_mm[0], path.y_mm[0]) == (0, 0)
     assert path.x_mm.max() == pytest.approx(100, abs=0.2)
@@ -76,12 +76,12 @@ def test_poses_are_those_of_the_path_at_even_times(tmp_path):
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (PathOptions("round"), "there is no path 'round'; give wide, spot or recorded:FILE.csv"),
-        (PathOptions("wide", at="3,4"), "is not for the path wide"),
-        (PathOptions("spot", spacing=3.0), "is not for the path spot"),
-        (PathOptions("spot", at="3;4"), "the place is '3;4'; write it as X,Y in mm"),
-        (PathOptions("spot", at="3,nan"), "place is 'nan'; give a number in mm"),
-        (PathOptions("wide", spacing=0.1), "spacing is 0.1 mm; it must be 0.5 to 1000 mm"),
+        (PathOptions("round"), "the hand 'round' does not go over a picture"),
+        (PathOptions("wide", radius=3.0), "is not for the hand wide"),
+        (PathOptions("spot", sway=3.0), "is not for the hand spot"),
+        (PathOptions("spot:3;4"), "the place is '3;4'; write it as X,Y in mm"),
+        (PathOptions("spot:3,nan"), "place is 'nan'; give a number in mm"),
+        (PathOptions("wide:0.1"), "spacing is 0.1 mm; it must be 0.5 to 1000 mm"),
         (PathOptions("wide", speed=0.0), "speed is 0 mm/s"),
         (PathOptions("wide", unsteady=1.0), "change of speed is 1; it must be 0 to 0.9"),
         (PathOptions("wide", back=60.0), "way back is 60 mm"),

@@ -10,6 +10,7 @@ from PIL import Image
 from scipy.ndimage import label
 
 from vbraille.errors import InputError
+from vbraille.pictures import drawings
 from vbraille.pictures.drawings import (
     ArrayOnMap,
     ArrayPlace,
@@ -17,6 +18,7 @@ from vbraille.pictures.drawings import (
     bars_mm,
     check_on_canvas,
     drawing_bytes,
+    felt_contours,
     map_figure,
     outline_figure,
     show_array,
@@ -128,6 +130,17 @@ def test_walls_that_meet_are_joined():
     black = ink(outline_figure(Scene(canvas=CANVAS, elements=walls), Assets()), 8.0)
     assert label(black)[1] == 1
     assert label(~black)[1] == 4  # outside and three rooms, none open to another
+
+
+def test_lines_around_what_is_felt_are_closed_across_all_bands_of_rows(monkeypatch):
+    scene = Scene(canvas=CANVAS, elements=DRAWN)
+    whole = felt_contours(scene, Assets())
+    monkeypatch.setattr(drawings, "_BAND_ROWS", 7)
+    banded = felt_contours(scene, Assets())
+    assert all((line[0] == line[-1]).all() for line in banded)
+    corners = [sorted(map(bytes, np.concatenate(lines))) for lines in (whole, banded)]
+    assert set(corners[0]) == set(corners[1])
+    assert len(whole) == len(banded)
 
 
 def test_a_scene_of_which_nothing_is_felt_is_blank():

@@ -87,7 +87,7 @@ def test_each_cue_is_another_melody_and_another_number_of_bells():
 
 def test_cues_are_played():
     speaker = Loudspeaker()
-    for cue in given([Cue.LIMIT, Cue.PAGE_END], "sound", speaker):
+    for cue in given([Cue.LIMIT, Cue.PAGE_END], "tones", speaker):
         end = time.monotonic() + 30.0
         while speaker.played[-1:] != [MELODIES[cue]]:
             assert time.monotonic() < end
@@ -100,7 +100,7 @@ def test_without_an_audio_output_or_when_it_goes_the_bell_rings(speaker):
     if speaker is not None:
         speaker.there = False
     with terminal() as bells:
-        for cue in given([Cue.PAGE_END, Cue.LINE_END], "sound", speaker):
+        for cue in given([Cue.PAGE_END, Cue.LINE_END], "tones", speaker):
             number = len(MELODIES[cue])
             assert bells(number) == b"\a" * number
 
@@ -132,8 +132,8 @@ def test_a_process_that_ends_is_no_fault():
 
 def test_who_is_at_no_terminal_hears_none_and_who_is_far_away_the_bell(monkeypatch):
     monkeypatch.delenv("SSH_CONNECTION", raising=False)
-    assert choose_cues(None, attended=True) is CueKind.SOUND
+    assert choose_cues(None, attended=True) is CueKind.TONES
     monkeypatch.setenv("SSH_CONNECTION", "192.0.2.1 5 192.0.2.2 22")
     assert choose_cues(None, attended=True) is CueKind.BELL
     assert choose_cues(None, attended=False) is CueKind.NONE
-    assert choose_cues("sound", attended=False) is CueKind.SOUND
+    assert choose_cues("tones", attended=False) is CueKind.TONES

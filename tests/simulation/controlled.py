@@ -1,7 +1,6 @@
 """A simulated controller on a bench: what is sent to it, what it says, and its timer."""
 
-import numpy as np
-
+from tests.packing import packed as packed_levels
 from vbraille.devices.serial.wire import (
     VERSION,
     CountSign,
@@ -9,7 +8,6 @@ from vbraille.devices.serial.wire import (
     Encoder,
     Frame,
     Info,
-    Levels,
     RestSide,
     State,
     TurnSign,
@@ -54,11 +52,10 @@ INFO = Info(
 )
 REST = [0, 0, 0, TOP, TOP, TOP]
 SWING = [TOP, 500, 0, 0, 500, TOP]
-PACKING = Levels(6, TOP)
 
 
 def packed(levels):
-    return PACKING.pack(np.array(levels, np.uint16))
+    return packed_levels(levels, TOP)
 
 
 class Bench:

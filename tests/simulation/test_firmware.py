@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.packing import packed as packed_levels
 from tests.simulation.controlled import INFO, REST, SWING, TOP, Bench, packed, without_states
 from vbraille.devices.serial.wire import (
     DELIMITER,
@@ -19,7 +20,6 @@ from vbraille.devices.serial.wire import (
     ErrorCode,
     Frame,
     Hello,
-    Levels,
     OtherVersion,
     RestSide,
     State,
@@ -86,7 +86,7 @@ def test_of_several_frames_the_last_is_shown(greeted):
     [
         encode(Frame(1, packed(SWING) + b"\0")),
         encode(Frame(1, packed(SWING)[:-1])),
-        encode(Frame(1, Levels(6, 1023).pack(np.full(6, TOP + 1)))),
+        encode(Frame(1, packed_levels([TOP + 1] * 6, 1023))),
         encode(Frame(1, packed(SWING)))[:-3] + b"\x55\x55\0",
         enframe(b"\x02\x01\x00"),
         enframe(b"\x7f"),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.controllers import HastyController
+from tests.packing import packed as packed_levels
 from tests.simulation.controlled import (
     INFO,
     REST,
@@ -22,7 +23,6 @@ from vbraille.devices.serial.wire import (
     TRIPPED,
     Frame,
     Hello,
-    Levels,
     Rest,
     Watchdog,
     encode,
@@ -245,7 +245,7 @@ def test_frames_that_were_held_up_do_not_move_it_all_together(greeted):
 def test_a_device_of_two_levels_leaves_rest_by_a_frame_of_rest():
     bench = Bench(replace(INFO, top_level=1))
     bench.send(Hello())
-    rest, swing = (Levels(6, 1).pack(np.array(levels)) for levels in ([0, 0, 0, 1, 1, 1], [1] * 6))
+    rest, swing = (packed_levels(levels, 1) for levels in ([0, 0, 0, 1, 1, 1], [1] * 6))
     bench.send(Frame(1, swing))
     assert bench.controller.frames == 0
     bench.send(Frame(2, rest))

@@ -12,7 +12,7 @@ from tests.tiers import by_tier
 from vbraille.carriers import latero as arms
 from vbraille.devices.latero.wire import parse_answer
 from vbraille.errors import InputError
-from vbraille.simulation.controls import Press, parse_script
+from vbraille.simulation.controls import parse_presses, parse_script
 from vbraille.simulation.lateroboard import LateroBoard
 from vbraille.simulation.laterosim import (
     OFFSETS,
@@ -148,7 +148,7 @@ def test_levels_beyond_rest_are_counted():
 
 def test_its_buttons_are_low_while_they_are_pressed():
     with (
-        simulated(presses=[Press(1, 0.0, 60.0)]) as latero,
+        simulated(script=parse_presses("1@0s-60s")) as latero,
         TableClient(latero._socket.getsockname()[1]) as client,
     ):
         until(lambda: client.full([150] * 64)[4] == 0x0020)

@@ -11,8 +11,7 @@ import pytest
 
 from tests.tiers import by_tier
 from vbraille.devices import open_device
-from vbraille.devices.events import HandHeld
-from vbraille.devices.sentences import told
+from vbraille.devices.events import HandHeld, told
 from vbraille.engine.clock import ManualClock
 from vbraille.errors import InputError
 from vbraille.render import STRESS2

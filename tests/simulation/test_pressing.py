@@ -6,13 +6,13 @@ from tests.engine.test_loop import info
 from vbraille.devices.events import Button, Knob
 from vbraille.engine.clock import ManualClock
 from vbraille.errors import InputError
-from vbraille.simulation.controls import Press, held, parse_press
+from vbraille.simulation.controls import Controls, parse_presses, parse_script
 from vbraille.simulation.simulated import SimulatedDevice, open_simulated
 
 
 def test_a_press_is_short_unless_it_is_said_till_when():
-    assert parse_press("1@2.5s") == Press(1, 2.5, 2.6)
-    assert parse_press("8@0s-4s") == Press(8, 0.0, 4.0)
+    assert parse_presses("1@2.5s") == parse_script("2.5s press 1\n2.6s release 1", "")
+    assert parse_presses("8@0s-4s") == parse_script("0s press 8\n4s release 8", "")
 
 
 @pytest.mark.parametrize(
@@ -29,17 +29,20 @@ def test_a_press_is_short_unless_it_is_said_till_when():
 )
 def test_what_is_no_press_is_refused_in_a_sentence(text, why):
     with pytest.raises(InputError, match=why):
-        parse_press(text)
+        parse_presses(text)
 
 
 def test_buttons_that_are_held_at_a_time():
-    presses = [Press(1, 1.0, 2.0), Press(3, 1.5, 4.0)]
-    assert [held(presses, now_s) for now_s in (0.9, 1.0, 1.5, 2.0, 4.0)] == [0, 1, 5, 4, 0]
+    controls, held = Controls(parse_presses("1@1s-2s,3@1.5s-4s")), []
+    for now_s in (0.9, 1.0, 1.5, 2.0, 4.0):
+        controls.advance(now_s)
+        held.append(controls.buttons)
+    assert held == [0, 1, 5, 4, 0]
 
 
 def test_a_device_in_memory_tells_what_was_pressed_and_turned():
     clock = ManualClock()
-    device = SimulatedDevice(info(), clock.now_ns, presses=[Press(2, 0.5, 0.6)])
+    device = SimulatedDevice(info(), clock.now_ns, presses=parse_presses("2@0.5s-0.6s"))
     assert list(device.take_events()) == []
     device.press(1)
     device.let_go(1)

@@ -7,8 +7,8 @@ from vbraille.simulation.controls import (
     SHORT_S,
     ControlEvent,
     Controls,
-    Press,
     load_script,
+    parse_presses,
     parse_script,
 )
 
@@ -71,7 +71,7 @@ def test_a_script_in_a_file(tmp_path):
 
 
 def test_buttons_and_knobs_stand_as_the_script_has_moved_them_so_far():
-    controls = Controls(parse_script(SCRIPT, ""), [Press(8, 1.0, 2.75)])
+    controls = Controls((*parse_script(SCRIPT, ""), *parse_presses("8@1s-2.75s")))
     assert controls.knobs == [0.5] * 4
     found = {}
     for now_s in (0.0, 0.25, 1.0, 2.5, 2.75, 3.0, 60.0):

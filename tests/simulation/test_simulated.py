@@ -75,7 +75,7 @@ def test_many_places_at_once_are_those_read_one_by_one(clock, columns, counts_pe
     home = -simulated.span_mm
     device.move(straight((0, home), (10, home + 320), (12, -30), (13, 20)))
     times_ns = clock.now_ns() + np.arange(1000) * 15_625_000
-    places, count = device.places_mm(times_ns), device.until_done(times_ns)
+    places, count = device.poses_at(times_ns)[0], device.until_done(times_ns)
     assert 0 < count < 1000
     for n in range(1000):
         assert device.read().x_mm == places[n]

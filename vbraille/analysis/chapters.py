@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.results import ReportFigure, ResultTable
     from vbraille.sessions.planning.protocol import Protocol
 
-SEED = 20090618
+SEED = 1
 MOST_LEVELS = 50  # a factor with more levels was not varied by an experimenter
 MOST_CELLS = 1_000_000  # cells of all participants together
 STAGES = 2  # of the analysis of a study: measures compared, and all else

@@ -13,6 +13,7 @@ from vbraille.sessions.record import journal
 from vbraille.sessions.record.bids import write
 from vbraille.sessions.record.codebook import asked_in, entry_of, to_codebook
 from vbraille.sessions.record.export import (
+    ROWS_NEED,
     Traces,
     anonymous,
     encode,
@@ -135,7 +136,7 @@ def _to_table(
     table: list[dict[str, Any]] = []
     asked: dict[str, str] = {}
     for one in given:
-        traces = Traces(one, salvaged=arguments.salvage)
+        traces = Traces(one, salvaged=arguments.salvage, upto=ROWS_NEED)
         exported = rows(one, traces)
         if arguments.anonymous:
             exported = anonymous(one, exported)
@@ -147,12 +148,12 @@ def _to_table(
     if arguments.out is None:
         sys.stdout.write(text)
     else:
-        write_file(Path(arguments.out), encode(text))
+        write_file(Path(arguments.out), encode(text), replace=arguments.force)
         say(f"written: {arguments.out}, {len(table)} rows")
     if arguments.codebook is not None:
         name = _TRIALS if arguments.out is None else Path(arguments.out).name
         book = to_codebook({name: [entry_of(column, asked) for column in columns]})
-        write_file(Path(arguments.codebook), encode(book))
+        write_file(Path(arguments.codebook), encode(book), replace=arguments.force)
         if arguments.out is not None:
             say(f"written: {arguments.codebook}, {len(columns)} rows")
     return faults

@@ -138,7 +138,7 @@ def _call(argv: Sequence[str] | None) -> int:
         from vbraille.cli.parser import parse, read_instead
     try:
         arguments = parse(argv)
-        if arguments.command == "books" and arguments.number is not None:
+        if arguments.command == "books" and arguments.number is not None and not arguments.forget:
             arguments = read_instead(arguments)
     except SystemExit:  # --help and --version have been printed
         return 0
@@ -154,9 +154,11 @@ def _call(argv: Sequence[str] | None) -> int:
             # A hand on a picture may stand still, and waits for a person.
             pointed = arguments.monitor or arguments.command == "feel"
             arguments.pointer = _pointer() if pointed else None
-            arguments.begun = _begin_host(arguments) if _may_begin(arguments) else None
-            if arguments.begun is not None:
-                begun.callback(arguments.begun[0].end)
+            arguments.begun = _begin_host(arguments.pointer) if _may_begin(arguments) else None
+        elif arguments.command == "session" and arguments.action in ("run", "resume"):
+            arguments.begun = _begin_host() if _session_may_begin(arguments) else None
+        if (host := getattr(arguments, "begun", None)) is not None:
+            begun.callback(host[0].end)
         with EAR.at_once():
             command = import_module(f"vbraille.cli.commands.{arguments.command}")
         return command.run(arguments)
@@ -176,18 +178,40 @@ def _may_begin(arguments: Namespace) -> bool:
         return False
     if any(getattr(arguments, name, None) is not None for name in ("table", "language", "grade")):
         return False
-    if device in (None, "sim"):
+    return device is None or _may_be_there(device)
+
+
+def _session_may_begin(arguments: Namespace) -> bool:
+    """Tell if a session may go by the clock on a device that may be there."""
+    device, fast = arguments.device, arguments.fast
+    if arguments.action == "resume":
+        import json
+
+        try:
+            with open(os.path.join(arguments.folder, "session.json"), "rb") as file:  # noqa: PTH118, PTH123
+                head = json.load(file)
+            fast = fast or (arguments.answers in (None, head["answers"]) and head["fast"])
+            device = device or head["device"]
+        except (OSError, ValueError, KeyError, TypeError):
+            return False  # the command says what is wrong
+    # A page that is the hand, too, needs memory of its own, which the session makes.
+    return not (fast or arguments.monitor) and (device is None or _may_be_there(device))
+
+
+def _may_be_there(device: str) -> bool:
+    """Tell if there is a driver of a device's kind."""
+    if device == "sim":
         return True
     from importlib.metadata import entry_points
 
     return bool(entry_points(group="vbraille.devices", name=device.partition(":")[0]))
 
 
-def _begin_host(arguments: Namespace) -> tuple[Spawned, Steering]:
-    """Begin the process that drives the device, which loads while the text is opened."""
+def _begin_host(pointer: Pointer | None = None) -> tuple[Spawned, Steering]:
+    """Begin the process that drives the device, which loads while all else is opened."""
     from vbraille.engine.spawning import spawn
     from vbraille.simulation.steering import Steering
 
-    steering, pointer = Steering(), arguments.pointer
+    steering = Steering()
     pointed = () if pointer is None else (pointer.descriptor,)
     return spawn((steering.descriptor, *pointed)), steering

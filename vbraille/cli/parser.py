@@ -1,23 +1,25 @@
-"""The commands and their parser, help and refusals; `vbraille.cli.options` has their options."""
+"""The parser of the command line, its help and its refusals, made of the table of commands."""
 
 from __future__ import annotations
 
 import argparse
 import os
 import sys
-from importlib import import_module
 
-from vbraille.config.options import COMMON, FILE, OPTIONS, PROFILE, held_in, number, whole
+from vbraille.cli.commandtable import ACTIONS, COMMANDS, GROUPS
+from vbraille.config.option import PROFILE, Argument, Option
+from vbraille.config.options import ADDRESS, COMMON, OPTIONS
+from vbraille.config.readers import number, whole
 from vbraille.errors import InputError
 from vbraille.version import __version__
-from vbraille.wording import nearest
+from vbraille.wording import nearest, setting
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Mapping, Sequence
     from typing import NoReturn
 
-    Options = Callable[["CommandParser"], None]
+    from vbraille.cli.commandtable import CommandRow, Row
 
 
 class _Help(argparse.HelpFormatter):
@@ -32,18 +34,22 @@ class _Help(argparse.HelpFormatter):
         return text if text.startswith("example:") else super()._fill_text(text, width, indent)
 
 
-def _with_default(text: str, default: object) -> str:
-    """Sentence of help with the default, unless there is none or the sentence has words for it."""
-    if default is None or "(default: " in text:
-        return text
-    said = f"{default:g}" if isinstance(default, float) else default
-    return f"{text.removesuffix('.')} (default: {said})."
-
-
 _READERS = {int: whole, float: number}
-# Options that there were, and what does the same.
+# Commands and options that there were, and what does the same; those that other commands still have
+# stand with the command.
 _GONE = {
-    "--at": "--y chooses the height of the line that is felt, and --x the place of an array",
+    "profile": "vbraille scene cost says what a frame of a picture costs",
+    "plot profile": "vbraille plot deflection draws how far an actuator leans",
+    "feel --at": "--y chooses the height of the line that is felt",
+    "render --at": "the place is in the hand's name: --hand spot:X,Y",
+    "scene cost --at": "the place is in the hand's name: --hand spot:X,Y",
+    "--path": "--hand wide, --hand spot:X,Y or --hand recorded:FILE.csv goes over a picture",
+    "--spacing": "the distance of turns is in the hand's name: --hand wide:SPACING",
+    "--sound": "--cues tones, bell or none chooses how signals are heard",
+    "map --axes": "--rulers draws rulers in mm",
+    "simulate --port": "--udp-port is where a simulated Latero listens",
+    "simulate --lines": "--page-lines has a hand read so many lines of a page",
+    "simulate --foreign": "--stray sends a stranger's datagrams",
     "--plain": "progress is lines, at a terminal or with --verbose",
     "--play": "give the recording by itself, as in vbraille monitor reading.h5",
     "--abstract": "--outline draws what is felt",
@@ -53,128 +59,109 @@ _GONE = {
     "--skin": "the simulated reader has one model of the skin",
     "--key": "pseudonyms are codes already; pandas puts others in their place",
     "--sites": "give participants pseudonyms that tell the sites apart, such as B-P01",
-    "--mapping": "docs/analysis.md shows how pandas makes a table of trials",
-    "--workers": "one process translates",
+    "analyse --mapping": "docs/analysis.md shows how pandas makes a table of trials",
+    "page --workers": "one process translates",
     "--test": "studies are tested as [analysis] of the protocol plans",
     "--cluster": "--workers shares the work between the processors of one machine",
-    "--protocol": "a simulated controller speaks the one version of the wire protocol",
+    "simulate --protocol": "a simulated controller speaks the one version of the wire protocol",
 }
 
 
+class _Pairs(argparse.Action):
+    """Options NAME=VALUE, gathered in a dictionary."""
+
+    def __call__(
+        self,
+        _parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: str | Sequence[object] | None,
+        _option: str | None = None,
+    ) -> None:
+        """Add a pair to those before."""
+        name, equals, value = str(values).partition("=")
+        if not equals or not name:
+            raise argparse.ArgumentError(self, f"{values!r} is not NAME=VALUE")
+        setattr(namespace, self.dest, {**getattr(namespace, self.dest), name: value})
+
+
 class CommandParser(argparse.ArgumentParser):
-    """A parser of kinds of options, whose errors are one sentence.
+    """A parser of a command, whose errors are one sentence.
 
     Parameters
     ----------
-    options
-        Function that adds the options, called when the command is; None if none are added so.
+    command
+        Command whose options are added when they are needed; None if they are added otherwise.
     settings
         As for an `argparse.ArgumentParser`.
     """
 
-    def __init__(
-        self, *, options: Callable[[CommandParser], None] | None = None, **settings
-    ) -> None:
+    def __init__(self, *, command: CommandRow | None = None, **settings) -> None:
+        settings.setdefault("add_help", command is None)
         super().__init__(**settings, formatter_class=_Help, allow_abbrev=False)
-        self._options = options
+        self._command = command
 
     def parse_known_args(self, args=None, namespace=None):  # pyright: ignore[reportIncompatibleMethodOverride]
         """Parse, as argparse does, with the options of this command added now."""
-        if self._options is not None:
-            options, self._options = self._options, None
-            self.add_argument("-h", "--help", action="help", help="Print this help.")
-            options(self)
-            if self._subparsers is None:  # one without actions, which have options of their own
-                self.take(*COMMON)
+        self.complete()
+        for argument in () if args is None else args:
+            name = argument.partition("=")[0]
+            if name.startswith("--") and name not in self._option_string_actions:
+                self._refuse_gone(name)
         namespace, unknown = super().parse_known_args(args, namespace)
         if unknown and self._subparsers is None:
-            self._refuse(unknown)
+            self._refuse_unknown(unknown)
         return namespace, unknown
 
-    def _refuse(self, unknown: list[str]) -> NoReturn:
-        """Refuse arguments; of an option that is gone say what there is, of others what is near."""
+    def complete(self) -> None:
+        """Add what the command has, its actions or its options, unless that is there."""
+        command, self._command = self._command, None
+        if command is None:
+            return
+        self.add_argument("-h", "--help", action="help", help="Print this help, and end.")
+        actions = ACTIONS.get(self.prog.rpartition(" ")[2])
+        if actions is not None:
+            _add(self, "action", "ACTION", actions)
+            return
+        self.set_defaults(**command.values)
+        given = {row.name for row in command.options if isinstance(row, Option)}
+        self.take(*command.options, *(name for name in COMMON if name not in given))
+
+    def _refuse_unknown(self, unknown: list[str]) -> NoReturn:
+        """Refuse arguments, and say what is near an option."""
         options = [argument.partition("=")[0] for argument in unknown if argument[:1] == "-"]
-        for option in options:
-            if instead := _GONE.get(option):
-                raise InputError(f"{option} is gone; {instead}")
         near = nearest(options[0], self._option_string_actions) if options else ""
         self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
+
+    def _refuse_gone(self, name: str) -> None:
+        """Refuse an option, a command or a value that there was, and say what does the same."""
+        command = self.prog.removeprefix("vbraille").strip()
+        instead = _GONE.get(f"{command} {name}".strip(), "")
+        if not instead and name.startswith("--"):
+            instead = _GONE.get(name, "")
+        if instead:
+            raise InputError(f"{name} is gone; {instead}")
 
     def _check_value(self, action: argparse.Action, value: object) -> None:
         """Refuse a value that is none of the choices, as argparse does, and name what is near."""
         try:
             super()._check_value(action, value)
         except argparse.ArgumentError as error:
+            self._refuse_gone(str(value))
             near = nearest(str(value), map(str, action.choices or ()))
-            if near and isinstance(action, argparse._SubParsersAction):
+            if isinstance(action, argparse._SubParsersAction):
                 self.error(f"there is no {action.dest} {value!r}{near}")
             error.message += near
             raise
 
-    def take(self, *names: str, unset: bool = False) -> None:
-        """Add options of the schema, by their names.
-
-        Parameters
-        ----------
-        names
-            Names of the options.
-        unset
-            Whether one that is not given has no value, so that it is known not to be given.
-        """
-        for option in map(OPTIONS.__getitem__, names):
-            if option.kind is bool:
-                self.flag(option.flag, option.sentence)
-                continue
-            kind = str if option.choices else _READERS.get(option.kind, option.kind)
-            added = self.add_argument(
-                option.flag,
-                metavar=option.metavar,
-                help=option.sentence,
-                type=kind,
-                default=None if unset else option.default,
-            )
-            added.choices = option.choices  # not looked at before they are needed
-
-    def leave_to_settings(self) -> None:
-        """Leave options that a settings file may say without a value."""
-        self.set_defaults(**{option.name: None for option in held_in(FILE)})
-
-    def flag(self, name: str, text: str) -> None:
-        """Add an option that is given or not, and the sentence that help has of it."""
-        self.add_argument(name, action="store_true", help=text)
-
-    def option(
-        self,
-        name: str,
-        metavar: str,
-        text: str,
-        kind: Callable[[str], object] = str,
-        *,
-        default: object = None,
-        required: bool = False,
-    ) -> None:
-        """Add an option with a value; help says its default where the sentence does not."""
-        self.add_argument(
-            name,
-            metavar=metavar,
-            help=_with_default(text, default),
-            type=kind,
-            default=default,
-            required=required,
-        )
-
-    def choice(
-        self,
-        name: str,
-        choices: Sequence[object],
-        text: str,
-        *,
-        default: object = None,
-        kind: Callable[[str], object] = str,
-    ) -> None:
-        """Add an option with one of some values; help says its default as for `option`."""
-        text = _with_default(text, default)
-        self.add_argument(name, choices=choices, help=text, type=kind, default=default)
+    def take(self, *rows: Row) -> None:
+        """Add arguments and options, by themselves or by their names in the schema."""
+        for row in rows:
+            if isinstance(row, tuple):
+                group = self.add_mutually_exclusive_group()
+                for name in row:
+                    _add_option(group, OPTIONS[name])
+            else:
+                _add_option(self, OPTIONS[row] if isinstance(row, str) else row)
 
     def format_help(self) -> str:
         """Help as argparse has it, followed for reading by help on the keys."""
@@ -206,250 +193,6 @@ def _keys(program: str) -> str:
     return "\nkeys at a terminal:\n" + "".join(lines)
 
 
-class _Options:
-    """A module of options, of which only functions are known that load it when called."""
-
-    def __init__(self, name: str) -> None:
-        self._module = f"vbraille.cli.options.{name}"
-
-    def __getattr__(self, name: str) -> Options:
-        """Give the function of a name, which adds a command's options."""
-
-        def add(parser: CommandParser) -> None:
-            getattr(import_module(self._module), name)(parser)
-
-        return add
-
-
-completion, exploring, lab = map(_Options, ("completion", "exploring", "lab"))
-# For each command: what it does, how its options are made, and an example.
-COMMANDS: dict[str, tuple[str, Options, str]] = {
-    "read": (
-        "Read a text on a device, line after line.",
-        exploring.read,
-        "vbraille read book.txt --device serial:/dev/ttyACM0",
-    ),
-    "feel": (
-        "Feel a tactile picture on a device, or with a simulated hand.",
-        exploring.feel,
-        "vbraille feel house.scene --device latero:192.168.1.10",
-    ),
-    "play": (
-        "Play memory with cards that only the finger tells apart.",
-        exploring.play,
-        "vbraille play --players 2 --device latero:192.168.1.10",
-    ),
-    "books": (
-        "List the books that were read, or read on in one of them.",
-        exploring.books,
-        "vbraille books 2",
-    ),
-    "keys": (
-        "List the keys that are obeyed while reading.",
-        exploring.keys,
-        "vbraille keys",
-    ),
-    "settings": (
-        "Print each setting of reading, and where it comes from.",
-        exploring.settings,
-        "vbraille settings --profile evening",
-    ),
-    "tune": (
-        "Find out in five minutes how braille feels best, two ways at a time.",
-        exploring.tune,
-        "vbraille tune --profile evening --device serial:/dev/ttyACM0",
-    ),
-    "page": (
-        "Print the page as it is laid out, or write it for an embosser.",
-        exploring.page,
-        "vbraille page book.txt --cells 40 --format brf --out book.brf",
-    ),
-    "structure": (
-        "Print a book's outline, and what it has.",
-        exploring.structure,
-        "vbraille structure book.epub",
-    ),
-    "render": (
-        "Write every frame of a reading to an HDF5 file.",
-        exploring.render,
-        "vbraille render book.txt --lines 1-3 --hand slow --out reading.h5",
-    ),
-    "profile": (
-        "Say what a frame of a tactile picture costs, place by place.",
-        exploring.profile,
-        "vbraille profile house.scene --path wide --out cost.csv",
-    ),
-    "monitor": (
-        "Play back a recording or a session in a browser, until Ctrl-C.",
-        exploring.monitor,
-        "vbraille monitor reading.h5",
-    ),
-    "plot": (
-        "Draw a picture of what the display does, or print its numbers.",
-        exploring.plot,
-        "vbraille plot page book.txt --lines 1-4 --x 120 --out page.png",
-    ),
-    "map": (
-        "Draw a tactile picture: its deflections, what it is made of, or raised lines for paper.",
-        exploring.scene_map,
-        "vbraille map texts/scenes/gallery/layers.scene --array 22,16 --out layers.png",
-    ),
-    "simulate": (
-        "Be a device, at a port that a program can read on, until Ctrl-C.",
-        exploring.simulate,
-        "vbraille simulate --link ./vb0 --hand slow",
-    ),
-    "device": (
-        "Say which devices there are, and try one.",
-        lambda parser: _add(parser, "action", "ACTION", ACTIONS["device"]),
-        "vbraille device check serial:/dev/ttyACM0",
-    ),
-    "session": (
-        "Run legibility sessions, and keep every answer.",
-        lambda parser: _add(parser, "action", "ACTION", ACTIONS["session"]),
-        "vbraille session run legibility --participant P07 --seed 42",
-    ),
-    "analyse": (
-        "Make tables, statistics and a report of sessions.",
-        lab.analyse,
-        "vbraille analyse P01-letters-* P02-letters-* --out report",
-    ),
-    "power": (
-        "Say how often a study of a protocol would find an effect, by simulation.",
-        lab.power,
-        "vbraille power letters --effect T0=0.5,T25=0.56,T100=0.64 --participants 4-40",
-    ),
-    "predict": (
-        "Say what the simulated reader would read, over a grid of styles, texts and speeds.",
-        lab.predict,
-        "vbraille predict grid.toml --out predicted --workers 2",
-    ),
-    "scene": (
-        "Look through tactile pictures, and convert those of others.",
-        lambda parser: _add(parser, "action", "ACTION", ACTIONS["scene"]),
-        "vbraille scene check texts/scenes/house.scene",
-    ),
-    "tables": (
-        "List the braille tables that there are, and which a language takes.",
-        exploring.tables,
-        "vbraille tables --language fr",
-    ),
-    "setup": (
-        "Compile what drives the actuators, so that the first reading does not wait for it.",
-        exploring.nothing,
-        "vbraille setup",
-    ),
-    "completion": (
-        "Print what makes a shell complete commands, options and values.",
-        completion.completion,
-        "vbraille completion fish > ~/.config/fish/completions/vbraille.fish",
-    ),
-}
-SCENE_ACTIONS: dict[str, tuple[str, Options, str]] = {
-    "check": (
-        "Say what a tactile picture holds, what is ignored of its file, what will vibrate against "
-        "what, and what is hard to feel.",
-        exploring.check,
-        "vbraille scene check texts/scenes/house.scene",
-    ),
-    "convert": (
-        "Make a scene file of a file of OpenLatero's or a drawing, and say what differs.",
-        exploring.convert,
-        "vbraille scene convert umbrella.gen --out umbrella.scene",
-    ),
-    "schema": (
-        "Print the form of scene files as a JSON Schema, for editors that complete and check.",
-        exploring.nothing,
-        "vbraille scene schema > scene.schema.json",
-    ),
-}
-DEVICE_ACTIONS: dict[str, tuple[str, Options, str]] = {
-    "list": (
-        "List the serial ports, with their names and ids.",
-        exploring.device_list,
-        "vbraille device list",
-    ),
-    "info": (
-        "Print what a device says of itself.",
-        exploring.device_info,
-        "vbraille device info serial:/dev/ttyACM0",
-    ),
-    "check": (
-        "Swing each actuator, hold the rate, measure the clock, the round trip and the watchdog, "
-        "and judge whether a person can read on the device.",
-        exploring.device_info,
-        "vbraille device check serial:/dev/ttyACM0 --model stress2",
-    ),
-    "calibrate": (
-        "Feel or look at each actuator in turn, and keep which are dead, weak or inverted, and "
-        "their gains; h says the keys.",
-        exploring.device_calibrate,
-        "vbraille device calibrate serial:/dev/ttyACM0",
-    ),
-}
-SESSION_ACTIONS: dict[str, tuple[str, Options, str]] = {
-    "protocols": (
-        "List the protocols that come with the program, or print one to be copied and edited.",
-        lab.session_protocols,
-        "vbraille session protocols letters > mine.toml",
-    ),
-    "plan": (
-        "Print the whole order of a session before anyone sits down.",
-        lab.session_plan,
-        "vbraille session plan legibility --participant P07 --seed 42",
-    ),
-    "run": (
-        "Run a session; at its prompt, help says what can be typed.",
-        lab.session_run,
-        "vbraille session run legibility --participant P07 --device serial:/dev/ttyACM0",
-    ),
-    "resume": (
-        "Go on with a session at the next trial of the same order.",
-        lab.session_resume,
-        "vbraille session resume P07-legibility-20261121-101500",
-    ),
-    "pilot": (
-        "Conduct a whole study with the simulated reader, its report and all.",
-        lab.session_pilot,
-        "vbraille session pilot letters --participants 20 --workers 2",
-    ),
-    "export": (
-        "Make tables of a session.",
-        lab.session_export,
-        "vbraille session export P07-legibility-20261121-101500 --out trials.csv",
-    ),
-    "methods": (
-        "Say in a paragraph what was done, made of the records of sessions.",
-        lab.session_methods,
-        "vbraille session methods P01-letters-* P02-letters-*",
-    ),
-    "check": (
-        "See whether every file of a session is whole, and nothing was changed.",
-        lab.session_check,
-        "vbraille session check P07-legibility-20261121-101500",
-    ),
-    "withdraw": (
-        "Remove all data of a participant: sessions, rows of tables, plans, reports.",
-        lab.session_withdraw,
-        "vbraille session withdraw P07 study",
-    ),
-}
-
-
-# Actions of the commands that have any.
-ACTIONS = {"device": DEVICE_ACTIONS, "scene": SCENE_ACTIONS, "session": SESSION_ACTIONS}
-
-# Commands as the overview has them.
-GROUPS = {
-    "reading": ("read", "books", "keys", "settings", "tune", "structure", "tables"),
-    "pictures": ("feel", "play", "map", "scene", "profile"),
-    "a page, its frames and drawings": ("page", "render", "plot", "monitor"),
-    "devices": ("device", "simulate"),
-    "for a lab": ("session", "analyse", "power", "predict"),
-    "for the machine and its shell": ("setup", "completion"),
-}
-
-
 class _Overview(CommandParser):
     """The parser of all commands, whose help has them in groups."""
 
@@ -459,7 +202,7 @@ class _Overview(CommandParser):
         lines = [self.format_usage(), self.description or ""]
         for title, names in GROUPS.items():
             lines.append(f"\n{title}:")
-            lines += [f"    {name:{width}}  {COMMANDS[name][0]}" for name in names]
+            lines += [f"    {name:{width}}  {COMMANDS[name].does}" for name in names]
         lines += ["\noptions:", "    -h, --help     Print this help."]
         lines += ["    -V, --version  Print the version.", "", self.epilog or "", ""]
         return "\n".join(lines)
@@ -502,7 +245,22 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
                 OPTIONS[name].check(value, OPTIONS[name].flag)
             except ValueError as error:
                 raise InputError(str(error)) from None
+    _check_live(arguments)
     return arguments
+
+
+def _check_live(arguments: argparse.Namespace) -> None:
+    """Refuse an address without a live view, or an empty one."""
+    for name in ADDRESS:
+        if getattr(arguments, name, None) is not None and not getattr(arguments, "monitor", True):
+            raise InputError(
+                f"{setting(name)} is for the live view; add {setting('monitor')}, or leave "
+                f"{setting(name)} out"
+            )
+    if getattr(arguments, "host", None) == "":
+        raise InputError(
+            f"{setting('host')} is empty; give an address of this machine, or leave it out"
+        )
 
 
 def read_instead(arguments: argparse.Namespace) -> argparse.Namespace:
@@ -511,30 +269,58 @@ def read_instead(arguments: argparse.Namespace) -> argparse.Namespace:
     Raises
     ------
     InputError
-        If another option of ``vbraille books`` is given, too.
+        If the list is asked for, too.
     """
-    if arguments.json or arguments.forget is not None:
-        raise InputError("a number alone opens its book; leave out either that or the option")
+    if arguments.json:
+        raise InputError("a number alone opens its book; leave out either that or --json")
     log = () if arguments.log is None else ("--log", arguments.log)
     return parse(["read", "--book", str(arguments.number), *log])
 
 
+def _add_option(parser: argparse._ActionsContainer, option: Option) -> None:
+    """Add an option, or an argument, to a parser or a group of one."""
+    kind = str if option.choices else _READERS.get(option.kind, option.kind)  # pyright: ignore[reportArgumentType, reportCallIssue]
+    if isinstance(option, Argument):
+        added = parser.add_argument(
+            option.name,
+            nargs=option.times or None,
+            metavar=option.metavar,
+            help=option.sentence,
+            type=kind,
+            default=option.default,
+        )
+        if option.times == argparse.REMAINDER:
+            added.required = False
+    elif option.kind is bool:
+        parser.add_argument(
+            option.flag, action="store_true", help=option.sentence, default=option.default
+        )
+        return
+    else:
+        added = parser.add_argument(
+            option.flag,
+            action=_Pairs if option.pairs else "store",
+            metavar=option.metavar,
+            help=option.sentence,
+            type=kind,
+            default={} if option.pairs else option.default,
+            required=option.required,
+        )
+    added.choices = option.choices  # not looked at before they are needed
+
+
 def _add(
-    parser: CommandParser,
-    dest: str,
-    metavar: str,
-    commands: dict[str, tuple[str, Options, str]],
+    parser: CommandParser, dest: str, metavar: str, commands: Mapping[str, CommandRow]
 ) -> None:
     """Add commands to a parser, or the actions of a command."""
     added = parser.add_subparsers(
         dest=dest, required=True, metavar=metavar, parser_class=CommandParser
     )
-    for name, (text, add_options, example) in commands.items():
+    for name, command in commands.items():
         added.add_parser(
             name,
-            help=text,
-            description=text,
-            epilog=f"example:\n  {example}",
-            add_help=False,
-            options=add_options,
+            help=command.does,
+            description=command.does,
+            epilog=f"example:\n  {command.example}",
+            command=command,
         )

@@ -6,251 +6,29 @@ and the tables of `docs/settings.md` follow from it. It is quick to load: help n
 
 from __future__ import annotations
 
-import re
-from argparse import ArgumentTypeError
-from importlib import import_module
-
-TYPE_CHECKING = False  # importing typing, for its constant, takes as long as all the rest
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from typing import Any
-
-    from vbraille.render.braille.style import BrailleStyle
-
-    Reading = Callable[[str], object]
-
-# Where an option may hold, beside the command line.
-FILE = "settings file"  # under [read]
-BOOK = "book"  # kept with each book, and taken when it is read again
-PROFILE = "profile"  # of the settings file, for a display
-
-_PLACES = 6  # decimal places, so that ten steps of 0.1 are 1
-
-
-def number(text: str) -> float:
-    """Read a number."""
-    try:
-        return float(text)
-    except ValueError:
-        raise ArgumentTypeError(f"{text!r} is not a number") from None
-
-
-def whole(text: str) -> int:
-    """Read a whole number."""
-    if not re.fullmatch(r"[+-]?[0-9]{1,18}", text):
-        raise ArgumentTypeError(f"{text!r} is not a whole number")
-    return int(text)
-
-
-def seed(text: str) -> int:
-    """Read a seed: 0 or more."""
-    value = whole(text)
-    if value < 0:
-        raise ArgumentTypeError(f"seed is {value}; it must be 0 or more")
-    return value
-
-
-def lines(text: str) -> tuple[int, int | None]:
-    """Read first and last of a range of lines, such as 3-10; the last is None where it is open."""
-    found = re.fullmatch(r"([0-9]{1,15})?(-)?([0-9]{1,15})?", text)
-    if found is None or not (found[1] or found[3]):
-        raise ArgumentTypeError(f"{text!r} is not a range of lines, such as 3-10")
-    first = int(found[1] or 1)
-    last = int(found[3]) if found[3] else None if found[2] else first
-    if first < 1 or (last is not None and last < first):
-        raise ArgumentTypeError(f"{text!r} is no range: lines count from 1 upwards")
-    return first, last
-
-
-class Names:
-    """Names in a table of the program, which is loaded when they are asked for.
-
-    Parameters
-    ----------
-    module, table
-        Module, and the table in it.
-    more
-        Further names.
-    """
-
-    def __init__(self, module: str, table: str, *more: str) -> None:
-        self._module, self._table, self._more = module, table, more
-
-    def __iter__(self) -> Iterator[str]:
-        yield from getattr(import_module(self._module), self._table)
-        yield from self._more
-
-    def __contains__(self, name: object) -> bool:
-        return name in tuple(self)
-
-
-class Option:
-    """An option of the command line, and perhaps of files.
-
-    Parameters
-    ----------
-    name
-        Name, with underscores for blanks.
-    help
-        Sentence on what it does, without what is usual.
-    kind
-        bool for one that is given or not; str, int or float; the values that it may have; or a
-        function that reads the value.
-    metavar
-        Sign for the value in help.
-    default
-        Value where nothing gives another.
-    usual
-        Words for that, where there is no value, or it does not speak for itself.
-    holds
-        Where it may hold beside the command line, of `FILE`, `BOOK` and `PROFILE`.
-    low, high, unit
-        Bounds of a number, None for none, and its unit.
-    """
-
-    def __init__(
-        self,
-        name: str,
-        help: str,  # noqa: A002 - argparse's own word
-        kind: type | tuple[str, ...] | Names | Reading = str,
-        metavar: str | None = None,
-        *,
-        default: object = None,
-        usual: str = "",
-        holds: tuple[str, ...] = (),
-        low: float | None = None,
-        high: float | None = None,
-        unit: str = "",
-    ) -> None:
-        self.name, self.kind, self.metavar, self.holds = name, kind, metavar, holds
-        self.default = False if kind is bool else default
-        self.low, self.high, self.unit = low, high, unit
-        self._help, self._usual = help, usual
-
-    @property
-    def flag(self) -> str:
-        """Name on the command line, such as "--keep-lines"."""
-        return f"--{self.name.replace('_', '-')}"
-
-    @property
-    def label(self) -> str:
-        """Name in sentences, such as "keep lines"."""
-        return self.name.replace("_", " ")
-
-    @property
-    def key(self) -> str:
-        """Name in files, with the unit of a length."""
-        return f"{self.name}_mm" if self.unit == "mm" else self.name
-
-    @property
-    def choices(self) -> tuple[str, ...] | Names | None:
-        """Values that it may have; None if any of its type."""
-        return None if callable(self.kind) else self.kind
-
-    @property
-    def usual(self) -> str:
-        """Words for what holds where nothing is said; empty for a flag."""
-        if self._usual or self.default is None or self.kind is bool:
-            return self._usual
-        return f"{self.default:g}" if isinstance(self.default, float) else str(self.default)
-
-    @property
-    def sentence(self) -> str:
-        """Sentence of help, with what is usual."""
-        return f"{self._help[:-1]} (default: {self.usual})." if self.usual else self._help
-
-    @property
-    def does(self) -> str:
-        """Sentence on what it does, without what is usual."""
-        return self._help
-
-    def check(self, value: object, name: str) -> None:
-        """Check that a number, which a message calls by a name, is within the bounds.
-
-        Raises
-        ------
-        ValueError
-            If it is not.
-        """
-        if not isinstance(value, int | float):
-            return
-        low, high, unit = self.low, self.high, f" {self.unit}" * bool(self.unit)
-        if low is not None and not low <= value <= (value if high is None else high):
-            wanted = f"{low:g} or more" if high is None else f"{low:g} to {high:g}{unit}"
-            raise ValueError(f"{name} is {value:g}{unit}; it must be {wanted}")
-
-
-class StyleKnob(Option):
-    """An option that is a number of the style, which a reader turns by keys, knobs and pages.
-
-    Parameters
-    ----------
-    name, help, kind, metavar, usual, unit
-        As for an `Option`; a profile has it.
-    low, high
-        Bounds, which are those of `vbraille.Tuning` and `vbraille.Geometry`.
-    step
-        Number that a turn adds.
-    field
-        Field of `vbraille.BrailleStyle` where that has another name.
-    keys
-        Keys that turn it up and down; empty for none.
-    turns
-        Words for the two, such as "more texture".
-    """
-
-    def __init__(
-        self,
-        name: str,
-        help: str,  # noqa: A002
-        kind: type = float,
-        metavar: str = "MM",
-        *,
-        usual: str = "the geometry's",
-        unit: str = "mm",
-        low: float,
-        high: float,
-        step: float,
-        field: str = "",
-        keys: str = "",
-        turns: tuple[str, str] = ("", ""),
-    ) -> None:
-        super().__init__(name, help, kind, metavar, usual=usual, unit=unit, holds=(PROFILE,))
-        self.low, self.high, self.step = low, high, step
-        self.keys, self.turns = keys, turns
-        self.field = field or self.key
-
-    def applied(self, style: BrailleStyle, value: float) -> BrailleStyle:
-        """Give a style in which the knob has another value."""
-        changes: Any = {self.field: value}
-        return style.replace(**changes)
-
-    def value(self, style: BrailleStyle) -> float:
-        """Give the value that a style has."""
-        return getattr(style.geometry if self.unit else style.tuning, self.field)
-
-    def said(self, value: float) -> str:
-        """Say a value, as in "dot width: 2.2 mm"."""
-        return f"{self.label}: {value:g} {self.unit}".rstrip()
-
-    def turned(self, value: float, steps: int) -> float:
-        """Turn a value so many steps up, or down if negative; it stops at the bounds."""
-        return self.nearest(value + steps * self.step)
-
-    def nearest(self, value: float) -> float:
-        """Give the value that the knob can have and that is nearest to another."""
-        within = min(max(value, self.low), self.high)
-        if self.kind is int:  # only whole steps make sense
-            return round(self.low + self.step * round((within - self.low) / self.step))
-        return round(within, _PLACES)
-
+from vbraille.config.option import BOOK, FILE, PROFILE, Names, Option, StyleKnob
+from vbraille.config.readers import (
+    checksum,
+    duration,
+    expected_shares,
+    lines,
+    marks,
+    names,
+    place,
+    seed,
+    sizes,
+    switch_states,
+    velocity,
+)
+from vbraille.scene.measures import LEAST_ZOOM, MOST_ZOOM
 
 _MODELS = Names("vbraille.render.braille.models", "MODELS")
+_CORRECTIONS = ("none", "bonferroni", "holm", "fdr")
 HANDS = (
-    "sweep:SPEED goes along each line at so many mm/s, slow reads as people do on such displays "
-    "(device is its older name), fluent as on paper, recorded:FILE.csv moves as recorded, "
-    "wander:SPEED goes about without reading, wide goes round a picture and inward, spot:X,Y "
-    "swings about a place of it, and still moves only in the live view of --monitor"
+    "sweep:SPEED goes along each line at so many mm/s, slow reads as people do on such displays, "
+    "fluent as on paper, wander:SPEED goes about without reading, wide goes round a picture and "
+    "inward, spot:X,Y swings about a place of it, recorded:FILE.csv moves as recorded, and still "
+    "moves only in the live view of --monitor"
 )
 SPEC = "Name the device, such as serial:/dev/ttyACM0, latero:HOST, or sim for a simulated one"
 
@@ -354,9 +132,9 @@ OPTIONS = {
         ),
         Option(
             "cues",
-            "Signal a limit, what is not found, and in a text the end of a line or page: by "
-            "tones, by the terminal's bell, or not.",
-            ("sound", "bell", "none"),
+            "Give signals that are heard, such as at a limit, at the end of a page, or before a "
+            "trial: by tones, by the terminal's bell, or not.",
+            ("tones", "bell", "none"),
             usual="tones at a terminal, the bell through SSH, otherwise none",
             holds=(FILE,),
         ),
@@ -510,8 +288,8 @@ OPTIONS = {
         ),
         Option(
             "model",
-            "Lay out for this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, that on the "
-            "Pantograph, the Latero, or the VBD.",
+            "Take this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, that on the "
+            "Pantograph, the Latero, or the VBD; a device that is another one is refused.",
             _MODELS,
             usual="the device's own, or stress2",
         ),
@@ -531,8 +309,8 @@ OPTIONS = {
         ),
         Option(
             "height",
-            "Let the carriage go so far down the page, too: the hand reads pages of lines, or one "
-            "line for 0.",
+            "Let the carriage go so far across the lines, in mm, too: the hand reads pages of "
+            "lines, or one line for 0.",
             float,
             "MM",
             usual="what the device has",
@@ -542,7 +320,7 @@ OPTIONS = {
         ),
         Option(
             "cells",
-            "Lay out lines of so many cells; the hand goes along a longer one part by part.",
+            "Lay out lines of so many cells; a hand goes along a longer one part by part.",
             int,
             "N",
             usual="as many as the hand can cross",
@@ -556,7 +334,7 @@ OPTIONS = {
             "HAND",
             default="sweep:60",
         ),
-        Option("seed", "Draw the hand's chances from this.", seed, "N", default=1),
+        Option("seed", "Draw chances, such as those of a hand, from this.", seed, "N", default=1),
         Option(
             "rate",
             "Have so many frames a second.",
@@ -599,6 +377,416 @@ OPTIONS = {
             low=0,
             high=65_535,
         ),
+        Option("json", "Print the same as JSON, for another program.", bool),
+        Option("csv", "Print the numbers as CSV, for another program.", bool),
+        Option("out", "Write to this file, or this new directory.", str, "FILE"),
+        Option("forget", "Delete all that is kept of it, but for files of the user's own.", bool),
+        Option(
+            "workers",
+            "Let so many processes share the work, which gives the same numbers.",
+            int,
+            "N",
+            default=1,
+        ),
+        Option(
+            "resolution",
+            "Draw so many pixels a mm.",
+            float,
+            "N",
+            usual="4, or 12 of an outline",
+        ),
+        Option("where", "Print where the settings file is, and nothing else.", bool),
+        Option("again", "Begin anew, and forget the choices made so far.", bool),
+        Option(
+            "format",
+            "Write Unicode braille, ASCII braille (BRF), dot numbers, the text of each line, or "
+            "PEF.",
+            ("unicode", "brf", "dots", "text", "pef"),
+            default="unicode",
+        ),
+        Option(
+            "x",
+            "Of a page: put the array's left column at this place, in mm.",
+            float,
+            "MM",
+            default=20.0,
+        ),
+        Option(
+            "letter",
+            "Of a mapping: show this letter.",
+            str,
+            "LETTER",
+            usual="z",
+        ),
+        # Pictures, and ways over them.
+        Option(
+            "y",
+            "On a device of one axis: feel the picture at this height, in mm from its top.",
+            float,
+            "MM",
+            usual="where it is felt, near its middle",
+        ),
+        Option(
+            "zoom",
+            "Begin with the picture so many times as near.",
+            float,
+            "N",
+            default=1.0,
+            low=LEAST_ZOOM,
+            high=MOST_ZOOM,
+        ),
+        Option("say_entering", "Say the name of each element when the finger comes to it.", bool),
+        Option(
+            "deck",
+            "Play with the scenes of this folder, two cards of each.",
+            str,
+            "FOLDER",
+            usual="twelve that come with the program",
+        ),
+        Option("players", "Deal for so many players.", int, "1|2", default=1, low=1, high=2),
+        Option("radius", "Of the hand spot: swing so far, in mm.", float, "MM", usual="5"),
+        Option("seconds", "Of the hand spot: swing for so long.", float, "S", usual="10"),
+        Option("speed", "Of wide and spot: go so fast, in mm/s.", float, "MM_S", usual="60"),
+        Option("sway", "Of wide: sway so far to either side, in mm.", float, "MM", usual="0"),
+        Option("unsteady", "Of wide: change the speed by this share.", float, "0…0.9", usual="0"),
+        Option("back", "Of wide: go back so far every 50 mm, in mm.", float, "MM", usual="0"),
+        Option(
+            "elements",
+            "Say, too, how much longer a frame takes with each element than without it.",
+            bool,
+        ),
+        Option("map", "Draw the map of the cost as PNG or SVG.", str, "FILE.png", usual="none"),
+        Option(
+            "as_shown",
+            "Convert what OpenLatero shows, where that is not what its file says.",
+            bool,
+        ),
+        Option(
+            "vibration",
+            "Show what vibrates as noise of the same range, or as a sequence of maps at times of "
+            "one swing: an animation in F.gif, and numbered files otherwise, such as F-001.png to "
+            "F-008.png.",
+            ("noise", "sequence"),
+            default="noise",
+        ),
+        Option(
+            "frames",
+            "Give a sequence so many maps, evenly over the slowest swing.",
+            int,
+            "N",
+            usual="8",
+        ),
+        Option(
+            "parity",
+            "Show a sequence as these actuators swing: 0 those whose row and column are both even "
+            "or both odd, 1 the others.",
+            int,
+            "0|1",
+            usual="0",
+            low=0,
+            high=1,
+        ),
+        Option(
+            "velocity",
+            "Draw what is felt by a hand that goes on so, right and down in mm/s, where signals of "
+            "the picture depend on that.",
+            velocity,
+            "X,Y",
+            usual="a hand that stands still",
+        ),
+        Option(
+            "switch",
+            "Draw the picture with the switch of key K in its state N, from 1, such as 1=2.",
+            switch_states,
+            "K=N[,…]",
+            usual="each in its first",
+        ),
+        Option(
+            "array",
+            "Draw the array over the picture with its centre at this place, in mm, turned by θ "
+            "degrees against the clock: a bar for each contactor, shifted by its deflection.",
+            place,
+            "X,Y[,θ]",
+            usual="no array",
+        ),
+        Option("rulers", "Draw rulers in mm around the picture.", bool),
+        Option(
+            "outline",
+            "Draw what is felt in black on white instead, true to scale, for eyes and for swell "
+            "paper.",
+            bool,
+        ),
+        # A simulated device.
+        Option(
+            "link",
+            "Make a link to the port at this path, and remove it at the end.",
+            str,
+            "PATH",
+            usual="no link",
+        ),
+        Option(
+            "encoder",
+            "Choose what the encoder knows of the carriage's place when it starts: the place, "
+            "nothing before it has passed its mark, or nothing before it is told where the left "
+            "stop is.",
+            ("absolute", "index", "incremental"),
+            default="absolute",
+        ),
+        Option(
+            "axes",
+            "Measure the carriage along the line only, or across the lines as well, or the angle "
+            "of the array as well; the hand then reads a page.",
+            ("x", "xy", "xyθ"),
+            default="x",
+        ),
+        Option(
+            "script",
+            "Move buttons and knobs as this file says, with a time after the first greeting and an "
+            "event in each line: 2.5s press 1, 3s release 1, 4s knob 1 0.8.",
+            str,
+            "FILE",
+            usual="nothing",
+        ),
+        Option(
+            "press",
+            "Press button N, 1 to 8, so long after the first greeting, as in 1@2.5s,2@4s, or hold "
+            "it for a while, as in 1@2.5s-4s.",
+            str,
+            "N@TIME,…",
+            default="",
+            usual="no button",
+        ),
+        Option("drop", "Lose this share of the messages, both ways.", float, "0…1", default=0.0),
+        Option(
+            "corrupt", "Damage this share of the messages, both ways.", float, "0…1", default=0.0
+        ),
+        Option(
+            "stall",
+            "Do nothing for so long every second, such as 200ms.",
+            duration,
+            "DURATION",
+            default=0.0,
+            usual="never",
+        ),
+        Option(
+            "unplug_every",
+            "Be unplugged so long after each greeting, such as 5s; this needs --link.",
+            duration,
+            "DURATION",
+            default=0.0,
+            usual="never",
+        ),
+        Option(
+            "defect",
+            "Be built wrong in this way, which vbraille device check finds.",
+            (
+                "no-acknowledgement",
+                "no-actuators",
+                "off-place",
+                "slow-clock",
+                "no-watchdog",
+                "late-watchdog",
+            ),
+            usual="none",
+        ),
+        Option(
+            "udp_port",
+            "A Latero: listen at this UDP port, 0 for any that is free.",
+            int,
+            "N",
+            usual="8900",
+        ),
+        Option(
+            "page_lines",
+            "A Latero: have the hand read so many lines of a page, 10 mm apart.",
+            int,
+            "N",
+            usual="1",
+        ),
+        Option(
+            "wait",
+            "A Latero: have the hand wait so long at the lower left when a program comes, such as "
+            "5s.",
+            duration,
+            "DURATION",
+            usual="1s",
+        ),
+        Option(
+            "late",
+            "A Latero: send this share of the answers 20 ms late.",
+            float,
+            "0…1",
+            usual="0",
+        ),
+        Option(
+            "double",
+            "A Latero: have this share of the datagrams come twice, both ways.",
+            float,
+            "0…1",
+            usual="0",
+        ),
+        Option(
+            "stray",
+            "A Latero: send a stranger's datagram along with this share of the answers.",
+            float,
+            "0…1",
+            usual="0",
+        ),
+        Option("show", "Print what is kept of the device's actuators only.", bool),
+        # A lab's.
+        Option("participant", "Call the participant by this pseudonym.", str, "P07", required=True),
+        Option(
+            "participants",
+            "Take so many participants, such as 4-40, 12 or 6,12,24.",
+            sizes,
+            "N-N",
+            required=True,
+        ),
+        Option(
+            "order",
+            "Take this one of the balanced orders.",
+            int,
+            "N",
+            usual="by the number in the pseudonym",
+        ),
+        Option(
+            "group",
+            "Put the participant into this group.",
+            str,
+            "NAME",
+            usual="by the number in the pseudonym",
+        ),
+        Option("brf", "Print the strings as ASCII braille, to be embossed.", bool),
+        Option(
+            "answers",
+            "Take answers that are typed, from a file with a line for each trial, or from a "
+            "simulated reader, simulated[:NOISE].",
+            str,
+            "SOURCE",
+            default="typed",
+        ),
+        Option("fast", "Run a simulated session as fast as the machine can.", bool),
+        Option(
+            "markers",
+            "Send a marker of each event to another recorder: to a stream of the Lab Streaming "
+            "Layer (pip install pylsl), or a byte to a serial port.",
+            str,
+            "lsl[:NAME]|serial:PORT[:BAUD]",
+            usual="none",
+        ),
+        Option(
+            "another",
+            "Say that the participant is not the person of another session here whose pseudonym "
+            "is nearly the same.",
+            bool,
+        ),
+        Option(
+            "field",
+            "Answer what the protocol asks about the participant; this may be given again.",
+            str,
+            "NAME=VALUE",
+            pairs=True,
+        ),
+        Option("bids", "Add the sessions to a BIDS dataset.", bool),
+        Option(
+            "session_by",
+            "With --bids, name a participant's sessions by what the protocol asked as this field.",
+            str,
+            "FIELD",
+            usual="by number, in the order of time",
+        ),
+        Option("anonymous", "Leave out times of day, paths and notes; elapsed times stay.", bool),
+        Option(
+            "codebook",
+            "Write what each column holds, its unit and its values to this file.",
+            str,
+            "FILE.csv",
+            usual="none",
+        ),
+        Option("salvage", "Of a damaged session, export also what is whole after it.", bool),
+        Option(
+            "exclude",
+            "Leave a participant out, and say why; this may be given again.",
+            str,
+            "P07=REASON",
+            pairs=True,
+        ),
+        Option("yes", "Remove all of it without asking before.", bool),
+        Option(
+            "expect",
+            "See that nothing was changed since a stop, the end or an export said this SHA-256.",
+            checksum,
+            "SUM",
+            usual="nothing is compared",
+        ),
+        Option(
+            "scores",
+            "Instead of trials, take a table of scores: participant, what was varied, score.",
+            str,
+            "FILE.csv",
+            usual="trials",
+        ),
+        Option("protocol", "Take only trials of this protocol.", str, "NAME", usual="all"),
+        Option(
+            "factors",
+            "Compare trials by these columns, such as texture,contrast.",
+            names,
+            "NAME,NAME",
+            usual="as the protocol plans; condition without one",
+        ),
+        Option(
+            "correction",
+            "Correct p for the number of tests in this way.",
+            _CORRECTIONS,
+            usual="as the protocol plans; holm without one",
+        ),
+        Option(
+            "marks",
+            "Mark errors above these counts in confusion matrices.",
+            marks,
+            "N,N",
+            usual="4,9",
+        ),
+        Option(
+            "effect",
+            "Assume these values of the planned measure, by condition, or GROUP:CONDITION: shares "
+            "of right answers, durations, ratings and so on. Of shares also one of them, and "
+            "odds-ratio=R for the odds in every other one. Without conditions: MEASURE=VALUE.",
+            expected_shares,
+            "NAME=VALUE,…",
+            required=True,
+        ),
+        Option("studies", "Simulate so many studies of each size.", int, "N", default=1000),
+        Option(
+            "between",
+            "Let participants differ by this standard deviation in all conditions alike: of shares "
+            "in log odds, of durations, thresholds and magnitudes in logarithms, else in the unit.",
+            float,
+            "SD",
+            default=0.5,
+        ),
+        Option(
+            "differing",
+            "Let each condition by itself differ between participants by this standard deviation "
+            "beside; a difference of two then has √2 times as much.",
+            float,
+            "SD",
+            default=0.0,
+        ),
+        Option(
+            "noise",
+            "Give the simulated reader this much noise, from 0 for none.",
+            float,
+            "NOISE",
+            default=0.4,
+        ),
+        Option(
+            "keep",
+            "Keep what is done in this file; given again, the work goes on where it was ended.",
+            str,
+            "FILE",
+            usual="nothing is kept",
+        ),
         Option("force", "Replace files that are there already.", bool),
         Option(
             "log",
@@ -633,6 +821,9 @@ READING = (
 ADDRESS = ("host", "port")
 LIVE = ("monitor", *ADDRESS)
 COMMON = ("verbose", "log")
+# Options of the hands that go over a picture, beside their names.
+PATH = ("radius", "seconds", "speed", "sway", "unsteady", "back")
+LATERO = ("udp_port", "page_lines", "wait", "late", "double", "stray")
 
 
 def held_in(place: str) -> tuple[Option, ...]:

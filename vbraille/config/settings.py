@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from vbraille.braille.cells import DOT_ROWS
-from vbraille.config.options import CHOICE_OF_TABLE, FILE, OPTIONS, held_in, knobs
+from vbraille.config.option import FILE, PROFILE
+from vbraille.config.options import CHOICE_OF_TABLE, held_in, knobs
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import read_text, settings_path, write_file
 from vbraille.logs import want_tracebacks
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.braille.geometry import Geometry
-    from vbraille.config.options import StyleKnob
+    from vbraille.config.option import StyleKnob
     from vbraille.display import Display
     from vbraille.render import BrailleStyle, Model
     from vbraille.render.braille.mappings import Mapping as DotMapping
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 _CELL = ("dot_width_mm", "dot_spacing_mm", "cell_gap_mm")
 _SHOWN_ROWS = DOT_ROWS - 1  # the row of dots 7 and 8 is not shown alone
 KNOBS = {knob.key: knob for knob in knobs()}
+OPTIONS_BY_KEY = {option.key: option for option in held_in(PROFILE)}
 
 
 def fixed(knob: StyleKnob, style: BrailleStyle) -> str:
@@ -316,8 +318,34 @@ def missing_profile(settings: Settings, profile: str) -> str:
     return f"profile: {profile} is new, and is made when it is saved{near}"
 
 
-def say_settings(settings: Settings, options: Mapping[str, Any]) -> Iterator[str]:
-    """Give a line on each option of reading, with where its value comes from.
+class Setting(NamedTuple):
+    """A setting of reading, and where its value comes from.
+
+    Parameters
+    ----------
+    name, value, origin
+        Its name, its value, and the option, the line of the file or the default that gives it.
+    unit
+        Unit of a length.
+    """
+
+    name: str
+    value: object
+    origin: str
+    unit: str = ""
+
+    def __str__(self) -> str:
+        """Line on it, such as "dot width: 2.2 mm (default)"."""
+        value = self.value
+        if isinstance(value, bool):
+            value = "yes" if value else "no"
+        elif isinstance(value, float):
+            value = f"{value:g}"
+        return f"{self.name}: {f'{value} {self.unit}'.rstrip()} ({self.origin})"
+
+
+def settings_said(settings: Settings, options: Mapping[str, Any]) -> Iterator[Setting]:
+    """Give each option of reading with its value.
 
     Parameters
     ----------
@@ -331,21 +359,22 @@ def say_settings(settings: Settings, options: Mapping[str, Any]) -> Iterator[str
         if name == "profile":
             continue
         if options.get(name) is not None:
-            yield f"{option.label}: {_said(options[name])} (option)"
+            yield Setting(option.label, options[name], "option")
         elif name in settings.read:
-            yield f"{option.label}: {_said(settings.read[name])} ({settings.where('read', name)})"
+            origin = settings.where("read", name)
+            yield Setting(option.label, settings.read[name], origin)
         else:
-            yield f"{option.label}: {option.usual or _said(option.default)} (default)"
+            yield Setting(option.label, option.usual or option.default, "default")
 
 
-def say_tuning(
+def tuning_said(
     settings: Settings,
     profile: str,
     model: Model,
     style: BrailleStyle,
     given: Collection[str] = (),
-) -> Iterator[str]:
-    """Lines on what can be turned for a display, one for each, with where it comes from.
+) -> Iterator[Setting]:
+    """Give what can be turned for a display, with its value.
 
     Parameters
     ----------
@@ -375,23 +404,17 @@ def say_tuning(
             origin = f"profile {profile}, {line}"
         else:
             origin = "default"
-        what = (
-            KNOBS[name].said(float(value)) if name in KNOBS else f"{OPTIONS[name].label}: {value}"
-        )
-        yield f"{what} ({origin})"
+        yield Setting(OPTIONS_BY_KEY[name].label, value, origin, OPTIONS_BY_KEY[name].unit)
 
 
-def say_bindings(settings: Settings) -> Iterator[str]:
-    """Lines on the keys and buttons that the file binds."""
+def bindings_said(settings: Settings) -> Iterator[Setting]:
+    """Give the keys and buttons that the file binds."""
     for command, keys in settings.keys.items():
-        yield f"keys of {command}: {', '.join(keys) or 'none'} ({settings.where('keys', command)})"
+        pressed = ", ".join(keys) or "none"
+        yield Setting(f"keys of {command}", pressed, settings.where("keys", command))
     for button, command in settings.buttons.items():
         name = f"button {button}" if button.isdecimal() else button
-        yield f"{name}: {command} ({settings.where('buttons', button)})"
-
-
-def _said(value: object) -> str:
-    return {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)
+        yield Setting(name, command, settings.where("buttons", button))
 
 
 def save_profile(path: Path, profile: str, model: Model) -> str:

@@ -1,17 +1,20 @@
-"""Events of a device, or of the engine that drives it: facts with numbers, no sentences.
+"""Events of a device, or of the engine that drives it: facts with numbers, and their sentences.
 
-`vbraille.devices.sentences` makes sentences of them. What has no kind of its own here, a driver
-tells as a `Notice`.
+What has no kind of its own here, a driver tells as a `Notice`.
 """
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, replace
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Final
 
+import msgspec
+
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Mapping, Sequence
+    from collections.abc import Hashable, Iterable, Mapping, Sequence
+
+    from vbraille.display import Display
 
 
 # Version of the serial protocol, which a sentence on a stranger names.
@@ -48,10 +51,21 @@ class Event:
         """Tell whether an event says where something is: only the last of its kind matters."""
         return False
 
+    def say(self) -> str:
+        """Sentence for the event, with the number of times if it stands for several."""
+        more = f" ({self.times} times in the last second)" if self.times > 1 else ""
+        return self._said() + more
+
+    def _said(self) -> str:
+        raise TypeError(f"there are no words for {self!r}")
+
 
 @dataclass(frozen=True, slots=True)
 class Unplugged(Event):
     """The port is gone; reading goes on when the device is plugged in again."""
+
+    def _said(self) -> str:
+        return "device: unplugged; plug it in again and reading goes on"
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +80,9 @@ class Silent(Event):
 
     silent_ms: float
 
+    def _said(self) -> str:
+        return "device: silent, and sent to rest; reading goes on once it speaks"
+
 
 @dataclass(frozen=True, slots=True)
 class Stalled(Event):
@@ -79,10 +96,19 @@ class Stalled(Event):
 
     stalled_ms: float
 
+    def _said(self) -> str:
+        return (
+            f"device: its driver has not answered for {self.stalled_ms / 1e3:.0f} s; "
+            f"reading goes on once it does"
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Back(Event):
     """A device that was away can be read on again."""
+
+    def _said(self) -> str:
+        return "device: back"
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,8 +124,8 @@ class Difference:
     """
 
     what: str
-    was: float | str
-    now: float | str
+    was: bool | int | float | str
+    now: bool | int | float | str
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,6 +152,26 @@ class Stranger(Event):
     version: int | None = None
     fault: str = ""
 
+    def _said(self) -> str:
+        if self.version is not None:
+            return (
+                f"device: a device of version {self.version} of the protocol came back, and this "
+                f"vbraille speaks version {SERIAL_VERSION}; plug in {self.was} again and reading "
+                f"goes on"
+            )
+        if self.fault:
+            return f"device: what came back says in its INFO what cannot be: {self.fault}"
+        others = ", ".join(map(_difference, self.differences))
+        if self.name != self.was:
+            return (
+                f"device: {self.name} came back in its place ({others}); plug in {self.was} again "
+                f"and reading goes on"
+            )
+        return (
+            f"device: another {self.was} came back ({others}); plug in the one that reading began "
+            f"on, or set this one as that was, and reading goes on"
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Changed(Event):
@@ -148,6 +194,19 @@ class Changed(Event):
     enabled: int = 0
     placing: Placing = Placing.DONE
 
+    def _said(self) -> str:
+        said = [_change(one) for one in self.what]
+        said += [
+            f"{number} of its actuators have another {what}"
+            for what, number in (
+                ("gain", self.gain),
+                ("rest level", self.inverted),
+                ("fitness for use", self.enabled),
+            )
+            if number
+        ]
+        return f"device: changed, for {', '.join(said)}{_TO_DO[self.placing]}"
+
 
 @dataclass(frozen=True, slots=True)
 class WatchdogTripped(Event):
@@ -163,6 +222,10 @@ class WatchdogTripped(Event):
 
     trips: int
     late: str = ""
+
+    def _said(self) -> str:
+        late = _LATE.get(self.late, "")
+        return f"device: {late}no frame reached it in time, so it went to rest; reading goes on"
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,6 +248,9 @@ class Notice(Event):
         """Notices with one code are of one kind."""
         return type(self), self.code
 
+    def _said(self) -> str:
+        return f"device: {self.text or f'notice {self.code}'}"
+
 
 @dataclass(frozen=True, slots=True)
 class Fault(Event):
@@ -206,6 +272,16 @@ class Fault(Event):
     code: int | None = None
     text: str = ""
     stuck: bool = False
+
+    def _said(self) -> str:
+        if self.stuck:
+            return (
+                f"{self.name} does not go to rest, neither when it is told to nor without frames; "
+                f"switch it off, and do not read on it until that is mended"
+            )
+        if self.code is None:
+            return f"{self.name} has a fault; switch it off and on, and try again"
+        return f"{self.name}: {self.text or f'error {self.code}'}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,6 +306,9 @@ class Button(Event):
     def kind(self) -> Hashable:
         """No event stands for another: each press of each button is told."""
         return None
+
+    def _said(self) -> str:
+        return f"device: button {self.number} {'pressed' if self.pressed else 'let go'}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,6 +336,9 @@ class Knob(Event):
         """A knob that is being turned is followed, and stands in the end where it was left."""
         return True
 
+    def _said(self) -> str:
+        return f"device: knob {self.number} at {self.value:.0%}"
+
 
 @dataclass(frozen=True, slots=True)
 class Placed(Event):
@@ -274,6 +356,13 @@ class Placed(Event):
     def kind(self) -> Hashable:
         """No event stands for another: each change is told."""
         return None
+
+    def _said(self) -> str:
+        return {
+            Placing.DONE: "device: its place is known",
+            Placing.MARK: "device: it waits for the carriage to pass its mark",
+            Placing.STOP: "device: it waits to be shown its place",
+        }[self.placing]
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,6 +382,9 @@ class HandHeld(Event):
         """No event stands for another: each change is told."""
         return None
 
+    def _said(self) -> str:
+        return "hand: moved in the live view" if self.held else "hand: simulated again"
+
 
 @dataclass(frozen=True, slots=True)
 class NotInTime(Event):
@@ -305,6 +397,10 @@ class NotInTime(Event):
     """
 
     refused: tuple[str, ...]
+
+    def _said(self) -> str:
+        refused = " and ".join(_REFUSED[one] for one in self.refused)
+        return f"timing: {refused}, so that ticks may come late; {_ALLOW}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -319,27 +415,133 @@ class Exposed(Event):
 
     limit_s: float
 
+    def _said(self) -> str:
+        return (
+            f"picture: it has moved by itself for {self.limit_s:g} s, and rests, which spares the "
+            f"skin; a pause and going on begin it anew"
+        )
 
-_KINDS: Final = {
-    kind.__name__: kind
-    for kind in (
-        Unplugged,
-        Silent,
-        Stalled,
-        Back,
-        Stranger,
-        Changed,
-        WatchdogTripped,
-        Notice,
-        Fault,
-        Button,
-        Knob,
-        Placed,
-        HandHeld,
-        NotInTime,
-        Exposed,
-    )
+
+# Names and units of the fields of a display.
+_FIELDS: Final = {
+    "rows": ("rows of actuators", ""),
+    "columns": ("columns of actuators", ""),
+    "column_pitch_mm": ("pitch along the line", " mm"),
+    "row_pitch_mm": ("pitch across the line", " mm"),
+    "levels": ("levels", ""),
+    "rest_side": ("rest side", ""),
+    "travel_mm": ("travel", " mm"),
+    "height_mm": ("way across the lines", " mm"),
+    "turns": ("measured angles", ""),
+    "rate_hz": ("rate", " Hz"),
 }
+_TO_DO: Final = {
+    Placing.DONE: "",
+    Placing.MARK: "; if asked to, move the carriage over its mark",
+    Placing.STOP: "; its place must be shown again",
+}
+# Which way counts grow, in words.
+_PLAIN: Final[dict[object, str]] = {
+    "towards": "towards the reader",
+    "away": "away from the reader",
+    "anticlockwise": "against the clock",
+    "clockwise": "with the clock",
+}
+_REFUSED: Final = {"priority": "no real-time priority", "memory": "no locked memory"}
+_ALLOW: Final = (
+    "to allow it, put '@audio - rtprio 95' and '@audio - memlock unlimited' into "
+    "/etc/security/limits.d/audio.conf, join the group audio, and log in again"
+)
+_LATE: Final = {
+    "host": "this computer was late, and ",
+    "line": "the line was late, and ",
+    "device": "it was late itself, and ",
+}
+
+
+def _difference(one: Difference) -> str:
+    what, unit = _FIELDS[one.what]
+    return f"{what} {_plain(one.now)}{unit}, not {_plain(one.was)}{unit}"
+
+
+def _plain(value: float | str) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return value if isinstance(value, str) else f"{value:g}"
+
+
+def _change(one: Difference) -> str:
+    was, now = one.was, one.now
+    match one.what:
+        case "name":
+            return f"its name is {now}, not {was}"
+        case "counts_per_m":
+            per_mm = [f"{1e6 / float(count):.6g} µm" for count in (now, was)]
+            return f"a count is {per_mm[0]}, not {per_mm[1]}"
+        case "count_sign":
+            return f"its counts grow {now}"
+        case "encoder":
+            return f"its encoder is {now}, not {was}"
+        case "y_counts_per_m":
+            per_mm = [f"{1e6 / float(count or 1):.6g} µm" for count in (now, was)]
+            return f"a count across the lines is {per_mm[0]}, not {per_mm[1]}"
+        case "y_count_sign":
+            return f"its counts across the lines grow {_PLAIN[now]}"
+        case "counts_per_turn":
+            return f"a turn of its array is {now} counts, not {was}"
+        case "turn_sign":
+            return f"its counts grow as it turns {_PLAIN[now]}"
+        case "left_stop_count" | "far_stop_count":
+            return f"its {one.what.split('_')[0]} stop is at count {now}, not {was}"
+        case "straight_count":
+            return f"its array is straight at count {now}, not {was}"
+    return f"its actuators may move {_slew(now)}, not {_slew(was)}"
+
+
+def _slew(speed: float | str) -> str:
+    return f"{speed} swings a second" if speed else "without a limit"
+
+
+# Of a dataclass with slots there are two classes by a name, and the later one is meant.
+_KINDS: Final = {kind.__name__: kind for kind in Event.__subclasses__()}
+
+
+# Events that a reader hears of in another way: by what they do, by what he is asked to do, or by
+# the error that ends the reading.
+_UNSAID: Final = (Button, Knob, Placed, Fault)
+
+
+def told(events: Iterable[Event]) -> list[str]:
+    """Sentences for the reader, one for each event that is to be said."""
+    return [event.say() for event in events if not isinstance(event, _UNSAID)]
+
+
+def placing_sentence(placing: Placing, display: Display, *, press: str = "press a key") -> str:
+    """Tell what the reader is to do so that the place of a carriage is known, or that it is.
+
+    Parameters
+    ----------
+    placing
+        What is waited for.
+    display
+        Display of the device, which says where its carriage is to be shown its place.
+    press
+        How the reader says that the carriage is there.
+    """
+    if placing is Placing.DONE:
+        return "place: known"
+    if placing is Placing.MARK:
+        return "place: move the carriage over its mark"
+    if not display.height_mm:
+        return f"place: move left to the stop, then {press}"
+    return f"place: move to {shown_place(display)}, with the array straight, then {press}"
+
+
+def shown_place(display: Display) -> str:
+    """Tell where a carriage is to be shown its place: the left stop, or a corner."""
+    if not display.height_mm:
+        return "the left stop"
+    return f"the {'near' if display.shown_near else 'far'} left corner"
 
 
 def is_known(event: object) -> bool:
@@ -354,38 +556,21 @@ def to_json(event: Event) -> dict[str, Any]:
 
 def from_json(told: Mapping[str, Any]) -> Event:
     """Event of which `to_json` made these values."""
-    values = {name: _value(name, value) for name, value in told.items() if name != "event"}
-    return _KINDS[told["event"]](**values)
+    values = {name: value for name, value in told.items() if name != "event"}
+    return msgspec.convert(values, _KINDS[told["event"]])
 
 
 def shortened(event: Event, most: int) -> Event:
     """Event whose texts are cut to a number of characters."""
 
-    def cut(value: object) -> object:
+    def cut(value: Any) -> Any:
         if isinstance(value, str):
             return value[:most]
-        if isinstance(value, Difference):
-            return Difference(value.what, _cut(value.was, most), _cut(value.now, most))
-        return tuple(map(cut, value)) if isinstance(value, tuple) else value
+        if isinstance(value, dict):
+            return {name: cut(one) for name, one in value.items()}
+        return [*map(cut, value)] if isinstance(value, tuple) else value
 
-    return _changed(event, cut)
-
-
-def _cut(value: float | str, most: int) -> float | str:
-    return value[:most] if isinstance(value, str) else value
-
-
-def _changed(event: Event, change: Callable[[object], Any]) -> Event:
-    values = {one.name: change(getattr(event, one.name)) for one in fields(event)}
-    return replace(event, **values)
-
-
-def _value(name: str, value: Any) -> Any:
-    if name == "placing":
-        return Placing(value)
-    if isinstance(value, dict):
-        return Difference(**value)
-    return tuple(_value("", one) for one in value) if isinstance(value, list) else value
+    return from_json({**cut(asdict(event)), "event": type(event).__name__})
 
 
 EVERY_NS: Final = 1_000_000_000

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from vbraille.devices.events import Placing, WatchdogTripped
-from vbraille.devices.sentences import shown_place, told
+from vbraille.devices.events import Placing, WatchdogTripped, shown_place, told
 from vbraille.devices.serial.wire import RAMP_MS, WATCHDOG_MS
 from vbraille.display import Pose
 from vbraille.engine.clock import ManualClock

@@ -333,7 +333,7 @@ class Loop:
         DeviceError
             If the device is gone.
         """
-        self.show(None)
+        self.state.want(None, 0)
         self.state.hold()
         self._deadline_ns = self.clock.now_ns()
         faded_ns = 0
@@ -347,7 +347,6 @@ class Loop:
             self._deadline_ns = max(self._deadline_ns + self._period_ns, self.clock.now_ns())
             self.clock.sleep_until_ns(self._deadline_ns)
             self.device.write(self.output)
-        self.state.want(None, 0)
 
 
 class LocalEngine(Loop):
@@ -363,15 +362,24 @@ class LocalEngine(Loop):
         Ticks a second.
     poll_ticks
         How many ticks each poll does.
+
+    Attributes
+    ----------
+    lost : int
+        Number of ticks that were never polled; always 0.
     """
+
+    lost = 0
 
     def __init__(
         self, device: Device, clock: Clock, *, rate_hz: float = 1000.0, poll_ticks: int = 1
     ) -> None:
+        # One more than a poll's: a view of a single record is of a type of its own, for which
+        # ticks would be compiled again.
         ring = Ring.alone(device.display.shape, poll_ticks + 1)
         super().__init__(device, clock, rate_hz=rate_hz, ring=ring)
         self._reader = ring.reader()
-        self._poll_ticks = poll_ticks
+        self.poll_ticks = poll_ticks
 
     @property
     def display(self) -> Display:
@@ -380,8 +388,11 @@ class LocalEngine(Loop):
 
     def poll(self) -> NDArray[np.void]:
         """Do some ticks; return their records."""
-        for _ in range(self._poll_ticks):
+        for _ in range(self.poll_ticks):
             self.tick()
+        return self._take()
+
+    def _take(self) -> NDArray[np.void]:
         self.ring.publish()
         return self._reader.drain()
 

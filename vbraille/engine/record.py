@@ -52,7 +52,6 @@ class Flag(IntFlag):
 
     PAUSED = 1
     SILENT = 2  # the device has given no pose for a while
-    FOLLOWED = 4  # until 2026-11-21: a simulated hand had come to its end
     MARK = 8  # the device waits for its mark
     STOP = 16  # the device waits to be told that it is at the left stop
     RESTING = 32  # nothing is shown, whatever the line

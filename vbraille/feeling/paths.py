@@ -9,7 +9,14 @@ import numpy as np
 
 from vbraille.engine.constants import DIFFERENCE, MEAN
 from vbraille.errors import InputError
-from vbraille.simulation.exploring import Disturbance, ExploringPath, parse_place, spot, wide
+from vbraille.simulation.exploring import (
+    Disturbance,
+    ExploringPath,
+    parse_explorer,
+    parse_place,
+    spot,
+    wide,
+)
 from vbraille.simulation.motion import SLACK
 from vbraille.simulation.recorded import load_recorded
 from vbraille.wording import setting
@@ -28,25 +35,20 @@ class PathOptions:
 
     Parameters
     ----------
-    name
-        "wide", "spot" or "recorded:FILE".
-    at
-        Place that a spot path swings about, as X,Y.
+    hand
+        "wide" or "wide:SPACING" with the distance between turns in mm, "spot" for one that swings
+        about the middle or "spot:X,Y", or "recorded:FILE".
     radius, seconds
-        How far it swings in mm, and for how long.
-    spacing
-        Distance between turns of a wide path in mm.
+        How far a spot path swings in mm, and for how long.
     speed
         Speed in mm/s.
     sway, unsteady, back
         Disturbances of a wide path; see `vbraille.simulation.exploring.Disturbance`.
     """
 
-    name: str = "wide"
-    at: str | None = None
+    hand: str = "wide"
     radius: float | None = None
     seconds: float | None = None
-    spacing: float | None = None
     speed: float | None = None
     sway: float | None = None
     unsteady: float | None = None
@@ -76,9 +78,9 @@ class PosedPath:
 
 # Options of each path, by the names that `vbraille.simulation.exploring` has for them.
 _SPOT: Final = {"radius": "radius_mm", "seconds": "duration_s", "speed": "speed_mm_s"}
-_WIDE: Final = {"spacing": "spacing_mm", "speed": "speed_mm_s"}
+_WIDE: Final = {"speed": "speed_mm_s"}
 _DISTURBED: Final = {"sway": "sway_mm", "unsteady": "speed_change", "back": "back_mm"}
-_OPTIONS: Final = {"spot": {"at", *_SPOT}, "wide": _WIDE | _DISTURBED, "recorded": ()}
+_OPTIONS: Final = {"spot": _SPOT, "wide": _WIDE | _DISTURBED, "recorded": ()}
 
 
 def path_of(options: PathOptions, canvas: Canvas, span_mm: float, rate_hz: float) -> PosedPath:
@@ -100,13 +102,14 @@ def path_of(options: PathOptions, canvas: Canvas, span_mm: float, rate_hz: float
     InputError
         If there is no such path, an option is for another one, or a number is out of range.
     """
-    kind, _, rest = options.name.partition(":")
-    if kind == "recorded" and rest:
+    kind, _, rest = options.hand.partition(":")
+    if kind in _OPTIONS:
         _refuse(options, kind)
+    if kind == "recorded" and rest:
         course = load_recorded(rest).motion()
         theta_rad, left_mm = course.theta_rad, span_mm / 2
     else:
-        course = _course(options, canvas)
+        course = _course(options, kind, canvas)
         theta_rad, left_mm = None, 0.0
     t_s = np.arange(1 + int(course.duration_s * rate_hz + SLACK)) / rate_hz
     x_mm, y_mm, theta_rad = (
@@ -120,21 +123,25 @@ def path_of(options: PathOptions, canvas: Canvas, span_mm: float, rate_hz: float
     return PosedPath(t_s, x_mm + left_mm, y_mm, theta_rad)
 
 
-def _course(options: PathOptions, canvas: Canvas) -> ExploringPath:
+def _course(options: PathOptions, kind: str, canvas: Canvas) -> ExploringPath:
+    size = canvas.width_mm, canvas.height_mm
     try:
-        if options.name == "spot":
-            _refuse(options, "spot")
-            at = canvas.width_mm / 2, canvas.height_mm / 2
-            at = at if options.at is None else parse_place(options.at)
-            return spot(*at, **_given(options, _SPOT))
-        if options.name == "wide":
-            _refuse(options, "wide")
-            disturbance = Disturbance(**_given(options, _DISTURBED))
-            size = canvas.width_mm, canvas.height_mm
-            return wide(*size, disturbance=disturbance, **_given(options, _WIDE))
+        if options.hand == "spot":
+            return spot(size[0] / 2, size[1] / 2, **_given(options, _SPOT))
+        if kind == "spot":
+            at_mm = parse_place(options.hand.partition(":")[2])
+            return spot(*at_mm, **_given(options, _SPOT))
+        if kind == "wide":
+            given = _given(options, _WIDE)
+            if options.hand != kind and (explorer := parse_explorer(options.hand)) is not None:
+                given["spacing_mm"] = explorer.spacing_mm
+            return wide(*size, disturbance=Disturbance(**_given(options, _DISTURBED)), **given)
     except ValueError as error:
         raise InputError(str(error)) from None
-    raise InputError(f"there is no path {options.name!r}; give wide, spot or recorded:FILE.csv")
+    raise InputError(
+        f"the hand {options.hand!r} does not go over a picture alone; give wide, wide:SPACING, "
+        f"spot:X,Y or recorded:FILE.csv"
+    )
 
 
 def _given(options: PathOptions, names: Mapping[str, str]) -> dict[str, float]:
@@ -148,7 +155,7 @@ def _refuse(options: PathOptions, name: str) -> None:
     for field in fields(options)[1:]:
         if field.name not in _OPTIONS[name] and getattr(options, field.name) is not None:
             other = setting(field.name)
-            raise InputError(f"{other} is not for the path {name}; leave {other} out")
+            raise InputError(f"{other} is not for the hand {name}; leave {other} out")
 
 
 def hand_velocities(

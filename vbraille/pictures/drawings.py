@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import math
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -45,6 +45,7 @@ _HAIR_MM = 0.15
 # far as bars can go without touching; true deflections would be too small to be seen.
 _SHIFT = 0.3
 _OUTLINE_PER_MM, _OUTLINE_PIXELS = 8.0, 4_200_000
+_BAND_ROWS = 256
 # Times over a swing of 50 Hz, the fastest that there is: what vibrates is up at one of them.
 _UP_S = (0.0, 0.005, 0.01, 0.015)
 
@@ -187,6 +188,7 @@ def map_figure(
         place.set_xlabel("mm", fontsize=7, loc="right", labelpad=1)
     place.imshow(
         np.repeat(grays(deflections)[..., None], 3, axis=2),  # which is drawn as it is
+        alpha=1.0,  # without which a PNG of it takes twice the memory
         extent=(0, canvas.width_mm, canvas.height_mm, 0),
         interpolation="none",
         aspect="auto",
@@ -213,7 +215,8 @@ def outline_figure(scene: Scene, assets: Assets) -> Figure:
     if contours:
         # Contours of holes run the other way round, so that one filled path leaves the holes.
         whole = Outline.make_compound_path(*(Outline(c, closed=True) for c in contours))
-        place.add_patch(PathPatch(whole, facecolor="black", edgecolor="none"))
+        # Not `add_patch`, which looks for the limits of the axes at each point of it.
+        place.add_artist(PathPatch(whole, facecolor="black", edgecolor="none"))
     return figure
 
 
@@ -225,8 +228,6 @@ def felt_contours(scene: Scene, assets: Assets) -> list[NDArray[np.float64]]:
     list of float64[n, 2]
         Contours; those of holes run the other way round.
     """
-    from contourpy import FillType, contour_generator
-
     from vbraille.render.scene.compiling import SceneMap  # loads the kernels
 
     canvas = scene.canvas
@@ -245,15 +246,44 @@ def felt_contours(scene: Scene, assets: Assets) -> list[NDArray[np.float64]]:
         return []
     step = 1 / per_mm
     x, y = (np.concatenate([[at[0] - step], at, [at[-1] + step]]) for at in (x, y))
-    lines = contour_generator(x, y, rimmed, fill_type=FillType.OuterOffset)
     # A plateau at exactly the half would be all steps of rounding.
-    found = cast("tuple[list[NDArray], list[NDArray]]", lines.filled(0.51 * strongest, math.inf))
+    lines = _contours(x, y, rimmed, 0.51 * strongest)
     edge = np.array([canvas.width_mm, canvas.height_mm])
-    return [
-        np.clip(part, 0.0, edge)
-        for points, breaks in zip(*found, strict=True)
-        for part in np.split(points, breaks[1:-1].astype(int))
-    ]
+    return [np.clip(line, 0.0, edge) for line in lines]
+
+
+def _contours(
+    x: NDArray[np.float64], y: NDArray[np.float64], values: NDArray[np.floating], level: float
+) -> list[NDArray[np.float64]]:
+    """Closed lines of a level, which the rim of the values is below: float64[n, 2] each.
+
+    They are found in bands of rows, since the library takes three numbers of eight bytes a value.
+    Lines that go from one band into the next end there at the same place in both.
+    """
+    from contourpy import contour_generator
+
+    closed: list[NDArray[np.float64]] = []
+    begun: dict[tuple[float, float], list[NDArray[np.float64]]] = {}
+    for first in range(0, y.size - 1, _BAND_ROWS):
+        rows = slice(first, first + _BAND_ROWS + 1)
+        for found in contour_generator(x, y[rows], values[rows]).lines(level):
+            line = np.asarray(found)
+            if (line[0] == line[-1]).all():
+                closed.append(line)
+            else:
+                begun.setdefault(tuple(line[0]), []).append(line)
+    while begun:
+        first_place = next(iter(begun))
+        parts: list[NDArray[np.float64]] = []
+        place = first_place
+        while not parts or place != first_place:
+            several = begun[place]
+            parts.append(several.pop())
+            if not several:
+                del begun[place]
+            place = tuple(parts[-1][-1])
+        closed.append(np.concatenate(parts))
+    return closed
 
 
 def drawing_bytes(

@@ -83,8 +83,19 @@ def to_bytes(
             figure.savefig(content, format=kind, dpi=dpi, metadata=metadata)
     if kind == "svg":
         # Hundredths of a point will do: that is half as much to load.
-        return _PLACES.sub(lambda tag: _NEEDLESS.sub(b"", tag[0]), content.getvalue())
+        return _PLACES.sub(lambda tag: _shortened(tag[0]), content.getvalue())
     return content.getvalue()
+
+
+def _shortened(tag: bytes) -> bytes:
+    """Leave out of a tag what no eye sees, some lines at a time: an outline may have millions."""
+    parts: list[bytes] = []
+    first = 0
+    while first < len(tag):
+        end = tag.find(b"\n", first + 100_000) + 1 or len(tag)
+        parts.append(_NEEDLESS.sub(b"", tag[first:end]))
+        first = end
+    return b"".join(parts)
 
 
 def _write_png(figure: Figure, content: io.BytesIO, dpi: float, metadata: dict[str, str]) -> None:

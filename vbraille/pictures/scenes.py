@@ -23,7 +23,7 @@ from vbraille.scene.traversal import each, vibrations
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -31,10 +31,15 @@ if TYPE_CHECKING:
     from vbraille.scene.scene import Canvas, Scene
 
 PIXELS_PER_MM = 4.0
-# A map of so many is made within 300 MB; a sheet A3 has 12 million at 10 a mm.
-MOST_PIXELS = 16_000_000
-MOST_PLACED_PIXELS = 5_000_000  # of a map in an SVG or a PDF, which takes more
-MOST_CSV_ROWS = 10_000_000  # of a CSV
+# Pixels of a map that each kind of file is made of within 300 MB; A3 has 12 million at 10 a mm.
+MOST_PIXELS = {
+    "png": 13_000_000,
+    "gif": 16_000_000,
+    "csv": 10_000_000,
+    "svg": 3_700_000,
+    "pdf": 2_000_000,
+}
+MOST_PLACED_PIXELS = 1_300_000  # of a map with axes or an array in a PNG: A4 at 4 a mm
 _FRAME_MS = 100  # how long an animation shows each map: eyes see no 50 Hz
 _MM_PER_INCH = 25.4
 # Limits of a small map, which a page loads and a recording keeps.
@@ -69,7 +74,7 @@ def map_places(
 
 
 def check_pixels(
-    canvas: Canvas, pixels_per_mm: float, maps: int = 1, most: int = MOST_PIXELS
+    canvas: Canvas, pixels_per_mm: float, maps: int = 1, most: int = MOST_PIXELS["png"]
 ) -> tuple[int, int]:
     """Compute the columns and rows of a map, if there is room for so many maps of it.
 
@@ -256,7 +261,7 @@ def gif(maps: Sequence[NDArray[np.uint8]], told: str = "") -> bytes:
     return content.getvalue()
 
 
-def map_csv(deflections: NDArray[np.floating], pixels_per_mm: float) -> bytes:
+def map_csv(deflections: NDArray[np.floating], pixels_per_mm: float) -> Iterator[bytes]:
     """Write a map as CSV in the long form: a row for each pixel with x, y and its deflection.
 
     Parameters
@@ -265,13 +270,16 @@ def map_csv(deflections: NDArray[np.floating], pixels_per_mm: float) -> bytes:
         Deflections from 0 to 1.
     pixels_per_mm
         Resolution.
+
+    Yields
+    ------
+    bytes
+        The file, a row of pixels at a time.
     """
     rows, columns = deflections.shape
     across = [f"{(column + 0.5) / pixels_per_mm:.10g}" for column in range(columns)]
-    lines = ["x_mm,y_mm,deflection"]
+    yield b"x_mm,y_mm,deflection\n"
     for row in range(rows):
         y = f"{(row + 0.5) / pixels_per_mm:.10g}"
         values = zip(across, deflections[row].tolist(), strict=True)
-        lines += [f"{x},{y},{round(value, 6):g}" for x, value in values]
-    lines.append("")
-    return "\n".join(lines).encode()
+        yield "".join(f"{x},{y},{round(value, 6):g}\n" for x, value in values).encode()

@@ -1,6 +1,6 @@
 """The process that gives cues: cues come, and sounds or bells go out.
 
-It is told whether by "sound" or by "bell". Where there is no audio output, or none any more, it
+It is told whether by "tones" or by "bell". Where there is no audio output, or none any more, it
 rings the bell.
 """
 
@@ -48,12 +48,12 @@ def give(orders: Incoming[Cue], kind: str, open_tones: Callable[[], Tones] = Ton
     orders
         Cues that come.
     kind
-        "sound" or "bell", by which cues are given.
+        "tones" or "bell", by which cues are given.
     open_tones
         Function that opens the audio output, or raises OSError.
     """
     tones = None
-    if kind == "sound":
+    if kind == "tones":
         with suppress(OSError):
             tones = open_tones()
     bell, rings = Bell(), 0

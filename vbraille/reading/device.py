@@ -7,9 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self, Unpack
 
 from vbraille.devices.base import Device, Placing
-from vbraille.devices.events import Button, Knob, NotInTime
+from vbraille.devices.events import Button, Knob, NotInTime, told
 from vbraille.devices.registry import check_actuators, check_travel, find_driver
-from vbraille.devices.sentences import told
 from vbraille.display import Pose, check_rate
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.devices.events import Placing
-from vbraille.devices.sentences import placing_sentence
+from vbraille.devices.events import Placing, placing_sentence
 from vbraille.engine.host import HostDiedError
 from vbraille.errors import InputError
 from vbraille.reading.keyboard import POLL_S, STOPPED

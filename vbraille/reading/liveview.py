@@ -13,7 +13,6 @@ from msgspec.structs import replace
 from vbraille.config.settings import KNOBS, say_mapping
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Changed, Silent, Stalled, Stranger, Unplugged
-from vbraille.devices.sentences import say
 from vbraille.errors import InputError
 from vbraille.live.messages import LineShown, PagePress, SceneShown, Turn, ViewState
 from vbraille.live.monitor import Monitor
@@ -132,7 +131,7 @@ class ExploredState(ABC):
         """Take note of events of the device."""
         for event in events:
             if isinstance(event, _GONE):
-                self._gone = say(event)
+                self._gone = event.say()
             elif isinstance(event, _BACK):
                 self._gone = ""
 

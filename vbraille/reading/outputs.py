@@ -202,7 +202,7 @@ class SpeechOutput(Output):
 class CueKind(Enum):
     """Kinds of signals by which cues are given."""
 
-    SOUND = "sound"
+    TONES = "tones"
     BELL = "bell"
     NONE = "none"
 
@@ -222,7 +222,7 @@ def choose_cues(asked: str | None, *, attended: bool) -> CueKind:
         return CueKind(asked)
     if not attended:
         return CueKind.NONE
-    return CueKind.BELL if "SSH_CONNECTION" in os.environ else CueKind.SOUND
+    return CueKind.BELL if "SSH_CONNECTION" in os.environ else CueKind.TONES
 
 
 class Cues(Output):

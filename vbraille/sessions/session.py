@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from vbraille.display import Display
+    from vbraille.engine.spawning import Spawned
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.running.conventional import OnConventional
     from vbraille.sessions.running.liveview import SessionView
@@ -167,6 +168,9 @@ class Session:
     engine
         Function that makes the engine which drives the device; None for the engine that the
         conditions ask for.
+    begun
+        Host process of the usual engine that was begun beforehand, and the channel by which its
+        simulated hand is moved; None to begin one when it is needed.
 
     Examples
     --------
@@ -197,6 +201,7 @@ class Session:
         conditions: Conditions,
         progress: Progress,
         engine: MakeEngine | None = None,
+        begun: tuple[Spawned, Steering] | None = None,
     ) -> None:
         self.folder = folder
         self.protocol = protocol
@@ -209,7 +214,8 @@ class Session:
         self._drawn = False  # whether the seed was drawn, since none was given
         # The simulated hand differs between participants, and each time that a session is resumed.
         drawn = f"{plan.protocol} {plan.participant} {plan.seed} hand {len(progress.runs)}"
-        self._steering = steering_of(conditions.device)
+        spawned, steering = begun or (None, steering_of(conditions.device))
+        self._steering = steering if has_hand(conditions.device) else None
         self._pointer: Pointer | None = None
         if conditions.live is not None:
             check_live(protocol, conditions, usual=engine is None)
@@ -230,7 +236,7 @@ class Session:
             if engine is None:
                 channels = [channel for channel in (self._steering, self._pointer) if channel]
                 self._engine = usual_engine(
-                    spec, wanted, protocol, plan, channels, fast=conditions.fast
+                    spec, wanted, protocol, plan, channels, fast=conditions.fast, spawned=spawned
                 )
             else:
                 self._engine = engine(spec, wanted)
@@ -250,6 +256,7 @@ class Session:
         fields: Mapping[str, str] | None = None,
         conditions: Conditions = USUAL,
         engine: MakeEngine | None = None,
+        begun: tuple[Spawned, Steering] | None = None,
     ) -> Session:
         """Plan a new session; nothing is written to the disk before `run`.
 
@@ -274,6 +281,8 @@ class Session:
             Function that makes the engine which drives the device, from the device's spec and the
             display that is wanted. It is for programs that have a loop of their own; None for
             the usual engine.
+        begun
+            Host process that was begun beforehand, as for `Session`.
 
         Raises
         ------
@@ -284,7 +293,7 @@ class Session:
         name = f"{plan.participant}-{plan.protocol}-{datetime.now():%Y%m%d-%H%M%S}"
         place = Path(name if folder is None else folder)
         progress = Progress(plan, procedure=procedure_of(planned, plan))
-        session = cls(place, planned, plan, conditions, progress, engine)
+        session = cls(place, planned, plan, conditions, progress, engine, begun)
         session.tell(fields or {})
         session._drawn = seed is None
         check_free(place, "folder")
@@ -292,7 +301,12 @@ class Session:
 
     @classmethod
     def resume(
-        cls, folder: str | Path, *, engine: MakeEngine | None = None, **changed: Any
+        cls,
+        folder: str | Path,
+        *,
+        engine: MakeEngine | None = None,
+        begun: tuple[Spawned, Steering] | None = None,
+        **changed: Any,
     ) -> Session:
         """Go on with a session that was begun earlier.
 
@@ -300,8 +314,8 @@ class Session:
         ----------
         folder
             The session's directory.
-        engine
-            Function that makes the engine, as for `create`.
+        engine, begun
+            Function that makes the engine, or a host process, as for `create`.
         changed
             Fields of the `Conditions` that differ from when the session began: device, hand,
             answers, fast, sound, live, markers or also. If the answers come from elsewhere now, the
@@ -329,7 +343,9 @@ class Session:
         if changed.get("answers", began.answers) != began.answers:
             changed = {"fast": False, **changed}
         conditions = replace(began, **changed)
-        session = cls(record.folder, record.protocol, record.plan, conditions, progress, engine)
+        session = cls(
+            record.folder, record.protocol, record.plan, conditions, progress, engine, begun
+        )
         session._begun = True
         session._resumed = record
         return session
@@ -345,10 +361,9 @@ class Session:
 
         The columns are described in `vbraille.sessions.record.codebook.COLUMNS`.
         """
-        from vbraille.sessions.record.export import Traces, rows
+        from vbraille.sessions.record.export import rows
 
-        record = self.record
-        return rows(record, Traces(record))
+        return rows(self.record)
 
     def tell(self, fields: Mapping[str, str]) -> None:
         """Answer what the protocol asks about the participant.
@@ -489,6 +504,7 @@ def usual_engine(
     channels: Sequence[Steering | Pointer],
     *,
     fast: bool,
+    spawned: Spawned | None = None,
 ) -> RunEngine:
     """Make the usual engine: a process of its own, or a loop in this one if it runs fast.
 
@@ -502,6 +518,8 @@ def usual_engine(
         Shared memory by which a simulated hand is moved, which the process inherits.
     fast
         Whether it runs as fast as the machine can.
+    spawned
+        Process that was begun beforehand, and inherits that memory already; None for a new one.
     """
     if fast:
         from vbraille.engine.batch import BatchEngine
@@ -509,7 +527,7 @@ def usual_engine(
         return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
     find_driver(spec)  # before anything is compiled for what is not there
     inherited = [channel.descriptor for channel in channels]
-    return Host(spec, wanted, room_for(protocol, plan, wanted), pass_fds=inherited)
+    return Host(spec, wanted, room_for(protocol, plan, wanted), pass_fds=inherited, spawned=spawned)
 
 
 def room_for(protocol: Protocol, plan: Plan, wanted: Display) -> int:

@@ -24,79 +24,6 @@ _TIME = r"([0-9]{1,6}(?:\.[0-9]{1,6})?)s"
 _PRESS = re.compile(rf"([0-9]{{1,3}})@{_TIME}(?:-{_TIME})?")
 
 
-@dataclass(frozen=True, slots=True)
-class Press:
-    """A button that is held for a time.
-
-    Parameters
-    ----------
-    button
-        Number of the button, 1 to 8.
-    from_s, till_s
-        When it is pressed and when it is let go, in seconds since the device began.
-
-    Raises
-    ------
-    ValueError
-        If there is no such button or no such time.
-    """
-
-    button: int
-    from_s: float
-    till_s: float
-
-    def __post_init__(self) -> None:
-        check_range("button", self.button, 1, MOST_BUTTONS)
-        check_range("time of the press", self.from_s, 0, LONGEST_S, " s")
-        if self.till_s <= self.from_s:
-            raise ValueError(
-                f"button {self.button} is let go at {self.till_s:g} s; it must be after it is "
-                f"pressed, at {self.from_s:g} s"
-            )
-
-
-def parse_press(text: str) -> Press:
-    """Press that a text describes: ``1@2.5s``, or ``1@2.5s-4s`` to hold the button till then.
-
-    Raises
-    ------
-    InputError
-        If the text describes none.
-    """
-    found = _PRESS.fullmatch(text)
-    if found is None:
-        raise InputError(
-            f"{text!r} is no press of a button; give its number and its time, such as 1@2.5s, or "
-            f"1@2.5s-4s to hold it"
-        )
-    from_s = float(found[2])
-    till_s = from_s + SHORT_S if found[3] is None else float(found[3])
-    try:
-        return Press(int(found[1]), from_s, till_s)
-    except ValueError as error:
-        raise InputError(str(error)) from None
-
-
-def parse_presses(text: str) -> tuple[Press, ...]:
-    """Presses that a text describes, with commas between; none if it is empty.
-
-    Raises
-    ------
-    InputError
-        If one of them is none.
-    """
-    return tuple(parse_press(one.strip()) for one in text.split(",")) if text.strip() else ()
-
-
-def held(presses: Iterable[Press], now_s: float) -> int:
-    """Bits of the buttons that are held at a time, bit 0 for button 1."""
-    bits = 0
-    for press in presses:
-        if press.from_s <= now_s < press.till_s:
-            bits |= 1 << (press.button - 1)
-    return bits
-
-
 KEY_STEP: Final = 0.05  # by which a key turns a knob
 _LINE = re.compile(
     r"(?P<time>[0-9]{1,7}(?:\.[0-9]{1,6})?)(?P<unit>ms|s)\s+"
@@ -144,8 +71,6 @@ class Controls:
     ----------
     events
         What happens at set times.
-    presses
-        Further presses of buttons.
 
     Attributes
     ----------
@@ -155,15 +80,11 @@ class Controls:
         Position of each knob, 0 to 1; all begin in the middle.
     """
 
-    def __init__(self, events: Iterable[ControlEvent] = (), presses: Iterable[Press] = ()) -> None:
+    def __init__(self, events: Iterable[ControlEvent] = ()) -> None:
         self.buttons = 0
         self.knobs = [0.5] * MOST_KNOBS
         self._typed: list[ControlEvent] = []
-        self._due = [*events]
-        for press in presses:
-            self._due.append(ControlEvent(press.from_s, False, press.button, 1.0))
-            self._due.append(ControlEvent(press.till_s, False, press.button, 0.0))
-        self._due = sorted(self._due, key=_time_of)[::-1]  # the next is the last
+        self._due = sorted(events, key=_time_of)[::-1]  # the next is the last
 
     def advance(self, now_s: float) -> None:
         """Do what is due by a time since the device began."""
@@ -244,6 +165,46 @@ def _event(found: re.Match[str]) -> ControlEvent:
     if found["knob"]:
         return ControlEvent(at_s, True, int(found["knob"]), float(found["value"]))
     return ControlEvent(at_s, False, int(found["button"]), float(found["what"] == "press"))
+
+
+def parse_press(text: str) -> tuple[ControlEvent, ControlEvent]:
+    """Events of a press: ``1@2.5s``, or ``1@2.5s-4s`` to hold the button till then.
+
+    Raises
+    ------
+    InputError
+        If the text describes none.
+    """
+    found = _PRESS.fullmatch(text)
+    if found is None:
+        raise InputError(
+            f"{text!r} is no press of a button; give its number and its time, such as 1@2.5s, or "
+            f"1@2.5s-4s to hold it"
+        )
+    button, from_s = int(found[1]), float(found[2])
+    till_s = from_s + SHORT_S if found[3] is None else float(found[3])
+    try:
+        check_range("time of the press", from_s, 0, LONGEST_S, " s")
+        if till_s <= from_s:
+            raise ValueError(
+                f"button {button} is let go at {till_s:g} s; it must be after it is pressed, at "
+                f"{from_s:g} s"
+            )
+        return ControlEvent(from_s, False, button, 1.0), ControlEvent(till_s, False, button, 0.0)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+
+
+def parse_presses(text: str) -> tuple[ControlEvent, ...]:
+    """Events of presses with commas between; none if the text is empty.
+
+    Raises
+    ------
+    InputError
+        If one of them is none.
+    """
+    presses = text.split(",") if text.strip() else ()
+    return tuple(event for press in presses for event in parse_press(press.strip()))
 
 
 def load_script(path: str) -> tuple[ControlEvent, ...]:

@@ -28,7 +28,7 @@ from vbraille.simulation.recorded import Recorded
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from vbraille.simulation.controls import ControlEvent, Press
+    from vbraille.simulation.controls import ControlEvent
     from vbraille.simulation.hand import Hand
 
 # Counts of encoders 0, 1 and 2 at angle 0: any, and none of them 0, for clients must mind them.
@@ -222,10 +222,8 @@ class LateroSimulator:
         Where it listens; port 0 is any that is free.
     faults
         What the network does.
-    presses
-        When its two buttons are held, in seconds since it was first asked; the left one is 1.
     script
-        What else is done to its buttons, by the same time.
+        Presses of its two buttons, in seconds since it was first asked; the left one is 1.
     keys
         Function that gives the keys typed since its last call, which press buttons.
     wait_s
@@ -252,7 +250,6 @@ class LateroSimulator:
         host: str = "127.0.0.1",
         port: int = PORT,
         faults: LateroFaults | None = None,
-        presses: Sequence[Press] = (),
         script: Sequence[ControlEvent] = (),
         keys: Callable[[], Iterable[str]] = tuple,
         wait_s: float = WAIT_S,
@@ -261,7 +258,7 @@ class LateroSimulator:
         self.network = Network(faults or LateroFaults())
         self.carriage = carriage
         self._say = say
-        self._controls, self._keys = Controls(script, presses), keys
+        self._controls, self._keys = Controls(script), keys
         self._wait_s = wait_s
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:

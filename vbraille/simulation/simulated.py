@@ -12,7 +12,7 @@ from vbraille.devices.base import Device
 from vbraille.devices.events import Button, HandHeld, Knob
 from vbraille.display import Pose
 from vbraille.errors import InputError, check_range
-from vbraille.simulation.controls import MOST_BUTTONS, held, parse_presses
+from vbraille.simulation.controls import MOST_BUTTONS, Controls, parse_presses
 from vbraille.simulation.hand import STILL_S, Area, Still
 from vbraille.simulation.motion import Course
 from vbraille.simulation.recorded import Recorded
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from vbraille.devices.events import Event
     from vbraille.display import Display
-    from vbraille.simulation.controls import Press
+    from vbraille.simulation.controls import ControlEvent
     from vbraille.simulation.hand import Hand
     from vbraille.simulation.motion import Motion
     from vbraille.simulation.steering import HandOrder
@@ -63,11 +63,13 @@ class SimulatedDevice(Device):
         Where a person holds the hand meanwhile, ahead of all orders: these wait until it is let
         go, and what was not done yet is then done again.
     presses
-        When its buttons are held, in seconds since the device was opened; `press`, `let_go` and
+        Presses of its buttons, in seconds since the device was opened; `press`, `let_go` and
         `turn` do more of the same at once.
 
     Attributes
     ----------
+    hand, steering, pointer
+        As they were given.
     levels : int64[rows, columns]
         Levels that were last sent to the actuators, 0 … info.levels - 1.
     frames : int
@@ -80,17 +82,14 @@ class SimulatedDevice(Device):
         now_ns: Callable[[], int] = time.monotonic_ns,
         hand: Hand | Recorded | None = None,
         steering: Steering | None = None,
-        presses: Sequence[Press] = (),
+        presses: Sequence[ControlEvent] = (),
         pointer: Pointer | None = None,
     ) -> None:
         self.display = info
-        self._presses = presses
+        self._controls = Controls(presses)
         self._opened_ns = now_ns()
-        self._held = 0  # bits of the buttons that are held by plan
         self._pressed: list[Event] = []
-        self._hand = hand
-        self._steering = steering
-        self._pointer = pointer
+        self.hand, self.steering, self.pointer = hand, steering, pointer
         self._at: BeAt | None = None  # where a person holds the hand
         self._held_ns = 0  # when that was last told
         self._left: Motion | None = None  # what the hand had not done yet when it was taken
@@ -103,11 +102,6 @@ class SimulatedDevice(Device):
         self._course = Course(
             -info.span_mm, free_y=info.height_mm > 0, turns=info.turns, now_ns=now_ns()
         )
-
-    @property
-    def hand(self) -> Hand | Recorded | None:
-        """Hand that moves the carriage."""
-        return self._hand
 
     def go_by(self, now_ns: Callable[[], int]) -> None:
         """Use another clock from now on; a motion goes on from where it has come to."""
@@ -134,12 +128,11 @@ class SimulatedDevice(Device):
     def take_events(self) -> Sequence[Event]:
         """Buttons and knobs that were moved since the last call, and who the hand was."""
         told, self._pressed = self._pressed, []
-        if self._presses:
-            now_ns = self._now_ns()
-            now = held(self._presses, (now_ns - self._opened_ns) / NS_PER_S)
-            changed, self._held = now ^ self._held, now
+        controls, before, now_ns = self._controls, self._controls.buttons, self._now_ns()
+        controls.advance((now_ns - self._opened_ns) / NS_PER_S)
+        if changed := before ^ controls.buttons:
             told += [
-                Button(bit + 1, pressed=bool(now >> bit & 1), at_ns=now_ns)
+                Button(bit + 1, pressed=bool(controls.buttons >> bit & 1), at_ns=now_ns)
                 for bit in range(MOST_BUTTONS)
                 if changed >> bit & 1
             ]
@@ -150,24 +143,14 @@ class SimulatedDevice(Device):
         """Tell whether the hand is still on its way."""
         return not self._course.is_over(self._now_ns())
 
-    @property
-    def steering(self) -> Steering | None:
-        """Source of the hand's orders."""
-        return self._steering
-
-    @property
-    def pointer(self) -> Pointer | None:
-        """Channel by which a person may hold the hand."""
-        return self._pointer
-
     def obey(self) -> None:
         """Have the hand follow the newest order from now on; `read` does this too."""
         was_held = self._at is not None
-        if self._pointer is not None and self._is_held(self._pointer.at()):
+        if self.pointer is not None and self._is_held(self.pointer.at()):
             return
-        if was_held and isinstance(self._hand, Recorded) and self._left is not None:
+        if was_held and isinstance(self.hand, Recorded) and self._left is not None:
             self.move(self._left)
-        steering = self._steering
+        steering = self.steering
         if steering is None:
             if self.frames and not self.moving:
                 self._do(ReadLine(self.display.travel_mm - self.display.span_mm))
@@ -219,7 +202,7 @@ class SimulatedDevice(Device):
 
     def _do(self, order: HandOrder) -> None:
         """Have the hand follow an order; a recorded hand sets out with the first and goes on."""
-        hand, home_mm = self._hand, -self.display.span_mm
+        hand, home_mm = self.hand, -self.display.span_mm
         course, now_ns = self._course, self._now_ns()
         if isinstance(order, BeAt):
             x_mm = order.x_mm - self.display.span_mm / 2
@@ -258,14 +241,6 @@ class SimulatedDevice(Device):
         way = min(max(y_mm, 0.0), info.height_mm)
         return Pose(now_ns, x_mm, round(way * info.counts_per_mm) / info.counts_per_mm, theta_rad)
 
-    def places_mm(self, times_ns: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Places of the centre that `read` would find at these times, undisturbed; float64[n]."""
-        # The same as in `read`, where arrays for a single place would take several times as long.
-        info, course = self.display, self._course
-        hand_mm = np.interp((times_ns - course.begun_ns) / NS_PER_S, course.t_s, course.ways[0])
-        way = np.clip(hand_mm + info.span_mm, 0.0, info.travel_mm)
-        return np.rint(way * info.counts_per_mm) / info.counts_per_mm - info.span_mm / 2
-
     def poses_at(self, times_ns: NDArray[np.int64]) -> NDArray[np.float64]:
         """Poses that `read` would give at times of the clock, if nothing changes.
 
@@ -274,13 +249,14 @@ class SimulatedDevice(Device):
         float64[3, n]
             x and y in mm, and θ in radians, as of `Pose`.
         """
+        # The same as in `read`, where arrays for a single place would take several times as long.
         info, course = self.display, self._course
         t_s = (times_ns - course.begun_ns) / NS_PER_S
         poses = np.zeros((3, times_ns.size))
-        poses[0] = self.places_mm(times_ns)
-        if info.height_mm:
-            way = np.clip(np.interp(t_s, course.t_s, course.ways[1]), 0.0, info.height_mm)
-            poses[1] = np.rint(way * info.counts_per_mm) / info.counts_per_mm
+        for axis, most_mm, span_mm in ((0, info.travel_mm, info.span_mm), (1, info.height_mm, 0.0)):
+            hand_mm = np.interp(t_s, course.t_s, course.ways[axis]) + span_mm
+            counts = np.rint(np.clip(hand_mm, 0.0, most_mm) * info.counts_per_mm)
+            poses[axis] = counts / info.counts_per_mm - span_mm / 2
         if info.turns:
             poses[2] = np.interp(t_s, course.t_s, course.ways[2])
         return poses

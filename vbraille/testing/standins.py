@@ -10,7 +10,7 @@ from vbraille.devices.serial.wire import Encoder
 from vbraille.engine.clock import RealClock
 from vbraille.render.braille.models import STRESS2, Model, model_of
 from vbraille.simulation.carriage import area_of
-from vbraille.simulation.controls import Controls, parse_press, parse_script
+from vbraille.simulation.controls import Controls, parse_presses, parse_script
 from vbraille.simulation.firmware import describe
 from vbraille.simulation.pty import Port
 from vbraille.simulation.simulated import SimulatedDevice
@@ -127,7 +127,9 @@ def simulated_controller(
             say=say,
             faults=faults,
             area=area_of(info, model_of(info).style.geometry.line_pitch_mm),
-            controls=Controls(parse_script(script, "the script"), map(parse_press, presses)),
+            controls=Controls(
+                (*parse_script(script, "the script"), *parse_presses(",".join(presses)))
+            ),
         )
         thread = Thread(target=simulator.run, args=(stopped.is_set,), daemon=True)
         thread.start()

@@ -5,8 +5,9 @@ import pytest
 
 from tests.controllers import HastyController
 from tests.devices.bench import DEVICE_LATE, HALF, HOME_MM, HOST_LATE, LINE_LATE, REST, Bench
-from vbraille.devices.sentences import told
-from vbraille.devices.serial.wire import Frame, Levels, Rest, State, Watchdog, encode
+from tests.packing import packed
+from vbraille.devices.events import told
+from vbraille.devices.serial.wire import Frame, Rest, State, Watchdog, encode
 from vbraille.errors import DeviceError
 from vbraille.simulation.firmware import Controller
 from vbraille.simulation.simulator import split
@@ -125,7 +126,7 @@ def test_an_old_controller_that_a_late_frame_holds_is_told_to_rest():
     made.deaf = False
     made.receive()  # what was on the way is lost
     made.kinds()
-    full = Levels(60, 1023).pack(np.full(60, 1023))
+    full = packed([1023] * 60, 1023)
     made.say(made.controller.receive(encode(Frame(9999, full)), made.us))  # but for an old one
     assert (made.controller.levels == 1023).all()
     made.run(device, 3)

@@ -8,7 +8,7 @@ from cobs import cobs
 from tests.devices.bench import DOWN_BYTES, HOME_MM, Bench, shown
 from tests.engine.test_loop import info
 from vbraille.devices.base import Placing
-from vbraille.devices.sentences import told
+from vbraille.devices.events import told
 from vbraille.devices.serial.wire import Frame, Hello, Rest, encode, enframe
 from vbraille.errors import DeviceError, InputError
 from vbraille.simulation.firmware import Controller

@@ -13,7 +13,7 @@ import pytest
 
 from tests.devices.bench import AWAY, HALF, HOME_MM, Bench, shown
 from tests.engine.test_loop import info
-from vbraille.devices.sentences import told
+from vbraille.devices.events import told
 from vbraille.devices.serial.device import open_serial
 from vbraille.devices.serial.wire import Frame, Hello, Rest
 from vbraille.display import Pose

@@ -3,7 +3,7 @@
 import pytest
 
 from tests.devices.bench import Bench, shown
-from vbraille.devices.sentences import told
+from vbraille.devices.events import told
 from vbraille.devices.serial.conversation import Stage
 from vbraille.devices.serial.wire import Decoder, Hello, enframe
 from vbraille.errors import DeviceError

@@ -152,6 +152,14 @@ def test_pairs_of_equal_values_are_for_same_or_different_alone():
         parse_protocol(COMPARED + "same = 1\n", "p.toml")
 
 
+def test_of_a_standard_and_its_equal_none_can_be_chosen():
+    """Analysis knows the answer by its value, which both would have."""
+    design = COMPARED + 'form = "standard"\nreference = 1.0\n'
+    with pytest.raises(InputError, match="reference is 1, which is one of values"):
+        protocol('kind = "which"', design)
+    assert protocol('kind = "magnitude"', design).trials
+
+
 def test_a_procedure_needs_answers_that_it_can_go_by():
     stairs = (
         '[procedure]\nkind = "staircase"\nparameter = "contrast"\nleast = 0.1\nmost = 1.0\n'

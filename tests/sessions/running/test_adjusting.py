@@ -77,9 +77,16 @@ def test_lines_turn_it_the_standard_is_shown_again_and_an_undo_takes_a_number(tm
 
 def test_the_value_stays_within_its_bounds(tmp_path):
     sat = Session(tmp_path / "s", ADJUST).sit(
-        ("cue: .*second", "+" * 99), ("turned", "equal"), ("answer", "stop")
-    )
+        ("cue: .*second", "+" * 99), ("turned", "+"), ("turned: .* no farther", "equal"),
+        ("answer", "stop"),
+    )  # fmt: skip
     assert settings(sat) == [3.0]
+
+
+def test_a_simulated_person_takes_the_last_value_where_equal_ones_are_beyond_it(tmp_path):
+    sat = Session(tmp_path / "s", ADJUST.replace("most = 3.0", "most = 1.6")).sit()
+    assert sat.progress.ended
+    assert settings(sat) == [1.6, 1.6]
 
 
 @pytest.mark.parametrize("keys", ["knob = 2", "buttons = [3, 1, 2]"])

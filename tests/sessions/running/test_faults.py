@@ -222,7 +222,6 @@ class InMemory(LocalEngine):
         clock = ManualClock()
         device.go_by(clock.now_ns)
         super().__init__(device, clock, poll_ticks=poll_ticks)
-        self.lost = 0
 
     def start(self):
         """Nothing: its ticks are the polls."""

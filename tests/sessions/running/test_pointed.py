@@ -23,7 +23,7 @@ def held(begins_s, ends_s):
 
         def take_events(self):
             given = [*super().take_events()]
-            ticks = 0 if self.newest is None else int(self.newest["tick"])
+            ticks = self.tally.ticks
             for at_s, taken in ((begins_s, True), (ends_s, False)):
                 if taken not in self.told and ticks >= at_s * 1000:
                     self.told = (*self.told, taken)

@@ -30,19 +30,19 @@ def present(folder, presentation):
     """Present something to a hand that sweeps, and give the notices and the frames of it."""
     steering = steering_of("sim")
     device = open_device(device_spec("sim", "sweep:150", 1, steering), ARRAY)
-    with BatchEngine(device, poll_ticks=500) as engine:
-        presenter = OnDevice(
-            engine, ARRAY.span_mm, folder, keeps=True, tie=lambda: Tie(0, 0), steering=steering
-        )
-        name = presenter.open(1, 0)
-        presenter.poll()
-        presenter.show(presentation)
-        if presentation.end_mm is None:
-            steering.give(ReadLine(180.0))  # a person's hand goes over a picture by itself
-        notices = [notice for _ in range(8) for notice in presenter.poll()]
-        felt = presenter.explorations[0]
-        presenter.withdraw()
-        presenter.close()
+    engine = BatchEngine(device, poll_ticks=500)
+    presenter = OnDevice(
+        engine, ARRAY.span_mm, folder, keeps=True, tie=lambda: Tie(0, 0), steering=steering
+    )
+    name = presenter.open(1, 0)
+    presenter.poll()
+    presenter.show(presentation)
+    if presentation.end_mm is None:
+        steering.give(ReadLine(180.0))  # a person's hand goes over a picture by itself
+    notices = [notice for _ in range(8) for notice in presenter.poll()]
+    felt = presenter.explorations[0]
+    presenter.withdraw()
+    presenter.close()
     return notices, felt, read_trace(folder / name).ticks
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Answer
-from vbraille.sessions.record.export import Traces, read_notes, walk
+from vbraille.sessions.record.export import ROWS_NEED, Traces, read_notes, walk
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.trajectory import Trajectory
 
@@ -340,7 +340,7 @@ def read_session(folder: Path) -> SessionTrials:
     """
     record = load(folder)
     progress = record.progress()
-    traces = Traces(record)
+    traces = Traces(record, upto=ROWS_NEED if record.protocol.passages else "x_mm")
     rows: list[dict[str, Any]] = []
     readings: dict[int, Reading | str] = {}
     examples: list[tuple[float, Example]] = []

@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from vbraille.cli.terminal import say_line
-from vbraille.errors import VbrailleError
+from vbraille.errors import InputError, VbrailleError
 from vbraille.reading.library import KeptPlaces, numbered_book
 
 if TYPE_CHECKING:
@@ -24,8 +24,10 @@ def run(arguments: argparse.Namespace) -> int:
     with KeptPlaces.open() as places:
         if (note := places.note()) is not None:
             say_line(note, aside=True)
-        if arguments.forget is not None:
-            _forget(places, arguments.forget)
+        if arguments.forget:
+            if arguments.number is None:
+                raise InputError("--forget is of one book; give its number in the list")
+            _forget(places, arguments.number)
             return 0
         books = places.listed()
         if arguments.json:

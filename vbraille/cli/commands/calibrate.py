@@ -12,7 +12,7 @@ from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.calibration import LEAST_GAIN, Calibration, Tried
 from vbraille.devices.calibrations import load, name_of, path_of, save
-from vbraille.devices.sentences import placing_sentence, told
+from vbraille.devices.events import placing_sentence, told
 from vbraille.engine.checkup import ActuatorSwings
 from vbraille.engine.clock import RealClock
 from vbraille.errors import DeviceError, InputError

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.cli.parser import ACTIONS, COMMANDS, CommandParser
+from vbraille.cli.commandtable import ACTIONS, COMMANDS
+from vbraille.cli.parser import CommandParser
 from vbraille.cli.terminal import say_line
-from vbraille.config.options import COMMON
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Iterable, Sequence
+
+    from vbraille.cli.commandtable import CommandRow
 
 # Each falls back on the names of files where the program names nothing.
 _SCRIPTS = {
@@ -78,24 +80,21 @@ def _possible(before: Sequence[str], begun: str) -> Iterable[str]:
     while rest and rest[0] in names:
         name = rest.pop(0)
         if name not in ACTIONS:
-            return _of_command(names[name][1], rest, begun)
+            return _of_command(names[name], rest, begun)
         names = ACTIONS[name]
     return () if rest else names
 
 
-def _of_command(
-    add_options: Callable[[CommandParser], None], before: Sequence[str], begun: str
-) -> Iterable[str]:
+def _of_command(command: CommandRow, before: Sequence[str], begun: str) -> Iterable[str]:
     """Values of the option before, or options, or values of what stands without one."""
-    parser = CommandParser(add_help=False)
-    add_options(parser)
-    parser.take(*COMMON)
+    parser = CommandParser(command=command)
+    parser.complete()
     options = {name: action for action in parser._actions for name in action.option_strings}
     option = options.get(before[-1]) if before else None
     if option is not None and option.nargs != 0:
         return _values(option)
     if begun.startswith("-"):
-        return [*options, "--help"]
+        return options
     arguments = (action for action in parser._actions if not action.option_strings)
     return [value for argument in arguments for value in _values(argument)]
 

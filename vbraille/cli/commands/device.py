@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from vbraille.cli.commands.calibrate import calibrate, say_calibration
 from vbraille.cli.exploring import opened_in_time
 from vbraille.cli.terminal import print_json, say_line
 from vbraille.devices.registry import find_driver
-from vbraille.devices.sentences import say
 from vbraille.engine.checkup import check, warm_up
 from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time
@@ -35,6 +35,10 @@ def run(arguments: argparse.Namespace) -> int:
         with EAR.at_once():
             warm_up(_wanted(arguments) or MODELS["stress2"].display)
     with opened_in_time(arguments.spec, _wanted(arguments)) as device:
+        if arguments.action == "info" and arguments.json:
+            told = device.particulars
+            print_json({"display": asdict(device.display), "particulars": told and asdict(told)})
+            return 0
         _describe(device)
         if arguments.action == "info":
             say_calibration(device, settings_path())
@@ -123,5 +127,5 @@ def _places(actuators: Sequence[tuple[int, int]], info: Display) -> str:
 def _check(device: Device) -> int:
     refused = go_real_time()
     if refused is not None:
-        say_line(say(refused))
+        say_line(refused.say())
     return check(device, RealClock(), say_line)

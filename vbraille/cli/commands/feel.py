@@ -6,11 +6,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.cli.exploring import around_device, say_summary
-from vbraille.cli.options.exploring import check_live_options
 from vbraille.cli.terminal import say_line
 from vbraille.devices.registry import check_actuators, find_driver
 from vbraille.display import check_rate
-from vbraille.errors import InputError, check_range
+from vbraille.errors import InputError
 from vbraille.feeling.composing import compose
 from vbraille.feeling.loading import check_fits, load_scene
 from vbraille.reading.commands.scene import BOUND
@@ -18,7 +17,6 @@ from vbraille.reading.exploration import Exploration
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.sceneview import SceneView
 from vbraille.render import MODELS, model_of
-from vbraille.scene.measures import LEAST_ZOOM, MOST_ZOOM
 from vbraille.simulation.hand import Still
 from vbraille.simulation.specs import (
     STILL,
@@ -43,9 +41,7 @@ _SPARE, _LEAST_ROOM = 6, 1 << 22
 
 def run(arguments: argparse.Namespace) -> int:
     """Have a picture under the hand until a key says so, or a hand that moves by itself is done."""
-    check_live_options(arguments)
     rate_hz = check_rate(arguments.rate)
-    zoom = _zoom(arguments.zoom)
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
     hand = STILL if arguments.hand is None else arguments.hand
     moved = parse_hand(hand, pointed=True)
@@ -84,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
                 entering=arguments.say_entering,
                 watched=True,
                 goes=not still,
-                zoom=zoom,
+                zoom=arguments.zoom,
             )
             device.explore(view)
             view.start(program)
@@ -95,15 +91,6 @@ def run(arguments: argparse.Namespace) -> int:
             Exploration(view, device, keys, outputs).run()
     say_summary(device, rate_hz=rate_hz)
     return 0
-
-
-def _zoom(zoom: float | None) -> float:
-    """Zoom that is asked for; 1 if none is."""
-    try:
-        check_range("--zoom", zoom, LEAST_ZOOM, MOST_ZOOM)
-    except ValueError as error:
-        raise InputError(str(error)) from None
-    return 1.0 if zoom is None else zoom
 
 
 def _check(loaded: LoadedScene, display: Display, at_mm: float | None) -> None:

@@ -23,11 +23,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.feeling.loading import LoadedScene
+    from vbraille.files import Content
     from vbraille.pictures.drawings import ArrayOnMap, Figure
     from vbraille.scene.scene import Scene
 
 _KINDS = ("png", "svg", "csv", "pdf", "gif")
 _FRAMES, _MOST_FRAMES = 8, 500
+_LEAST_AXES_PER_MM = 1.0
 _FINE_PIXELS_PER_MM = 12.0  # of outlines, of which a PNG has edges
 # When vibrations of 50 Hz are at their ends: an array that is drawn shows them best then.
 _ARRAY_TIME_S = 0.005
@@ -99,13 +101,13 @@ def _check(arguments: argparse.Namespace, kind: str) -> None:
             "--outline is no map; end --out in .svg, .pdf or .png",
         ),
         (
-            arguments.outline and (arguments.array or arguments.axes or sequence),
-            "--array, --axes and --vibration sequence are for maps; leave out either these or "
+            arguments.outline and (arguments.array or arguments.rulers or sequence),
+            "--array, --rulers and --vibration sequence are for maps; leave out either these or "
             "--outline",
         ),
         (
-            kind == "gif" and (arguments.array or arguments.axes),
-            "an animation has maps alone; leave out --array and --axes, or end --out in .png",
+            kind == "gif" and (arguments.array or arguments.rulers),
+            "an animation has maps alone; leave out --array and --rulers, or end --out in .png",
         ),
         (
             not sequence and (arguments.frames is not None or arguments.parity is not None),
@@ -113,8 +115,8 @@ def _check(arguments: argparse.Namespace, kind: str) -> None:
         ),
         (kind == "gif" and not sequence, "GIF is for --vibration sequence; end --out in .png"),
         (
-            kind == "csv" and (arguments.array or arguments.axes),
-            "CSV has the map's numbers alone; leave out --array and --axes",
+            kind == "csv" and (arguments.array or arguments.rulers),
+            "CSV has the map's numbers alone; leave out --array and --rulers",
         ),
     ):
         if wrong:
@@ -164,7 +166,7 @@ class _Drawing:
         elif self._per_mm is None:
             self._per_mm = scenes.PIXELS_PER_MM
 
-    def draw(self) -> tuple[bytes, list[str]]:
+    def draw(self) -> tuple[Content, list[str]]:
         """Make one file, and sentences on what it shows."""
         if self._arguments.outline:
             return self._outline()
@@ -190,7 +192,7 @@ class _Drawing:
         before = set(_in_set(out))
         array_said: list[str] = []
 
-        def drawn() -> Iterator[tuple[Path, bytes]]:
+        def drawn() -> Iterator[tuple[Path, Content]]:
             for number, (time_s, deflections) in enumerate(self._maps(period_s), 1):
                 over, array_said[:] = self._array(time_s)
                 said = [
@@ -269,8 +271,14 @@ class _Drawing:
 
     def _check_room(self, maps: int = 1) -> None:
         """Refuse maps of too many pixels before the first is made."""
-        most = {"csv": scenes.MOST_CSV_ROWS, "png": scenes.MOST_PIXELS, "gif": scenes.MOST_PIXELS}
-        most = most.get(self._kind, scenes.MOST_PLACED_PIXELS)
+        most = scenes.MOST_PIXELS[self._kind]
+        if self._kind == "png" and (self._arguments.axes or self._arguments.array):
+            most = scenes.MOST_PLACED_PIXELS
+        if self._kind == "png" and self._arguments.axes and self._per_mm < _LEAST_AXES_PER_MM:
+            raise InputError(
+                f"--resolution is {self._per_mm:g}, at which numbers of axes are specks; give "
+                f"{_LEAST_AXES_PER_MM:g} or more, or end --out in .svg or .pdf"
+            )
         scenes.check_pixels(self._scene.canvas, self._per_mm, maps, most)
 
     @property
@@ -312,9 +320,9 @@ class _Drawing:
 
     def _content(
         self, deflections: NDArray[np.float32], over: ArrayOnMap | None, said: list[str]
-    ) -> bytes:
+    ) -> Content:
         """Make the file of one map, with what is over it and around it."""
-        axes = self._arguments.axes
+        axes = self._arguments.rulers
         if self._kind == "csv":
             return scenes.map_csv(deflections, self._per_mm)
         if self._kind == "png" and over is None and not axes:

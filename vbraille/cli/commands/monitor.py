@@ -8,7 +8,6 @@ import threading
 import webbrowser
 from typing import TYPE_CHECKING
 
-from vbraille.cli.options.exploring import check_live_options
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.live.monitor import has_desktop
@@ -27,7 +26,6 @@ _HEED_S = 0.1
 
 def run(arguments: argparse.Namespace) -> int:
     """Serve a recording until a signal says to stop."""
-    check_live_options(arguments)
     if arguments.file is None:
         raise InputError(
             "nothing is to be played; give a recording or a session, as in vbraille monitor "

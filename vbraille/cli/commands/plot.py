@@ -17,6 +17,7 @@ from vbraille.cli.build import build_book, build_lengths, build_show, build_tabl
 from vbraille.config.options import CHOICE_OF_TABLE
 from vbraille.config.settings import settle
 from vbraille.errors import InputError
+from vbraille.files import check_unused
 from vbraille.render import MODELS, VBD
 from vbraille.translate import Document
 
@@ -36,6 +37,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError("plot page needs a text: vbraille plot page FILE")
     if arguments.kind != "page" and arguments.file is not None:
         raise InputError(f"plot {arguments.kind} takes no text; only plot page does")
+    if arguments.out is not None:
+        check_unused(Path(arguments.out), replace=arguments.force)
     table = _table(arguments)
     if arguments.csv:
         pictures.write_csv(table, sys.stdout)
@@ -74,7 +77,7 @@ def _table(arguments: argparse.Namespace) -> FigureTable:
     shown = build_show(arguments, build_lengths(arguments, model))
     style = shown.style
     match arguments.kind:
-        case "profile":
+        case "deflection":
             return pictures.profile(shown)
         case "wave":
             return pictures.wave(shown)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.cli.terminal import WorkProgress, print_json, say_line
-from vbraille.forecast.power import ENOUGH, SEED, PowerQuestion, PowerRow, power
+from vbraille.forecast.power import ENOUGH, PowerQuestion, PowerRow, power
 from vbraille.forecast.workers import Workers
 from vbraille.sessions.planning.protocolfiles import load_protocol
 from vbraille.wording import count
@@ -31,7 +31,7 @@ def run(arguments: argparse.Namespace) -> int:
         differing=arguments.differing,
         correction=arguments.correction,
         studies=arguments.studies,
-        seed=SEED if arguments.seed is None else arguments.seed,
+        seed=arguments.seed,
     )
     workers = Workers(arguments.workers)
     keep = None if arguments.keep is None else Path(arguments.keep)

@@ -18,7 +18,6 @@ from vbraille.cli.build import (
     open_to_resume,
 )
 from vbraille.cli.exploring import around_device, say_summary
-from vbraille.cli.options.exploring import check_live_options
 from vbraille.cli.terminal import say_line
 from vbraille.config.settings import settle, with_profile
 from vbraille.devices.registry import check_actuators, check_height, check_travel, find_driver
@@ -53,7 +52,6 @@ _FIGURE_ROOM = 1 << 21  # bytes of the largest page with figures, or of a figure
 
 def run(arguments: argparse.Namespace) -> int:
     """Read until the text ends, a key says so, or something goes wrong."""
-    check_live_options(arguments)
     settings = settle(arguments)
     profile = chosen_profile(arguments, settings)
     rate_hz = USUAL_RATE_HZ if arguments.rate is None else check_rate(arguments.rate)

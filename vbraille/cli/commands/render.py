@@ -20,9 +20,8 @@ from vbraille.cli.build import (
     lay_out,
     note_unseen_dots,
 )
-from vbraille.cli.options.exploring import PATH_OPTIONS
 from vbraille.cli.terminal import WorkProgress
-from vbraille.config.options import CHOICE_OF_TABLE
+from vbraille.config.options import CHOICE_OF_TABLE, OPTIONS, PATH
 from vbraille.config.settings import settle
 from vbraille.display import check_rate
 from vbraille.engine.engine import EndOfLine
@@ -49,6 +48,7 @@ if TYPE_CHECKING:
     from vbraille.simulation.hand import Hand
 
 _BLOCK_FRAMES = 16_384
+_PICTURE_HANDS = ("wide", "spot")
 _SCENES = (".scene", ".svg", ".svgz", ".gen", ".tx")
 _MOST_HEIGHT_MM = 10_000.0
 # So many frames tell how well the rest can be compressed, and take less than half a second.
@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     settle(arguments, CHOICE_OF_TABLE)
     model = build_show(arguments, MODELS[arguments.model or "stress2"])
     rate_hz = check_rate(arguments.rate)
-    hand = parse_hand(arguments.hand, arguments.seed)
+    hand = parse_hand(arguments.hand or str(OPTIONS["hand"].default), arguments.seed)
     model = build_lengths(arguments, model)
     model = build_page(arguments, replace(model, display=replace(model.display, height_mm=0.0)))
     pages = _lines_per_page(arguments.height, model.style.geometry.line_pitch_mm)
@@ -128,16 +128,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _is_scene(arguments: argparse.Namespace) -> bool:
-    """Tell whether the file is a tactile picture; options of its path are for such files alone."""
+    """Tell whether the file is a tactile picture, which has options of its own."""
     suffix = Path(arguments.file).suffix.lower()
-    if suffix in _SCENES or arguments.path is not None:
+    if suffix in _SCENES or (arguments.hand or "").partition(":")[0] in _PICTURE_HANDS:
         return True
-    for name in PATH_OPTIONS:
+    for name in PATH:
         if getattr(arguments, name) is not None:
-            raise InputError(
-                f"--{name} is for the path over a tactile picture; add --path, or leave "
-                f"--{name} out"
-            )
+            raise InputError(f"--{name} is for a way over a tactile picture; leave it out")
     return False
 
 

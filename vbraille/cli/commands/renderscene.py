@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli.options.exploring import PATH_OPTIONS
 from vbraille.cli.terminal import WorkProgress, say_line
+from vbraille.config.options import PATH
 from vbraille.display import check_rate
 from vbraille.errors import InputError
 from vbraille.feeling.composing import compose
@@ -30,8 +30,8 @@ _MODEL = "stress2-8x8"
 
 def path_options(arguments: argparse.Namespace) -> PathOptions:
     """Options of the path, as they were given."""
-    given = {name: getattr(arguments, name) for name in PATH_OPTIONS}
-    return PathOptions(arguments.path or "wide", **given)
+    given = {name: getattr(arguments, name) for name in PATH}
+    return PathOptions(arguments.hand or "wide", **given)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -71,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
             rate_hz=rate_hz,
             source=Path(arguments.file).name,
             sha256=hashlib.sha256(written).hexdigest(),
-            path=arguments.path or "wide",
+            path=arguments.hand or "wide",
         )
         for start in range(0, frames, _BLOCK_FRAMES):
             span = slice(start, start + _BLOCK_FRAMES)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Check or convert a picture, or print the schema."""
+    """Check or convert a picture, time its frames, or print the schema."""
     if arguments.action == "schema":
         from vbraille.scene.schema import schema_text
 
@@ -26,6 +26,10 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     if arguments.action == "convert":
         return _convert(arguments)
+    if arguments.action == "cost":
+        from vbraille.cli.commands import scenecost
+
+        return scenecost.run(arguments)
     return _check(arguments)
 
 

@@ -8,8 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vbraille.cli.options.exploring import check_live_options
-from vbraille.cli.terminal import say_line
+from vbraille.cli.terminal import print_json, say_line
 from vbraille.errors import InputError
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.planning.stimuli import said_value
@@ -38,8 +37,22 @@ def _protocols(arguments: argparse.Namespace) -> int:
     if arguments.name is not None:
         print(builtin_text(arguments.name), end="")
         return 0
-    for name in builtin_names():
-        protocol = load_protocol(name)
+    protocols = {name: load_protocol(name) for name in builtin_names()}
+    if arguments.json:
+        print_json(
+            [
+                {
+                    "name": name,
+                    "title": each.title,
+                    "adaptive": each.adaptive,
+                    "trials": each.trials,
+                    "display": each.model.title,
+                }
+                for name, each in protocols.items()
+            ]
+        )
+        return 0
+    for name, protocol in protocols.items():
         most = "at most " if protocol.adaptive else ""
         _say(f"{name}: {protocol.title}; {most}{protocol.trials} trials, {protocol.model.title}")
     return 0
@@ -55,6 +68,9 @@ def _plan(arguments: argparse.Namespace) -> int:
         raise InputError(f"{protocol.name} shows pictures, which are no braille; leave --brf out")
     if arguments.seed is None:
         say_line(f"seed: {plan.seed}", aside=True)
+    if arguments.json:
+        print(plan.to_json(), end="")
+        return 0
     if arguments.brf:
         for trial in plan.trials:
             print(_cells(trial).to_brf())
@@ -96,6 +112,7 @@ def _run(arguments: argparse.Namespace) -> int:
         **_chances(arguments),
         fields=arguments.field,
         conditions=Conditions(rate_hz=arguments.rate, fast=arguments.fast, **_chosen(arguments)),
+        begun=arguments.begun,
     )
     answers = session.answers()
     if not arguments.another:
@@ -109,7 +126,7 @@ def _resume(arguments: argparse.Namespace) -> int:
     from vbraille.sessions.session import Session
 
     fast = {"fast": True} if arguments.fast else {}
-    session = Session.resume(arguments.folder, **fast, **_chosen(arguments))
+    session = Session.resume(arguments.folder, begun=arguments.begun, **fast, **_chosen(arguments))
     return _conduct(session, session.answers())
 
 
@@ -122,9 +139,9 @@ def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
     """Conditions of a session that were given as options."""
     from vbraille.sessions.conditions import LiveAddress
 
-    names = ("device", "hand", "answers", "sound", "markers", "also")
+    names = ("device", "hand", "answers", "markers", "also")
     given = {name: getattr(arguments, name) for name in names}
-    check_live_options(arguments)
+    given["sound"] = arguments.cues
     given["live"] = LiveAddress(arguments.host, arguments.port) if arguments.monitor else None
     return {name: value for name, value in given.items() if value is not None}
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import build_lengths, build_show, chosen_profile
-from vbraille.cli.terminal import say_line
-from vbraille.config.options import PROFILE, held_in
+from vbraille.cli.terminal import print_json, say_line
+from vbraille.config.option import PROFILE
+from vbraille.config.options import held_in
 from vbraille.config.settings import (
+    Setting,
+    bindings_said,
     load_settings,
-    say_bindings,
-    say_settings,
-    say_tuning,
+    settings_said,
+    tuning_said,
     with_profile,
 )
 from vbraille.files import settings_path
@@ -29,24 +31,29 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     settings = load_settings(arguments.settings)
     bound_for(settings)  # which refuses what reading would
-    there = "" if settings.path.exists() else " (not there)"
-    say_line(f"settings file: {settings.path}{there}")
     profile = chosen_profile(arguments, settings)
     model = MODELS[arguments.model or "stress2"]
     if arguments.profile is not None:
         origin = "option"
     else:
         origin = settings.where("read", "profile") if "profile" in settings.read else "default"
-    say_line(f"profile: {profile} ({origin})")
-    say_line(f"display: {model.title} ({'default' if arguments.model is None else 'option'})")
     shown = build_show(arguments, with_profile(settings, profile, model))
     shown = build_lengths(arguments, shown)
-    for sentence in (
-        *say_tuning(settings, profile, model, shown.style, _given(arguments)),
-        *say_settings(settings, vars(arguments)),
-        *say_bindings(settings),
-    ):
-        say_line(sentence)
+    rows = [
+        Setting("profile", profile, origin),
+        Setting("display", model.title, "default" if arguments.model is None else "option"),
+        *tuning_said(settings, profile, model, shown.style, _given(arguments)),
+        *settings_said(settings, vars(arguments)),
+        *bindings_said(settings),
+    ]
+    if arguments.json:
+        kept = [row._asdict() for row in rows]
+        there = settings.path.exists()
+        print_json({"file": str(settings.path), "there": there, "settings": kept})
+        return 0
+    say_line(f"settings file: {settings.path}{'' if settings.path.exists() else ' (not there)'}")
+    for row in rows:
+        say_line(str(row))
     return 0
 
 

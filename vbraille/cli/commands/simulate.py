@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from vbraille.cli.controlkeys import ControlKeys
 from vbraille.cli.terminal import say_line
+from vbraille.config.options import LATERO
 from vbraille.devices.serial.wire import Encoder
 from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
@@ -27,14 +28,7 @@ if TYPE_CHECKING:
     from vbraille.display import Display
 
 # Options that only one kind of device has, and what they are when they are not given.
-LATERO_ONLY: Final[dict[str, object]] = {
-    "port": None,
-    "lines": None,
-    "wait": None,
-    "late": None,
-    "double": None,
-    "foreign": None,
-}
+LATERO_ONLY: Final[dict[str, object]] = dict.fromkeys(LATERO)
 SERIAL_ONLY: Final[dict[str, object]] = {
     "model": "stress2",
     "rate": 1000,
@@ -67,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     info = _info(arguments, display)
     hand = parse_hand(arguments.hand, arguments.seed)
     script = () if arguments.script is None else load_script(arguments.script)
-    controls = Controls(script, parse_presses(arguments.press))
+    controls = Controls((*script, *parse_presses(arguments.press)))
     area = area_of(display, MODELS[arguments.model].style.geometry.line_pitch_mm)
     if arguments.unplug_every and arguments.link is None:
         raise InputError("--unplug-every needs --link, for the port has a new name each time")

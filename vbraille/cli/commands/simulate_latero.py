@@ -25,18 +25,18 @@ _MOST_PORT: Final = 0xFFFF
 def run(arguments: argparse.Namespace, priority: int) -> int:
     """Be a Latero until a signal says to stop, with this real-time priority if it may."""
     hand = parse_hand(arguments.hand, arguments.seed)
-    presses = parse_presses(arguments.press)
-    script = () if arguments.script is None else load_script(arguments.script)
-    pressed = [press.button for press in presses]
-    for button in pressed + [event.number for event in script if not event.knob]:
-        if button > len(BUTTONS):
-            raise InputError(f"button is {button}; a Latero has 1 and 2, left and right")
-    if any(event.knob for event in script):
-        raise InputError(f"{arguments.script} turns a knob, and a Latero has none")
-    port = PORT if arguments.port is None else arguments.port
+    script = parse_presses(arguments.press)
+    if arguments.script is not None:
+        script += load_script(arguments.script)
+    for event in script:
+        if event.knob:
+            raise InputError(f"{arguments.script} turns a knob, and a Latero has none")
+        if event.number > len(BUTTONS):
+            raise InputError(f"button is {event.number}; a Latero has 1 and 2, left and right")
+    port = PORT if arguments.udp_port is None else arguments.udp_port
     if not 0 <= port <= _MOST_PORT:
         raise InputError(f"port is {port}; it must be 0 to {_MOST_PORT}")
-    lines = 1 if arguments.lines is None else arguments.lines
+    lines = 1 if arguments.page_lines is None else arguments.page_lines
     pitch_mm = LATERO.style.geometry.line_pitch_mm
     most = int(DISPLAY.height_mm / pitch_mm)
     if not 1 <= lines <= most:
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace, priority: int) -> int:
             drop=arguments.drop,
             late=arguments.late or 0.0,
             double=arguments.double or 0.0,
-            foreign=arguments.foreign or 0.0,
+            foreign=arguments.stray or 0.0,
             seed=arguments.seed,
         )
     except ValueError as error:
@@ -57,7 +57,6 @@ def run(arguments: argparse.Namespace, priority: int) -> int:
             say=say_line,
             port=port,
             faults=faults,
-            presses=presses,
             script=script,
             keys=keys.pressed,
             wait_s=WAIT_S if arguments.wait is None else arguments.wait,

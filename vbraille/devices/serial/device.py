@@ -12,7 +12,6 @@ import serial
 
 from vbraille.devices.base import Device
 from vbraille.devices.events import Fault, Stranger
-from vbraille.devices.sentences import say
 from vbraille.devices.serial.conversation import Conversation, Stage
 from vbraille.devices.serial.kernels import SteadyConversation
 from vbraille.devices.serial.port import BAUD, DRAIN_MS, LOOK_S, SerialPort, parse_address
@@ -157,7 +156,7 @@ class SerialDevice(Device):
         pose = conversation.hear(chunk, now_ns)
         self._send_due()
         if conversation.stage is Stage.FAILED and isinstance(conversation.failure, Fault):
-            raise DeviceError(say(conversation.failure))
+            raise DeviceError(conversation.failure.say())
         return pose
 
     def begin_steady(self) -> SteadyConversation | None:

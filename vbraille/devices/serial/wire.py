@@ -60,13 +60,10 @@ class Fixed:
     ----------
     code
         Code that `struct` has for the field.
-    takes_all
-        Whether every value that the bytes can hold is in range.
     """
 
     __slots__ = ()
     code: str
-    takes_all = False
 
     @property
     def meanings(self) -> dict[int, Any]:
@@ -105,11 +102,6 @@ class Number(Fixed):
     high: int
     unit: str = ""
     none: int | None = None  # a number out of the range
-
-    @property
-    def takes_all(self) -> bool:
-        """Tell whether every value that the bytes can hold is in range."""
-        return self.high - self.low + 1 + len(self.meanings) == 256**self.layout.size
 
     @property
     def meanings(self) -> dict[int, Any]:
@@ -520,12 +512,6 @@ class BodyCodec:
         self._meanings = [(i, field.meanings) for i, field in enumerate(head) if field.meanings]
         self._to_wire = [(i, to_wire(meanings)) for i, meanings in self._meanings]
         self._rest = fields_of(message)[len(head) :]
-        # A message whose numbers may be all that their bytes can hold is made without a check of
-        # their ranges: STATE comes a thousand times a second.
-        if not self._rest and all(field.takes_all for field in head):
-            self._setters = [getattr(message, name).__set__ for name in names]
-        else:
-            self._setters = None
 
     def encode(self, message: Message) -> bytes:
         """Give the body of a message: its type and its fields.
@@ -566,11 +552,6 @@ class BodyCodec:
         _, *values = self._struct.unpack_from(body)
         for i, meaning in self._meanings:
             values[i] = meaning.get(values[i], values[i])
-        if self._setters:
-            message = object.__new__(self.message)
-            for set_field, value in zip(self._setters, values, strict=True):
-                set_field(message, value)
-            return message
         known = dict(zip(self._head, values, strict=True))
         try:
             for name, field in self._rest:
@@ -616,12 +597,6 @@ class Decoder:
     between calls, and is in step again with the first whole frame after a
     delimiter. Both ends use it.
 
-    Parameters
-    ----------
-    levels
-        Levels that a device expects in a FRAME: a FRAME with other levels is dropped. None takes
-        FRAMEs of any length.
-
     Attributes
     ----------
     dropped : dict[Drop, int]
@@ -630,10 +605,9 @@ class Decoder:
         Why the last INFO that came whole was dropped, with field and value; empty if none was.
     """
 
-    def __init__(self, levels: Levels | None = None) -> None:
+    def __init__(self) -> None:
         self.dropped = dict.fromkeys(Drop, 0)
         self.bad_info = ""
-        self._levels = levels
         self._held = bytearray()
         self._skipping = False
 
@@ -697,16 +671,13 @@ class Decoder:
         if codec is _INFO and len(body) > 1 and body[1] != VERSION:
             return OtherVersion(body[1])
         try:
-            message = codec.decode(body)
-            if self._levels is not None and isinstance(message, Frame):
-                self._levels.check(message.packed)
+            return codec.decode(body)
         except WrongLengthError:
             self._mind_info(codec, "it ends before its last field")
             return Drop.WRONG_LENGTH
         except ValueError as fault:
             self._mind_info(codec, str(fault))
             return Drop.OUT_OF_RANGE
-        return message
 
     def _mind_info(self, codec: BodyCodec, fault: str) -> None:
         if codec is _INFO:
@@ -741,34 +712,6 @@ class Levels:
         self.bits = top_level.bit_length()
         self.packed_bytes = -(-actuators * self.bits // 8)
 
-    def pack(self, levels: NDArray[np.integer]) -> bytes:
-        """Pack levels for `Frame.packed`.
-
-        Parameters
-        ----------
-        levels : integer[actuators] or integer[rows, columns]
-            Row 0 (far from the reader) comes first, and in each row column 0 (the left one).
-
-        Raises
-        ------
-        ValueError
-            If there are too many or too few levels, or if they are no integers from 0 to
-            `top_level`.
-        """
-        if levels.size != self.actuators or levels.dtype.kind not in "iu":
-            raise ValueError(
-                f"levels are {levels.size} of {levels.dtype}; "
-                f"they must be {self.actuators} integers"
-            )
-        if _highest(levels) > self.top_level or (levels.dtype.kind == "i" and levels.min() < 0):
-            raise ValueError(
-                f"levels are {levels.min()} to {levels.max()}; they must be 0 to {self.top_level}"
-            )
-        words = levels.astype(">u2").reshape(-1).view(np.uint8)
-        bits = np.unpackbits(words).reshape(-1, 16)[:, 16 - self.bits :]
-        # packbits takes twice as long over an array with gaps as a copy and packbits without.
-        return np.packbits(bits.reshape(-1)).tobytes()
-
     def unpack(self, packed: bytes) -> NDArray[np.uint16]:
         """Levels that were packed; uint16[actuators].
 
@@ -785,19 +728,9 @@ class Levels:
         words = np.zeros((self.actuators, 16), np.uint8)
         words[:, 16 - self.bits :] = bits.reshape(self.actuators, self.bits)
         levels = np.packbits(words.reshape(-1)).view(">u2").astype(np.uint16)
-        if _highest(levels) > self.top_level:
+        if levels.max() > self.top_level:
             raise ValueError(f"a level is {levels.max()}; it must be 0 to {self.top_level}")
         return levels
-
-    def check(self, packed: bytes) -> None:
-        """Raise what `unpack` raises; nothing is unpacked if every level is a possible one."""
-        if len(packed) != self.packed_bytes or self.top_level != (1 << self.bits) - 1:
-            self.unpack(packed)
-
-
-def _highest(levels: NDArray[np.integer]) -> int:
-    # The same as levels.max(), in half its time.
-    return np.maximum.reduce(levels, axis=None)
 
 
 def unwrap(count: int, last: int, bits: int) -> int:

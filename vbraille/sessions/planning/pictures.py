@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from msgspec import structs
 
 from vbraille.errors import InputError
+from vbraille.feeling.composing import compose
 from vbraille.feeling.loading import check_fits, shown_at
 from vbraille.render.scene.labels import Assets
 from vbraille.scene.patterns import Image, ImageDots, Label
@@ -58,9 +59,6 @@ class PictureScene:
         InputError
             If the display cannot show it.
         """
-        # This loads what compiles, which a command that renders nothing must not wait for.
-        from vbraille.feeling.composing import compose
-
         loaded = shown_at(self._only(picture), Assets())
         return compose(loaded, display, rate_hz=display.rate_hz, contrast=contrast)
 

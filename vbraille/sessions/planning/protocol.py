@@ -46,7 +46,6 @@ from vbraille.sessions.planning.pace import (
     TrialPace,
     check_line,
 )
-from vbraille.sessions.planning.pictures import PictureScene, picture_scene
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
 from vbraille.sessions.planning.questionnaire import AnyItem
 from vbraille.sessions.planning.questions import (
@@ -70,6 +69,7 @@ if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
     from vbraille.render import BrailleStyle, Mapping, Model, Tuning
     from vbraille.render.program import Program
+    from vbraille.sessions.planning.pictures import PictureScene
 
 FORMAT = 1
 ONLY_CONDITION = "all"
@@ -462,6 +462,9 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
 
     def scene_of(self, stimulus: Stimulus) -> PictureScene:
         """Scene that the picture of a stimulus is of."""
+        # This loads numba, by what compiles pictures; protocols of strings need none of it.
+        from vbraille.sessions.planning.pictures import picture_scene
+
         assert stimulus.scene is not None, "cells are of no scene"
         return picture_scene(self.files[stimulus.scene], stimulus.scene)
 

@@ -499,6 +499,13 @@ def _check_question(protocol: Protocol) -> None:
         raise ValueError(
             "[design] same is of [question] kind = 'same-different' in a fixed order; leave it out"
         )
+    if isinstance(protocol.design, Choice) and protocol.asks.name == "which":
+        standard = protocol.design.reference
+        if standard in protocol.design.values:
+            raise ValueError(
+                f"[design] reference is {standard:g}, which is one of values, and of two that are "
+                f"the same none can be chosen; leave it out there"
+            )
     if protocol.trial.end is not None and protocol.medium == "paper":
         raise ValueError("[trial] end is of a device; on paper Enter ends reading, leave it out")
     if protocol.asks.turns and protocol.medium == "paper":

@@ -18,8 +18,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from statistics import median
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
+
+import numpy as np
 
 from vbraille.braille.spelling import (
     ORDINALS,
@@ -40,8 +41,6 @@ from vbraille.tomlfile import Table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    import numpy as np
 
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.simulated.feeling import FeltTrial
@@ -570,7 +569,7 @@ class OddQuestion(QuestionTable, frozen=True, kw_only=True, tag="odd"):
         values, unit = felt.values()
         drawn = noise * unit * random.standard_normal(len(values))
         so = [0.0 if math.isnan(v) else v + d for v, d in zip(values, drawn, strict=True)]
-        off = [abs(value - median(so)) for value in so]
+        off = [abs(value - np.median(so)) for value in so]
         return f"{off.index(max(off)) + 1}"
 
 

@@ -22,6 +22,7 @@ from vbraille.sessions.record.events import AnyTime, JournalEvent, Note, Present
 from vbraille.sessions.record.folder import Record, read_told_trace
 from vbraille.sessions.record.passages import COLUMNS as PASSAGE
 from vbraille.sessions.record.passages import read_so, spans_of
+from vbraille.sessions.record.traces import LAST_FIELD
 from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
 
 if TYPE_CHECKING:
@@ -100,6 +101,7 @@ _TIMES = ("duration_s", "returned", "contact_s", "response_s", "paused_s")
 # This is a plain number because numpy, when it reads an enumeration, can swallow an exception that
 # a signal raises.
 _PAUSED = int(Flag.PAUSED)
+ROWS_NEED = "vx_mm_s"
 NEVER_CAME = "the hand never came to the first dot"
 
 
@@ -112,6 +114,8 @@ class Traces:
         The session.
     salvaged
         Whether ticks after a damage are used too.
+    upto
+        Last field of the ticks that is read. Those up to `ROWS_NEED` are what `rows` needs.
 
     Attributes
     ----------
@@ -119,8 +123,9 @@ class Traces:
         What is wrong with the traces that were asked for.
     """
 
-    def __init__(self, record: Record, *, salvaged: bool = False) -> None:
+    def __init__(self, record: Record, *, salvaged: bool = False, upto: str = LAST_FIELD) -> None:
         self.faults: list[str] = []
+        self._upto = upto
         self._salvaged = salvaged
         self._record = record
         self._traces: dict[str, Trace] = {}
@@ -128,7 +133,7 @@ class Traces:
     def read(self, name: str) -> Trace:
         """Read the trace of a name, or return it if it was read before."""
         if name not in self._traces:
-            trace = read_told_trace(self._record.folder, name, self._record.journal)
+            trace = read_told_trace(self._record.folder, name, self._record.journal, self._upto)
             self._traces[name] = trace
             if trace.damage is not None:
                 self.faults.append(f"{name} is damaged, {trace.damage}")
@@ -214,7 +219,7 @@ def walk(
         display, and trials without an answer.
     """
     progress = record.progress() if progress is None else progress
-    traces = Traces(record) if traces is None else traces
+    traces = Traces(record, upto=ROWS_NEED) if traces is None else traces
     fields = {f"field_{name}": value for name, value in record.head["fields"].items()}
     notes = read_notes(record.journal.events)
     for told in progress.trials.values():

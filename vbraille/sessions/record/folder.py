@@ -37,7 +37,7 @@ from vbraille.sessions.record.journal import (
     sum_of_torn,
 )
 from vbraille.sessions.record.progress import Progress, stimulus_of
-from vbraille.sessions.record.traces import TRACE, Trace, read_last_tie, read_trace
+from vbraille.sessions.record.traces import LAST_FIELD, TRACE, Trace, read_last_tie, read_trace
 from vbraille.version import __version__
 from vbraille.wording import setting
 
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
     from vbraille.sessions.planning.protocol import Protocol
 
-FORMAT = 7
+FORMAT = 8
 HEAD, PLAN, PROTOCOL = "session.json", "plan.json", "protocol.toml"
 FILES = (HEAD, PLAN, PROTOCOL)
 _TOLD_VERSIONS = ("numpy", "numba", "pyserial", "cobs", "h5py")
@@ -203,15 +203,17 @@ def load(folder: Path, *, salvaged: bool = False) -> Record:
     return Record(folder, head, protocol, plan, contents, procedure_of(protocol, plan))
 
 
-def read_told_trace(folder: Path, name: str, contents: JournalContents) -> Trace:
-    """Read a trace of a session, up to its last whole chunk.
+def read_told_trace(
+    folder: Path, name: str, contents: JournalContents, upto: str = LAST_FIELD
+) -> Trace:
+    """Read a trace of a session, up to its last whole chunk and to a field of `TRACE`.
 
     A trace also counts as damaged if it is missing, or does not have the length that the journal
     tells.
     """
     path = folder / name
     try:
-        trace = read_trace(path)
+        trace = read_trace(path, upto)
         size = path.stat().st_size
     except (VbrailleError, OSError):
         return Trace(np.zeros(0, TRACE), 0, "it cannot be read" if path.exists() else "it is gone")

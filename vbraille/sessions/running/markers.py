@@ -13,9 +13,10 @@ from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 from queue import Empty, Full, Queue
-from statistics import median
 from threading import Thread
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.sessions.record.events import AnyTime, JournalEvent, Presented
@@ -302,7 +303,7 @@ class Markers:
         late_ms = self._late_ms[:]
         said = f"markers: {len(late_ms)} sent to {self._spec}"
         if late_ms:
-            said += f", late by {median(late_ms):.1f} ms, at most {max(late_ms):.1f} ms"
+            said += f", late by {np.median(late_ms):.1f} ms, at most {max(late_ms):.1f} ms"
         lost = self._marked - len(late_ms)
         told = [said]
         if lost:

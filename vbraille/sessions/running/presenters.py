@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from vbraille.devices.base import Placing
-from vbraille.devices.events import Button, HandHeld, Knob
-from vbraille.devices.sentences import placing_sentence, told
+from vbraille.devices.events import Button, HandHeld, Knob, placing_sentence, told
 from vbraille.engine.engine import HOME_MM, EndOfLine, Engine, Upright, placing_of
 from vbraille.engine.record import Flag
 from vbraille.sessions.record import events

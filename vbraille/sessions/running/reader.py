@@ -146,6 +146,7 @@ class Simulated(SimulatedPerson):
         self._parameter = protocol.parameter or ""
         self._question = protocol.asks
         self._pairs = {c.name: _dot_pair(protocol, c) for c in protocol.conditions}
+        self._turned: tuple[int, int, int] | None = None  # trial and showings when it turned last
         pairs = isinstance(protocol.design, Choice) and protocol.design.form == "pairs"
         if not self._question.simulated or (pairs and 1 in self._question.stimuli):
             raise InputError(
@@ -169,7 +170,13 @@ class Simulated(SimulatedPerson):
             self._pairs[trial.condition],
             len(felt) - number,
         )
-        return self._question.simulate(told, self._noise, random) + sure, 0
+        line = self._question.simulate(told, self._noise, random)
+        if self._question.turns:
+            known = None if line == "equal" else (trial.number, attempt, len(felt))
+            if known is not None and known == self._turned:
+                line, known = "equal", None  # the value was at its end: nothing more was felt
+            self._turned = known
+        return line + sure, 0
 
     def _check_feels(self, protocol: Protocol) -> None:
         """Raise InputError if the model cannot tell what the question is about."""

@@ -635,7 +635,10 @@ class Runner:
     def _turn_to(self, value: float) -> None:
         """Show the last stimulus of the open trial at another value."""
         trial, parameter, now = self.open_trial, self.protocol.parameter, self._value
-        if trial is None or parameter is None or now in (None, value):
+        if trial is None or parameter is None or now is None:
+            return
+        if now == value:
+            self._say(f"turned: {self.name(trial)}, no farther; it is at its end")
             return
         shown = replace(self._turned or trial.stimuli[-1], value=value)
         self._turned = with_value(shown, parameter, value)

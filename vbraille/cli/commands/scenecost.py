@@ -1,14 +1,15 @@
-"""``vbraille profile``."""
+"""``vbraille scene cost``: the time that frames of a picture take."""
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vbraille.cli.commands.renderscene import path_options
-from vbraille.cli.terminal import say_line
+from vbraille.cli.terminal import print_json, say_line
 from vbraille.errors import InputError
 from vbraille.feeling.composing import compose
 from vbraille.feeling.costs import (
@@ -48,18 +49,31 @@ def run(arguments: argparse.Namespace) -> int:
         costs = measure(program, path)
     except ValueError as error:
         raise InputError(f"{error}; take a longer path") from None
-    _say(costs)
-    say_line(f"program: {program.nbytes / 1000:.1f} kB, {len(loaded.scene.elements)} elements")
-    if arguments.elements:
-        found = list(costs_of_elements(loaded, display, path, _RATE_HZ))
-        for cost in sorted(found, key=lambda each: -each.mean_us):
+    found = list(costs_of_elements(loaded, display, path, _RATE_HZ)) if arguments.elements else []
+    found.sort(key=lambda each: -each.mean_us)
+    if arguments.json:
+        print_json(
+            {
+                "frames": costs.frame_us.size * BATCH_FRAMES,
+                "median_us": float(np.median(costs.frame_us)),
+                "mean_us": float(costs.frame_us.mean()),
+                "most_us": float(costs.frame_us.max()),
+                "actuator_us": costs.actuator_us,
+                "program_bytes": program.nbytes,
+                "elements": [asdict(each) for each in found],
+            }
+        )
+    else:
+        _say(costs)
+        say_line(f"program: {program.nbytes / 1000:.1f} kB, {len(loaded.scene.elements)} elements")
+        for cost in found:
             say_line(
                 f"element {cost.name}: {cost.mean_us:.3f} µs of a frame on average, "
                 f"{cost.most_us:.2f} µs at most"
             )
     if arguments.out is not None:
         write_file(Path(arguments.out), to_csv(costs).encode(), replace=arguments.force)
-        say_line(f"written: {arguments.out}")
+        say_line(f"written: {arguments.out}", aside=arguments.json)
     if arguments.map is not None:
         # Only who wants a picture waits for what draws it.
         from vbraille.pictures.drawings import draw_costs
@@ -72,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
             title=loaded.title,
             frame_us=costs.frame_us,
         )
-        say_line(f"written: {arguments.map}")
+        say_line(f"written: {arguments.map}", aside=arguments.json)
     return 0
 
 

@@ -1,1 +1,0 @@
-"""The commands' options, and the values that are read out of what was typed."""
