@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import is_hypothesis_test, settings
 
+from tests import forking
 from tests.tiers import TIER, by_tier
 
 SEED = 20090618
@@ -46,6 +47,7 @@ def start_alike() -> None:
 
 
 start_alike()
+forking.begin()
 
 _FOLDER = pytest.StashKey[TemporaryDirectory]()
 _places: list[str] = []  # tests that have had places so far
@@ -76,8 +78,14 @@ def pytest_collection_finish(session: pytest.Session) -> None:  # noqa: ARG001
     gc.enable()
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """Make known the mark of tests whose programs are no forks."""
+    config.addinivalue_line("markers", "new_processes: programs are new Pythons (tests/forking.py)")
+
+
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Give each test places of its own, and none that another has kept."""
+    forking.nursery.used = item.get_closest_marker("new_processes") is None
     if _FOLDER not in item.config.stash:
         item.config.stash[_FOLDER] = TemporaryDirectory(prefix="vbraille-places-")
     folder = item.config.stash[_FOLDER]

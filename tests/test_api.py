@@ -89,6 +89,40 @@ def test_the_notebook_runs(tmp_path, monkeypatch):
     assert known["recording"].frames.max() == pytest.approx(1.0, abs=0.05)
     assert len(known["results"].table("legibility")) == 1
     assert known["scene"]._repr_png_()[:4] == b"\x89PNG"
+    assert known["results"].findings[0] in known["results"]._repr_html_()
+
+
+def test_results_show_themselves_and_draw_their_figures(tmp_path):
+    table = Path(tmp_path, "t.csv")
+    rows = "".join(f"P{n},<b>{c},a,{'ab'[n % 2]}\n" for n in range(4) for c in "xy")
+    table.write_text(f"participant,condition,presented,answered\n{rows}")
+    results = vbraille.analyse(table)
+    shown = results._repr_html_()
+    assert results.title in shown
+    assert "&lt;b&gt;x" in shown
+    assert "<b>" not in shown
+    assert shown.count("<tr>") == len(results.shown.rows)
+    drawn = {figure.name: figure for figure in results.figures()}
+    assert len(results.plot().axes) == len(drawn[results.main].chart.panels)
+    for name in drawn:
+        assert results.plot(name).axes
+    with pytest.raises(vbraille.InputError, match=r"no figure .legibilty.; there are .*primary"):
+        results.plot("legibilty")
+
+
+def test_a_session_that_never_ran_lets_its_device_go(tmp_path):
+    closed = []
+
+    class Engine:
+        def close(self):
+            closed.append(True)
+
+    with vbraille.Session.create(
+        "letters", "P01", folder=tmp_path / "P01", seed=1, engine=lambda *_: Engine()
+    ) as session:
+        assert not closed
+    assert closed
+    assert not session.folder.exists()
 
 
 @heavy  # pyright takes seconds

@@ -10,6 +10,8 @@ import sys
 import termios
 import time
 
+from tests.forking import AtTerminal
+
 PROGRAM = [sys.executable, "-m", "vbraille"]
 PATIENCE_S = 60.0
 CONTRACTED = "Unified English contracted braille, grade 2"
@@ -43,11 +45,9 @@ class Terminal:
         self.before = termios.tcgetattr(self._slave)
         self.printed = ""
         self.bells = 0  # they ring beside what is printed, whenever they do
-        # The first terminal that the leader of a new session opens is the session's: Ctrl-C works.
-        at_terminal = 'exec "$@" <>"$0" >&0 2>&0'
-        self.process = subprocess.Popen(
-            ["sh", "-c", at_terminal, os.ttyname(self._slave), *program, *map(str, arguments)],
-            start_new_session=True,
+        self.process = AtTerminal(
+            os.ttyname(self._slave),
+            [*program, *map(str, arguments)],
             env={**os.environ, "TERM": "xterm", **environment},
         )
 

@@ -232,6 +232,7 @@ def test_it_prints_whatever_the_locale(tmp_path, surroundings):
     assert done.stderr.count("\n") == 1
 
 
+@pytest.mark.new_processes
 def test_a_reader_who_has_enough_ends_it_quietly(tmp_path):
     big = tmp_path / "big.txt"
     big.write_text("one two three\n\n" * 20_000)
@@ -266,6 +267,7 @@ def test_a_pipe_is_read_like_a_file(text):
 
 
 @pytest.mark.parametrize("arguments", ["page {}", "--help"])
+@pytest.mark.new_processes
 def test_a_full_disk_under_the_output(text, arguments):
     with Path("/dev/full").open("wb") as full:
         done = program.run(

@@ -33,6 +33,7 @@ def spoken(path, first, last, labels=("line", "cells", "text")):
     return said
 
 
+@pytest.mark.new_processes
 def test_without_a_terminal_it_runs_through_and_says_each_line(text):
     done = program.run("read", text, "--hand", "sweep:900", "--lines", "2-3")
     assert done.returncode == 0
@@ -132,6 +133,7 @@ def check_plain(terminal):
     assert not re.search(r"\r(?!\n)", terminal.lines)
 
 
+@pytest.mark.new_processes
 def test_keys_at_a_terminal(tmp_path, text):
     hand = tmp_path / "hand.csv"
     hand.write_text("0,64.2\n0.1,64.2\n")  # goes to the second word, and stays
@@ -334,6 +336,7 @@ def test_at_a_terminal_the_hand_brings_lines_and_the_end_waits_for_keys(text):
         check_plain(terminal)
 
 
+@pytest.mark.new_processes
 def test_a_log_has_the_lines_of_both_processes_and_nothing_else_does(tmp_path):
     (tmp_path / "text").write_bytes(b"\x1b[31m")  # which moves no cursor either
     log = tmp_path / "log"

@@ -6,11 +6,10 @@ import re
 import resource
 import signal
 from contextlib import contextmanager
-from pathlib import Path
 
 import pytest
 
-from tests import drivers
+from tests import drivers, forking
 from tests.cli import program
 from tests.cli.program import Terminal
 from tests.tiers import TIER, Tier, by_tier, heavy
@@ -45,8 +44,7 @@ def lines(said):
 
 def host_of(terminal):
     """Process of the loop: the child of the program at a terminal."""
-    pid = terminal.process.pid
-    return int(Path(f"/proc/{pid}/task/{pid}/children").read_text().split()[0])
+    return forking.children(terminal.process.pid)[0]
 
 
 def test_a_text_is_read_to_its_end_on_a_device_that_has_passed_its_mark(tmp_path, text):
@@ -153,8 +151,7 @@ def test_a_host_that_dies_is_said_and_begun_again_when_asked(text):
 def test_without_a_terminal_a_host_that_dies_ends_the_reading(text):
     process = program.start("read", text, "--hand", "sweep:5", "--rate", "300", text=True)
     process.stdout.readline()
-    children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
-    os.kill(int(children.read_text().split()[0]), signal.SIGKILL)
+    os.kill(forking.children(process.pid)[0], signal.SIGKILL)
     said = process.communicate(timeout=program.PATIENCE_S)[1]
     assert process.returncode == 1
     assert said.splitlines()[-1] == (

@@ -47,6 +47,7 @@ def folder(ended, tmp_path):
     return shutil.copytree(ended[0], tmp_path / "s")
 
 
+@pytest.mark.new_processes
 def test_nobody_else_may_read_a_session_whatever_the_umask_says(tmp_path):
     (tmp_path / "mini.toml").write_text(MINI)
     folder = tmp_path / "sessions" / "s"

@@ -5,12 +5,11 @@ import os
 import re
 import shutil
 import signal
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests import drivers
+from tests import drivers, forking
 from tests.cli import program
 from tests.cli.program import Terminal
 from tests.cli.test_read_serial import simulated
@@ -180,8 +179,7 @@ def test_a_host_that_dies_is_started_again_and_its_trial_repeated(tmp_path, mini
     arguments = session(mini, tmp_path / "s", "--answers", "simulated", "--hand", "sweep:100")
     process = program.start(*arguments, text=True)
     until(process, "cue: trial 2")
-    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
-    os.kill(int(children[0]), signal.SIGKILL)
+    os.kill(forking.children(process.pid)[0], signal.SIGKILL)
     said, complaints = process.communicate(timeout=program.PATIENCE_S)
     assert process.returncode == 0, complaints
     assert "killed by signal 9); it is started again" in said
@@ -222,6 +220,7 @@ def test_fast_and_in_real_time_the_answers_are_the_same(tmp_path, mini):
     ]  # fmt: skip
 
 
+@pytest.mark.new_processes
 def test_an_experimenter_at_a_terminal(tmp_path, mini):
     mini.write_text(mini.read_text() + '[[fields]]\nname = "hand"\nask = "Reading hand"\n')
     arguments = session(mini, tmp_path / "s", "--hand", "sweep:200", "--cues", "bell")

@@ -80,6 +80,7 @@ def test_ctrl_c_while_a_file_is_written(tmp_path, text, rng):
     assert codes.count(1) > len(codes) / 2
 
 
+@pytest.mark.new_processes
 def test_signals_while_reading(text):
     # One handler takes all signals.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)[: by_tier(2, 3, 3)]:

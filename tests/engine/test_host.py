@@ -46,6 +46,7 @@ def descriptors():
     return len(list(Path("/proc/self/fd").iterdir()))
 
 
+@pytest.mark.new_processes
 def test_a_life():
     """Start, a line, a pause, a death, another start, an end: with one process, for its time.
 

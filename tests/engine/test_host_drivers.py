@@ -231,13 +231,13 @@ def test_an_error_is_not_hidden_by_a_driver_that_fails_to_let_go(driver):
 _FORKS = """
 def __init__(self, wanted):
     super().__init__(wanted)
-    if os.fork() == 0:
+    child = os.fork()
+    if child == 0:
         os.setsid()
         time.sleep(600)
         os._exit(0)
     path, = [p for p in sys.path if os.path.exists(os.path.join(p, "other.py"))]
-    child = open(f"/proc/self/task/{os.getpid()}/children").read().split()[0]
-    open(os.path.join(path, "child"), "w").write(child)
+    open(os.path.join(path, "child"), "w").write(str(child))
 """
 
 

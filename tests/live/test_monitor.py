@@ -117,6 +117,7 @@ def test_the_page_is_served(address):
     assert get(address)[0] in (200, 404)  # without the page's files
 
 
+@pytest.mark.new_processes
 def test_the_process_hears_no_keys_and_is_less_urgent_than_all_else(monitor, address):
     process = process_of(monitor)
     assert os.getpriority(os.PRIO_PROCESS, process) == min(

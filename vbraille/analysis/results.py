@@ -16,6 +16,7 @@ import math
 from dataclasses import dataclass, replace
 from decimal import MAX_PREC, ROUND_HALF_UP, Context, Decimal
 from enum import Enum
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -474,6 +475,38 @@ class Results:
         if name not in self.tables:
             raise InputError(f"there is no table {name!r}; there are {', '.join(self.tables)}")
         return self.tables[name]
+
+    def plot(self, name: str = "") -> Any:
+        """Draw a figure of the results: a `matplotlib.figure.Figure`.
+
+        Parameters
+        ----------
+        name
+            Name of one of `figures`; that of the primary analysis if it is empty.
+
+        Raises
+        ------
+        InputError
+            If there is no figure of this name, or no primary analysis.
+        """
+        from vbraille.pictures.drawcharts import draw_chart  # loads matplotlib
+
+        drawn = {figure.name: figure for figure in self.figures()}
+        if (name or self.main) not in drawn:
+            raise InputError(
+                f"there is no figure {name or 'of a primary analysis'!r}; there are "
+                f"{', '.join(drawn) or 'none'}"
+            )
+        return draw_chart(drawn[name or self.main].chart)
+
+    def _repr_html_(self) -> str:
+        """Results for a notebook: title, warnings and findings as a list, and their table."""
+        told = "".join(f"<li>{escape(each)}</li>" for each in (*self.warnings, *self.findings))
+        table = ""
+        if self.shown is not None:
+            rows = pd.DataFrame(self.shown.rows, columns=[*self.shown.headings])
+            table = rows.to_html(index=False, border=0)
+        return f"<h3>{escape(self.title)}</h3><ul>{told}</ul>{table}"
 
     def result_tables(self) -> Iterator[ResultTable]:
         """All tables with titles, columns and notes, in the order of the report."""

@@ -350,6 +350,21 @@ class Session:
         session._resumed = record
         return session
 
+    def __enter__(self) -> Self:
+        """Hand over the session; at the block's end it lets its device go."""
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let the device go, if the session has it; further calls do nothing.
+
+        `run` does so at its end. What was answered stays, and the session can be resumed.
+        """
+        if self._engine is not None:
+            self._engine.close()
+
     @property
     def record(self) -> Record:
         """Content of the session's directory, which exists once the session was run."""
@@ -485,7 +500,7 @@ class Session:
         finally:
             if self._engine is not None:
                 before_rest()
-                self._engine.close()
+            self.close()
             if view is not None:
                 view.close()
             if conventional is not None:

@@ -294,7 +294,8 @@ class ChunkedTrace:
         """Differences of a chunk's first fields, int64[fields, n]; n is 0 if it is damaged."""
         member = memoryview(self._read(*self._places[number]))
         try:
-            stop = _whole(member) - _TRAILER.size
+            whole = len(member) if self._checked else _whole(member)
+            stop = whole - _TRAILER.size
             _, size = _TRAILER.unpack_from(member, stop)
             ticks = min(size, _MOST_BYTES) // TRACE.itemsize
             unpacker = zlib.decompressobj(-zlib.MAX_WBITS)
