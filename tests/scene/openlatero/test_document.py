@@ -8,8 +8,7 @@ from tests.scene.openlatero.files import scene, texture
 from vbraille.scene.openlatero import read_gen
 from vbraille.scene.openlatero.elements import MOST_BYTES, MOST_ELEMENTS
 from vbraille.scene.openlatero.groups import OPERATIONS
-from vbraille.scene.openlatero.reading import TYPES
-from vbraille.scene.openlatero.textures import SUBTYPES
+from vbraille.scene.openlatero.reading import PATTERNS, TEXTURES
 from vbraille.scene.patterns import AnyPattern
 
 PAGE = Path(__file__).parents[3] / "docs" / "converting.md"
@@ -24,8 +23,8 @@ def table(name):
 
 
 def test_every_type_texture_and_operation_is_in_its_table():
-    assert set(table("OpenLatero")) == set(TYPES)
-    assert set(table("texture")) == set(SUBTYPES)
+    assert set(table("OpenLatero")) == {*PATTERNS, "Texture"}
+    assert set(table("texture")) == set(TEXTURES)
     assert set(table("operation")) == {*OPERATIONS, "reactive"}
     assert all(table("operation")[name] == here for name, here in OPERATIONS.items())
 

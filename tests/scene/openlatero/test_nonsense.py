@@ -10,8 +10,7 @@ from tests.tiers import examples
 from vbraille.render.scene.labels import Assets
 from vbraille.scene.converting import write_scene
 from vbraille.scene.openlatero import read_gen
-from vbraille.scene.openlatero.reading import TYPES
-from vbraille.scene.openlatero.textures import SUBTYPES
+from vbraille.scene.openlatero.reading import PATTERNS, TEXTURES
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Scene
 from vbraille.tomlfile import TomlFile
@@ -32,8 +31,8 @@ NAMES = (
 )  # fmt: skip
 plain = st.builds("<{0}>{1}</{0}>".format, st.sampled_from(NAMES), st.sampled_from(TEXTS))
 kinds = st.one_of(
-    st.builds('type="{}"'.format, st.sampled_from([*TYPES, "Wrong", ""])),
-    st.builds('type="Texture" subtype="{}"'.format, st.sampled_from([*SUBTYPES, "Wrong"])),
+    st.builds('type="{}"'.format, st.sampled_from([*PATTERNS, "Texture", "Wrong", ""])),
+    st.builds('type="Texture" subtype="{}"'.format, st.sampled_from([*TEXTURES, "Wrong"])),
 )
 
 

@@ -1,15 +1,16 @@
-"""Context of all readers of elements: how the file is read, and what patterns came of it."""
+"""Tables of OpenLatero's patterns and textures, and what is known while a file is read."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec.structs import replace
 
 from vbraille.scene.measures import LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ
+from vbraille.scene.openlatero.elements import ON, SHARE, Number, Word
 from vbraille.scene.patterns import Group
 from vbraille.scene.signals import MOST_SIGNALS
 from vbraille.scene.strokes import Vibration
@@ -18,7 +19,7 @@ from vbraille.wording import nearest
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from vbraille.scene.openlatero.elements import GenElement
+    from vbraille.scene.openlatero.elements import Field, GenElement
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.signals import AnySignal
 
@@ -26,7 +27,31 @@ if TYPE_CHECKING:
 SURFACE_MM = (289.9, 230.1875)
 DEEPEST = 32  # patterns within one another
 
-Reader = Callable[["GenElement", "GenContext"], "AnyPattern | None"]
+Maker = Callable[["GenElement", "GenContext"], "AnyPattern | None"]
+
+
+class Kind(NamedTuple):
+    """A kind of pattern: the fields that its element has, and what makes a pattern of them.
+
+    That makes None, and says so, where there is nothing to show, and raises ValueError where there
+    can be no such pattern.
+    """
+
+    fields: dict[str, Field]
+    make: Maker
+
+
+class Kinds(dict[str, Kind]):
+    """Table of kinds by their names in a file."""
+
+    def row(self, *names: str, **fields: Field) -> Callable[[Maker], Maker]:
+        """Put into the table what the decorated function makes of elements with these fields."""
+
+        def keep(make: Maker) -> Maker:
+            self.update(dict.fromkeys(names, Kind(fields, make)))
+            return make
+
+        return keep
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,15 +64,16 @@ class GenContext:
         Folder of the file, from which the names of pictures are seen.
     as_shown
         Whether the picture is to be as OpenLatero shows it, where that is not what the file says.
-    readers
-        What reads patterns, by their type.
+    patterns, textures
+        Kinds of patterns, and of textures, which are patterns all over the surface.
     signals
         Signals of the scene, as they come.
     """
 
     folder: Path
     as_shown: bool
-    readers: Mapping[str, Reader]
+    patterns: Kinds
+    textures: Kinds
     signals: dict[str, AnySignal] = field(default_factory=dict)
     _found: dict[int, tuple[AnyPattern, GenElement]] = field(default_factory=dict)
     _way: list[GenElement] = field(default_factory=list)
@@ -57,21 +83,26 @@ class GenContext:
 
         Whatever a pattern refuses is said and left out, so that one mistake costs one pattern.
         """
-        kind = element.attribute("type")
-        reader = self.readers.get(kind)
-        if reader is None:
+        named, kind = "type of this pattern", element.attribute("type")
+        kinds, known = self.patterns, (*self.patterns, "Texture")
+        if kind == "Texture":
+            named, kind = "subtype of this texture", element.attribute("subtype")
+            kinds, known = self.textures, tuple(self.textures)
+        row = kinds.get(kind)
+        if row is None:
             what = f'"{kind}"' if kind else "missing"
-            near = nearest(kind, self.readers)
+            near = nearest(kind, known)
             element.forget()
-            element.say(f"the type of this pattern is {what}, which is not known{near}; left out")
+            element.say(f"the {named} is {what}, which is not known{near}; left out")
             return None
         if len(self._way) >= DEEPEST:
             element.forget()
             element.say(f"this is in {DEEPEST} other patterns; left out")
             return None
         self._way.append(element)
+        element.fields = row.fields
         try:
-            pattern = reader(element, self)
+            pattern = row.make(element, self)
         except ValueError as error:
             element.forget()
             element.say(f"{error}; left out")
@@ -80,6 +111,8 @@ class GenContext:
             self._way.pop()
         if pattern is not None:
             self._found[id(pattern)] = (pattern, element)
+        elif kinds is self.textures:
+            element.forget()
         return pattern
 
     def signal(self, name: str, signal: AnySignal) -> str:
@@ -105,6 +138,15 @@ class GenContext:
         return self._found.get(id(pattern), (None, None))[1]
 
 
+FREQUENCY = Number(MOST_FREQUENCY_HZ, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, "Hz")
+VIBRATION = {
+    "enable": ON,
+    "frequency": FREQUENCY,
+    "amplitude": SHARE,
+    "blend_mode": Word("high", ("high", "low")),
+}
+
+
 def vibration(above: GenElement, context: GenContext, always_up: str = "") -> Vibration | None:
     """Vibration in an element; None if there is none, or it is off.
 
@@ -117,14 +159,14 @@ def vibration(above: GenElement, context: GenContext, always_up: str = "") -> Vi
     always_up
         What it is a vibration of, such as "dots", if that has nothing that is down.
     """
-    element = above.one("vibration")
+    element = above.one("vibration", VIBRATION)
     if element is None:
         return None
-    if not element.switch("enable", True):
+    if not element["enable"]:
         element.forget()
         return None
     swing = swung(element, context)
-    low = element.word("blend_mode", ("high", "low"), "high") == "low"
+    low = element["blend_mode"] == "low"
     if low and always_up:
         element.say(f"{always_up} have nothing down that could vibrate; what is up does")
         low = False
@@ -138,11 +180,8 @@ def vibration(above: GenElement, context: GenContext, always_up: str = "") -> Vi
 
 def swung(element: GenElement, context: GenContext) -> Vibration:
     """Vibration that an element tells of, whether it is on or off; of what is up."""
-    hertz = element.number(
-        "frequency", MOST_FREQUENCY_HZ, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, "Hz"
-    )
-    amplitude = element.number("amplitude", 1.0, 0.0, 1.0, "share")
-    return Vibration(frequency_hz=timed(hertz, context), amplitude=amplitude)
+    hertz = timed(element["frequency"], context)
+    return Vibration(frequency_hz=hertz, amplitude=element["amplitude"])
 
 
 def timed(hertz: float, context: GenContext) -> float:

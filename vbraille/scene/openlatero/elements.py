@@ -8,13 +8,14 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from vbraille.errors import InputError
+from vbraille.scene.measures import MOST_MM
 from vbraille.wording import count, nearest, printable
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Collection, Iterator, Mapping
     from typing import Any
 
     from vbraille.scene.measures import Point
@@ -182,6 +183,11 @@ _SAME = {"°": ("deg", "degrees", "°"), "share": ("%", "")}
 class GenElement:
     """An element of a file, with what was asked of it.
 
+    Attributes
+    ----------
+    fields : mapping of str to Field
+        Table of the values that an element of its kind has in it.
+
     Parameters
     ----------
     name
@@ -201,7 +207,8 @@ class GenElement:
     """
 
     __slots__ = (
-        "_asked", "_attributes", "children", "line", "name", "owner", "path", "remarks", "text",
+        "_asked", "_attributes", "children", "fields", "line", "name", "owner", "path", "remarks",
+        "text",
     )  # fmt: skip
 
     def __init__(
@@ -221,6 +228,7 @@ class GenElement:
         self.path = path
         self.remarks = remarks
         self.children: list[GenElement] = []
+        self.fields: Mapping[str, Field] = {}
         self._attributes = attributes
         self._asked = False
 
@@ -232,21 +240,28 @@ class GenElement:
         """Say something about the pattern, at the line of this element."""
         self.remarks.add(self.line, self.owner, text)
 
-    def one(self, name: str) -> GenElement | None:
-        """First element of a name in this one; OpenLatero ignores others, so they are said."""
+    def one(self, name: str, fields: Mapping[str, Field] | None = None) -> GenElement | None:
+        """First element of a name in this one, with a table of its fields.
+
+        OpenLatero ignores others, so they are said.
+        """
         found = self.every(name)
         for other in found[1:]:
             other.forget()
             other.say(f"another {other.path} is ignored, since the first counts")
-        return found[0] if found else None
+        if not found:
+            return None
+        found[0].fields = fields or {}
+        return found[0]
 
-    def part(self, name: str) -> GenElement:
+    def part(self, name: str, fields: Mapping[str, Field] | None = None) -> GenElement:
         """First element of a name in this one, or one without anything in it."""
-        found = self.one(name)
-        if found is not None:
-            return found
-        path = f"{self.path} {name}".strip()
-        return GenElement(name, self.line, {}, "", self.remarks, self.owner, path)
+        found = self.one(name, fields)
+        if found is None:
+            path = f"{self.path} {name}".strip()
+            found = GenElement(name, self.line, {}, "", self.remarks, self.owner, path)
+            found.fields = fields or {}
+        return found
 
     def every(self, name: str) -> list[GenElement]:
         """All elements of a name in this one."""
@@ -279,50 +294,14 @@ class GenElement:
                 else:
                     yield child
 
-    def number(self, name: str, default: float, low: float, high: float, unit: str = "mm") -> float:
-        """Value of an element that is a number.
+    def __getitem__(self, name: str) -> Any:
+        """Value of a field that this element has by the table of its kind."""
+        return self.read(name, self.fields[name])
 
-        Parameters
-        ----------
-        name
-            Name of the element in this one.
-        default
-            What OpenLatero takes if it is not there.
-        low, high
-            The range of it here; what is outside is put to its nearest end, and said.
-        unit
-            Unit that counts: "mm", "°", "Hz", "share" for a fraction of 1, or empty for none.
-        """
+    def read(self, name: str, field: Field) -> Any:
+        """Value of a field; what OpenLatero takes if it is not there."""
         element = self.one(name)
-        if element is None:
-            return default
-        element._check_units(unit)
-        value = element._value(default)
-        if not low <= value <= high:
-            clamped = min(max(value, low), high)
-            share = unit == "share" and value > 1
-            element.say(
-                f"{element.path} is {value:g}, and {'shares are' if share else 'it must be'} "
-                f"{low:g} to {high:g}; {clamped:g} is taken"
-            )
-            return clamped
-        return value
-
-    def switch(self, name: str, default: bool) -> bool:
-        """Value of an element that is yes or no."""
-        element = self.one(name)
-        if element is None:
-            return default
-        word = cleaned(element.text).lower()
-        if word not in ("yes", "true", "no", "false"):
-            said = _short(element.text)
-            element.say(f'{element.path} is "{said}", neither yes nor no; no is taken')
-        return word in ("yes", "true")
-
-    def word(self, name: str, words: Collection[str], default: str) -> str:
-        """Value of an element that is one of a few words."""
-        element = self.one(name)
-        return default if element is None else element.chosen(element.text, words, default)
+        return field.default if element is None else field.read(element)
 
     def chosen(self, text: str, words: Collection[str], default: str) -> str:
         """One of a few words for a text, or what counts for others, which is said."""
@@ -336,68 +315,139 @@ class GenElement:
         )
         return default
 
-    def point(self, name: str, default: Point) -> Point:
-        """Value of an element that is a place, x and y in mm."""
-        element = self.one(name)
-        return default if element is None else element.place(default)
-
-    def place(self, default: Point) -> Point:
-        """Place that this element gives, x and y in mm.
-
-        The comma is between x and y. Programs whose language has decimal commas wrote some files
-        so, too: four numbers are two with decimals, and three are taken as that program would read
-        them.
-        """
-        self._check_units("mm")
-        text = cleaned(self.text)
-        commas = _COMMAS.fullmatch(text)
-        if commas:
-            x = float(f"{commas[1]}.{commas[2]}")
-            y = float(f"{commas[3]}.{commas[4] or 0}")
-            self.say(f'{self.path} "{_short(text)}" has decimal commas; {x:g}, {y:g} is taken')
-            return (x, y)
-        found = _POINT.match(text)
-        point = (float(found[1]), float(found[2])) if found else default
-        if not found or not all(map(math.isfinite, point)):
-            x, y = default
-            self.say(f'{self.path} "{_short(text)}" is no place "x,y"; {x:g},{y:g} is taken')
-            return default
-        if found[0] != text:
-            rest = text[found.end() :]
-            self.say(f'{self.path} has "{_short(rest)}" after its numbers, which is ignored')
-        return point
-
     def units(self) -> str:
         """Units that this element names, as they are said here."""
         named = self.attribute("units")
         return _MEANT.get(named, named)
 
-    def _check_units(self, unit: str) -> None:
+    def check_units(self, unit: str) -> None:
         """Say so if the units that are named are not those that count."""
         named = self.units()
         if named and named not in (unit, *_SAME.get(unit, ())):
             counts = "a share from 0 to 1" if unit == "share" else unit or "a plain number"
             self.say(f"{self.path} is in {counts}, although its units say {_short(named)}")
 
-    def _value(self, default: float) -> float:
-        """Number that the text of this element begins with."""
-        text = cleaned(self.text)
+
+class Number(NamedTuple):
+    """A number.
+
+    Parameters
+    ----------
+    default
+        What OpenLatero takes if it is not there.
+    low, high
+        The range of it here; what is outside is put to its nearest end, and said.
+    unit
+        Unit that counts: "mm", "°", "Hz", "share" for a fraction of 1, or empty for none.
+    """
+
+    default: float
+    low: float = 0.0
+    high: float = MOST_MM
+    unit: str = "mm"
+
+    def read(self, element: GenElement) -> float:
+        """Number of an element, within the range."""
+        element.check_units(self.unit)
+        value = self._value(element)
+        if self.low <= value <= self.high:
+            return value
+        clamped = min(max(value, self.low), self.high)
+        share = self.unit == "share" and value > 1
+        element.say(
+            f"{element.path} is {value:g}, and {'shares are' if share else 'it must be'} "
+            f"{self.low:g} to {self.high:g}; {clamped:g} is taken"
+        )
+        return clamped
+
+    def _value(self, element: GenElement) -> float:
+        """Number that the text of an element begins with."""
+        text = cleaned(element.text)
         comma = _DECIMAL_COMMA.match(text)
         found = comma or _LEADING.match(text)
         if found is None:
             what = f'"{_short(text)}", which is no number' if text else "empty"
-            self.say(f"{self.path} is {what}; {default:g} is taken")
-            return default
+            element.say(f"{element.path} is {what}; {self.default:g} is taken")
+            return self.default
         value = float(found[0].replace(",", "."))
         if not math.isfinite(value):
-            self.say(f"{self.path} is too large a number; {default:g} is taken")
-            return default
+            element.say(f"{element.path} is too large a number; {self.default:g} is taken")
+            return self.default
         if comma:
-            self.say(f'{self.path} "{_short(text)}" has a decimal comma; {value:g} is taken')
+            element.say(f'{element.path} "{_short(text)}" has a decimal comma; {value:g} is taken')
         elif found[0] != text:
             rest = text[found.end() :].strip()
-            self.say(f'{self.path} has "{_short(rest)}" after its number, which is ignored')
+            element.say(f'{element.path} has "{_short(rest)}" after its number, which is ignored')
         return value
+
+
+SHARE = Number(1.0, 0.0, 1.0, "share")
+ANGLE = Number(0.0, -1e6, 1e6, "°")
+
+
+class Switch(NamedTuple):
+    """A yes or no."""
+
+    default: bool
+
+    def read(self, element: GenElement) -> bool:
+        """Tell whether an element says yes."""
+        word = cleaned(element.text).lower()
+        if word not in ("yes", "true", "no", "false"):
+            said = _short(element.text)
+            element.say(f'{element.path} is "{said}", neither yes nor no; no is taken')
+        return word in ("yes", "true")
+
+
+OFF, ON = Switch(False), Switch(True)
+
+
+class Word(NamedTuple):
+    """One of a few words, and what counts for all others."""
+
+    default: str
+    words: Collection[str]
+
+    def read(self, element: GenElement) -> str:
+        """Word of an element."""
+        return element.chosen(element.text, self.words, self.default)
+
+
+class Place(NamedTuple):
+    """A place, x and y in mm."""
+
+    default: Point = (0.0, 0.0)
+
+    def read(self, element: GenElement) -> Point:
+        """Place that an element gives.
+
+        The comma is between x and y. Programs whose language has decimal commas wrote some files
+        so, too: four numbers are two with decimals, and three are taken as that program would read
+        them.
+        """
+        element.check_units("mm")
+        text = cleaned(element.text)
+        said = f'{element.path} "{_short(text)}"'
+        commas = _COMMAS.fullmatch(text)
+        if commas:
+            x = float(f"{commas[1]}.{commas[2]}")
+            y = float(f"{commas[3]}.{commas[4] or 0}")
+            element.say(f"{said} has decimal commas; {x:g}, {y:g} is taken")
+            return (x, y)
+        found = _POINT.match(text)
+        point = (float(found[1]), float(found[2])) if found else self.default
+        if not found or not all(map(math.isfinite, point)):
+            x, y = self.default
+            element.say(f'{said} is no place "x,y"; {x:g},{y:g} is taken')
+            return self.default
+        if found[0] != text:
+            rest = text[found.end() :]
+            element.say(f'{element.path} has "{_short(rest)}" after its numbers, which is ignored')
+        return point
+
+
+ORIGIN = Place()
+Field = Number | Switch | Word | Place
 
 
 def cleaned(text: str) -> str:

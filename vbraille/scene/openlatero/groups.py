@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Final, Literal
 
 from msgspec.structs import replace
 
+from vbraille.scene.openlatero.context import Kinds
+from vbraille.scene.openlatero.elements import ANGLE, OFF, Number, Word
 from vbraille.scene.openlatero.shapes import operation_of
 from vbraille.scene.patterns import Group, Tile
 from vbraille.scene.signals import Direction, Speed, Switch
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
     from vbraille.scene.openlatero.elements import GenElement
     from vbraille.scene.patterns import AnyPattern, Operation
 
+ROWS = Kinds()
+
 OPERATIONS: dict[str, Operation] = {
     "multiply": "multiply",
     "add": "add",
@@ -41,6 +45,24 @@ _AT_REST: Final[dict[str, Literal["high", "low", "keep"]]] = {
 _TEXTURES = (Uniform, UniformVibration, LinearGrating, RadialGrating, AxialGrating, Tile)
 
 
+_SPEED = Number(5.0, 0.1, 1000.0, "mm/s")
+VELOCITY = {
+    "limit": Number(5.0, 0.0, 1000.0, "mm/s"),
+    "transition": _SPEED,
+    "delay": Number(500.0, 0.0, 20_000.0, "ms"),
+}
+DIRECTION = {
+    "low_velocity_mode": Word("toggle", tuple(_AT_REST)),
+    "direction": ANGLE,
+    "symmetric": OFF,
+    "direction_tolerance": Number(30.0, 0.0, 180.0, "°"),
+    "direction_transition": Number(20.0, 0.1, 180.0, "°"),
+    "velocity_tolerance": Number(0.0, 0.0, 1000.0, "mm/s"),
+    "velocity_transition": _SPEED,
+}
+
+
+@ROWS.row("Group")
 def read_group(element: GenElement, context: GenContext) -> AnyPattern | None:
     """Group of an element; None if there is nothing to show."""
     return joined(element, [context.pattern(part) for part in element.every("Pattern")], context)
@@ -65,24 +87,25 @@ def reacting(
 
 
 def _velocity(modulator: GenElement) -> Speed:
+    modulator.fields = VELOCITY
     return Speed(
-        below_mm_s=modulator.number("limit", 5.0, 0.0, 1000.0, "mm/s"),
-        transition_mm_s=modulator.number("transition", 5.0, 0.1, 1000.0, "mm/s"),
+        below_mm_s=modulator["limit"],
+        transition_mm_s=modulator["transition"],
         # Theirs is the time until it has risen: half of it waits.
-        delay_s=modulator.number("delay", 500.0, 0.0, 20_000.0, "ms") / 2000.0,
+        delay_s=modulator["delay"] / 2000.0,
     )
 
 
 def _direction(modulator: GenElement) -> Direction:
-    at_rest = modulator.word("low_velocity_mode", tuple(_AT_REST), "toggle")
+    modulator.fields = DIRECTION
     return Direction(
-        angle_deg=math.fmod(modulator.number("direction", 0.0, -1e6, 1e6, "°"), 360.0),
-        axis=modulator.switch("symmetric", False),
-        tolerance_deg=modulator.number("direction_tolerance", 30.0, 0.0, 180.0, "°"),
-        transition_deg=modulator.number("direction_transition", 20.0, 0.1, 180.0, "°"),
-        at_rest=_AT_REST[at_rest],
-        below_mm_s=modulator.number("velocity_tolerance", 0.0, 0.0, 1000.0, "mm/s"),
-        slow_transition_mm_s=modulator.number("velocity_transition", 5.0, 0.1, 1000.0, "mm/s"),
+        angle_deg=math.fmod(modulator["direction"], 360.0),
+        axis=modulator["symmetric"],
+        tolerance_deg=modulator["direction_tolerance"],
+        transition_deg=modulator["direction_transition"],
+        at_rest=_AT_REST[modulator["low_velocity_mode"]],
+        below_mm_s=modulator["velocity_tolerance"],
+        slow_transition_mm_s=modulator["velocity_transition"],
     )
 
 
@@ -145,7 +168,8 @@ def _say_layers(element: GenElement, parts: list[AnyPattern]) -> None:
         element.say("a texture hides all below it here, and only where it is up there")
 
 
-def read_toggle(element: GenElement, context: GenContext) -> AnyPattern | None:
+@ROWS.row("Toggle")
+def _toggle(element: GenElement, context: GenContext) -> AnyPattern | None:
     """Two patterns that a key swaps, as a button does there."""
     parts = element.every("Pattern")
     if len(parts) != 2:
@@ -166,7 +190,8 @@ def _layer(pattern: AnyPattern, factor: str) -> AnyPattern:
     return replace(pattern, factor=factor)
 
 
-def read_audio(element: GenElement, context: GenContext) -> None:
+@ROWS.row("Audio")
+def _audio(element: GenElement, context: GenContext) -> None:
     """Sounds, which are not played."""
     del context
     sounds = count(len(element.every("sound")), "sound")

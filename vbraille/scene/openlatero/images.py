@@ -13,8 +13,8 @@ from vbraille.errors import InputError
 from vbraille.scene.filebytes import read_bytes
 from vbraille.scene.imagefiles import KINDS, MOST_PIXELS
 from vbraille.scene.measures import MOST_MM
-from vbraille.scene.openlatero.context import SURFACE_MM
-from vbraille.scene.openlatero.elements import cleaned
+from vbraille.scene.openlatero.context import SURFACE_MM, Kinds
+from vbraille.scene.openlatero.elements import OFF, ON, Number, Place, cleaned
 from vbraille.scene.patterns import Image
 from vbraille.scene.svg.numbers import length_px
 from vbraille.scene.textures import Uniform
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from vbraille.scene.openlatero.elements import GenElement
     from vbraille.scene.patterns import AnyPattern
 
-
+ROWS = Kinds()
 _MOST_BYTES, _MOST_SVG_BYTES = 100 << 20, 10 << 20
 
 
@@ -124,24 +124,17 @@ _LEAST_SIZE_MM = 0.1
 _EVEN = 0.01  # share by which pixels may be longer than they are wide
 
 
-@dataclass(frozen=True, slots=True)
-class _Found:
-    """A picture of a mask, by its name seen from the file, and what it is."""
+MASK = {
+    "reference_maximized": ON,
+    "blur": OFF,
+    "default_alpha": Number(0.0, 0.0, 1.0, "share"),
+}
 
-    name: str
-    picture: MaskPicture
 
-
-def read_image(element: GenElement, context: GenContext) -> AnyPattern | None:
-    """Image of an element; None if there is nothing to show.
-
-    Raises
-    ------
-    ValueError
-        If there can be no such image.
-    """
+@ROWS.row("Image")
+def _image(element: GenElement, context: GenContext) -> AnyPattern | None:
     part = element.one("Pattern")
-    mask = element.part("mask")
+    mask = element.part("mask", MASK)
     if part is None:
         element.forget()
         element.say("it has no texture, and OpenLatero ends at it; left out")
@@ -165,20 +158,21 @@ def read_image(element: GenElement, context: GenContext) -> AnyPattern | None:
         if file is None:
             element.say("its picture is not named; left out")
         return None
-    width, height = _size(mask, found.picture)
+    name, picture = found
+    width, height = _size(mask, picture)
     place = _place(mask, width, height)
     channel = "alpha" if file.attribute("type") == "alpha" else "gray"
-    blur = _blur(mask, found.picture, width, height)
-    _say_channel(file, found.picture, channel)
+    blur = _blur(mask, picture, width, height)
+    _say_channel(file, picture, channel)
     mask.say("between pixels it is bilinear here, and the nearest pixel counts there")
     return Image(
-        file=found.name,
+        file=name,
         place_mm=(_plain(place[0]), _plain(place[1])),
         width_mm=_plain(width),
         height_mm=_plain(height),
         channel=channel,
         blur_mm=_plain(blur),
-        outside=mask.number("default_alpha", 0.0, 0.0, 1.0, "share"),
+        outside=mask["default_alpha"],
         texture=None if texture == Uniform() else texture,
     )
 
@@ -188,8 +182,8 @@ def _plain(value_mm: float) -> float:
     return round(value_mm, 6)
 
 
-def _found(file: GenElement, context: GenContext) -> _Found | None:
-    """Picture that an element names."""
+def _found(file: GenElement, context: GenContext) -> tuple[str, MaskPicture] | None:
+    """Picture that an element names, by its name as it is seen from the file."""
     name = cleaned(file.text)
     # OpenLatero itself writes "/mask.png" for a picture that stands beside the scene.
     beside = name.rpartition("/")[2]
@@ -206,7 +200,7 @@ def _found(file: GenElement, context: GenContext) -> _Found | None:
     except (OSError, ValueError):
         file.say("its picture has no name that a file can have; left out")
         return None
-    return _Found(name, picture)
+    return name, picture
 
 
 def _in(folder: Path, error: InputError) -> str:
@@ -223,7 +217,7 @@ def _size(mask: GenElement, picture: MaskPicture) -> tuple[float, float]:
     largest = (SURFACE_MM[1] * ratio, SURFACE_MM[1]) if wide else (
         SURFACE_MM[0], SURFACE_MM[0] / ratio
     )  # fmt: skip
-    whole = largest if mask.switch("reference_maximized", True) else SURFACE_MM
+    whole = largest if mask["reference_maximized"] else SURFACE_MM
     width, height = (
         _extent(mask, name, fitting, reference)
         for name, fitting, reference in zip(("width", "height"), largest, whole, strict=True)
@@ -236,9 +230,9 @@ def _extent(mask: GenElement, name: str, fitting: float, reference: float) -> fl
     if element is None:
         return fitting
     if element.units() == "%":
-        most = MOST_MM / reference
-        return mask.number(name, 1.0, _LEAST_SIZE_MM / reference, most, "share") * reference
-    return mask.number(name, fitting, _LEAST_SIZE_MM, MOST_MM)
+        share = Number(1.0, _LEAST_SIZE_MM / reference, MOST_MM / reference, "share")
+        return share.read(element) * reference
+    return Number(fitting, _LEAST_SIZE_MM).read(element)
 
 
 def _place(mask: GenElement, width: float, height: float) -> Point:
@@ -247,12 +241,12 @@ def _place(mask: GenElement, width: float, height: float) -> Point:
     middle = ((SURFACE_MM[0] - width) / 2, (SURFACE_MM[1] - height) / 2)
     if element is None or element.text.strip() == "centered":
         return middle
-    return element.place(middle)
+    return Place(middle).read(element)
 
 
 def _blur(mask: GenElement, picture: MaskPicture, width: float, height: float) -> float:
     """Standard deviation of the blur of an image as it is placed, in mm."""
-    if not mask.switch("blur", False):
+    if not mask["blur"]:
         return 0.0
     pixel = width / picture.width_px, height / picture.height_px
     if abs(pixel[0] / pixel[1] - 1.0) > _EVEN:

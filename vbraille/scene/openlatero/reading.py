@@ -8,40 +8,20 @@ from typing import TYPE_CHECKING
 from vbraille.errors import InputError
 from vbraille.scene.filebytes import read_bytes
 from vbraille.scene.locations import FoundScene
-from vbraille.scene.openlatero.context import SURFACE_MM, GenContext
+from vbraille.scene.openlatero import groups, images, shapes, textures
+from vbraille.scene.openlatero.context import SURFACE_MM, GenContext, Kinds
 from vbraille.scene.openlatero.elements import MOST_BYTES, Remarks, read_tree
-from vbraille.scene.openlatero.groups import (
-    OPERATIONS,
-    joined,
-    read_audio,
-    read_group,
-    read_toggle,
-)
-from vbraille.scene.openlatero.images import read_image
-from vbraille.scene.openlatero.shapes import read_circle, read_dots, read_line, read_polygon
-from vbraille.scene.openlatero.textures import read_texture
 from vbraille.scene.patterns import Group
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.traversal import placed_children
 
 if TYPE_CHECKING:
-    from vbraille.scene.openlatero.context import Reader
     from vbraille.scene.openlatero.elements import GenElement
     from vbraille.scene.patterns import AnyPattern, Operation
     from vbraille.scene.traversal import Steps
 
-TYPES: dict[str, Reader] = {
-    "Line": read_line,
-    "Circle": read_circle,
-    "Polygon": read_polygon,
-    "Dot": read_dots,
-    "Dots": read_dots,
-    "Image": read_image,
-    "Group": read_group,
-    "Texture": read_texture,
-    "Toggle": read_toggle,
-    "Audio": read_audio,
-}
+PATTERNS = Kinds(shapes.ROWS | images.ROWS | groups.ROWS)
+TEXTURES = textures.ROWS
 
 
 def read_gen(path: str | Path, *, as_shown: bool = False) -> FoundScene:
@@ -69,7 +49,7 @@ def read_gen(path: str | Path, *, as_shown: bool = False) -> FoundScene:
     path = Path(path)
     remarks = Remarks()
     root = read_tree(read_bytes(path, MOST_BYTES), str(path), remarks)
-    context = GenContext(path.parent, as_shown, TYPES)
+    context = GenContext(path.parent, as_shown, PATTERNS, TEXTURES)
     made = _made(root, context, path)
     for element in root.unasked():
         what = f"{element.path or element.name} {element.attribute('type')}".strip()
@@ -105,7 +85,9 @@ def _made(root: GenElement, context: GenContext, path: Path) -> AnyPattern | Non
         return context.pattern(group)
     if context.as_shown:
         group.say("this is taken as a Group, as OpenLatero does")
-        return joined(group, [context.pattern(part) for part in group.every("Pattern")], context)
+        return groups.joined(
+            group, [context.pattern(part) for part in group.every("Pattern")], context
+        )
     group.say("this is shown, although OpenLatero takes it as a Group")
     return context.pattern(group)
 
@@ -139,6 +121,3 @@ def _lines(scene: Scene, context: GenContext) -> dict[Steps, int]:
             lines[steps] = element.line
         left += [((*steps, *inner), part) for inner, part in placed_children(pattern)]
     return lines
-
-
-__all__ = ["OPERATIONS", "TYPES", "read_gen"]

@@ -12,7 +12,15 @@ from vbraille.errors import needing_extras
 from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.joints import joints, rounding_radius_mm
 from vbraille.scene.measures import LEAST_MM, MOST_MM
-from vbraille.scene.openlatero.context import SURFACE_MM, swung, travelled, vibration
+from vbraille.scene.openlatero.context import (
+    SURFACE_MM,
+    VIBRATION,
+    Kinds,
+    swung,
+    travelled,
+    vibration,
+)
+from vbraille.scene.openlatero.elements import ANGLE, OFF, ORIGIN, SHARE, Number, Place, Word
 from vbraille.scene.patterns import Circle, Dots, Fill, PathShape, Polygon, StraightLine
 from vbraille.scene.strokes import (
     Across,
@@ -31,11 +39,40 @@ if TYPE_CHECKING:
     from vbraille.scene.openlatero.elements import GenElement
     from vbraille.scene.patterns import AnyPattern
 
-
+ROWS = Kinds()
 _CUES = ("none", "inherent", "superposed", "suppressed", "vibration", "blend")
-_LEAST_EDGE_MM = 0.1
 _MOST_SPEED = 1000.0
-_MOST_CYCLES = 49  # on one side of a stroke
+_OPERATIONS = ("multiply", "add", "max", "blend", "overwrite", "reactive")
+_SPANS = {
+    "user specified": "angle",
+    "arc": "arc",
+    "circle intercept": "edges",
+    "right-angled": "square",
+}
+
+# Parts of shapes.
+STROKE = {"width": Number(10.0), "intensity": SHARE}
+DOTS = {"enable": OFF, "height": SHARE, "min_spacing": Number(1.0)}
+RIDGE = {"edge_width": Number(1.0, 0.1)}
+DOT_RIDGE = {"edge_width": Number(0.2, 0.1)}
+ACROSS = {
+    "enable": OFF,
+    "amplitude": Number(0.0, 0.0, 1.0, "share"),
+    "nb_cycles": Number(3, 0, 49, ""),  # on one side of a stroke
+}
+FILL = {"gutter": OFF}
+ALONG = {"enable": OFF, "ridge_size": Number(2.0), "gap_size": Number(0.0), "invert": OFF}
+CUE = {"cue": Word("none", _CUES), "velocity": Number(50.0, -_MOST_SPEED, _MOST_SPEED, "mm/s")}
+FILL_TEXTURE = {"enable": OFF, "gap": Number(0.0, -MOST_MM), "edge_size": Number(1.0)}
+JOIN = {"type": Word("round", ("straight", "round")), "rounding_offset": Number(0.0)}
+CORNER = {
+    "enable": OFF,
+    "span": Word("circle intercept", _SPANS),
+    "type": Word("solid", ("solid", "invert vib")),
+    "user_angle": Number(30.0, 1.0, 180.0, "°"),
+    "blend": Word("out", ("in", "out")),
+    "blend_size": Number(1.0, LEAST_MM),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,17 +104,15 @@ def drawn(shape: GenElement, context: GenContext, *, corners_swing: bool = False
     corners_swing
         Whether dots on vertices swing where others do not, and the other way round.
     """
-    element = shape.part("stroke")
-    width = element.number("width", 10.0, 0.0, MOST_MM)
-    intensity = element.number("intensity", 1.0, 0.0, 1.0, "share")
-    row = element.part("dots")
-    is_dotted = row.switch("enable", False)
+    element = shape.part("stroke", STROKE)
+    width, intensity = element["width"], element["intensity"]
+    row = element.part("dots", DOTS)
+    is_dotted = row["enable"]
     # OpenLatero reads both into one profile and one vibration, the stroke's last.
-    ridge = element.part("ridge")
-    beneath = row.part("ridge")
-    edge = edge_of(ridge, edge_of(beneath, 1.0))
+    ridge, beneath = element.part("ridge", RIDGE), row.part("ridge", RIDGE)
+    edge = ridge.read("edge_width", RIDGE["edge_width"]._replace(default=beneath["edge_width"]))
     across = across_of(ridge) if ridge.children else across_of(beneath)
-    fill = element.one("fill")
+    fill = element.one("fill", FILL)
     swinging = row if fill is None else fill
     corners = _against(swinging, context) if corners_swing and is_dotted else None
     swing = vibration(swinging, context, "dots" if is_dotted else "")
@@ -91,16 +126,14 @@ def drawn(shape: GenElement, context: GenContext, *, corners_swing: bool = False
         _speed(element, fill, None, context)
         if fill is not None:
             fill.skip("Grating", "gutter")
-        height = row.number("height", 1.0, 0.0, 1.0, "share")
-        spacing = row.number("min_spacing", 1.0, 0.0, MOST_MM)
         dot = DotStyle(
             radius_mm=width / 2,
             edge_mm=edge,
-            amplitude=height,
+            amplitude=row["height"],
             across=across,
             vibration=swing,
         )
-        dots = Dotting(dot=dot, separation_mm=spacing, vertex_vibration=corners)
+        dots = Dotting(dot=dot, separation_mm=row["min_spacing"], vertex_vibration=corners)
         return StrokeLook(intensity, None, dots)
     row.forget()
     stroke = _stroke(fill, context, Stroke(width_mm=width, edge_mm=edge, across=across), swing)
@@ -111,30 +144,23 @@ def drawn(shape: GenElement, context: GenContext, *, corners_swing: bool = False
     return StrokeLook(intensity, stroke, None)
 
 
-def edge_of(ridge: GenElement, default: float) -> float:
-    """Length of the edge of a profile, in mm."""
-    return ridge.number("edge_width", default, _LEAST_EDGE_MM, MOST_MM)
-
-
 def across_of(ridge: GenElement) -> Across | None:
     """Texture across a profile; None for none."""
-    texture = ridge.part("texture")
-    if not texture.switch("enable", False):
+    texture = ridge.part("texture", ACROSS)
+    if not texture["enable"]:
         texture.forget()
         return None
-    amplitude = texture.number("amplitude", 0.0, 0.0, 1.0, "share")
-    cycles = int(texture.number("nb_cycles", 3, 0, _MOST_CYCLES, ""))
+    amplitude, cycles = texture["amplitude"], int(texture["nb_cycles"])
     return Across(amplitude=amplitude, cycles=2 * cycles + 1) if amplitude else None
 
 
 def filling(shape: GenElement, context: GenContext) -> Fill | None:
     """Tell what fills a closed shape; None for nothing."""
-    element = shape.part("fill_texture")
-    if not element.switch("enable", False):
+    element = shape.part("fill_texture", FILL_TEXTURE)
+    if not element["enable"]:
         element.forget()
         return None
-    gap = element.number("gap", 0.0, -MOST_MM, MOST_MM)
-    fade = element.number("edge_size", 1.0, 0.0, MOST_MM)
+    gap, fade = element["gap"], element["edge_size"]
     found = element.one("Pattern")
     # Without a texture OpenLatero takes one of its own.
     texture = LinearGrating(ridge_mm=8.0) if found is None else context.pattern(found)
@@ -148,7 +174,7 @@ def filling(shape: GenElement, context: GenContext) -> Fill | None:
 
 def _profiled(ridge: GenElement, width: float) -> float:
     """Width of a stroke whose profile may have another one."""
-    other = ridge.number("width", width, 0.0, MOST_MM)
+    other = ridge.read("width", Number(width))
     if other != width:
         narrower = min(other, width)
         ridge.say(
@@ -166,7 +192,7 @@ def _stroke(
     along = None
     gutter = False
     if fill is not None:
-        gutter = fill.switch("gutter", False)
+        gutter = fill["gutter"]
         along = _along(fill)
     fits = plain.width_mm >= 4 * plain.edge
     if along is not None:
@@ -195,21 +221,20 @@ def _stroke(
 
 def _along(fill: GenElement) -> Along | None:
     """Grating along a stroke; None for none."""
-    grating = fill.part("Grating")
-    if not grating.switch("enable", False):
+    grating = fill.part("Grating", ALONG)
+    if not grating["enable"]:
         grating.forget()
         return None
-    ridge = grating.number("ridge_size", 2.0, 0.0, MOST_MM)
-    gap = grating.number("gap_size", 0.0, 0.0, MOST_MM)
+    ridge, gap = grating["ridge_size"], grating["gap_size"]
     if ridge < LEAST_MM:
         grating.forget()
         grating.say(f"fill Grating has ridges of {ridge:g} mm, so the stroke has no texture here")
         return None
-    if grating.switch("invert", False):
+    if grating["invert"]:
         grating.say("fill Grating is inverted, which a texture along a stroke cannot be here")
     modulator = grating.one("PitchModulator")
     if modulator is not None:
-        if modulator.switch("enable", False):
+        if modulator.read("enable", OFF):
             modulator.say("a texture along a stroke has the same lengths all along it here")
         modulator.forget()
     return Along(ridge_mm=ridge, gap_mm=gap, whole_cycles=False)
@@ -222,13 +247,13 @@ def _speed(
     own = 0.0
     if fill is not None and along is not None:
         own = speed_of(fill.part("Grating"), "mm", along.ridge_mm + along.gap_mm)
-    motion = stroke.one("motion")
+    motion = stroke.one("motion", CUE)
     if motion is None:
         return own if along is None else travelled(own, along.ridge_mm + along.gap_mm, context)
-    cue = motion.word("cue", _CUES, "none") if motion.one("cue") else None
-    speed = motion.number("velocity", 50.0, -_MOST_SPEED, _MOST_SPEED, "mm/s")
+    cue = motion["cue"] if motion.one("cue") else None
+    speed = motion["velocity"]
     motion.forget()
-    if cue == "inherent" and stroke.part("dots").switch("enable", False):
+    if cue == "inherent" and stroke.part("dots", DOTS)["enable"]:
         motion.say("the dots stand still here, and move along the shape in OpenLatero")
     elif cue not in (None, "none", "inherent"):
         motion.say(f'the motion cue "{cue}" is not shown')
@@ -254,7 +279,7 @@ def speed_of(grating: GenElement, unit: str, cycle: float, most: float = _MOST_S
     if element is None:
         return 0.0
     in_hertz = element.units() == "Hz"
-    speed = grating.number("velocity", 0.0, -1e6, 1e6, "Hz" if in_hertz else f"{unit}/s")
+    speed = grating.read("velocity", ANGLE._replace(unit="Hz" if in_hertz else f"{unit}/s"))
     if in_hertz:
         speed *= cycle
     if abs(speed) > most:
@@ -264,32 +289,15 @@ def speed_of(grating: GenElement, unit: str, cycle: float, most: float = _MOST_S
 
 def _against(above: GenElement, context: GenContext) -> Vibration:
     """Vibration of dots on vertices, which swing where the others do not."""
-    element = above.part("vibration")
-    if element.children and element.switch("enable", True):
+    element = above.part("vibration", VIBRATION)
+    if element.children and element["enable"]:
         return Vibration(amplitude=0.0)
     return swung(element, context)
 
 
-_OPERATIONS = ("multiply", "add", "max", "blend", "overwrite", "reactive")
-_LEAST_BLEND_MM = LEAST_MM
-_SPANS = {
-    "user specified": "angle",
-    "arc": "arc",
-    "circle intercept": "edges",
-    "right-angled": "square",
-}
-
-
-def read_line(element: GenElement, context: GenContext) -> AnyPattern | None:
-    """Line of an element; None if there is nothing to show.
-
-    Raises
-    ------
-    ValueError
-        If there can be no such line.
-    """
-    start = element.point("start_point", (0.0, 0.0))
-    end = element.point("end_point", SURFACE_MM)
+@ROWS.row("Line", start_point=ORIGIN, end_point=Place(SURFACE_MM))
+def _line(element: GenElement, context: GenContext) -> AnyPattern | None:
+    start, end = element["start_point"], element["end_point"]
     look = drawn(element, context)
     if look.stroke is None and look.dots is None:
         return _nothing(element)
@@ -298,16 +306,9 @@ def read_line(element: GenElement, context: GenContext) -> AnyPattern | None:
     )
 
 
-def read_circle(element: GenElement, context: GenContext) -> AnyPattern | None:
-    """Circle of an element; None if there is nothing to show.
-
-    Raises
-    ------
-    ValueError
-        If there can be no such circle.
-    """
-    center = element.point("center", (0.0, 0.0))
-    radius = element.number("radius", 100.0, 0.0, MOST_MM)
+@ROWS.row("Circle", center=ORIGIN, radius=Number(100.0))
+def _circle(element: GenElement, context: GenContext) -> AnyPattern | None:
+    center, radius = element["center"], element["radius"]
     look = drawn(element, context)
     fill = _fill(element, context, look)
     if look.stroke is None and look.dots is None and fill is None:
@@ -322,20 +323,13 @@ def read_circle(element: GenElement, context: GenContext) -> AnyPattern | None:
     )
 
 
-def read_polygon(element: GenElement, context: GenContext) -> AnyPattern | None:
-    """Polygon of an element; None if there is nothing to show.
-
-    Raises
-    ------
-    ValueError
-        If there can be no such polygon.
-    """
+@ROWS.row("Polygon")
+def _polygon(element: GenElement, context: GenContext) -> AnyPattern | None:
     vertices = _vertices(element.part("vertices"))
-    join = element.part("join")
-    straight = join.word("type", ("straight", "round"), "round") == "straight"
-    offset = join.number("rounding_offset", 0.0, 0.0, MOST_MM)
-    corner = element.part("corner")
-    has_markers = corner.switch("enable", False)
+    join = element.part("join", JOIN)
+    straight, offset = join["type"] == "straight", join["rounding_offset"]
+    corner = element.part("corner", CORNER)
+    has_markers = corner["enable"]
     look = drawn(element, context, corners_swing=has_markers)
     markers = None
     if has_markers and look.stroke is not None:
@@ -389,31 +383,24 @@ def _path(
     )
 
 
-def read_dots(element: GenElement, context: GenContext) -> AnyPattern | None:
-    """Dots of an element; None if there are none.
-
-    Raises
-    ------
-    ValueError
-        If there can be no such dots.
-    """
+@ROWS.row("Dot", "Dots", dot_radius=Number(100.0), height=SHARE)
+def _dots(element: GenElement, context: GenContext) -> AnyPattern | None:
     one = element.attribute("type") == "Dot"
     places = element.every("dot")[: 1 if one else None]
-    centers = tuple(place.place((0.0, 0.0)) for place in places)
+    centers = tuple(ORIGIN.read(place) for place in places)
     if one and not centers:
         centers = ((0.0, 0.0),)
     if not centers:
         element.forget()
         element.say("it has no dots; left out")
         return None
-    radius = element.number("dot_radius", 100.0, 0.0, MOST_MM)
-    height = element.number("height", 1.0, 0.0, 1.0, "share")
-    ridge = element.part("ridge")
+    radius = element["dot_radius"]
+    ridge = element.part("ridge", DOT_RIDGE)
     ridge.skip("width")  # the radius counts
     dot = DotStyle(
         radius_mm=radius,
-        edge_mm=edge_of(ridge, 0.2),
-        amplitude=height,
+        edge_mm=ridge["edge_width"],
+        amplitude=element["height"],
         across=across_of(ridge),
         vibration=vibration(element, context, "dots"),
     )
@@ -437,19 +424,17 @@ def operation_of(element: GenElement, default: str) -> str:
 
 def _vertices(element: GenElement) -> tuple[Point, ...]:
     """Vertices of a polygon, without those that stand on the one before."""
-    places = (vertex.place((0.0, 0.0)) for vertex in element.every("vertex"))
+    places = (ORIGIN.read(vertex) for vertex in element.every("vertex"))
     kept = [place for place, _ in groupby(places)]
     return tuple(kept[:-1] if len(kept) > 1 and kept[0] == kept[-1] else kept)
 
 
 def _markers(corner: GenElement, context: GenContext, look: StrokeLook) -> VertexMarkers | None:
     """Markers at the vertices of a polygon."""
-    span = corner.word("span", _SPANS, "circle intercept")
-    kind = corner.word("type", ("solid", "invert vib"), "solid")
-    angle = corner.number("user_angle", 30.0, 1.0, 180.0, "°") if span[0] == "u" else 30.0
-    if corner.word("blend", ("in", "out"), "out") == "in":
+    span, kind, blend = corner["span"], corner["type"], corner["blend_size"]
+    angle = corner["user_angle"] if span == "user specified" else 30.0
+    if corner["blend"] == "in":
         corner.say("markers blend outwards here, not inwards")
-    blend = corner.number("blend_size", 1.0, _LEAST_BLEND_MM, MOST_MM)
     swing = vibration(corner, context, "markers")
     stroke = look.stroke
     if kind == "invert vib" and stroke is not None:

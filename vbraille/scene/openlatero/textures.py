@@ -8,9 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
-from vbraille.scene.measures import LEAST_FREQUENCY_HZ, LEAST_MM, MOST_FREQUENCY_HZ, MOST_MM
-from vbraille.scene.openlatero.context import changed, timed, travelled, vibration
-from vbraille.scene.openlatero.groups import joined, reacting
+from vbraille.scene.measures import LEAST_MM, MOST_MM
+from vbraille.scene.openlatero.context import (
+    FREQUENCY,
+    Kinds,
+    changed,
+    timed,
+    travelled,
+    vibration,
+)
+from vbraille.scene.openlatero.elements import ANGLE, OFF, ON, ORIGIN, SHARE, Number, Word
+from vbraille.scene.openlatero.groups import joined, reacting, read_group
 from vbraille.scene.openlatero.shapes import speed_of
 from vbraille.scene.patterns import Circle, Group, Moving, Tile
 from vbraille.scene.strokes import Stroke, Vibration
@@ -24,7 +32,6 @@ from vbraille.scene.textures import (
     Uniform,
     UniformVibration,
 )
-from vbraille.wording import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,12 +40,10 @@ if TYPE_CHECKING:
     from vbraille.scene.openlatero.elements import GenElement
     from vbraille.scene.patterns import AnyPattern
 
-
+ROWS = Kinds()
 _LEAST_DEG = 0.5
 _MOST_DEG_S = 3600.0
 _MOST_MM_S = 1000.0
-_FACTORS = (0.05, 20.0)
-_EVEN = ("Null", "Plain", "Vibration")  # which are the same everywhere
 _STILL = 1e-3  # mm/s, below which OpenLatero takes a projected speed as none
 
 
@@ -54,31 +59,35 @@ _CUES = (
 )
 
 
-def read_texture(element: GenElement, context: GenContext) -> AnyPattern | None:
-    """Texture of an element; None if there is nothing to show.
+MOTION = {
+    "enable": OFF,
+    "velocity": Number(50.0, -_MOST_MM_S, _MOST_MM_S, "mm/s"),
+    "direction": ANGLE,
+}
+_FACTOR = Number(5.0, 0.05, 20.0, "")
+PITCH = {
+    "enable": OFF,
+    "factor": _FACTOR,
+    "length": Number(113.0, LEAST_MM),
+    "position": Number(0.0, -MOST_MM),
+}
+# That of an axial grating is in degrees.
+PITCH_DEG = {
+    "enable": OFF,
+    "factor": _FACTOR,
+    "length": Number(113.0, _LEAST_DEG, 360.0, "°"),
+    "position": Number(0.0, 0.0, 360.0, "°"),
+}
+WAVE = {"enable": ON, "invert": OFF, "ridge_size": Number(8.0), "gap_size": Number(0.0)}
+WAVE_DEG = {
+    "enable": ON,
+    "invert": OFF,
+    "ridge_size": Number(36.0, 0.0, 360.0, "°"),
+    "gap_size": Number(0.0, 0.0, 360.0, "°"),
+}
 
-    Raises
-    ------
-    ValueError
-        If there can be no such texture.
-    """
-    kind = element.attribute("subtype")
-    reader = _READERS.get(kind)
-    if reader is None:
-        what = f'"{kind}"' if kind else "missing"
-        near = nearest(kind, _READERS)
-        element.forget()
-        element.say(f"the subtype of this texture is {what}, which is not known{near}; left out")
-        return None
-    element.skip("icon")
-    if kind in _EVEN:
-        element.skip("motion", "td_centric")
-    pattern = reader(element, context)
-    if pattern is None:
-        element.forget()
-    return pattern
 
-
+@ROWS.row("Null")
 def _null(element: GenElement, context: GenContext) -> AnyPattern:
     """Nothing, which has no changes either."""
     del context
@@ -86,32 +95,35 @@ def _null(element: GenElement, context: GenContext) -> AnyPattern:
     return Uniform(level=0.0)
 
 
+@ROWS.row("Plain")
 def _plain(element: GenElement, context: GenContext) -> AnyPattern:
-    return _changed(Uniform(), element, context)
+    return _even(Uniform(), element, context)
 
 
+@ROWS.row("Vibration", freq=FREQUENCY)
 def _vibration(element: GenElement, context: GenContext) -> AnyPattern:
-    hertz = element.number("freq", MOST_FREQUENCY_HZ, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, "Hz")
-    return _changed(UniformVibration(frequency_hz=timed(hertz, context)), element, context)
+    hertz = timed(element["freq"], context)
+    return _even(UniformVibration(frequency_hz=hertz), element, context)
 
 
+@ROWS.row("LinearGrating", angle=ANGLE, seed=ORIGIN)
 def _linear(element: GenElement, context: GenContext) -> AnyPattern | None:
-    angle = turned(element.number("angle", 0.0, -1e6, 1e6, "°"))
-    seed = element.point("seed", (0.0, 0.0))
-    make = partial(LinearGrating, wave_angle_deg=angle or None, start_mm=seed)
-    return _graded(make, _wave(element, 8.0, "mm", context), element, context)
+    angle = turned(element["angle"])
+    make = partial(LinearGrating, wave_angle_deg=angle or None, start_mm=element["seed"])
+    return _graded(make, _wave(element, "mm", context), element, context)
 
 
+@ROWS.row("RadialGrating", seed=ORIGIN)
 def _radial(element: GenElement, context: GenContext) -> AnyPattern | None:
-    make = partial(RadialGrating, center_mm=element.point("seed", (0.0, 0.0)))
-    return _graded(make, _wave(element, 8.0, "mm", context), element, context)
+    make = partial(RadialGrating, center_mm=element["seed"])
+    return _graded(make, _wave(element, "mm", context), element, context)
 
 
+@ROWS.row("AxialGrating", seed=ORIGIN, seed_angle=ANGLE)
 def _axial(element: GenElement, context: GenContext) -> AnyPattern | None:
-    seed = element.point("seed", (0.0, 0.0))
-    start = turned(element.number("seed_angle", 0.0, -1e6, 1e6, "°"))
-    make = partial(AxialGrating, center_mm=seed, start_deg=start, whole_cycles=False)
-    wave = _wave(element, 36.0, "°", context)
+    start = turned(element["seed_angle"])
+    make = partial(AxialGrating, center_mm=element["seed"], start_deg=start, whole_cycles=False)
+    wave = _wave(element, "°", context)
     if isinstance(wave, dict):
         if wave["ridge_deg"] + wave["gap_deg"] > 360.0:
             wave["gap_deg"] = 360.0 - wave["ridge_deg"]
@@ -132,29 +144,25 @@ def _graded(
     if wave is None:
         return None
     if isinstance(wave, Uniform):
-        element.skip("motion", "td_centric")  # the same everywhere
-        return _changed(wave, element, context)
+        return _even(wave, element, context)
     pattern = make(**wave)
     moved = travelling(pattern, element) if isinstance(pattern, LinearGrating) else None
     return _changed(_carried(moved or pattern, element, moves=moved is None), element, context)
 
 
-def _wave(
-    element: GenElement, usual: float, unit: str, context: GenContext
-) -> dict[str, Any] | Uniform | None:
+def _wave(element: GenElement, unit: str, context: GenContext) -> dict[str, Any] | Uniform | None:
     """Waveform of a grating, by the names of its fields here.
 
     It is what is the same everywhere if it is off, and None if it has no ridges.
     """
-    grating = element.part("Grating")
-    inverted = grating.switch("invert", False)
-    if not grating.switch("enable", True):
+    turning = unit == "°"
+    grating = element.part("Grating", WAVE_DEG if turning else WAVE)
+    inverted = grating["invert"]
+    if not grating["enable"]:
         grating.forget()
         return Uniform(level=float(inverted))
-    turning = unit == "°"
-    least, most = (_LEAST_DEG, 360.0) if turning else (LEAST_MM, MOST_MM)
-    ridge = grating.number("ridge_size", usual, 0.0, most, unit)
-    gap = grating.number("gap_size", 0.0, 0.0, most, unit)
+    least = _LEAST_DEG if turning else LEAST_MM
+    ridge, gap = grating["ridge_size"], grating["gap_size"]
     if ridge < least:
         grating.say(f"its ridges are {ridge:g} {unit}, and must be {least:g} or more; left out")
         return None
@@ -175,22 +183,18 @@ def _wave(
 
 def _distortion(grating: GenElement, unit: str) -> Gradual | Peak | TurnPeak | None:
     """Change of the frequency along a grating; None for none."""
-    element = grating.one("PitchModulator")
+    element = grating.one("PitchModulator", PITCH if unit == "mm" else PITCH_DEG)
     if element is None:
         return None
-    if not element.switch("enable", False):
+    if not element["enable"]:
         element.forget()
         return None
     kind = element.chosen(element.attribute("type"), ("slope", "peak"), "slope")
-    factor = element.number("factor", 5.0, *_FACTORS, "")
+    factor, length, place = element["factor"], element["length"], element["position"]
     if unit == "mm":
-        length = element.number("length", 113.0, LEAST_MM, MOST_MM)
-        place = element.number("position", 0.0, -MOST_MM, MOST_MM)
         if kind == "peak":
             return Peak(factor=factor, center_mm=place, length_mm=length)
         return Gradual(factor=factor, start_mm=place, length_mm=length)
-    length = element.number("length", 113.0, _LEAST_DEG, 360.0, unit)
-    place = element.number("position", 0.0, 0.0, 360.0, unit)
     if kind == "peak":
         return TurnPeak(factor=factor, center_deg=place, length_deg=length)
     element.say("the frequency of an axial grating has no slope here; it is the same all round")
@@ -203,17 +207,16 @@ def travelling(grating: LinearGrating, element: GenElement) -> LinearGrating | N
     A grating that is carried along is the same as one whose ridges move by the part of the motion
     that goes across them.
     """
-    motion = element.one("motion")
+    motion = element.one("motion", MOTION)
     if motion is None:
         return grating
-    if not motion.switch("enable", False):
+    if not motion["enable"]:
         motion.forget()
         return grating
     if grating.distortion is not None:
         return None
-    speed = motion.number("velocity", 50.0, -_MOST_MM_S, _MOST_MM_S, "mm/s")
-    direction = motion.number("direction", 0.0, -1e6, 1e6, "°")
-    across = speed * math.cos(math.radians(direction - (grating.wave_angle_deg or 0.0)))
+    turn = math.radians(motion["direction"] - (grating.wave_angle_deg or 0.0))
+    across = motion["velocity"] * math.cos(turn)
     total = grating.velocity_mm_s + (across if abs(across) >= _STILL else 0.0)
     return replace(grating, velocity_mm_s=max(-_MOST_MM_S, min(_MOST_MM_S, total)))
 
@@ -223,20 +226,24 @@ def turned(angle_deg: float) -> float:
     return math.fmod(angle_deg, 360.0)
 
 
-def _double(element: GenElement, context: GenContext) -> AnyPattern | None:
-    seed = element.point("seed", (0.0, 0.0))
-    angle = element.number("angle", 0.0, -1e6, 1e6, "°")
-    ridge = element.number("primary_ridge_size", 8.0, 0.0, MOST_MM)
-    gap = element.number("primary_gap_size", 0.0, 0.0, MOST_MM)
-    scale = element.number("secondary_scale", 1.0, 0.0, MOST_MM, "")
+@ROWS.row(
+    "DoubleLinearGrating",
+    seed=ORIGIN,
+    angle=ANGLE,
+    primary_ridge_size=Number(8.0),
+    primary_gap_size=Number(0.0),
+    secondary_scale=Number(1.0, unit=""),
     # OpenLatero takes whatever it does not know as parallel.
-    parallel = "parallel"
-    constraint = element.word("constraint", ("orthogonal", parallel), parallel)
-    orthogonal = constraint == "orthogonal" or element.one("constraint") is None
-    amplitudes = [
-        element.number(f"{which}_amplitude", 1.0, 0.0, 1.0, "share")
-        for which in ("primary", "secondary")
-    ]
+    constraint=Word("parallel", ("orthogonal", "parallel")),
+    primary_amplitude=SHARE,
+    secondary_amplitude=SHARE,
+)
+def _double(element: GenElement, context: GenContext) -> AnyPattern | None:
+    seed, angle = element["seed"], element["angle"]
+    ridge, gap = element["primary_ridge_size"], element["primary_gap_size"]
+    scale = element["secondary_scale"]
+    orthogonal = element["constraint"] == "orthogonal" or element.one("constraint") is None
+    amplitudes = element["primary_amplitude"], element["secondary_amplitude"]
     if min(ridge, ridge * scale) < LEAST_MM:
         element.say(f"its ridges are below {LEAST_MM} mm; left out")
         return None
@@ -256,12 +263,13 @@ def _double(element: GenElement, context: GenContext) -> AnyPattern | None:
     return None if pattern is None else _unread(pattern, element, context)
 
 
+@ROWS.row("Combo")
 def _combo(element: GenElement, context: GenContext) -> AnyPattern | None:
-    parts = [context.pattern(part) for part in element.every("Pattern")]
-    pattern = joined(element, parts, context)
+    pattern = read_group(element, context)
     return None if pattern is None else _changed(_carried(pattern, element), element, context)
 
 
+@ROWS.row("Blend")
 def _blend(element: GenElement, context: GenContext) -> AnyPattern | None:
     """A texture by the hand's movement."""
     parts = element.every("Pattern")
@@ -277,10 +285,9 @@ def _blend(element: GenElement, context: GenContext) -> AnyPattern | None:
     return _changed(_carried(pattern, element), element, context)
 
 
+@ROWS.row("Motion", cue_type=Word("none", _CUES), direction=ANGLE, velocity=MOTION["velocity"])
 def _motion(element: GenElement, context: GenContext) -> AnyPattern | None:
-    cue = element.word("cue_type", _CUES, "none")
-    angle = turned(element.number("direction", 0.0, -1e6, 1e6, "°"))
-    speed = element.number("velocity", 50.0, -_MOST_MM_S, _MOST_MM_S, "mm/s")
+    cue, angle, speed = element["cue_type"], turned(element["direction"]), element["velocity"]
     part = element.one("Pattern")
     pattern = LinearGrating(ridge_mm=8.0) if part is None else context.pattern(part)
     if pattern is None:
@@ -313,9 +320,9 @@ def _cued(pattern: AnyPattern, cue: str, angle_deg: float, speed_mm_s: float) ->
     return Group(operation="add", parts=(pattern, weak))
 
 
+@ROWS.row("Pattern", grid_width=Number(20.0, 0.1), grid_height=Number(20.0, 0.1))
 def _tile(element: GenElement, context: GenContext) -> AnyPattern | None:
-    width = element.number("grid_width", 20.0, 0.1, MOST_MM)
-    height = element.number("grid_height", 20.0, 0.1, MOST_MM)
+    width, height = element["grid_width"], element["grid_height"]
     found = element.one("Pattern")
     part: AnyPattern | None
     if found is None:
@@ -335,10 +342,16 @@ def _tile(element: GenElement, context: GenContext) -> AnyPattern | None:
 
 
 def _changed(pattern: AnyPattern, element: GenElement, context: GenContext) -> AnyPattern:
-    """Pattern with the changes that an element names."""
-    amplitude = element.number("amplitude", 1.0, 0.0, 1.0, "share")
-    inverted = element.switch("invert", False)
+    """Pattern with the changes that an element names, and not a word of the picture of it."""
+    element.skip("icon")
+    amplitude, inverted = element.read("amplitude", SHARE), element.read("invert", OFF)
     return changed(pattern, amplitude, inverted, vibration(element, context))
+
+
+def _even(pattern: AnyPattern, element: GenElement, context: GenContext) -> AnyPattern:
+    """Pattern that is the same everywhere, so that it shows no motion."""
+    element.skip("motion", "td_centric")
+    return _changed(pattern, element, context)
 
 
 def _unread(pattern: AnyPattern, element: GenElement, context: GenContext) -> AnyPattern:
@@ -357,31 +370,14 @@ def _unread(pattern: AnyPattern, element: GenElement, context: GenContext) -> An
 def _carried(pattern: AnyPattern, element: GenElement, *, moves: bool = True) -> AnyPattern:
     """Texture that moves as a whole (eq. 9.1), or stands where the array is, as an element says."""
     velocity = (0.0, 0.0)
-    motion = element.one("motion") if moves else None
-    if motion is not None and motion.switch("enable", False):
-        speed = motion.number("velocity", 50.0, -_MOST_MM_S, _MOST_MM_S, "mm/s")
-        direction = math.radians(motion.number("direction", 0.0, -1e6, 1e6, "°"))
+    motion = element.one("motion", MOTION) if moves else None
+    if motion is not None and motion["enable"]:
+        speed, direction = motion["velocity"], math.radians(motion["direction"])
         velocity = speed * math.cos(direction), speed * math.sin(direction)
     elif motion is not None:
         motion.forget()
     center = element.one("td_centric")
     if center is None and velocity == (0.0, 0.0):
         return pattern
-    place = None if center is None else center.place((0.0, 0.0))
+    place = None if center is None else ORIGIN.read(center)
     return Moving(part=pattern, velocity_mm_s=velocity, array_at_mm=place)
-
-
-_READERS: dict[str, Callable[[GenElement, GenContext], AnyPattern | None]] = {
-    "Null": _null,
-    "Plain": _plain,
-    "Vibration": _vibration,
-    "LinearGrating": _linear,
-    "RadialGrating": _radial,
-    "AxialGrating": _axial,
-    "DoubleLinearGrating": _double,
-    "Combo": _combo,
-    "Blend": _blend,
-    "Motion": _motion,
-    "Pattern": _tile,
-}
-SUBTYPES = tuple(_READERS)
