@@ -71,7 +71,7 @@ def marks(text: str) -> tuple[int, ...]:
 
 def expected_shares(text: str) -> dict[str, str]:
     """Pairs NAME=SHARE with commas between."""
-    pairs = {}
+    pairs: dict[str, str] = {}
     for part in text.split(","):
         name, equals, value = (side.strip() for side in part.partition("="))
         if not equals or not name or not value:

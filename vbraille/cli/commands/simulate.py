@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from vbraille.display import Display
 
 # Options that only one kind of device has, and what they are when they are not given.
-LATERO_ONLY: Final[dict[str, object]] = dict.fromkeys(LATERO)
+LATERO_ONLY: Final[Mapping[str, object]] = dict.fromkeys(LATERO)
 SERIAL_ONLY: Final[dict[str, object]] = {
     "model": "stress2",
     "rate": 1000,
