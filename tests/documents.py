@@ -9,6 +9,7 @@ from typing import get_args
 
 from msgspec import inspect as info
 
+from tests.scene import keyspage
 from vbraille.braille.geometry import Geometry
 from vbraille.config.options import BOOK, FILE, PROFILE, held_in
 from vbraille.reading.commands.game import COMMANDS as PLAYING
@@ -220,13 +221,40 @@ TABLES = (
 PARTS = (("session-format.md", "<!-- bytes: begin -->\n", "\n<!-- bytes: end -->", _bytes()),)
 
 
-def with_table(text, rows):
-    """A document in which the table that begins with the first row has these rows."""
+def with_table(text, rows, *, shown=True):
+    """A document in which the table that begins with the first row has these rows, or none."""
     first, *others = rows
-    table = "\n".join((first, "|" + "---|" * (first.count("|") - 1), *others, ""))
+    table = "\n".join((first, "|" + "---|" * (first.count("|") - 1), *others, "")) * shown
     start = text.index(f"{first}\n")
     found = re.compile(r"(?:\|.*\n)+").match(text, start)
     return text[:start] + table + text[found.end() :]
+
+
+# Pages that are no guides: specifications that a builder or an author of another program needs, and
+# records of what was decided, measured and checked.
+SPECIFICATIONS = (
+    *("wire-protocol.md", "session-format.md", "recording.md", "latero.md", "live-view.md"),
+    "tables.md",
+)
+RECORDS = ("decisions.md", "measured.md", "validation.md")
+_WORD = re.compile(r"\S*\w\S*")
+
+
+def words_of_guides():
+    """Number of words of each guide, without what is made from the program."""
+    pages = [DOCS.parent / "README.md", DOCS.parent / "CONTRIBUTING.md", *DOCS.glob("*.md")]
+    words = {}
+    for page in pages:
+        if page.name in SPECIFICATIONS + RECORDS:
+            continue
+        text = page.read_text(encoding="utf-8")
+        for name, rows in TABLES:
+            if name == page.name:
+                text = with_table(text, rows, shown=False)
+        if page.name == keyspage.PAGE.name:
+            text = with_part(text, keyspage.BEGIN, keyspage.END, "")
+        words[page.name] = len(_WORD.findall(text))
+    return words
 
 
 def with_part(text, begin, end, part):
@@ -242,3 +270,6 @@ if __name__ == "__main__":
     for name, *part in PARTS:
         page = DOCS / name
         page.write_text(with_part(page.read_text(encoding="utf-8"), *part), encoding="utf-8")
+    for name, words in sorted(words_of_guides().items(), key=lambda pair: -pair[1]):
+        print(f"{words:6} {name}")
+    print(f"{sum(words_of_guides().values()):6} words in guides")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.documents import DOCS, PARTS, TABLES, with_part, with_table
+from tests.documents import DOCS, PARTS, TABLES, with_part, with_table, words_of_guides
 from vbraille.cli.parser import parse
 
 ROOT = Path(__file__).parents[1]
@@ -125,6 +125,12 @@ def test_each_module_and_what_it_is_said_to_have_is_there(page):
             if place == ROOT / "vbraille":
                 parts = parts[:1]  # what a name of the front door has stands where it comes from
             assert all(re.search(rf"\b{part}\b", source) for part in parts), name
+
+
+def test_guides_have_at_most_35_000_words():
+    """Neither specifications, records nor what is made from the program is counted."""
+    words = words_of_guides()
+    assert sum(words.values()) <= 35_000, words
 
 
 def test_a_picture_has_words():
