@@ -62,13 +62,13 @@ SAID = [
 ]
 MOMENTS = [
     PlayedEvent(0.0, "line", "line 1 under the hand"),
-    PlayedEvent(2.4, "trial", "trial 12 of 78: letter, 2.6 mm dots"),
+    PlayedEvent(2.4, "trial", "trial 12 of 78: letter, 2.6 mm dots", None, "2.6 mm"),
     PlayedEvent(3.1, "cue", "cue: begin"),
-    PlayedEvent(7.85, "answer", "answer: n (right, after 4.7 s)"),
-    PlayedEvent(9.0, "trial", "trial 13 of 78: letter, 2.2 mm dots"),
+    PlayedEvent(7.85, "answer", "answer: n (right, after 4.7 s)", True, "2.6 mm"),
+    PlayedEvent(9.0, "trial", "trial 13 of 78: letter, 2.2 mm dots", None, "2.2 mm"),
     PlayedEvent(9.7, "cue", "cue: begin"),
     PlayedEvent(13.2, "tuning", "contrast: 0.9"),
-    PlayedEvent(16.4, "answer", "answer: m (asked: n, after 6.7 s)"),
+    PlayedEvent(16.4, "answer", "answer: m (asked: n, after 6.7 s)", False, "2.2 mm"),
     PlayedEvent(18.0, "pause", "the participant rests"),
     PlayedEvent(24.0, "line", "line 2 under the hand"),
     PlayedEvent(25.0, "trial", "trial 14 of 78: word, 2.6 mm dots"),

@@ -250,7 +250,9 @@ def test_a_recording_is_shown_at_the_times_that_are_asked_for():
     ):
         welcome = opened.hello()
         assert (welcome["playback"], welcome["length_s"]) == (True, COUNT / 60)
-        assert welcome["moments"][0] == {"at_s": 0.5, "kind": "line", "text": "line 1"}
+        assert welcome["moments"][0] == {
+            "at_s": 0.5, "kind": "line", "text": "line 1", "right": None, "condition": ""
+        }  # fmt: skip
         assert opened.bytes_of_frame(at_s=0.5) == canned_frame(30)
 
 

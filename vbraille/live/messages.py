@@ -232,11 +232,17 @@ class PlayedEvent(msgspec.Struct, frozen=True):
         Kind: "line", "trial", "cue", "answer", "fault", "tuning", "pause" or "note".
     text
         Sentence on what happened.
+    right
+        Whether an answer was right; None where nothing is right or wrong.
+    condition
+        Condition of the trial in which it happened; empty for none.
     """
 
     at_s: float
     kind: str
     text: str
+    right: bool | None = None
+    condition: str = ""
 
 
 class Welcome(msgspec.Struct, frozen=True, tag_field="tell", tag="welcome"):

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.bids import BidsRun
     from vbraille.sessions.record.events import JournalEvent
@@ -210,7 +211,7 @@ class SessionRecording(Playback):
         # The trace of the run before may go on after its last event, when the machine failed.
         shift_s = -begun_s if alone else max(self._end_s - begun_s, 0.0)
         told = [run.event, *run.events]
-        self.moments += moments_of(told, self._progress, -shift_s)
+        self.moments += moments_of(told, self._progress, self._record.protocol, -shift_s)
         if trace is None or first_ns is None:
             return
         first = self._runs[-1].stop if self._runs else 0
@@ -311,7 +312,7 @@ def _name(trial: Trial) -> str:
 
 
 def moments_of(
-    told: Iterable[JournalEvent], progress: Progress, begun_s: float = 0.0
+    told: Iterable[JournalEvent], progress: Progress, protocol: Protocol, begun_s: float = 0.0
 ) -> list[PlayedEvent]:
     """Make the moments of events, by time.
 
@@ -321,6 +322,8 @@ def moments_of(
         Events of the journal.
     progress
         State of the session after all of them.
+    protocol
+        Protocol of the session, by which answers are right or wrong.
     begun_s
         Time of the session at which the recording begins, in seconds that the session had run for.
     """
@@ -329,9 +332,23 @@ def moments_of(
         found = _say(event, progress)
         if found is not None:
             kind, text = found
-            made.append(PlayedEvent(max(event.t_s - begun_s, 0.0), kind, _in_trial(event) + text))
+            at_s, text = max(event.t_s - begun_s, 0.0), _in_trial(event) + text
+            made.append(PlayedEvent(at_s, kind, text, *_judged(event, progress, protocol)))
     # The journal may have an event a little later than one that happened after it.
     return sorted(made, key=lambda moment: moment.at_s)
+
+
+def _judged(event: JournalEvent, progress: Progress, protocol: Protocol) -> tuple[bool | None, str]:
+    """Tell whether an answer was right, None where nothing is, and the condition of its trial."""
+    if not isinstance(event, events.AnyTime):
+        return None, ""
+    told = (progress.practice if event.practice else progress.trials).get(event.trial)
+    if told is None:
+        return None, ""
+    correct = None
+    if isinstance(event, events.Answer):
+        correct = protocol.asks.columns(told.shown, event.answer).get("correct")
+    return (bool(correct) if isinstance(correct, int) else None), told.trial.condition
 
 
 def _in_trial(event: JournalEvent) -> str:

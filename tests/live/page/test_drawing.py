@@ -1,5 +1,8 @@
 """What the page draws is what the renderer made, and stands where the braille is."""
 
+import csv
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -159,6 +162,32 @@ def test_other_displays_are_drawn_too(opens, kind):
     last = page.evaluate("vbraille.last")
     assert last["rows"] * last["columns"] == len(page.evaluate(SHOWN))
     assert page.locator("#finger").get_attribute("role") == "slider"
+
+
+def test_picture_and_finger_are_side_by_side_and_the_moment_is_saved(opens):
+    scene = Scene("page")
+    page, _ = opens(scene)
+    settled(page)
+    sheet, touch = (page.locator(one).bounding_box() for one in ("#sheet", "#touch"))
+    assert touch["x"] >= sheet["x"] + sheet["width"]
+    assert abs(touch["y"] - page.locator("#page").bounding_box()["y"]) < 2
+    strain = page.locator("#strain canvas").bounding_box()
+    assert strain["y"] + strain["height"] <= 900
+    assert "up: stretched" in page.locator("#strain").inner_text()
+    assert {"speed along", "speed down"} <= set(page.locator("#readout").inner_text().split("\n"))
+
+    with page.expect_download(lambda one: one.suggested_filename.endswith(".csv")) as saved:
+        page.get_by_role("button", name="Save the moment").click()
+    head, *rows = csv.reader(Path(saved.value.path()).read_text().splitlines())
+    assert head[5:8] == ["row", "column", "deflection"]
+    assert len(rows) == len(page.evaluate("vbraille.last.deflections"))
+    page.get_by_role("button", name="Record").click()
+    settled(page)
+    with page.expect_download() as recorded:
+        page.get_by_role("button", name="Record").click()
+    head, *rows = csv.reader(Path(recorded.value.path()).read_text().splitlines())
+    assert len(rows) > 2
+    assert {len(row) for row in rows} == {len(head)}
 
 
 def test_a_blind_session_shows_where_the_hand_is_and_nothing_else(opens):

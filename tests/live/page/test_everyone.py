@@ -84,7 +84,7 @@ def test_a_lost_connection_is_said_once_and_begun_again(opens):
         "The connection to vbraille is lost. It is tried again every few seconds."
     ]
     assert faults(page) == []
-    assert page.get_by_role("button", name="Next line").is_disabled()
+    assert page.get_by_role("button", name="Next line").count() == 0
     with Served(Scene("still"), port=served.port):
         until(page, "told.at(-1) !== told[0]")
         assert page.evaluate("told.at(-1)") == "Connected again."
@@ -128,7 +128,8 @@ def test_keys_alone_reach_everything_and_focus_is_seen(opens):
     page, _ = opens(Scene("still"))
     stops = keys_of(page, 14)
     names = [name for name, _ in stops]
-    assert names[:5] == ["Skip to the page", "say", "freeze", "finger", "actuator"]
+    assert names[:5] == ["Skip to the page", "say", "freeze", "finger", "said"]
+    assert "actuator" in names
     assert all(seen for _, seen in stops), stops
     assert len(set(names)) == len(names)
 

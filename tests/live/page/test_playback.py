@@ -36,6 +36,10 @@ def test_the_frame_of_each_time_is_shown(opens):
     press("Next event")
     shows(28.316)
     assert page.locator(".moment[aria-current]").inner_text().split("\n")[-1].startswith("the dev")
+    page.locator("#kinds").select_option("wrong")
+    assert page.locator(".moment").count() == 1
+    press("Previous event")
+    shows(16.4)
     page.locator("#kinds").select_option("")
     page.get_by_role("button", name="answer: m").press("Enter")
     shows(16.4)
@@ -57,7 +61,16 @@ def test_the_frame_of_each_time_is_shown(opens):
     until(page, "document.querySelector('.play').textContent === 'Play'")
     assert page.evaluate(STANDS)
     assert "nothing can be turned" in page.locator("#knobs-note").inner_text()
-    assert page.locator(".timeline path").count() == 8  # a shape for each kind
+    assert page.locator(".timeline path").count() == 9  # a shape for each kind, and wrong answers
+    page.locator("#paint").select_option("condition")
+    assert "2.2 mm" in page.locator("#transport .legend").inner_text()
+    assert page.locator(".timeline path[fill]").count() == 4
+    page.locator("#paint").select_option("")
+    press("Zoom in")
+    assert page.locator(".timeline path").count() < 9
+    assert float(page.locator("#scrubber").get_attribute("max")) == 21
+    press("Zoom out")
+    assert page.locator(".timeline path").count() == 9
     shapes = page.locator(".moment path").evaluate_all("all => all.map((p) => p.getAttribute('d'))")
     assert len(set(shapes)) == 8
 

@@ -1,6 +1,7 @@
 /**
  * Being the hand of a simulated device: the array is drawn along by mouse, pen or finger, or goes
- * by arrow keys. At most one place is sent for each drawn frame, the newest.
+ * by arrow keys. A place is sent at its event, and no second one before the next picture is drawn;
+ * then the newest goes out.
  */
 
 import { sayWhere } from "./braille.js";
@@ -23,6 +24,7 @@ export class Hand {
   #frame = null;
   /** @type {Place | null} */
   #wanted = null; // not yet sent
+  #sent = false; // whether a place went out since the last picture
   /** @type {Place | null} */
   #target = null; // where the hand is or is going
   /** @type {{dx: number, dy: number} | null} */
@@ -142,6 +144,7 @@ export class Hand {
     this.#target = { x: Math.min(Math.max(place.x, low), high), y, theta: array.turns ? place.theta : 0 };
     this.#wanted = this.#target;
     this.moved = performance.now();
+    if (!this.#sent) this.#point();
     this.wake();
   }
 
@@ -152,11 +155,17 @@ export class Hand {
     if (document.activeElement === byId("let-go")) this.sheet.array.focus();
   }
 
-  /** Sends the newest place; called once for each drawn frame. */
+  /** Sends the newest place, if it has not gone out; called once for each picture. */
   send() {
+    this.#sent = false;
+    this.#point();
+  }
+
+  #point() {
     if (!this.#wanted) return;
     const { x, y, theta } = this.#wanted;
     this.#wanted = null;
+    this.#sent = true;
     this.ask({ ask: "point", x_mm: x, y_mm: y, theta_rad: theta });
   }
 

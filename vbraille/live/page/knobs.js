@@ -39,9 +39,10 @@ class Knob {
     this.less = button("−", () => this.#step(-1), { "aria-label": `${knob.label}: less by ${by}` });
     this.more = button("+", () => this.#step(1), { "aria-label": `${knob.label}: more by ${by}` });
     this.reason = html("p", { class: "reason", id: `${id}-reason` });
+    this.plain = html("span", { class: "plain" }); // in place of all of them where it cannot be turned
+    this.entry = html("span", { class: "value" }, this.number, html("span", { "aria-hidden": "true" }, unit));
     this.element = html("div", { class: "knob" },
-      html("label", { for: id }, knob.label), this.less, this.slider, this.more,
-      html("span", { class: "value" }, this.number, html("span", { "aria-hidden": "true" }, unit)), this.reason);
+      html("label", { for: id }, knob.label), this.less, this.slider, this.more, this.entry, this.plain, this.reason);
     this.slider.addEventListener("input", () => this.#set(this.#snap(this.#fromSlider())));
     this.slider.addEventListener("keydown", (event) => this.#key(event));
     this.number.addEventListener("input", () => (this.#typing = true));
@@ -126,11 +127,11 @@ class Knob {
   show(knob, steers) {
     this.knob = knob;
     const off = !steers || knob.fixed !== "";
-    for (const part of [this.slider, this.number, this.less, this.more]) part.disabled = off;
+    for (const part of [this.slider, this.entry, this.less, this.more]) part.hidden = off;
+    this.plain.hidden = !off;
+    write(this.plain, `${short(knob.value)} ${knob.unit}`.trim());
     write(this.reason, knob.fixed);
     this.reason.hidden = !knob.fixed;
-    if (knob.fixed) this.slider.setAttribute("aria-describedby", this.reason.id);
-    else this.slider.removeAttribute("aria-describedby");
     if (this.busy) return;
     this.#value = knob.value;
     this.#write();
@@ -173,7 +174,7 @@ export class Knobs {
       // What was asked for here and is not yet sent stays.
       if (!this.#turned.has(knob.name)) this.#knobs.get(knob.name)?.show(knob, steers);
     }
-    for (const each of this.buttons) each.disabled = !steers || state.knobs.length === 0;
+    byId("commands").hidden = !steers || state.knobs.length === 0;
     const pause = this.buttons[2];
     write(pause, state.paused ? "Go on reading" : "Rest the array");
     write(byId("knobs-note"), why);

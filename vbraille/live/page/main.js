@@ -1,6 +1,6 @@
 /**
  * The live view. A frame is drawn when the browser draws, the next is asked for when it is drawn,
- * and what is asked of the hand and the knobs goes out at the same time: once for each frame.
+ * and what is asked of the knobs goes out at the same time: once for each frame.
  */
 
 import { sayWhere } from "./braille.js";
@@ -11,6 +11,7 @@ import { Knobs } from "./knobs.js";
 import { DeflectionMap } from "./map.js";
 import { VERSION } from "./messages.js";
 import { Playback } from "./playback.js";
+import { Saving } from "./saving.js";
 import { Sheet } from "./sheet.js";
 import { Skin } from "./skin.js";
 import { Telling, tables } from "./telling.js";
@@ -89,6 +90,8 @@ const connection = new Connection(token(), {
 const ask = (request) => connection.ask(request);
 const sheet = new Sheet(byId("sheet"));
 const skin = new Skin(byId("deflection"), byId("strain"), byId("touch-note"));
+const saving = new Saving(skin);
+saving.now = () => /** @type {[State | null, Frame | null]} */ ([state, frame]);
 const traces = new Traces(byId("scopes"));
 const telling = new Telling();
 const knobs = new Knobs(ask);
@@ -204,6 +207,7 @@ function draw(now) {
   queue = [];
   sheet.move(state, frame);
   if (!state.blind) skin.move(state, frame);
+  saving.take(frame);
   hand.see(frame);
   if (playback.on) playback.show();
   drawn += 1;

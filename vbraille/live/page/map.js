@@ -1,6 +1,7 @@
 /** The deflection map: asked for, shown, and saved as a file. */
 
 import { byId, html, write } from "./drawing.js";
+import { save } from "./saving.js";
 
 export class DeflectionMap {
   /** @type {("show" | "save")[]} */
@@ -39,9 +40,7 @@ export class DeflectionMap {
     const purpose = this.#waiting.shift();
     const form = map.svg ? "svg" : "png";
     if (purpose === "save") {
-      const address = URL.createObjectURL(map.file);
-      html("a", { href: address, download: `deflection-map.${form}` }).click();
-      setTimeout(() => URL.revokeObjectURL(address), 10_000);
+      save(`deflection-map.${form}`, map.file);
       return write(byId("map-words"), `The map is saved as deflection-map.${form}.`);
     }
     if (this.#address) URL.revokeObjectURL(this.#address);

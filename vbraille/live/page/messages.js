@@ -55,6 +55,8 @@ const MAP_BYTES = 8;
  * @property {number} at_s
  * @property {string} kind
  * @property {string} text
+ * @property {boolean | null} [right]
+ * @property {string} [condition]
  *
  * @typedef {object} Welcome
  * @property {"welcome"} tell

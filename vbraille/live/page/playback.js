@@ -1,6 +1,7 @@
 /** Playing a recording back: pause, step, speed, and a timeline of what happened in it. */
 
 import { button, byId, html, svg, write } from "./drawing.js";
+import { colours, onScheme } from "./palette.js";
 import { clock } from "./traces.js";
 
 /** @typedef {import("./messages.js").Moment} Moment */
@@ -9,6 +10,7 @@ const SPEEDS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
 const STEP_S = 0.1;
 const INSET_PX = 5; // half of a slider's thumb
 const MOST_LISTED = 2000;
+const LEAST_SHOWN_S = 1; // of the timeline, however far it is zoomed
 
 /** A mark for each kind of moment: a shape around (x, 0), 10 pixels high. */
 const SHAPES = /** @type {Record<string, (x: number) => string>} */ ({
@@ -26,6 +28,8 @@ const NAMES = /** @type {Record<string, string>} */ ({
   pause: "pauses", note: "notes",
 });
 
+const WRONG = "wrong"; // of the choice of kinds
+
 export class Playback {
   at_s = 0;
   playing = false;
@@ -34,6 +38,8 @@ export class Playback {
   on = false;
   #since = /** @type {number | null} */ (null);
   #length = 0;
+  #from = 0; // what the timeline shows
+  #span = 0;
   #tick_s = 0.001;
   #speed = 1;
   #then = NaN;
@@ -53,6 +59,11 @@ export class Playback {
     this.speed = html("select", { id: "speed" },
       ...SPEEDS.map((speed) => html("option", { value: speed }, `${speed} ×`)));
     this.kinds = html("select", { id: "kinds" });
+    this.paint = html("select", { id: "paint" },
+      html("option", { value: "" }, "kind"), html("option", { value: "condition" }, "condition"));
+    this.painted = html("label", {}, "colour by ", this.paint);
+    this.paint.addEventListener("change", () => this.#mark());
+    onScheme(() => this.#mark());
     this.list = html("ol", { class: "moments", tabindex: 0, "aria-label": "Events of the recording" });
     this.legend = html("p", { class: "legend" });
     this.speed.value = "1";
@@ -72,7 +83,8 @@ export class Playback {
       html("div", { class: "buttons" },
         button("Previous event", () => this.#jump(-1)),
         button("Next event", () => this.#jump(1)),
-        html("label", {}, "of ", this.kinds)),
+        html("label", {}, "of ", this.kinds), this.painted,
+        button("Zoom in", () => this.#zoom(2)), button("Zoom out", () => this.#zoom(0.5))),
       this.list,
     );
     new ResizeObserver(() => this.#mark()).observe(this.marks);
@@ -88,10 +100,12 @@ export class Playback {
     if (!this.on) return;
     this.#length = welcome.length_s;
     this.#moments = welcome.moments;
-    this.scrubber.max = String(welcome.length_s);
+    [this.#from, this.#span] = [0, welcome.length_s];
     const found = [...new Set(welcome.moments.map((moment) => moment.kind))];
     this.kinds.replaceChildren(html("option", { value: "" }, "all kinds"),
-      ...found.map((kind) => html("option", { value: kind }, NAMES[kind] ?? kind)));
+      ...found.map((kind) => html("option", { value: kind }, NAMES[kind] ?? kind)),
+      ...(welcome.moments.some((moment) => moment.right === false) ? [html("option", { value: WRONG }, "wrong answers")] : []));
+    this.painted.hidden = !welcome.moments.some((moment) => moment.condition);
     write(byId("playback-note"), `${clock(welcome.length_s)} long, ${welcome.moments.length} events`);
     this.#draw();
     this.go(this.at_s);
@@ -105,7 +119,7 @@ export class Playback {
   /** Moments of the kinds that are chosen. */
   get #chosen() {
     const kind = this.kinds.value;
-    return this.#moments.filter((moment) => !kind || moment.kind === kind);
+    return this.#moments.filter((moment) => !kind || moment.kind === kind || (kind === WRONG && moment.right === false));
   }
 
   #draw() {
@@ -136,15 +150,46 @@ export class Playback {
     if (!this.on || width <= 0) return;
     /** @type {Map<string, string>} */
     const paths = new Map();
-    for (const { at_s, kind } of this.#chosen) {
-      const x = Math.round((INSET_PX + (at_s / (this.#length || 1)) * width) * 10) / 10;
-      paths.set(kind, (paths.get(kind) ?? "") + this.#shape(kind, x));
+    const within = this.#chosen.filter(({ at_s }) => at_s >= this.#from && at_s <= this.#from + this.#span);
+    const painted = this.paint.value !== "";
+    const conditions = [...new Set(this.#moments.map((moment) => moment.condition ?? ""))];
+    const palette = colours().conditions;
+    for (const { at_s, kind, right, condition } of within) {
+      const x = Math.round((INSET_PX + ((at_s - this.#from) / (this.#span || 1)) * width) * 10) / 10;
+      const sign = [kind, painted ? conditions.indexOf(condition ?? "") : "", right === false ? "wrong" : ""].join("|");
+      paths.set(sign, (paths.get(sign) ?? "") + this.#shape(kind, x));
     }
-    const drawn = [...paths].map(([kind, d]) => svg("path", { class: `mark ${kind}`, d, transform: "translate(0 8)" }));
-    this.marks.replaceChildren(...drawn);
-    this.legend.replaceChildren(...[...paths.keys()].map((kind) => html("span", {},
-      svg("svg", { viewBox: "-7 -7 14 14", class: "shape", "aria-hidden": "true" }, svg("path", { class: `mark ${kind}`, d: this.#shape(kind, 0) })),
-      NAMES[kind] ?? kind)));
+    /** @type {(number: string) => Record<string, string>} */
+    const fill = (number) =>
+      number === "" || !conditions[Number(number)] ? {} : { fill: palette[Number(number) % palette.length] };
+    this.marks.replaceChildren(...[...paths].map(([sign, d]) => {
+      const [kind, number, wrong] = sign.split("|");
+      const look = fill(number);
+      return svg("path", { class: `${"fill" in look ? "" : "mark "}${kind} ${wrong}`.trim(), d, transform: "translate(0 8)", ...look });
+    }));
+    const key = (/** @type {string} */ kind, /** @type {Record<string, string>} */ look, /** @type {string} */ words) => html("span", {},
+      svg("svg", { viewBox: "-7 -7 14 14", class: "shape", "aria-hidden": "true" },
+        svg("path", { class: "fill" in look ? "" : `mark ${kind}`, d: this.#shape(kind, 0), ...look })), words);
+    const kinds = [...new Set(within.map(({ kind }) => kind))];
+    this.legend.replaceChildren(...kinds.map((kind) => key(kind, {}, NAMES[kind] ?? kind)),
+      ...(painted ? conditions.flatMap((name, n) => (name ? [key("tuning", fill(String(n)), name)] : [])) : []));
+  }
+
+  /**
+   * Shows less of the timeline, or more, about the time of now.
+   * @param {number} times
+   */
+  #zoom(times) {
+    this.#span = Math.min(Math.max(this.#span / times, Math.min(LEAST_SHOWN_S, this.#length)), this.#length);
+    this.#from = this.at_s - this.#span / 2;
+    this.#look();
+    this.#mark();
+    this.show();
+  }
+
+  /** Keeps what the timeline shows within the recording. */
+  #look() {
+    this.#from = Math.min(Math.max(this.#from, 0), this.#length - this.#span);
   }
 
   #toggle() {
@@ -219,6 +264,13 @@ export class Playback {
   show() {
     const words = `${clock(this.at_s)} of ${clock(this.#length)}`;
     write(this.time, words);
+    if (this.at_s < this.#from - 1e-9 || this.at_s > this.#from + this.#span + 1e-9) {
+      this.#from = this.at_s - this.#span / 2;
+      this.#look();
+      this.#mark();
+    }
+    this.scrubber.min = String(this.#from);
+    this.scrubber.max = String(this.#from + this.#span);
     this.scrubber.value = String(this.at_s);
     this.scrubber.setAttribute("aria-valuetext", words);
     const current = this.#listed.findLastIndex((made) => Number(made.dataset.at) <= this.at_s + 1e-9);

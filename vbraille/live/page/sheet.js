@@ -14,7 +14,7 @@ import { onScheme, stepOf, steps } from "./palette.js";
 /** @typedef {import("./messages.js").LineShown} LineShown */
 /** @typedef {import("./braille.js").Distances} Distances */
 
-const LEAST_PX_MM = 3.4; // below that, a part of the line is shown, which follows the finger
+const LEAST_PX_MM = 2.5; // below that, a part of the line is shown, which follows the finger
 const MOST_PX_MM = 9;
 const LEFT_PX = 62;
 const LEFT_NARROW_PX = 40;

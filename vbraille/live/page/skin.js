@@ -5,7 +5,7 @@
 
 import { DOTS, distances, dotX, dotY, lineUnder, placeOf } from "./braille.js";
 import { Canvas, onSharpness } from "./canvas.js";
-import { fixed, html, ruler, short, svg } from "./drawing.js";
+import { fixed, html, ruler, short, svg, write } from "./drawing.js";
 import { STEPS, colours, onScheme, stepOf, steps } from "./palette.js";
 
 /** @typedef {import("./messages.js").State} State */
@@ -14,7 +14,7 @@ import { STEPS, colours, onScheme, stepOf, steps } from "./palette.js";
 
 const LEFT_PX = 58;
 const TOP_PX = 30;
-const MOST_HIGH_PX = 400;
+const MOST_HIGH_PX = 250;
 const NICE = [1, 2, 3, 4, 5, 8, 10, 15, 20, 30, 50];
 
 /**
@@ -86,6 +86,7 @@ export class Skin {
     this.legend = html("div", { class: "legend" });
     this.key = html("div", { class: "legend" });
     this.note = note;
+    write(this.key, "Bars between neighbours will show the strain of the skin: up where it is stretched, down where it is pressed.");
     leaning.append(html("div", { class: "over" }, this.left, this.#leaning.element, this.ring), html("figcaption", {}, this.legend));
     strained.append(html("div", { class: "over" }, this.right, this.#strained.element), html("figcaption", {}, this.key));
     this.figure = leaning;
@@ -359,6 +360,18 @@ export class Skin {
       if (high > 0) pen.fillRect(left, y[n] - high, wide, high);
       else pen.strokeRect(left, y[n], wide, -high);
     });
+  }
+
+  /** The two drawings of now, side by side, as one picture. */
+  picture() {
+    const [left, right] = [this.#leaning.element, this.#strained.element];
+    const made = html("canvas", { width: left.width + right.width + 16, height: Math.max(left.height, right.height) });
+    const pen = /** @type {CanvasRenderingContext2D} */ (made.getContext("2d"));
+    pen.fillStyle = this.#ink.paper;
+    pen.fillRect(0, 0, made.width, made.height);
+    pen.drawImage(left, 0, 0);
+    pen.drawImage(right, left.width + 16, 0);
+    return made;
   }
 
   /** Writes what is drawn into the elements, as text; a few times a second. */

@@ -41,6 +41,8 @@ export class Telling {
   /** @type {[number, number]} */
   #since = [NaN, NaN]; // tick and time from which the rate is measured
   #print = "";
+  /** @type {[number, number, number]} */
+  #down = [NaN, NaN, NaN]; // time and place from which the speed down the page is measured, and that speed
 
   /**
    * What the state says.
@@ -88,7 +90,8 @@ export class Telling {
     const readings = [["x", `${fixed(frame.x_mm)} mm`]];
     if (two) readings.push(["y", `${fixed(frame.y_mm)} mm`]);
     if (state.array?.turns) readings.push(["turned", `${degrees(frame.theta_rad)}°`]);
-    readings.push(["speed", `${fixed(frame.vx_mm_s, 0)} mm/s`]);
+    if (two) readings.push(["speed along", `${fixed(frame.vx_mm_s, 0)} mm/s`], ["speed down", `${fixed(this.#falling(frame), 0)} mm/s`]);
+    else readings.push(["speed", `${fixed(frame.vx_mm_s, 0)} mm/s`]);
     if (!state.blind && !state.scene) {
       readings.push(
         ["line", here ? String(here.line.number) : ""],
@@ -102,6 +105,19 @@ export class Telling {
     if (state.scene) write(byId("print"), state.scene.description);
     else this.#printed(here);
     this.#time(state, frame);
+  }
+
+  /**
+   * Speed down the page, in mm/s: from one reading to the next.
+   * @param {Frame} frame
+   */
+  #falling(frame) {
+    const [time, y, speed] = this.#down;
+    const passed = frame.time_s - time;
+    if (passed === 0) return speed; // the picture stands still
+    const near = passed > 0 && passed < RATE_S;
+    this.#down = [frame.time_s, frame.y_mm, near ? (frame.y_mm - y) / passed : NaN];
+    return this.#down[2];
   }
 
   /** @param {import("./braille.js").Under | null} here */
