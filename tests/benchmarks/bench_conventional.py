@@ -137,7 +137,7 @@ def _ours(brltty: Brltty) -> list[tuple[float, float]]:
             alongside.attend(reader)
             assert reader.line is not None
             came_ns = brltty.display.wait(reader.line.masks.tobytes()[: display.standing.columns])
-            first_ns = until(lambda: _first_ns(host.poll(), reader.line_number))
+            first_ns = until(lambda: _first_ns(host.poll(), reader.line.number))
             taken.append(((came_ns - first_ns) / 1e6, (came_ns - timed.told_ns) / 1e6))
     return taken
 

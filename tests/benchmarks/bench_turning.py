@@ -11,6 +11,7 @@ from tests.benchmarks.timing import Result
 from tests.conftest import TEXTS
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line
+from vbraille.reading.commands.table import calling
 from vbraille.reading.commands.turning import turn
 from vbraille.reading.device import OpenDevice
 from vbraille.render import STRESS2
@@ -52,7 +53,7 @@ def run() -> Iterator[Result]:
 def _turns(device: OpenDevice, name: str) -> list[float]:
     """Milliseconds from each turn to the first frame of the other style."""
     latencies = []
-    handlers = turn(name, -1), turn(name, 1)
+    handlers = calling(turn, name, -1), calling(turn, name, 1)
     for number in range(TURNS):
         _record(device, _SETTLED_S)
         reader = device.reader

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.reading.commands.test_choosing import Scroll
 from tests.reading.test_reader import TEXT, Bench
 from vbraille.config.options import OPTIONS
 from vbraille.config.settings import parse_settings
@@ -24,7 +23,7 @@ alt="A picture"><p><a href="#x">A link</a><p><a href="#x">Another link</a>"""
 
 def bench_with(keys=None, buttons=None, **options):
     bound = bound_by(Bindings(keys or {}, buttons or {}))
-    return Bench(TEXT, bound=bound, scroll=Scroll(), **options)
+    return Bench(TEXT, bound=bound, **options)
 
 
 def test_a_key_is_moved_to_another_command_and_help_says_so():
@@ -230,7 +229,7 @@ def test_learning_a_key_says_what_it_does_and_does_nothing():
         ]
         bench.reader.press_button(1)
         assert bench.said[-1] == "button 1: previous line"
-        assert bench.reader.line_number == 1
+        assert bench.reader.line.number == 1
         assert not bench.engine.paused
         assert bench.press(ends) == ["learn: off"]
         assert bench.reader.context is Context.READING

@@ -88,7 +88,7 @@ def test_the_line_under_the_hand_stands_there_and_its_keys_are_the_reader_s():
 def test_its_panning_keys_go_along_the_line_and_then_to_the_next():
     beside = Beside1()
     line, shown = beside.line, []
-    while beside.bench.reader.line_number == 1:
+    while beside.bench.reader.line.number == 1:
         shown.append(beside.standing)
         said = beside.press("FWINRT")
     assert b"".join(shown) == line
@@ -107,7 +107,7 @@ def test_the_hand_s_part_of_a_long_line_goes_with_them():
     assert reader.under.width < len(reader.line)
     beside.press("FWINRT")
     assert beside.press("FWINRT") == []
-    assert (reader.line_number, reader.window.offset) == (1, reader.under.width)
+    assert (reader.line.number, reader.window.offset) == (1, reader.under.width)
     assert beside.standing == beside.line[40:]
 
 
@@ -219,4 +219,4 @@ def test_sentences_stand_there_together_and_give_way_to_the_next():
     assert pins.shown[-1] == parts("place: row 1")[0]
     pins.tell(KeyPressed("LNDN", 0))
     view.attend()
-    assert bench.reader.line_number == 2
+    assert bench.reader.line.number == 2

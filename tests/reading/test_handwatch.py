@@ -86,7 +86,7 @@ def test_a_hand_that_turns_back_before_the_end_is_told(places, hopeless):
     assert (bench.reader.under.hopeless is not None) == hopeless
     if hopeless:
         assert bench.reader.under.hopeless.startswith("line 1 cannot be read to its end: ")
-    assert bench.reader.line_number == 1
+    assert bench.reader.line.number == 1
 
 
 @pytest.mark.no_cover
@@ -104,7 +104,7 @@ def test_a_line_that_the_device_did_not_take_is_not_read():
     bench.device.taking = False
     bench.device.move(there_and_back)
     bench.run(3)
-    assert bench.reader.line_number == 1
+    assert bench.reader.line.number == 1
     assert waiting(bench) == [
         "waiting: the device takes no frames, so that nothing is felt; switch it off and on, and "
         "line 1 goes on"
@@ -116,7 +116,7 @@ def test_a_line_that_the_device_did_not_take_is_not_read():
     assert bench.said[-1] == "device: takes frames again; line 1 is felt from here on"
     bench.device.move(there_and_back)
     bench.run(2.5)
-    assert bench.reader.line_number == 2
+    assert bench.reader.line.number == 2
     bench.device.taking = False
     bench.run(12)
     assert bench.reader.under.hopeless == (
@@ -146,7 +146,7 @@ def test_a_hand_that_never_comes_back_to_the_left_stop_is_told(places, hopeless)
         assert bench.reader.under.hopeless.startswith(
             "line 1 is read and never done: the finger turns"
         )
-    assert bench.reader.line_number == 1
+    assert bench.reader.line.number == 1
 
 
 @pytest.mark.no_cover

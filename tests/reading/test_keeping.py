@@ -40,6 +40,6 @@ def test_a_place_is_kept_once_a_second_and_at_the_end():
 
 def test_reading_begins_at_a_place():
     bench = Bench(TEXT, at=TEXT.index("five"))
-    assert bench.reader.line_number == 2
+    assert bench.reader.line.number == 2
     assert bench.press("b") == ["back: there was no jump"]
     assert bench.press("p") == ["line: 1"]

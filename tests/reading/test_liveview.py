@@ -152,11 +152,11 @@ def test_who_holds_the_hand_is_told_and_said():
 def test_a_held_hand_reads_line_after_line_and_is_never_told_to_hurry(attended):
     watch = Watch(SLOW, attended=attended)
     for number in (1, 2):
-        assert watch.reader.line_number == number
+        assert watch.reader.line.number == number
         for x_mm in (-5.4, 100.0, 290.0, 100.0, -5.4):
             watch.hold(x_mm)
         watch.step()
-    assert watch.reader.line_number == 3
+    assert watch.reader.line.number == 3
     for _ in range(4):  # to and fro short of the end, and still for long
         watch.hold(60.0)
         watch.hold(-5.4)
@@ -236,7 +236,7 @@ def test_a_place_in_a_book_whose_lines_are_not_counted_is_told_as_a_share():
     state = watch.viewed.changed()
     assert re.fullmatch("about (4[0-9]|50) %", state.place)
     (under,) = [line for line in state.lines if line.under]
-    assert under.number == watch.reader.line_number & 0xFFFF_FFFF
+    assert under.number == watch.reader.line.number & 0xFFFF_FFFF
     assert under.number < 1 << 32
 
 

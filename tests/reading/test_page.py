@@ -43,7 +43,7 @@ class Bench(Held):
 
     @property
     def line(self):
-        return self.reader.line_number
+        return self.reader.line.number
 
     @property
     def page(self):

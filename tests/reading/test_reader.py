@@ -9,6 +9,7 @@ import pytest
 from tests.engine.test_loop import Recording, biggest_step, run, straight
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import LocalEngine
+from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
 from vbraille.reading.commands.table import BOUND
 from vbraille.reading.outputs import Echo
@@ -128,8 +129,9 @@ def test_a_range_of_lines():
     assert bench.reader.lines == 1
 
 
-def test_a_range_past_the_end_is_done_at_once():
-    assert Bench(first=9).reader.done
+def test_a_range_past_the_end_is_refused():
+    with pytest.raises(InputError, match=r"ends at line \d+; line 9 is past that"):
+        Bench(first=9)
 
 
 @pytest.mark.no_cover

@@ -32,7 +32,8 @@ def test_a_line_has_the_time_of_its_cells(scroll, cells, seconds):
 def test_another_speed_counts_at_once_for_the_present_line(scroll):
     def turn(since_s):
         if since_s == pytest.approx(2.5):
-            assert scroll.faster() == "9.6 cells a second"
+            assert scroll.turn(1)
+            assert scroll.words == "9.6 cells a second"
 
     # Half of 40 cells at 8 a second, the other half at 9.6.
     assert time_of(scroll, 40, turn) == pytest.approx(20 / 8 + 20 / 9.6, abs=0.05)
@@ -40,24 +41,17 @@ def test_another_speed_counts_at_once_for_the_present_line(scroll):
 
 def test_speeds_go_in_steps_to_their_bounds_and_back_to_where_they_were(scroll):
     up = [scroll.speed_cells_s]
-    while "fastest" not in scroll.faster():
+    while scroll.turn(1):
         up.append(scroll.speed_cells_s)
     assert up == [8.0, 9.6, 11.5, 13.8, 16.6, 19.9, 23.9, 28.7, 30.0]
-    assert scroll.sentence == "autoscroll: 30 cells a second"
+    assert scroll.words == "30 cells a second"
     down = [scroll.speed_cells_s]
-    while "slowest" not in scroll.slower():
+    while scroll.turn(-1):
         down.append(scroll.speed_cells_s)
     assert down[:9] == up[::-1]
     assert down[-1] == 1.0
-    assert scroll.sentence == "autoscroll: 1 cell a second"
+    assert scroll.words == "1 cell a second"
     assert all(1.02 <= faster / slower <= 1.25 for faster, slower in pairwise(down))
-
-
-def test_a_speed_that_was_kept_is_the_same_again():
-    for speed in (1.0, 5.6, 8.0, 17.3, 30.0):
-        assert Scroll(speed).speed_cells_s == speed
-    with pytest.raises(ValueError, match=r"autoscroll is 0\.5 cells a second; it must be 1 to 30"):
-        Scroll(0.5)
 
 
 def test_time_in_which_nobody_looks_does_not_count(scroll):
@@ -77,9 +71,3 @@ def test_the_line_at_which_it_is_turned_on_has_all_its_time(scroll):
     assert not scroll.due(1, 300.0)
     assert not scroll.due(1, 300.1)
     assert scroll.due(1, 300.2)
-
-
-def test_the_speed_is_said_with_its_bounds():
-    assert Scroll().sentence == "autoscroll: 8 cells a second"
-    assert Scroll(30.0).faster() == "30 cells a second, the fastest"
-    assert Scroll(1.0).slower() == "1 cell a second, the slowest"

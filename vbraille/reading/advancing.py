@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from vbraille.engine.engine import HOME_MM
 from vbraille.engine.record import Flag
-from vbraille.errors import check_range
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -288,25 +286,10 @@ _MOST_S: Final = 0.25
 
 
 class Scroll:
-    """Time that a line is given by its number of cells, whatever the hand does.
+    """Time that a line is given by its number of cells, whatever the hand does."""
 
-    Parameters
-    ----------
-    speed_cells_s
-        Cells a second, 1 to 30.
-
-    Raises
-    ------
-    ValueError
-        If the speed is out of range.
-    """
-
-    def __init__(self, speed_cells_s: float = USUAL_CELLS_S) -> None:
-        check_range(
-            "autoscroll", speed_cells_s, SLOWEST_CELLS_S, FASTEST_CELLS_S, " cells a second"
-        )
-        # Steps from the usual speed: counted, so that as many back lead to the same speed.
-        self._steps = math.log(speed_cells_s / USUAL_CELLS_S, STEP)
+    def __init__(self) -> None:
+        self._steps = 0  # from the usual speed: counted, so that as many back lead to the same
         self._on = False
         self._passed = 0.0  # cells of the line for which the time is over
         self._till_s: float | None = None  # when that was so
@@ -329,17 +312,19 @@ class Scroll:
         return round(min(max(speed, SLOWEST_CELLS_S), FASTEST_CELLS_S), 1)
 
     @property
-    def sentence(self) -> str:
-        """Sentence that says the speed."""
-        return f"autoscroll: {self._words}"
+    def words(self) -> str:
+        """Words for the speed."""
+        speed = self.speed_cells_s
+        return f"{speed:g} {'cell' if speed == 1 else 'cells'} a second"
 
-    def faster(self) -> str:
-        """Turn the speed up by a fifth; give words for it, with "the fastest" if it cannot be."""
-        return self._turn(1, "the fastest")
-
-    def slower(self) -> str:
-        """Turn the speed down by as much as `faster` turns it up; give words for it likewise."""
-        return self._turn(-1, "the slowest")
+    def turn(self, step: int) -> bool:
+        """Turn the speed up by a fifth, or down by as much if -1; False if that is no change."""
+        before = self.speed_cells_s
+        self._steps += step
+        if self.speed_cells_s == before:
+            self._steps -= step
+            return False
+        return True
 
     def begin(self, now_s: float) -> None:
         """Note that a line has come under the hand, by a clock in seconds that does not go back."""
@@ -369,16 +354,3 @@ class Scroll:
             return False
         self.begin(now_s)
         return True
-
-    @property
-    def _words(self) -> str:
-        speed = self.speed_cells_s
-        return f"{speed:g} {'cell' if speed == 1 else 'cells'} a second"
-
-    def _turn(self, steps: int, bound: str) -> str:
-        before = self.speed_cells_s
-        self._steps += steps
-        if self.speed_cells_s == before:
-            self._steps -= steps
-            return f"{self._words}, {bound}"
-        return self._words

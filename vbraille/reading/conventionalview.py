@@ -258,7 +258,7 @@ class ConventionalView(_OnDisplay):
 
     def _cells(self, reader: Reader) -> bytes:
         standing, window = self._display.standing, reader.window
-        if window is not None and standing is not None:
+        if standing is not None:
             first = max(window.offset, 0)
             self._pane.follow(window.line, standing.columns, reader.cell, first)
         return self._pane.cells
@@ -277,7 +277,7 @@ class ConventionalView(_OnDisplay):
             return
         window, line = reader.window, reader.line
         reader.call(f"display {key.name}", command)
-        if step < 0 and reader.line is not None and reader.line is not line:
+        if step < 0 and reader.line is not line:
             self._pane.end(reader.line, reader.cell)
         elif reader.window is not window:
             self._pane.reset()
@@ -285,8 +285,6 @@ class ConventionalView(_OnDisplay):
     def _pan(self, reader: Reader, step: int) -> bool:
         """Go along the line by the display's width, the hand too; False if the line ends here."""
         window = reader.window
-        if window is None:
-            return False
         panned = self._pane.pan(step, reader.cell)
         if not panned:  # so that the command goes on to another line
             there = window.last if step > 0 else window.showing(0)
@@ -301,7 +299,7 @@ class ConventionalView(_OnDisplay):
     def _go_to(self, reader: Reader, cell: int) -> None:
         """Say what a cell of the line is, and bring it under the finger."""
         source = None
-        if reader.line is not None and cell < len(reader.line):
+        if cell < len(reader.line):
             source = reader.line.source(cell)
         if source is not None:
             reader.bring_under(source[0])

@@ -391,10 +391,8 @@ class OpenDevice:
             width = cells_per_line(model.style.geometry, model.display)
             chosen = choose_table(language, grade, table)
             text = lay_out_text(text, width, chosen, keep_lines=keep_lines)
-        if at is None:
-            _check_lines(text, first, last)
         services.setdefault("bound", BOUND)
-        self._view = self._reader = Reader(
+        reader = Reader(
             text,
             self.engine,
             model=model,
@@ -408,7 +406,8 @@ class OpenDevice:
             steering=self.steering,
             **services,
         )
-        self._reader.start()
+        reader.start()
+        self._view = self._reader = reader
 
     def explore(self, view: View) -> None:
         """Have a view under the hand that is no text; what keys and buttons mean is the view's."""
@@ -487,7 +486,7 @@ class OpenDevice:
             # The hand was at the end of the line between two ticks, or its recording is over.
             if self._once:
                 reader.quit()
-            elif ticks["line"][-1] == reader.under.number:
+            elif ticks["line"][-1] == reader.under.surface.number:
                 reader.go_on()
         if reader.under.hopeless is not None:
             raise DeviceError(reader.under.hopeless)
@@ -626,13 +625,3 @@ def open_to_read(
         opened.close()
         raise
     return opened
-
-
-def _check_lines(layout: Layout, first: int, last: int | None) -> None:
-    """Raise InputError if a text has no such lines; of a last one past its end it has all."""
-    if first < 1:
-        raise InputError(f"first is {first}; it must be 1 or more")
-    if last is not None and last < first:
-        raise InputError(f"last is {last} and first is {first}; last must not be before first")
-    if layout.line(first) is None:
-        raise InputError(f"the text ends at line {layout.count()}; line {first} is past that")

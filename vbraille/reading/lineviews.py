@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
@@ -58,8 +59,8 @@ class TextView:
 
     Attributes
     ----------
-    surface : Surface or None
-        What lies on the surface; None before the first.
+    surface : Surface
+        What lies on the surface, and the row that the finger is in, or was in last.
     style : BrailleStyle
         How lines are shown.
     width : int
@@ -87,7 +88,7 @@ class TextView:
         key: str,
         figures: Callable[[], Figures] | None = None,
     ) -> None:
-        self.surface: Surface | None = None
+        self.surface: Surface  # from the first `put` on
         self.style = model.style
         self.shown = 0
         self.patient = False
@@ -98,7 +99,6 @@ class TextView:
         self.figured = Figured(figures, model.display)
         self.alone: View | None = None
         self._awaited = False  # whether the page's figures are still to be compiled
-        self._row = 0  # of the line that the finger is on, or was on last
         self._y_mm: float | None = None  # where the finger is, and the part of what is shown there
         self._part = -1
         self._near, self._near_ns = -1, 0  # the row that the finger came to last, and when
@@ -114,21 +114,16 @@ class TextView:
         self._too_fast_said = False
 
     @property
-    def window(self) -> Window | None:
-        """Part of the line that the finger is on, or was on last; None before the first."""
-        return None if self.surface is None else self.surface.windows[self._row]
-
-    @property
-    def number(self) -> int:
-        """Number by which records call what is shown; 0 before the first."""
-        return 0 if self.surface is None else self.surface.number
+    def window(self) -> Window:
+        """Part of the line that the finger is on, or was on last."""
+        return self.surface.window
 
     @property
     def row(self) -> int:
         """Row of a page that the finger is in now; the first if it is not on the page."""
         if self._y_mm is None:
             return 0
-        if self.surface is not None and 0 <= self._part < len(self.surface.windows):
+        if 0 <= self._part < len(self.surface.windows):
             return self._part
         row = math.floor(self._y_mm / self.style.geometry.line_pitch_mm)
         return row if 0 <= row < self.rows else 0
@@ -150,17 +145,17 @@ class TextView:
     @property
     def cells(self) -> int:
         """Number of cells that are shown."""
-        return 0 if self.surface is None else sum(map(len, self.surface.there))
+        return sum(map(len, self.surface.there))
 
     @property
     def hopeless(self) -> str | None:
         """Reason why the line will not come to its end without help; None without one."""
-        return None if self.window is None else self._waiting.hopeless
+        return self._waiting.hopeless
 
     @property
     def reached(self) -> bool:
         """Tell whether the hand has been at the end."""
-        return self.window is not None and self._end.reached
+        return self._end.reached
 
     def width_in(self, style: BrailleStyle) -> int:
         """Largest number of cells that can be shown in a style.
@@ -186,36 +181,31 @@ class TextView:
         self.shown += 1
         self._foot = PageFoot(len(surface.windows))
         self._enter(surface.row, name)
-        # Braille comes at once, and figures join it when they are compiled.
+        self._show_again()
+
+    def _show_again(self) -> None:
+        """Show the surface: braille comes at once, and figures join it when they are compiled."""
         self.figured.forget()
-        self._awaited = bool(surface.kept)
-        self._render(surface)
+        self._awaited = bool(self.surface.kept)
+        self._render(self.surface)
         self.steer()
 
     def come_back(self) -> None:
         """Put the text under the hand again, after a figure was felt in its place."""
-        surface = self.surface
-        if surface is not None:
-            self.figured.forget()
-            self._awaited = bool(surface.kept)
-            self._render(surface)
-            self.steer()
+        self._show_again()
 
     def complete(self) -> None:
         """Have the figures of a page that was put under the hand join its lines."""
-        if self._awaited and self.surface is not None and self.figured.ready:
+        if self._awaited and self.figured.ready:
             self._awaited = False
             self._render_figures(self.surface)
 
     def _enter(self, row: int, name: str) -> None:
         """Begin to follow the finger along the line of a row."""
-        self._row = row
+        self.surface = replace(self.surface, row=row)
         self._begun = False
-        window = self.window
-        assert self.surface is not None
-        assert window is not None
         span_mm = self._display.span_mm
-        self._end_mm = self._end_of(window)
+        self._end_mm = self._end_of(self.window)
         self._end = EndOfLine(span_mm, self._end_mm)
         by_hand = self._by_hand and not self.surface.paged
         self._waiting = LineWatch(span_mm, self._end_mm, name, by_hand=by_hand, key=self._key)
@@ -236,7 +226,7 @@ class TextView:
             Whether it is another line than before.
         """
         surface = self.surface
-        if surface is None or not surface.paged:
+        if not surface.paged:
             return False
         rows = surface.line_rows(ticks["part"])
         row = int(rows[-1])
@@ -245,13 +235,11 @@ class TextView:
             self._near = row
             begun = others[-1] + 1 if others.size else 0
             self._near_ns = int(ticks["time_ns"][begun])
-        if row == self._row or not surface.has(row):
+        if row == surface.row or not surface.has(row):
             return False
         if int(ticks["time_ns"][-1]) - self._near_ns < _STAY_NS:
             return False
-        window = surface.windows[row]
-        assert window is not None
-        self._enter(row, name(window.line))
+        self._enter(row, name(replace(surface, row=row).window.line))
         return True
 
     def show_in(self, style: BrailleStyle) -> None:
@@ -262,14 +250,12 @@ class TextView:
         self.width = self.width_in(style)
         self.rows = rows_on(self._display, style)
         self._too_fast_said = False
-        if self.surface is not None and not (
-            self.figured.placed and self._render_figures(self.surface)
-        ):
+        if not (self.figured.placed and self._render_figures(self.surface)):
             self._render(self.surface)
 
     def steer(self) -> None:
         """Have a simulated hand read the line under it; a person's hand does so by itself."""
-        if self._steering is None or self.surface is None:
+        if self._steering is None:
             return
         if not self.surface.paged:
             self._steering.give(ReadLine(self._end_mm))
@@ -287,15 +273,13 @@ class TextView:
 
     def felt(self, ticks: NDArray[np.void]) -> NDArray[np.void]:
         """Take of some ticks those in which the line was to be felt."""
-        if self.surface is None:
-            return ticks[:0]
         if self.figured.placed and ticks.size:
             ticks = ticks.copy()
             lines = len(self.surface.windows)
             ticks["part"] = self.figured.rows_of(ticks["y_mm"], self.style, lines)
         if ticks.size and not math.isnan(ticks["y_mm"][-1]):
             self._y_mm, self._part = float(ticks["y_mm"][-1]), int(ticks["part"][-1])
-        ticks = ticks[(ticks["line"] == self.number) & (ticks["flags"] & _PAUSED == 0)]
+        ticks = ticks[(ticks["line"] == self.surface.number) & (ticks["flags"] & _PAUSED == 0)]
         if not ticks.size:
             self._waiting.rest()
             self._foot.rest()
@@ -308,9 +292,9 @@ class TextView:
         """
         # What the device did not take was not felt, and neither was anything beside the line.
         felt = ticks["flags"] & (_HELD | _TURNED) == 0
-        paged = self.surface is not None and self.surface.paged
+        paged = self.surface.paged
         if paged:
-            felt &= ticks["part"] == self._row
+            felt &= ticks["part"] == self.surface.row
         felt_mm = ticks["x_mm"][felt]
         if not self._begun:  # a hand that was at the end when the line came has not read it
             before = np.flatnonzero(felt_mm < self._end_mm)

@@ -27,7 +27,7 @@ from vbraille.reading.commands.table import COMMANDS
 from vbraille.reading.commands.turning import turn_to
 from vbraille.reading.keys import Context
 from vbraille.reading.outputs import Output
-from vbraille.reading.position import is_counted, line_name, percent
+from vbraille.reading.position import line_name, percent
 from vbraille.wording import printable, spelled
 
 if TYPE_CHECKING:
@@ -219,16 +219,13 @@ class ReadState(ExploredState):
     def _parts(self) -> dict[str, Any]:
         reader = self._device.reader
         style, layout, line = reader.style, reader.layout, reader.line
-        where = ""
-        if line is not None:
-            counted = f"{line_name(layout, line)}, " if is_counted(layout) else ""
-            where = f"{counted}{percent(layout, line)} %"
+        counted = f"{line_name(layout, line)}, " if layout.counted else ""
         return {
             "title": self._title,
             "geometry": geometry_shown(style.geometry),
             "rows_shown": rows_shown(style, self._device.display),
-            "lines": [] if line is None else list(self._lines(line)),
-            "place": where,
+            "lines": list(self._lines(line)),
+            "place": f"{counted}{percent(layout, line)} %",
             "knobs": knobs_shown(style),
             "mapping": say_mapping(style.mapping),
         }
@@ -237,8 +234,6 @@ class ReadState(ExploredState):
         """Lines to be drawn, from top to bottom."""
         reader = self._device.reader
         window, layout, surface = reader.window, reader.layout, reader.under.surface
-        assert window is not None, "a line is under the hand"
-        assert surface is not None
         pitch_mm = reader.style.geometry.line_pitch_mm
         if surface.paged:
             for row, part in enumerate(surface.windows):

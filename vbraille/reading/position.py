@@ -18,19 +18,9 @@ _SEARCH_S = 0.005
 _LEAST_SHARE = 1e-4  # of a book, from which the rest is estimated
 
 
-def is_counted(layout: Layout) -> bool:
-    """Tell whether line numbers are counted from the beginning of the book."""
-    return layout.counted
-
-
-def first_character(line: Line) -> int:
-    """Place of the source at which a line begins."""
-    return line.place
-
-
 def block_of(source: Source, line: Line) -> int:
     """Number of the block that a line is of; 0 if the source does not find it."""
-    return source.block_at(first_character(line)) or 0
+    return source.block_at(line.place) or 0
 
 
 def before(source: Source, line: Line, kind: BlockKind) -> Block | None:
@@ -66,7 +56,7 @@ def percent(layout: Layout, line: Line) -> str:
 
 def line_name(layout: Layout, line: Line) -> str:
     """Name a line for a sentence; one whose number is not known is "the line"."""
-    return f"line {layout.number_of(line)}" if is_counted(layout) else "the line"
+    return f"line {layout.number_of(line)}" if layout.counted else "the line"
 
 
 def place_sentence(layout: Layout, line: Line, what: str = "") -> str:
@@ -79,7 +69,7 @@ def place_sentence(layout: Layout, line: Line, what: str = "") -> str:
     what
         Words for what stands there, which come first; empty for none.
     """
-    if is_counted(layout):
+    if layout.counted:
         number = layout.number_of(line)
         return f"{what}, line {number}" if what else f"line: {number}"
     label = page_label(layout.book.source, line)
@@ -98,7 +88,7 @@ def heading_name(line: Line) -> str:
 def whereabouts(layout: Layout, line: Line) -> Iterator[str]:
     """Sentences on where a line is, one thing each."""
     source = layout.book.source
-    counted = is_counted(layout)
+    counted = layout.counted
     if counted:
         yield f"line: {layout.number_of(line)}"
     label = page_label(source, line)
@@ -128,7 +118,7 @@ def words_left(source: Source, line: Line) -> tuple[int, bool]:
         after = block.text.end
     here = source.block(number)
     if here is not None:  # what stands in the block before the line
-        words -= len(to_text(here.text.codes[: here.text.index(first_character(line))]).split())
+        words -= len(to_text(here.text.codes[: here.text.index(line.place)]).split())
     if source.block(last + 1) is None:
         return max(words, 0), True
     before_it, after_it = (share_before(source, place) for place in (line.place, after))

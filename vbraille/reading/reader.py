@@ -6,14 +6,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.engine import Upright
+from vbraille.errors import InputError
+from vbraille.reading.advancing import Scroll
 from vbraille.reading.keys import Context
 from vbraille.reading.lineviews import TextView
 from vbraille.reading.outputs import Echo
 from vbraille.reading.position import (
     LINES_PER_PAGE,
-    first_character,
     heading_name,
-    is_counted,
     line_name,
     page_label,
     place_sentence,
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
     from vbraille.engine.engine import Engine
     from vbraille.layout.pages import Layout, Line
-    from vbraille.reading.advancing import Scroll
     from vbraille.reading.keys import Bound
     from vbraille.reading.library import Bookmark, KeptBook
     from vbraille.reading.lineviews import Figures
@@ -113,8 +112,8 @@ class PlaceKeeper:
         (layout, line), self._place = self._place, None
         self._keep(
             layout,
-            first_character(line),
-            line=layout.number_of(line) if is_counted(layout) else None,
+            line.place,
+            line=layout.number_of(line) if layout.counted else None,
             lines_before=layout.lines_before(line),
             page=page_label(layout.book.source, line),
         )
@@ -160,8 +159,6 @@ class Reader(View):
         Process that looks through the whole book; None to do so here.
     kept
         What is kept of the book between two readings; None to keep it while this one lasts.
-    scroll
-        What brings lines by time when the reader asks for that; None if nothing does.
     cue
         Function that is called with short signals, beside the sentences.
     save_style
@@ -178,6 +175,8 @@ class Reader(View):
         Lines that are read.
     under : TextView
         What is under the hand.
+    scroll : Scroll
+        Brings lines by time, when it is on.
     search : Search
         Search in the whole book.
     fold_accents : bool
@@ -186,8 +185,6 @@ class Reader(View):
         Text that was looked for last.
     backward : bool
         Whether it was looked for backward.
-    skip_blank : bool
-        Whether lines without a dot are passed over.
     lines : int
         Number of lines read so far: those that were under the hand.
     """
@@ -211,7 +208,6 @@ class Reader(View):
         bound: Bound,
         seeker: Seeker | None = None,
         kept: KeptBook | None = None,
-        scroll: Scroll | None = None,
         cue: Callable[[Cue], None] = lambda _: None,
         save_style: Callable[[BrailleStyle], str] | None = None,
         verbose: bool = False,
@@ -220,7 +216,7 @@ class Reader(View):
         super().__init__(engine, say, bound, cue)
         self.range = LineRange(layout, first, last)
         self.echo = echo
-        self.scroll = scroll
+        self.scroll = Scroll()
         key = self.key("LNDN", "n") if stay else ""
         self.under = TextView(
             engine, model, steering, say, by_hand=advance, key=key, figures=figures
@@ -234,7 +230,6 @@ class Reader(View):
         self.fold_accents, self.backward = True, False
         self.sought = ""
         self.followed: Mark | None = None  # link or reference that was followed last
-        self.skip_blank = False
         self.lines = 0
         # Whether lines are as wide as the user says, and not as wide as the hand can go.
         self._fixed = layout.width != self.under.width
@@ -263,25 +258,20 @@ class Reader(View):
         return self.under.style
 
     @property
-    def window(self) -> Window | None:
-        """Part of a line that is under the hand; None before the first."""
+    def window(self) -> Window:
+        """Part of a line that is under the hand, once reading has started."""
         return self.under.window
 
     @property
-    def line(self) -> Line | None:
-        """Line under the hand; None before the first."""
-        return None if self.window is None else self.window.line
-
-    @property
-    def line_number(self) -> int:
-        """Number of the line under the hand; 0 before the first."""
-        return 0 if self.window is None else self.window.line.number
+    def line(self) -> Line:
+        """Line under the hand, once reading has started."""
+        return self.window.line
 
     @property
     def cell(self) -> int | None:
         """Number of the line's cell under the middle of the array; None if there is none."""
         x_mm = self.engine.x_mm
-        if self.window is None or x_mm is None or self.under.figure is not None:
+        if x_mm is None or self.under.figure is not None:
             return None
         return self.window.cell_at(x_mm, self.style.geometry)
 
@@ -293,13 +283,11 @@ class Reader(View):
     def character_of(self, cell: int | None) -> int:
         """Place of the source that a cell of the line stands for; where the line begins if none."""
         window = self.window
-        if window is None:
-            return 0
         for known in (cell, max(window.offset, 0)):
             source = None if known is None else window.line.source(known)
             if source is not None:
                 return source[0]
-        return first_character(window.line)
+        return window.line.place
 
     @property
     def kept(self) -> KeptBook | Unkept:
@@ -310,7 +298,7 @@ class Reader(View):
     def hit(self) -> int | None:
         """Place of what was found last; None if that is not on the line under the hand."""
         line, hit = self.line, self._hit
-        if line is None or hit is None or not len(line.cells):
+        if hit is None or not len(line.cells):
             return None
         return hit if int(line.cells.starts[0]) <= hit < line.cells.end else None
 
@@ -324,13 +312,24 @@ class Reader(View):
         self.under.steer()
 
     def start(self) -> None:
-        """Put the first line under the hand, or the one at which to begin."""
-        if self._at is None or not self.jump(self._at, back=False):
-            line = self.range.line(self.range.first)
-            if line is None:
-                self.done = True
-            else:
-                self.put(Window(line, self.under.width))
+        """Put the first line under the hand, or the one at which to begin.
+
+        Raises
+        ------
+        InputError
+            If there is no line to read.
+        """
+        if self._at is not None and self.jump(self._at, back=False):
+            return
+        first, last = self.range.first, self.range.last
+        if first < 1:
+            raise InputError(f"first is {first}; it must be 1 or more")
+        if last is not None and last < first:
+            raise InputError(f"last is {last} and first is {first}; last must not be before first")
+        if not self.go(first):
+            raise InputError(
+                f"the text ends at line {self.layout.count()}; line {first} is past that"
+            )
 
     def step(self, ticks: NDArray[np.void]) -> None:
         """Look where the hand was in ticks, which are all since the last call."""
@@ -356,7 +355,7 @@ class Reader(View):
         home = self.under.follow(ticks)
         if self.under.reached and not was_reached:
             self.cue(self._end_cue())
-        by_hand = self._advance and not (self.scroll is not None and self.scroll.on)
+        by_hand = self._advance and not self.scroll.on
         if home and by_hand and not self._finished:
             self.go_on()
             return
@@ -381,22 +380,20 @@ class Reader(View):
             self._count(self.search.seeker)
         self.keeping.step(now_s)
         self.under.complete()
-        scroll, window = self.scroll, self.window
-        if scroll is not None and self._scrolled != self.under.shown:
+        if self._scrolled != self.under.shown:
             self._scrolled = self.under.shown
-            scroll.begin(now_s)
-        if scroll is None or not scroll.on or resting or self._finished or window is None:
-            return
-        if scroll.due(self.under.cells, now_s):
+            self.scroll.begin(now_s)
+        waits = resting or self._finished
+        if self.scroll.on and not waits and self.scroll.due(self.under.cells, now_s):
             self.go_on()
 
     def _count(self, seeker: Seeker) -> None:
         """Have the lines before this one counted, where their number is not known."""
-        layout, line = self.layout, self.line
-        if self._counting or layout.counted or line is None or layout.book is not self._book:
+        layout = self.layout
+        if self._counting or layout.counted or layout.book is not self._book:
             return
         self._counting = True
-        seeker.ask(CountLines(layout.width, layout.block_of(line)))
+        seeker.ask(CountLines(layout.width, layout.block_of(self.line)))
 
     def _take_count(self, counted: Counted) -> None:
         self._counting = False
@@ -405,15 +402,15 @@ class Reader(View):
 
     def _end_cue(self) -> Cue:
         """Signal for the end of the line: whether it is also that of a page."""
-        following = self.layout.line(self.line_number + 1)
-        if following is None or (self.window is not None and self.window.right is not None):
+        following = self.layout.line(self.line.number + 1)
+        if following is None or self.window.right is not None:
             return Cue.LINE_END
         if following.block.kind is BlockKind.PAGE:
             return Cue.PAGE_END
         surface = self.under.surface
-        if surface is not None and surface.paged:
+        if surface.paged:
             return Cue.PAGE_END if self.window is surface.there[-1] else Cue.LINE_END
-        number = 0 if self.line is None else self.layout.number_of(self.line)
+        number = self.layout.number_of(self.line)
         return Cue.PAGE_END if number % LINES_PER_PAGE == 0 else Cue.LINE_END
 
     def leave_figure(self) -> None:
@@ -425,10 +422,8 @@ class Reader(View):
 
     def go_on(self) -> None:
         """Put what follows under the hand; if there is nothing, reading is finished."""
-        if self.window is None:
-            return
         if self.pan(1):
-            if self._paged:
+            if self.under.surface.paged:
                 self.cue(Cue.PAGE_END)
         elif not self.turn_page(1):
             self.finish()
@@ -438,8 +433,7 @@ class Reader(View):
 
         On a page the parts of all lines are put there.
         """
-        here = self._here
-        surface = None if here is None else here.panned(step)
+        surface = self.under.surface.panned(step)
         if surface is not None:
             self._put(surface)
         return surface is not None
@@ -449,12 +443,9 @@ class Reader(View):
 
         It is said which lines a page has. Where one line is shown, that is the page.
         """
-        here = self.under.surface
-        if here is None:
-            return False
-        if not here.paged:
+        if not self.under.surface.paged:
             return self.go_by(step)
-        page = self._turned(here, step)
+        page = self._turned(step)
         if page is None:
             return False
         self.cue(Cue.PAGE_END)
@@ -463,41 +454,26 @@ class Reader(View):
         self._put(replace(page, row=row) if page.has(row) else page)
         return True
 
-    def _turned(self, here: Surface, step: int) -> Surface | None:
-        """The page after one, or before it; None if there are no lines."""
-        under = self.under
-        skip, rows = self.skip_blank, under.rows
-        return turned(self.range, here, step, rows, skip_blank=skip, keep=under.keep)
+    def _turned(self, step: int) -> Surface | None:
+        """The page after the present one, or before it; None if there are no lines."""
+        return turned(self.range, self.under.surface, step, self.under.rows, self.under.keep)
 
     def _page_sentence(self, page: Surface) -> str:
         """Say the lines of a page, or its beginning while lines are not counted."""
         first, last = page.there[0].line, page.there[-1].line
-        if not is_counted(self.layout):
+        if not self.layout.counted:
             return place_sentence(self.layout, first)
         numbers = [self.layout.number_of(line) for line in (first, last)]
         return (
             f"page: line {numbers[0]}" if first is last else "page: lines {} to {}".format(*numbers)
         )
 
-    @property
-    def _paged(self) -> bool:
-        return self.under.surface is not None and self.under.surface.paged
-
-    @property
-    def _here(self) -> Surface | None:
-        """Surface under the hand, with the row that the finger is in as the one that is meant."""
-        surface, window = self.under.surface, self.window
-        return None if surface is None else replace(surface, row=surface.windows.index(window))
-
     def _prefetch(self) -> None:
         """Lay out what comes next."""
-        here = self.under.surface
-        if here is None:
-            return
-        if here.paged:
-            self._turned(here, 1)
+        if self.under.surface.paged:
+            self._turned(1)
         else:
-            self.layout.line(self.line_number + 1)
+            self.layout.line(self.line.number + 1)
 
     def go_by(self, step: int, *, at_end: bool = False) -> bool:
         """Put the next line under the hand, or the one before; False if that is not to be read.
@@ -509,7 +485,7 @@ class Reader(View):
         at_end
             Whether to show the last part of the line.
         """
-        line = self.range.following(self.line_number, step, skip_blank=self.skip_blank)
+        line = self.range.following(self.line.number, step)
         if line is None:
             return False
         window = Window(line, self.under.width)
@@ -526,14 +502,13 @@ class Reader(View):
 
     def announce(self, what: str = "") -> None:
         """Say which line is under the hand, and what it is, unless its echo has just done so."""
-        if not self._echoed and self.line is not None:
+        if not self._echoed:
             self.say(place_sentence(self.layout, self.line, what))
 
     def finish(self) -> None:
         """Come to the end of the text; another reading begins at its beginning."""
         self.cue(Cue.LIMIT)
-        if self.scroll is not None:
-            self.scroll.on = False
+        self.scroll.on = False
         if self._stay:
             self._finished = True
             self.say(
@@ -551,12 +526,11 @@ class Reader(View):
         back
             Whether to keep the present place, for `jump_back`.
         """
-        before = self.character
         found = self.range.place(character)
         if found is None:
             return False
         if back:
-            self.keep_way_back(before)
+            self.keep_way_back()
         line, cell = found
         self.put(Window(line, self.under.width).showing(cell))
         return True
@@ -585,8 +559,7 @@ class Reader(View):
 
     def announce_jump(self, what: str = "") -> None:
         """Say which line a jump has led to, and which heading, or something else, that is."""
-        line = self.line
-        self.announce(what or ("" if line is None else heading_name(line)))
+        self.announce(what or heading_name(self.line))
 
     def bring_under(self, place: int) -> bool:
         """Move the line so that a place of it is under the finger, and keep that place as `hit`.
@@ -597,7 +570,7 @@ class Reader(View):
             False if the place is not on the line under the hand, which then stays as it is.
         """
         before, found = self.window, self.range.place(place)
-        if before is None or found is None or found[0].number != before.line.number:
+        if found is None or found[0].number != before.line.number:
             return False
         cell = self.cell
         self.keep_way_back()
@@ -684,7 +657,7 @@ class Reader(View):
             before = self.under.rows, self.style.geometry.line_pitch_mm
             self.under.show_in(style)
             after = self.under.rows, style.geometry.line_pitch_mm
-            if before != after and any((before[0], after[0])) and self.window is not None:
+            if before != after and any((before[0], after[0])):
                 self.put(self.window)  # the lines of a page stand elsewhere, or there are more
         else:
             self.lay_out_again(style=style)
@@ -725,19 +698,19 @@ class Reader(View):
         self._put_under_finger(*found, before, cell, geometry)
 
     def _put_under_finger(
-        self, line: Line, cell: int, before: Window | None, at: int | None, geometry: Geometry
+        self, line: Line, cell: int, before: Window, at: int | None, geometry: Geometry
     ) -> None:
         """Put a cell of a line where another one was: under the finger, if that was on one.
 
         Parameters
         ----------
         before, at
-            Part of a line and its cell that were there; None if there was none.
+            Part of a line and its cell that were there; None for no cell.
         geometry
             Distances in which it was shown.
         """
         window, x_mm = Window(line, self.under.width), self.engine.x_mm
-        if before is None or at is None or x_mm is None:
+        if at is None or x_mm is None:
             self.put(window.showing(cell))
         else:
             share = before.share_at(x_mm, geometry)
@@ -745,16 +718,14 @@ class Reader(View):
 
     def put(self, window: Window) -> None:
         """Put a part of a line under the hand; on a page, with the lines before and after it."""
-        rows = self.under.rows
-        if rows:
-            row = self.under.row
-            skip, keep = self.skip_blank, self.under.keep
-            self._put(around(self.range, window, row, rows, skip_blank=skip, keep=keep))
+        under = self.under
+        if under.rows:
+            self._put(around(self.range, window, under.row, under.rows, under.keep))
         else:
             self._put(Surface((window,)))
 
     def _put(self, surface: Surface) -> None:
-        another = self.line is None or self.line.number != surface.window.line.number
+        another = not self.under.shown or self.line.number != surface.window.line.number
         self.under.put(surface, line_name(self.layout, surface.window.line))
         self._finished = False
         self._came(another=another)
@@ -762,7 +733,6 @@ class Reader(View):
     def _came(self, *, another: bool) -> None:
         """Take note that a line is under the hand, which may be the same as before."""
         line = self.line
-        assert line is not None, "a line is under the hand"
         self.lines += another
         self._prefetched = False
         self._echoed = another and self.echo is not Echo.NONE

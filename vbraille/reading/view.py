@@ -73,37 +73,54 @@ class Prompt:
         for character in text:
             self.press(character)
 
-    @property
-    def here(self) -> str:
-        """Character at the cursor; empty at the end."""
-        return self.typed[self.cursor : self.cursor + 1]
+    def erase_before(self) -> str:
+        """Erase the character before the cursor, without a word."""
+        self._erase(self.cursor - 1, self.cursor)
+        return ""
 
-    @property
-    def word_start(self) -> int:
-        """Place where the word before the cursor begins."""
-        return self.typed[: self.cursor].rstrip().rfind(" ") + 1
+    def erase_next(self) -> str:
+        """Erase the character at the cursor, and give a sentence on the one that is there then."""
+        self._erase(self.cursor, self.cursor + 1)
+        return self._at_cursor()
 
-    def erase(self, start: int, end: int | None = None) -> str:
-        """Take away, and give, what stands between two places; up to the cursor if one is given."""
-        start, end = max(start, 0), self.cursor if end is None else end
-        gone = self.typed[start:end]
-        self.typed = self.typed[:start] + self.typed[end:]
-        self.cursor = min(self.cursor, start)
-        return gone
+    def erase_word(self) -> str:
+        """Erase the word before the cursor, and give a sentence on it."""
+        start = self.typed[: self.cursor].rstrip().rfind(" ") + 1
+        return f"erased: {self._erase(start, self.cursor).strip() or 'nothing'}"
 
-    def move(self, steps: int) -> None:
-        """Move the cursor by so many characters, as far as there is text."""
+    def erase_start(self) -> str:
+        """Erase all before the cursor, and give a sentence on it."""
+        return f"erased: {self._erase(0, self.cursor).strip() or 'nothing'}"
+
+    def move(self, steps: int) -> str:
+        """Move the cursor as far as there is text, and give a sentence on what is there."""
         self.cursor = min(max(self.cursor + steps, 0), len(self.typed))
+        return self._at_cursor()
 
-    def bring(self, step: int) -> bool:
-        """Take one of the others for what is typed; False if there is none on that side."""
-        before = len(self.others) if self.at is None else self.at
-        at = before + step
+    def bring(self, step: int) -> str:
+        """Take one of the others for what is typed, and give a sentence on it."""
+        at = step + (len(self.others) if self.at is None else self.at)
         if not 0 <= at < len(self.others):
-            return False
+            return f"{self.label}: none {'before' if step < 0 else 'after'} this"
         self.at, self.typed = at, self.others[at]
         self.cursor = len(self.typed)
-        return True
+        return self.say_typed()
+
+    def say_typed(self) -> str:
+        """Give a sentence on what is typed so far."""
+        return f"{self.label}: {self.typed or 'nothing'}"
+
+    def _erase(self, start: int, end: int) -> str:
+        """Take away, and give, what stands between two places."""
+        start = max(start, 0)
+        erased = self.typed[start:end]
+        self.typed = self.typed[:start] + self.typed[end:]
+        self.cursor = min(self.cursor, start)
+        return erased
+
+    def _at_cursor(self) -> str:
+        key = self.typed[self.cursor : self.cursor + 1]
+        return f"cursor: {spoken(key, typed=True) if key else 'end'}"
 
     def keep(self, answer: str) -> None:
         """Keep an answer among the others, for the next time."""

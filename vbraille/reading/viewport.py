@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from vbraille.layout.pages import Layout
-from vbraille.reading.position import first_character
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -108,11 +107,14 @@ class LineRange:
         Lines of the book.
     first, last : int or None
         Numbers of the first and last line, from 1; None for the end.
+    skip_blank : bool
+        Whether lines without a dot are passed over when one follows another.
     """
 
     layout: Layout
     first: int = 1
     last: int | None = None
+    skip_blank: bool = False
 
     def line(self, number: int) -> Line | None:
         """Line of a number; None if it is none of these."""
@@ -123,11 +125,11 @@ class LineRange:
         found = self.layout.place(character)
         return None if found is None or not self._has(found[0].number) else found
 
-    def following(self, number: int, step: int, *, skip_blank: bool) -> Line | None:
-        """Next line after one, or before it where the step is -1, perhaps one that has dots."""
+    def following(self, number: int, step: int) -> Line | None:
+        """Next line after one, or before it where the step is -1."""
         while True:
             line = self.layout.line(number + step) if self._has(number + step) else None
-            if line is None or not skip_blank or line.masks.any():
+            if line is None or not self.skip_blank or line.masks.any():
                 return line
             number = line.number
 
@@ -137,9 +139,9 @@ class LineRange:
         numbers: list[int | None] = []
         for number in (self.first, self.last):
             line = self.layout.line(number) if number is not None and number > 1 else None
-            place = None if line is None else layout.place(first_character(line))
+            place = None if line is None else layout.place(line.place)
             numbers.append(number if place is None else place[0].number)
-        return LineRange(layout, numbers[0] or 1, numbers[1])
+        return LineRange(layout, numbers[0] or 1, numbers[1], self.skip_blank)
 
     def _has(self, number: int) -> bool:
         if self.first == 1 and self.last is None:
@@ -241,8 +243,6 @@ def around(
     window: Window,
     row: int,
     rows: int,
-    *,
-    skip_blank: bool = False,
     keep: Callable[[Line], int] = _no_rows,
 ) -> Surface:
     """Make a page with a part of a line in a row, and what is before and after it around it.
@@ -256,8 +256,6 @@ def around(
     row, rows
         Row that it is put into, and number of rows; a line with a figure goes higher if the figure
         needs that. A figure that would not be on the page as a whole is left out with its line.
-    skip_blank
-        Whether lines without dots are left out.
     keep
         Function that tells how many rows to keep free below a line for its figure.
     """
@@ -271,9 +269,9 @@ def around(
 
     number, free = window.line.number, keep(window.line)
     row = min(row, rows - 1 - free)
-    above = _fitting(_walk(lines, number, -1, skip_blank=skip_blank), row, keep)
+    above = _fitting(_walk(lines, number, -1), row, keep)
     left = rows - row - 1 - free
-    below = _fitting(_walk(lines, number, 1, skip_blank=skip_blank), left, keep)
+    below = _fitting(_walk(lines, number, 1), left, keep)
     found = [*above[::-1], (window.line, free), *below]
     before = row - sum(1 + free for _, free in above)
     return _stacked([(part(line), free) for line, free in found], before=before, row=row)
@@ -284,8 +282,6 @@ def turned(
     surface: Surface,
     step: int,
     rows: int,
-    *,
-    skip_blank: bool = False,
     keep: Callable[[Line], int] = _no_rows,
 ) -> Surface | None:
     """Make the page after one, or before it where the step is -1; None if there are no lines.
@@ -298,21 +294,19 @@ def turned(
         The page.
     rows
         Number of rows of a page.
-    skip_blank
-        Whether lines without dots are left out.
     keep
         Function that tells how many rows to keep free below a line for its figure.
     """
     at = surface.there[-1 if step > 0 else 0]
-    found = _fitting(_walk(lines, at.line.number, step, skip_blank=skip_blank), rows, keep)
+    found = _fitting(_walk(lines, at.line.number, step), rows, keep)
     if not found:
         return None
     if step < 0:
         found.reverse()
         top, end = found[0][0].number, found[-1][0].number
-        if lines.following(top, -1, skip_blank=skip_blank) is None:  # the first page is a whole one
+        if lines.following(top, -1) is None:  # the first page is a whole one
             left = rows - sum(1 + free for _, free in found)
-            found += _fitting(_walk(lines, end, 1, skip_blank=skip_blank), left, keep)
+            found += _fitting(_walk(lines, end, 1), left, keep)
     return _stacked([(Window(line, at.width), free) for line, free in found])
 
 
@@ -340,9 +334,9 @@ def _stacked(parts: Iterable[tuple[Window, int]], *, before: int = 0, row: int =
     return Surface(tuple(windows), row, paged=True, kept=kept)
 
 
-def _walk(lines: LineRange, number: int, step: int, *, skip_blank: bool) -> Iterator[Line]:
+def _walk(lines: LineRange, number: int, step: int) -> Iterator[Line]:
     """Lines after one, or before it, one after the other."""
-    line = lines.following(number, step, skip_blank=skip_blank)
+    line = lines.following(number, step)
     while line is not None:
         yield line
-        line = lines.following(line.number, step, skip_blank=skip_blank)
+        line = lines.following(line.number, step)

@@ -21,16 +21,14 @@ class Scroll:
         self.begun_s = None
         self.cells = []
 
-    sentence = "autoscroll: 8 cells a second"
+    words = "8 cells a second"
 
     def begin(self, now_s):
         self.begun_s = now_s
 
-    def faster(self):
-        return "9.6 cells a second"
-
-    def slower(self):
-        return "1 cell a second, the slowest"
+    def turn(self, step):
+        self.words = "9.6 cells a second" if step > 0 else "1 cell a second"
+        return step > 0
 
     def due(self, line_cells, now_s):
         self.cells.append(line_cells)
@@ -79,9 +77,10 @@ def test_braille_that_is_read_as_it_is_has_no_table():
 
 def test_lines_come_by_time_while_the_reader_wants_it_and_does_not_rest():
     scroll, cues = Scroll(), []
-    bench = Bench(TEXT, scroll=scroll, cue=cues.append, stay=True)
+    bench = Bench(TEXT, cue=cues.append, stay=True)
+    bench.reader.scroll = scroll
     bench.run(1.5)
-    assert bench.reader.line_number == 1
+    assert bench.reader.line.number == 1
     assert bench.press("v") == ["autoscroll: 8 cells a second"]
     bench.run(0.5)
     assert bench.press("+-") == [
@@ -89,21 +88,17 @@ def test_lines_come_by_time_while_the_reader_wants_it_and_does_not_rest():
         "autoscroll: 1 cell a second, the slowest",
     ]
     assert cues == [Cue.LIMIT]
-    assert bench.reader.line_number == 2  # the time was over when it was switched on
+    assert bench.reader.line.number == 2  # the time was over when it was switched on
     assert set(scroll.cells) == {len(bench.layout.line(1)), len(bench.layout.line(2))}
     bench.press(" ")
     bench.run(2)
-    assert bench.reader.line_number == 2
+    assert bench.reader.line.number == 2
     bench.press(" ")
     bench.run(2.5)
     assert bench.said[-1] == "end of text; p goes back, q stops"
     assert not scroll.on
-    assert bench.press("v") == ["autoscroll: 8 cells a second"]
+    assert bench.press("v") == ["autoscroll: 1 cell a second"]
     assert bench.press("v") == ["autoscroll: off"]
-
-
-def test_without_a_scroll_it_is_said():
-    assert Bench(TEXT).press("v+-") == ["autoscroll: there is none here"] * 3
 
 
 FRENCH = "<p>A word, <span lang='fr'>la forêt était très belle</span>, and on.</p>"

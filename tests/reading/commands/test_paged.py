@@ -95,7 +95,7 @@ def test_a_command_does_and_says_what_its_key_does():
     by_key, by_page = bench(), bench()
     for name, key in (("LNDN", "n"), ("INFO", "i"), ("PAUSE", " "), ("MAPPING", "#"), ("BOT", ">")):
         assert asked(by_page, PagePress(name)) == by_key.press(key)
-        assert by_page.reader.line_number == by_key.reader.line_number
+        assert by_page.reader.line.number == by_key.reader.line.number
     assert by_page.reader.engine.paused
     assert by_page.reader.style == by_key.reader.style
 
@@ -118,4 +118,4 @@ def test_while_the_keys_mean_something_else_a_page_does_nothing(context):
     sentence = "live view: not now; what the keys have begun comes first"
     assert asked(made, PagePress("LNDN"), Turn("texture", 0.5)) == [sentence] * 2
     assert made.reader.style == style
-    assert made.reader.line_number == 1
+    assert made.reader.line.number == 1

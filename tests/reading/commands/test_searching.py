@@ -138,7 +138,7 @@ def test_escape_gives_a_search_up_and_a_failure_is_said():
     assert seeker.cancelled == 1
     seeker.answers = [Found(text.index("needle"), document.index())]
     bench.run(0.05)
-    assert bench.reader.line_number == 1
+    assert bench.reader.line.number == 1
     bench.press("/needle\n")
     seeker.answers = [Failed("the file is gone")]
     bench.run(0.05)

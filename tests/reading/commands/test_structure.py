@@ -146,7 +146,7 @@ def test_a_note_is_followed_and_left_again(bench):
 def test_where_am_i_says_line_page_percent_heading_and_words(bench):
     bench.press("rn")
     assert bench.press("i") == [
-        f"line: {bench.reader.line_number}",
+        f"line: {bench.reader.line.number}",
         "page: 2",
         f"percent: {100 * bench.layout.progress(bench.reader.line):.0f}",
         "heading: A section",

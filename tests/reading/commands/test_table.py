@@ -68,6 +68,6 @@ def test_while_the_left_stop_is_asked_for_any_key_is_the_answer():
         assert bench.device.zeroed == number
     assert bench.press([PASTE]) == ["paste: text that is pasted is passed over; type the keys"]
     assert bench.device.zeroed == 4
-    assert bench.reader.line_number == 1
+    assert bench.reader.line.number == 1
     bench.reader.press("q")
     assert bench.reader.done

@@ -12,6 +12,7 @@ from tests.reading.test_reader import SPAN_MM, Bench
 from tests.tiers import examples
 from vbraille.config.settings import KNOBS
 from vbraille.layout.texts import cells_per_line
+from vbraille.reading.commands.table import calling
 from vbraille.reading.commands.turning import (
     change_mapping,
     save_settings,
@@ -63,12 +64,12 @@ def test_each_knob_says_its_value_and_stops_at_its_bounds_with_a_cue(name):
     knob = KNOBS[name]
     before = knob.value(one.reader.style)
     if before < knob.high:
-        (said,) = does(one, turn(name, 1))
+        (said,) = does(one, calling(turn, name, 1))
         assert said == f"{knob.label}: {before + knob.step:g} {knob.unit}".strip()
         assert knob.value(one.reader.style) == pytest.approx(before + knob.step)
         assert not one.cues
-    does(one, turn(name, -100_000))
-    (said,) = does(one, turn(name, -1))
+    does(one, calling(turn, name, -100_000))
+    (said,) = does(one, calling(turn, name, -1))
     assert said.startswith(f"{knob.label}: {knob.value(one.reader.style):g}")
     assert ", the least" in said
     assert one.cues[-1] is Cue.LIMIT
@@ -76,24 +77,24 @@ def test_each_knob_says_its_value_and_stops_at_its_bounds_with_a_cue(name):
 
 def test_a_width_is_said_with_its_unit():
     one = bench()
-    assert does(one, turn("dot_width_mm", -1)) == ["dot width: 2.4 mm"]
-    assert does(one, turn("texture_cycles", 1)) == ["texture cycles: 9"]
-    assert does(one, turn("texture_cycles", 1)) == ["texture cycles: 11"]
-    assert does(one, turn("texture_cycles", 1)) == ["texture cycles: 11, the most"]
+    assert does(one, calling(turn, "dot_width_mm", -1)) == ["dot width: 2.4 mm"]
+    assert does(one, calling(turn, "texture_cycles", 1)) == ["texture cycles: 9"]
+    assert does(one, calling(turn, "texture_cycles", 1)) == ["texture cycles: 11"]
+    assert does(one, calling(turn, "texture_cycles", 1)) == ["texture cycles: 11, the most"]
 
 
 def test_a_dot_stays_narrower_than_a_cell_and_a_cell_on_the_line():
     one = bench()
     one.reader.tune(dot_width_mm=11.0)
-    assert does(one, turn("dot_width_mm", 1)) == [
+    assert does(one, calling(turn, "dot_width_mm", 1)) == [
         "dot width: 11 mm, the most: a dot must not be wider than the cell pitch"
     ]
-    assert does(one, turn("cell_gap_mm", -1)) == [
+    assert does(one, calling(turn, "cell_gap_mm", -1)) == [
         "cell gap: 7.4 mm, the least: a dot must not be wider than the cell pitch"
     ]
     assert one.cues == [Cue.LIMIT] * 2
     one.reader.tune(travel_mm=27.0)
-    assert does(one, turn("dot_spacing_mm", 100))[0].endswith(
+    assert does(one, calling(turn, "dot_spacing_mm", 100))[0].endswith(
         "the most: the carriage would have no room for a cell"
     )
 
@@ -124,7 +125,7 @@ def test_where_one_row_of_dots_is_shown_it_is_turned_and_texture_has_one_wavelen
     for _ in range(3):
         change_mapping(reader)
     assert reader.said == [f"dot row: {row}" for row in (2, 3, 1)]
-    turn("texture_cycles", 1)(reader)
+    turn(reader, "texture_cycles", 1)
     assert reader.said[3:] == [
         "texture cycles: 7, the most: the texture of this display has a fixed wavelength"
     ]
@@ -134,8 +135,8 @@ def test_where_one_row_of_dots_is_shown_it_is_turned_and_texture_has_one_wavelen
 def test_undo_takes_back_one_turn_after_the_other():
     one = bench(tuning=Tuning(texture=0.5))
     first = one.reader.style
-    does(one, turn("texture", 1))
-    does(one, turn("cell_gap_mm", -1))
+    does(one, calling(turn, "texture", 1))
+    does(one, calling(turn, "cell_gap_mm", -1))
     does(one, change_mapping)
     assert [does(one, undo_turn)[0] for _ in range(4)] == [
         "undo: mapping alternate",
@@ -164,7 +165,7 @@ def test_a_turn_is_felt_within_50_ms_and_nothing_jumps(name):
     while not one.loop.output.any():  # over a dot
         put(one, one.engine.x_mm + 1)
     before, sent = one.loop.output.copy(), len(one.device.sent)
-    turn(name, -2)(one.reader)
+    turn(one.reader, name, -2)
     run(one.loop, 0.3)
     frames = one.device.sent[sent - 1 :]
     moved = [np.abs(frame - before).max() > 0.002 for frame in frames]
@@ -191,7 +192,7 @@ def test_the_character_under_the_finger_stays_there_and_nothing_is_lost(x_mm, tu
     for name, steps in turns:
         cell, before, geometry = reader.cell, reader.window, reader.style.geometry
         span = None if cell is None else before.line.source(cell)
-        turn(name, steps)(reader)
+        turn(reader, name, steps)
         assert text_of(reader.layout) == whole
         if span is None:
             continue

@@ -23,7 +23,6 @@ from vbraille.config.settings import settle, with_profile
 from vbraille.devices.registry import check_actuators, check_height, check_travel, find_driver
 from vbraille.display import USUAL_RATE_HZ, check_rate
 from vbraille.errors import InputError
-from vbraille.reading.advancing import Scroll
 from vbraille.reading.commands.table import bound_for
 from vbraille.reading.device import HAND
 from vbraille.reading.exploration import Exploration
@@ -113,7 +112,6 @@ def run(arguments: argparse.Namespace) -> int:
                 bound=bound,
                 seeker=seeker,
                 kept=opened.kept,
-                scroll=Scroll(),
                 cue=outputs.cue,
                 save_style=lambda style: _save(settings.path, profile, replace(model, style=style)),
                 verbose=arguments.verbose,
@@ -146,7 +144,7 @@ class _Notes(Output):
         """Count what is on the line under the hand, and say what is to be said of the text."""
         reader = self._device.reader
         if reader.layout is self._page.layout:
-            self._page.see(reader.line_number)
+            self._page.see(reader.line.number)
         for note in reader.layout.book.notes():
             say_line(spelled(note), aside=True)
 

@@ -162,7 +162,7 @@ class _Guided(View):
                 say("undo: nothing was chosen")
             case "n" | "down" | "p" | "up":
                 step = 1 if key in ("n", "down") else -1
-                if not device.reader.go(device.reader.line_number + step):
+                if not device.reader.go(device.reader.line.number + step):
                     say("last line" if step > 0 else "first line")
             case "q":
                 self.quit()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from operator import methodcaller
 
-from vbraille.reading.commands import control
-from vbraille.reading.keys import ANY, Bindings, Command, Context, bind
+from vbraille.reading.commands.table import PAUSE, ending
+from vbraille.reading.keys import Bindings, Command, bind
 
 # Keys mean what they mean to a reader, as far as a game has it.
 COMMANDS = (
@@ -27,29 +27,8 @@ COMMANDS = (
     Command("POINTS", ("V", "f5"), "say the points", methodcaller("say_points")),
     Command("ONE", ("1",), "deal anew for one player", methodcaller("begin", 1)),
     Command("TWO", ("2",), "deal anew for two players", methodcaller("begin", 2)),
-    Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
-    Command("HELP", ("h", "f1"), "say the keys", control.say_keys),
-    Command(
-        "LEARN",
-        ("?", "f2"),
-        "learn the keys: each says what it does, and does nothing",
-        control.learn,
-        (Context.READING, Context.LEARNING),
-    ),
-    Command(
-        "QUIT",
-        ("q",),
-        "stop playing",
-        control.stop,
-        (Context.READING, Context.PLACING, Context.LEARNING),
-    ),
-    Command(
-        "ZERO",
-        (ANY,),
-        "the carriage is at its corner or stop, when that is asked for",
-        control.set_zero,
-        (Context.PLACING,),
-    ),
+    PAUSE,
+    *ending("playing", "its corner or stop"),
 )
 # Buttons of the device, and keys of a conventional display, by BRLTTY's names.
 BUTTONS = {

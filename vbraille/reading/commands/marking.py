@@ -45,11 +45,8 @@ def ask_deletion(reader: Reader) -> None:
 
 
 def _set(reader: Reader, name: str) -> None:
-    line = reader.line
-    if line is None:
-        return
-    place = reader.character
-    text, at = str(line.block.text), line.block.text.index(place)
+    place, block = reader.character, reader.line.block
+    text, at = str(block.text), block.text.index(place)
     # The finger may be within a word, which is told whole.
     back = range(at, max(at - _LONGEST_WORD, -1), -1)
     at = next((n for n in back if n == 0 or text[n - 1].isspace()), at)

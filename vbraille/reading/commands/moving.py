@@ -12,47 +12,38 @@ if TYPE_CHECKING:
     from vbraille.reading.viewport import Window
 
 
-def next_line(reader: Reader) -> None:
-    """Go to the line after the present one."""
-    if reader.go_by(1):
+def go_by_line(reader: Reader, step: int, *, at_end: bool = False) -> None:
+    """Go to the line after the present one, or to the one before if the step is -1.
+
+    Parameters
+    ----------
+    at_end
+        Whether to show the last part of the line.
+    """
+    if reader.go_by(step, at_end=at_end):
         reader.announce()
     else:
-        _end(reader, "last line")
+        reader.cue(Cue.LIMIT)
+        reader.say("last line" if step > 0 else "first line")
 
 
-def previous_line(reader: Reader) -> None:
-    """Go to the line before the present one."""
-    _back(reader)
-
-
-def pan_right(reader: Reader) -> None:
-    """Go on along the line; at its end, to the next line."""
-    if reader.pan(1):
+def pan(reader: Reader, step: int) -> None:
+    """Go on along the line, or back if the step is -1; at its ends, on to another line."""
+    if reader.pan(step):
         _say_part(reader)
     else:
-        next_line(reader)
-
-
-def pan_left(reader: Reader) -> None:
-    """Go back along the line; at its beginning, to the end of the line before."""
-    if reader.pan(-1):
-        _say_part(reader)
-    else:
-        _back(reader, at_end=True)
+        go_by_line(reader, step, at_end=step < 0)
 
 
 def line_start(reader: Reader) -> None:
     """Go to the beginning of the line."""
-    window = reader.window
-    if window is not None:
-        _show(reader, window.showing(0), "start of line")
+    _show(reader, reader.window.showing(0), "start of line")
 
 
 def line_end(reader: Reader) -> None:
     """Go to the end of the line."""
     window = reader.window
-    if window is not None:
-        _show(reader, window if window.right is None else window.last, "end of line")
+    _show(reader, window if window.right is None else window.last, "end of line")
 
 
 def top(reader: Reader) -> None:
@@ -101,23 +92,9 @@ def back(reader: Reader) -> None:
         reader.say("back: there was no jump")
 
 
-def _back(reader: Reader, *, at_end: bool = False) -> None:
-    """Go to the line before, and say where that is."""
-    if reader.go_by(-1, at_end=at_end):
-        reader.announce()
-    else:
-        _end(reader, "first line")
-
-
-def _end(reader: Reader, what: str) -> None:
-    """Say that there is no line to go to."""
-    reader.cue(Cue.LIMIT)
-    reader.say(what)
-
-
 def _show(reader: Reader, window: Window, end: str) -> None:
     """Show another part of the line; where it is shown already, say which end this is."""
-    if reader.window is not None and window.offset == reader.window.offset:
+    if window.offset == reader.window.offset:
         reader.say(end)
     else:
         reader.put(window)
@@ -126,5 +103,4 @@ def _show(reader: Reader, window: Window, end: str) -> None:
 
 def _say_part(reader: Reader) -> None:
     window = reader.window
-    if window is not None:
-        reader.say(f"cells: {max(window.offset, 0) + 1} to {window.offset + len(window)}")
+    reader.say(f"cells: {max(window.offset, 0) + 1} to {window.offset + len(window)}")

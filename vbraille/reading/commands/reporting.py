@@ -20,17 +20,15 @@ if TYPE_CHECKING:
 def say_place(reader: Reader) -> None:
     """Say line, page, percentage, heading and the number of words that are left."""
     _say_figure(reader)
-    if reader.line is not None:
-        for sentence in whereabouts(reader.layout, reader.line):
-            reader.say(sentence)
+    for sentence in whereabouts(reader.layout, reader.line):
+        reader.say(sentence)
 
 
 def say_line(reader: Reader) -> None:
     """Say the line again."""
-    if reader.line is not None:
-        echo = Echo.TEXT if reader.echo is Echo.NONE else reader.echo
-        for sentence in echo.words(reader.line):
-            reader.say(sentence)
+    echo = Echo.TEXT if reader.echo is Echo.NONE else reader.echo
+    for sentence in echo.words(reader.line):
+        reader.say(sentence)
 
 
 def say_character(reader: Reader) -> None:
@@ -48,7 +46,7 @@ def say_cell(reader: Reader, cell: int | None) -> None:
         Number of the cell, from 0; None for none.
     """
     line = reader.line
-    if line is None or cell is None or not 0 <= cell < len(line):
+    if cell is None or not 0 <= cell < len(line):
         reader.say("cell: none here")
         return
     reader.say(f"cell: {_dots(int(line.masks[cell]))}")
@@ -81,8 +79,6 @@ def spell_word(reader: Reader) -> None:
 def say_headers(reader: Reader) -> None:
     """Say the headers of the table whose row is under the hand."""
     line = reader.line
-    if line is None:
-        return
     if line.block.kind is not BlockKind.ROW:
         reader.say("headers: this is no row of a table")
     elif any(line.block.headers):
@@ -127,8 +123,7 @@ def _dots(mask: int) -> str:
 
 
 def _word(reader: Reader) -> str:
-    line, cell = reader.line, reader.cell
-    return line.word(cell) if line is not None and cell is not None else ""
+    return "" if reader.cell is None else reader.line.word(reader.cell)
 
 
 def _text(line: Line, first: int, after: int) -> str:

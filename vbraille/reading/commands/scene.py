@@ -6,8 +6,8 @@ from dataclasses import replace
 from operator import methodcaller
 
 from vbraille.reading.commands import control
-from vbraille.reading.commands.table import TYPING
-from vbraille.reading.keys import ANY, Bindings, Command, Context, bind
+from vbraille.reading.commands.table import PAUSE, TYPING, ending
+from vbraille.reading.keys import Bindings, Command, bind
 from vbraille.scene.signals import MOST_KEYS
 
 STEP_MM, FAR_MM = 1.0, 10.0
@@ -116,30 +116,8 @@ COMMANDS = (
         for number in range(1, MOST_KEYS + 1)
     ),
     Command("RELOAD", ("\x12",), "read the file of the picture again", methodcaller("reload")),
-    Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
-    Command("HELP", ("h", "f1"), "say the keys", control.say_keys),
-    Command(
-        "LEARN",
-        ("?", "f2"),
-        "learn the keys: each says what it does, and does nothing",
-        control.learn,
-        (Context.READING, Context.LEARNING),
-    ),
-    Command(
-        "QUIT",
-        ("q",),
-        "stop feeling",
-        control.stop,
-        (Context.READING, Context.PLACING, Context.LEARNING),
-    ),
-    *TYPING,
-    Command(
-        "ZERO",
-        (ANY,),
-        "the carriage is at its corner or stop, when that is asked for",
-        control.set_zero,
-        (Context.PLACING,),
-    ),
+    PAUSE,
+    *ending("feeling", "its corner or stop", TYPING),
 )
 BOUND = bind(COMMANDS, Bindings(buttons=BUTTONS))
 

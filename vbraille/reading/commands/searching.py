@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.reading.position import first_character
 from vbraille.reading.search.questions import FindText
 from vbraille.reading.view import Cue
 
@@ -12,14 +11,15 @@ if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
 
 
-def search_forward(reader: Reader) -> None:
-    """Ask for a text and look for it from here on."""
-    _ask(reader, backward=False)
+def ask_text(reader: Reader, *, backward: bool = False) -> None:
+    """Ask for a text, and look for it from here on, or before this place."""
 
+    def take(reader: Reader, text: str) -> None:
+        reader.sought, reader.backward = text, backward
+        _search(reader)
 
-def search_backward(reader: Reader) -> None:
-    """Ask for a text and look for it before this place."""
-    _ask(reader, backward=True)
+    what = "search backward" if backward else "search"
+    reader.ask(what, "type the text, Enter", "text", take, again=reader.sought)
 
 
 def search_again(reader: Reader) -> None:
@@ -42,22 +42,11 @@ def cancel(reader: Reader) -> None:
     reader.say(f"search: {'given up' if given_up else 'nothing is looked for'}")
 
 
-def _ask(reader: Reader, *, backward: bool) -> None:
-    def take(reader: Reader, text: str) -> None:
-        reader.sought, reader.backward = text, backward
-        _search(reader)
-
-    what = "search backward" if backward else "search"
-    reader.ask(what, "type the text, Enter", "text", take, again=reader.sought)
-
-
 def _search(reader: Reader) -> None:
     text, backward = reader.sought, reader.backward
-    line, start = reader.line, reader.hit
-    if line is None:
-        return
+    start = reader.hit
     if start is None:
-        start = first_character(line)
+        start = reader.line.place
     elif not backward:
         start += 1
 

@@ -9,13 +9,7 @@ from typing import TYPE_CHECKING
 from vbraille.errors import InputError
 from vbraille.reading.keys import Context
 from vbraille.reading.lineviews import figure_of_block
-from vbraille.reading.position import (
-    LINES_PER_PAGE,
-    block_of,
-    first_character,
-    has_pages,
-    is_counted,
-)
+from vbraille.reading.position import LINES_PER_PAGE, block_of, has_pages
 from vbraille.reading.search.questions import FindKind, FindLine, FindPage, FindShare, ListHeadings
 from vbraille.reading.search.structure import (
     EACH_ITEM,
@@ -31,8 +25,6 @@ from vbraille.translate.source import BlockKind, MarkKind
 from vbraille.wording import count, spelled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from vbraille.layout.pages import Line
     from vbraille.reading.reader import Reader
     from vbraille.reading.search.questions import ListedHeading
@@ -41,43 +33,35 @@ if TYPE_CHECKING:
     Numbered = dict[int, ListedHeading]
 
 HEADING, LIST, TABLE = (kind.value for kind in (BlockKind.HEADING, BlockKind.ITEM, BlockKind.ROW))
-_NAMES = {LIST: "list", TABLE: "table", EACH_ITEM: "item", IMAGE: "figure"}
+_NAMES = {LIST: "list", TABLE: "table", EACH_ITEM: "item", IMAGE: "figure", START: "paragraph"}
 _TOGETHER = (LIST, TABLE, BlockKind.QUOTE.value)  # which are gone to as a whole
 _NEAR_LINES = 500  # that are laid out while the reader waits; farther ones are looked for meanwhile
 _PAGE_OR_SHARE = re.compile(r"(\d{1,3})(?:[.,](\d))? ?%")
 
 
-def go_to(kind: str, *, backward: bool = False, level: int = 0) -> Callable[[Reader], None]:
-    """Make a command that goes to the next block of a kind, or to the one before.
+def go_to(reader: Reader, kind: str, *, backward: bool = False, level: int = 0) -> None:
+    """Go to the next block of a kind, or to the one before.
 
     Parameters
     ----------
     kind
-        Value of a `BlockKind`, or "each item".
+        Value of a `BlockKind`, "each item", or "start" for the beginning of a paragraph.
     backward
         Whether the one before is wanted.
     level
         Greatest level of a heading that is wanted; 0 for any.
     """
     name = _NAMES.get(kind, kind) + (f" of level {level}" if level else "")
-
-    def handler(reader: Reader) -> None:
-        line = reader.line
-        if line is None:
-            return
-        source = reader.layout.book.source
-        number = block_of(source, line)
-        here = source.block(number)
-        if backward and kind not in _TOGETHER and not _begins_here(line, here):
-            number += 1  # in the middle of a heading, the one before is that heading itself
-        query = FindKind(kind, number, backward, level)
-        reader.find(query, lambda place: arrive(reader, place, name, backward=backward))
-
-    return handler
+    source, line = reader.layout.book.source, reader.line
+    number = block_of(source, line)
+    if backward and kind not in _TOGETHER and not _begins_here(line, source.block(number)):
+        number += 1  # in the middle of a heading, the one before is that heading itself
+    query = FindKind(kind, number, backward, level)
+    reader.find(query, lambda place: arrive(reader, place, name, backward=backward))
 
 
-def go_to_mark(kind: str, *, backward: bool = False) -> Callable[[Reader], None]:
-    """Make a command that goes to the next link or reference to a note, or picture, or back.
+def go_to_mark(reader: Reader, kind: str, *, backward: bool = False) -> None:
+    """Go to the next link or reference to a note, or picture, or to the one before.
 
     Parameters
     ----------
@@ -87,51 +71,38 @@ def go_to_mark(kind: str, *, backward: bool = False) -> Callable[[Reader], None]
         Whether the one before is wanted.
     """
     name = _NAMES.get(kind, kind)
-
-    def handler(reader: Reader) -> None:
-        line = reader.line
-        if line is None:
-            return
-        source = reader.layout.book.source
-        number = block_of(source, line)
-        here = source.block(number)
-        hit, first = reader.hit, first_character(line)
-        marks = [] if here is None else marks_of(here, kind)
-        if backward:
-            near = [mark for mark in marks if mark.start < (first if hit is None else hit)]
+    source, line, hit = reader.layout.book.source, reader.line, reader.hit
+    number = block_of(source, line)
+    block = source.block(number)
+    marks = [] if block is None else marks_of(block, kind)
+    if backward:
+        near = [mark for mark in marks if mark.start < (line.place if hit is None else hit)]
+    else:
+        near = [mark for mark in marks if mark.start >= (line.place if hit is None else hit + 1)]
+    if near:
+        mark = near[-1 if backward else 0]
+        if reader.bring_under(mark.start):
+            reader.say(_named(line.block, mark))
         else:
-            near = [mark for mark in marks if mark.start >= (first if hit is None else hit + 1)]
-        if near:
-            mark = near[-1 if backward else 0]
-            if reader.bring_under(mark.start):
-                reader.say(_named(line.block, mark))
-            else:
-                arrive(reader, mark.start, name, backward=backward, kind=kind)
-            return
-        query = FindKind(kind, number, backward)
-        reader.find(query, lambda place: arrive(reader, place, name, backward=backward, kind=kind))
-
-    return handler
+            arrive(reader, mark.start, name, backward=backward, kind=kind)
+        return
+    query = FindKind(kind, number, backward)
+    reader.find(query, lambda place: arrive(reader, place, name, backward=backward, kind=kind))
 
 
-def next_paragraph(reader: Reader) -> None:
-    """Go to the next paragraph."""
-    _go_to_paragraph(reader, backward=False)
-
-
-def previous_paragraph(reader: Reader) -> None:
-    """Go to the beginning of the paragraph before, or of this one if the reader is within it."""
-    _go_to_paragraph(reader, backward=True)
-
-
-def next_page(reader: Reader) -> None:
-    """Go to the next page of print, or of braille where the book has no pages of print."""
-    _go_to_page(reader, backward=False)
-
-
-def previous_page(reader: Reader) -> None:
-    """Go to the page before, of print or of braille."""
-    _go_to_page(reader, backward=True)
+def go_to_page(reader: Reader, *, backward: bool = False) -> None:
+    """Go to the next page of print, or of braille where the book has none of print; or back."""
+    source, line = reader.layout.book.source, reader.line
+    if has_pages(source, line):
+        number = block_of(source, line)
+        if backward and _begins_here(line, source.block(number)):
+            number = _before_unnumbered(source, number)
+        query = FindKind(BlockKind.PAGE.value, number, backward)
+        reader.find(query, lambda place: arrive(reader, place, "page", backward=backward))
+        return
+    page, above = divmod(reader.layout.number_of(line) - 1, LINES_PER_PAGE)  # both from 0
+    wanted = (page if above else page - 1) if backward else page + 1
+    _go_to_braille_page(reader, wanted + 1, "page")
 
 
 def ask_place(reader: Reader) -> None:
@@ -191,9 +162,8 @@ def _mark_at(reader: Reader, place: int | None, kind: str) -> str:
 
 def _names_of_note(reader: Reader) -> tuple[str, ...]:
     """Targets of references to the note that the reader is in; none if it is no note."""
-    line, source = reader.line, reader.layout.book.source
-    number = 0 if line is None else block_of(source, line)
-    for _, block in within(source, number, backward=True):
+    source = reader.layout.book.source
+    for _, block in within(source, block_of(source, reader.line), backward=True):
         if block.kind is not BlockKind.NOTE:
             break
         if block.anchors:  # of a note in several blocks the first has them
@@ -212,11 +182,11 @@ def _refers(source: Source, place: int | None, names: tuple[str, ...]) -> bool:
 
 def _go_back_from_note(reader: Reader, names: tuple[str, ...]) -> None:
     """Go to where a note was followed from, or else to the last reference to it before it."""
-    source, line, followed = reader.layout.book.source, reader.line, reader.followed
+    source, followed = reader.layout.book.source, reader.followed
     if followed is not None and followed.target in names:
         arrive(reader, followed.start, "reference", backward=True, kind=LINK)
-    elif line is not None:
-        query = FindKind(LINK, block_of(source, line), backward=True, targets=names)
+    else:
+        query = FindKind(LINK, block_of(source, reader.line), backward=True, targets=names)
         reader.find(
             query, lambda place: arrive(reader, place, "reference", backward=True, kind=LINK)
         )
@@ -234,7 +204,7 @@ def _named(block: Block, mark: Mark) -> str:
 
 
 def _begins_here(line: Line, block: Block | None) -> bool:
-    return block is not None and first_character(line) <= first_place(block)
+    return block is not None and line.place <= first_place(block)
 
 
 def _before_unnumbered(source: Source, number: int) -> int:
@@ -244,36 +214,6 @@ def _before_unnumbered(source: Source, number: int) -> int:
             break
         number -= 1
     return number
-
-
-def _go_to_paragraph(reader: Reader, *, backward: bool) -> None:
-    line = reader.line
-    if line is None:
-        return
-    source = reader.layout.book.source
-    number = block_of(source, line)
-    here = source.block(number)
-    if backward and here is not None and not _begins_here(line, here):
-        number += 1  # the beginning of this one is before the reader, too
-    query = FindKind(START, number, backward)
-    reader.find(query, lambda place: arrive(reader, place, "paragraph", backward=backward))
-
-
-def _go_to_page(reader: Reader, *, backward: bool) -> None:
-    line = reader.line
-    if line is None:
-        return
-    source = reader.layout.book.source
-    if has_pages(source, line):
-        number = block_of(source, line)
-        if backward and _begins_here(line, source.block(number)):
-            number = _before_unnumbered(source, number)
-        query = FindKind(BlockKind.PAGE.value, number, backward)
-        reader.find(query, lambda place: arrive(reader, place, "page", backward=backward))
-        return
-    page, above = divmod(reader.layout.number_of(line) - 1, LINES_PER_PAGE)  # both from 0
-    wanted = (page if above else page - 1) if backward else page + 1
-    _go_to_braille_page(reader, wanted + 1, "page")
 
 
 def _go_to_braille_page(reader: Reader, page: int, name: str) -> None:
@@ -292,9 +232,6 @@ def _go_to_braille_page(reader: Reader, page: int, name: str) -> None:
 
 def _go_to_typed(reader: Reader, typed: str) -> None:
     share = _PAGE_OR_SHARE.fullmatch(typed)
-    line = reader.line
-    if line is None:
-        return
     if share is not None:
         percent = float(f"{share[1]}.{share[2] or 0}")
         if percent > 100:
@@ -302,12 +239,12 @@ def _go_to_typed(reader: Reader, typed: str) -> None:
             return
         query = FindShare(percent / 100)
         reader.find(query, lambda place: _arrive_at_share(reader, place, typed))
-    elif has_pages(reader.layout.book.source, line):
+    elif has_pages(reader.layout.book.source, reader.line):
         query = FindPage(typed)
         reader.find(query, lambda place: _arrive_at_page(reader, place, typed))
     elif not typed.isdecimal():
         reader.say(f"go to: {typed!r} is no page; type a number, or percent as in 40%")
-    elif reader.search.seeker is None and not is_counted(reader.layout):
+    elif reader.search.seeker is None and not reader.layout.counted:
         reader.say("go to: pages of this book are not counted yet; type percent as in 40%")
     else:
         _go_to_braille_page(reader, int(typed), typed)
@@ -333,15 +270,13 @@ def _arrive_at_page(reader: Reader, place: int | None, typed: str) -> None:
 def _link_here(reader: Reader) -> Mark | None:
     """Link under the finger; or the one that was gone to, or that is alone on the line."""
     line, cell = reader.line, reader.cell
-    if line is None:
-        return None
     links = marks_of(line.block)
     span = None if cell is None else line.source(cell)
     if span is not None:
         under = [mark for mark in links if mark.start < span[1] and span[0] < mark.end]
         if under:
             return under[-1]
-    first, after = first_character(line), line.cells.end
+    first, after = line.place, line.cells.end
     on_line = [mark for mark in links if mark.start < after and first < mark.end]
     gone_to = [mark for mark in on_line if mark.start == reader.hit]
     return gone_to[-1] if gone_to else on_line[0] if len(on_line) == 1 else None
@@ -410,8 +345,7 @@ def _go(reader: Reader, headings: Numbered, typed: str) -> None:
 
 def feel(reader: Reader) -> None:
     """Put the figure that the line stands for alone under the hand, until a key leads back."""
-    line, under = reader.line, reader.under
-    address = "" if line is None else figure_of_block(line)
+    under, address = reader.under, figure_of_block(reader.line)
     figures = under.figured.all if address else None
     if figures is None:
         reader.cue(Cue.NOT_FOUND)

@@ -6,7 +6,8 @@ Names are BRLTTY's where it has the command.
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any, ParamSpec
+from operator import methodcaller
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec
 
 from vbraille.config.options import knobs
 from vbraille.reading.keys import (
@@ -64,7 +65,7 @@ if not TYPE_CHECKING:
     structure, turning = map(Deferred, ("structure", "turning"))
 
 # Kinds of blocks, and of what is in them.
-HEADING, LIST, TABLE, QUOTE = "heading", "item", "row", "quote"
+PARAGRAPH, HEADING, LIST, TABLE, QUOTE = "start", "heading", "item", "row", "quote"
 EACH_ITEM, LINK, IMAGE = "each item", "link", "image"
 
 _LEVELS = 6
@@ -74,13 +75,13 @@ _LEVELS = 6
 shared = partial(Command, paged=True)
 
 
-def made(
-    make: Callable[Given, Callable[[Any], None]], *given: Given.args, **named: Given.kwargs
+def calling(
+    function: Callable[Concatenate[Any, Given], None], *given: Given.args, **named: Given.kwargs
 ) -> Callable[[Any], None]:
-    """Give a command that is made, of a function and what it is given, when it is called."""
+    """Make a handler that calls a function with the view, and with what is given here."""
 
-    def handler(reader: Any) -> None:
-        make(*given, **named)(reader)
+    def handler(view: Any) -> None:
+        function(view, *given, **named)
 
     return handler
 
@@ -123,18 +124,29 @@ def bound_by(bindings: Bindings, keys: str = "usual") -> Bound:
     return bind(ready, bindings, tuple(TURNED))
 
 
-def _levels(*, backward: bool) -> tuple[Command, ...]:
-    """Commands that go by headings down to a level."""
-    return tuple(
-        shared(
-            f"{'PR' if backward else 'NX'}HEADING{level}",
-            (f"alt-{level}" if backward else str(level),),
-            f"{'previous' if backward else 'next'} heading of level {level}"
-            + (" or above" if level > 1 else ""),
-            made(structure.go_to, HEADING, backward=backward, level=level),
-        )
-        for level in range(1, _LEVELS + 1)
+def _both_ways(
+    name: str,
+    keys: tuple[tuple[str, ...], tuple[str, ...]],
+    goal: str,
+    go: Callable[..., None],
+    *given: Any,
+) -> tuple[Command, Command]:
+    """Commands that go to the next of a kind, and to the previous one, by their keys."""
+    following, before = keys
+    return (
+        shared(f"NX{name}", following, f"next {goal}", calling(go, *given, backward=False)),
+        shared(f"PR{name}", before, f"previous {goal}", calling(go, *given, backward=True)),
     )
+
+
+def _levels(*, backward: bool) -> Iterator[Command]:
+    """Commands that go by headings down to a level."""
+    for level in range(1, _LEVELS + 1):
+        goal = f"heading of level {level}" + (" or above" if level > 1 else "")
+        keys = (str(level),), (f"alt-{level}",)
+        yield _both_ways(
+            f"HEADING{level}", keys, goal, partial(structure.go_to, level=level), HEADING
+        )[backward]
 
 
 def _knobs() -> Iterator[Command]:
@@ -142,81 +154,115 @@ def _knobs() -> Iterator[Command]:
     for knob in knobs():
         name = knob.name.upper()
         for at, key in enumerate(knob.keys):
-            turned = made(turning.turn, knob.key, -1 if at else 1)
-            yield shared(f"{name}_{'DOWN' if at else 'UP'}", (key,), knob.turns[at], turned)
+            handler = calling(turning.turn, knob.key, -1 if at else 1)
+            yield shared(f"{name}_{'DOWN' if at else 'UP'}", (key,), knob.turns[at], handler)
+
+
+def _edit(name: str, keys: tuple[str, ...], does: str, method: str, *given: Any) -> Command:
+    """Command that calls a method of the prompt, and says what that gives."""
+    handler = calling(control.edit, methodcaller(method, *given))
+    return Command(name, keys, does, handler, _TYPING)
+
+
+def ending(doing: str, place: str, typing: tuple[Command, ...] = ()) -> tuple[Command, ...]:
+    """Commands that every view has at the end of its table.
+
+    Parameters
+    ----------
+    doing
+        What the view is for, such as "reading".
+    place
+        Where the carriage is when a device that does not know it is shown it.
+    typing
+        Commands that edit what is typed; none where nothing is.
+    """
+    return (
+        Command("HELP", ("h", "f1"), "say the keys", control.say_keys),
+        Command(
+            "LEARN",
+            ("?", "f2"),
+            "learn the keys: each says what it does, and does nothing",
+            control.learn,
+            (Context.READING, Context.LEARNING),
+        ),
+        Command(
+            "QUIT",
+            ("q",),
+            f"stop {doing}",
+            control.stop,
+            (Context.READING, Context.PLACING, Context.LEARNING),
+        ),
+        *typing,
+        Command(
+            "ZERO",
+            (ANY,),
+            f"the carriage is at {place}, when that is asked for",
+            control.set_zero,
+            (Context.PLACING,),
+        ),
+    )
 
 
 _TYPING = (Context.PROMPT,)
 TYPING = (
     Command("ENTER", ("\n",), "take the text that was typed", control.enter, _TYPING),
     Command("GIVE_UP", ("escape",), "forget what was typed", control.give_up, _TYPING),
-    Command("ERASE", ("\x7f", "\b"), "erase the character before", control.erase, _TYPING),
-    Command("ERASE_NEXT", ("delete",), "erase the character here", control.erase_next, _TYPING),
-    Command("ERASE_WORD", ("\x17",), "erase the word before", control.erase_word, _TYPING),
-    Command("ERASE_START", ("\x15",), "erase all before", control.erase_start, _TYPING),
-    Command("TYPED_LEFT", ("left",), "one character back", made(control.move, -1), _TYPING),
-    Command("TYPED_RIGHT", ("right",), "one character on", made(control.move, 1), _TYPING),
-    Command("TYPED_START", ("home", "\x01"), "to the start", made(control.move, -LONGEST), _TYPING),
-    Command("TYPED_END", ("end", "\x05"), "to the end", made(control.move, LONGEST), _TYPING),
-    Command(
+    _edit("ERASE", ("\x7f", "\b"), "erase the character before", "erase_before"),
+    _edit("ERASE_NEXT", ("delete",), "erase the character here", "erase_next"),
+    _edit("ERASE_WORD", ("\x17",), "erase the word before", "erase_word"),
+    _edit("ERASE_START", ("\x15",), "erase all before", "erase_start"),
+    _edit("TYPED_LEFT", ("left",), "one character back", "move", -1),
+    _edit("TYPED_RIGHT", ("right",), "one character on", "move", 1),
+    _edit("TYPED_START", ("home", "\x01"), "to the start", "move", -LONGEST),
+    _edit("TYPED_END", ("end", "\x05"), "to the end", "move", LONGEST),
+    _edit(
         "TYPED_EARLIER",
         ("up", "\x10"),
         "the text before, of those typed earlier or listed",
-        made(control.bring, -1),
-        _TYPING,
+        "bring",
+        -1,
     ),
-    Command(
+    _edit(
         "TYPED_LATER",
         ("down", "\x0e"),
         "the text after, of those typed earlier or listed",
-        made(control.bring, 1),
-        _TYPING,
+        "bring",
+        1,
     ),
-    Command("SAY_TYPED", ("\t",), "say what is typed so far", control.say_typed, _TYPING),
+    _edit("SAY_TYPED", ("\t",), "say what is typed so far", "say_typed"),
 )
+PAUSE = shared("PAUSE", (" ",), "rest the array at once, or go on", control.pause)
 COMMANDS = (
-    shared("LNDN", ("n", "down"), "next line", moving.next_line),
-    shared("LNUP", ("p", "up"), "previous line", moving.previous_line),
-    shared("FWINRT", ("right",), "on along the line, then the next line", moving.pan_right),
-    shared("FWINLT", ("left",), "back along the line, then the line before", moving.pan_left),
-    shared("WINDN", ("]", "ctrl-pagedown"), "next page of the surface", turning.next_page),
-    shared("WINUP", ("[", "ctrl-pageup"), "previous page of the surface", turning.previous_page),
+    shared("LNDN", ("n", "down"), "next line", calling(moving.go_by_line, 1)),
+    shared("LNUP", ("p", "up"), "previous line", calling(moving.go_by_line, -1)),
+    shared("FWINRT", ("right",), "on along the line, then the next line", calling(moving.pan, 1)),
+    shared(
+        "FWINLT", ("left",), "back along the line, then the line before", calling(moving.pan, -1)
+    ),
+    shared(
+        "WINDN", ("]", "ctrl-pagedown"), "next page of the surface", calling(turning.turn_page, 1)
+    ),
+    shared(
+        "WINUP",
+        ("[", "ctrl-pageup"),
+        "previous page of the surface",
+        calling(turning.turn_page, -1),
+    ),
     shared("LNBEG", ("home",), "start of the line", moving.line_start),
     shared("LNEND", ("end",), "end of the line", moving.line_end),
-    shared("NXPGRPH", ("a", "ctrl-down"), "next paragraph", structure.next_paragraph),
-    shared("PRPGRPH", ("A", "ctrl-up"), "previous paragraph", structure.previous_paragraph),
-    shared("NXPAGE", ("f", "pagedown"), "next page", structure.next_page),
-    shared("PRPAGE", ("F", "pageup"), "previous page", structure.previous_page),
-    shared("NXHEADING", ("e",), "next heading", made(structure.go_to, HEADING)),
-    shared("PRHEADING", ("E",), "previous heading", made(structure.go_to, HEADING, backward=True)),
+    *_both_ways(
+        "PGRPH", (("a", "ctrl-down"), ("A", "ctrl-up")), "paragraph", structure.go_to, PARAGRAPH
+    ),
+    *_both_ways("PAGE", (("f", "pagedown"), ("F", "pageup")), "page", structure.go_to_page),
+    *_both_ways("HEADING", (("e",), ("E",)), "heading", structure.go_to, HEADING),
     *_levels(backward=False),
     *_levels(backward=True),
-    shared("NXLIST", ("l",), "next list", made(structure.go_to, LIST)),
-    shared("PRLIST", ("L",), "previous list", made(structure.go_to, LIST, backward=True)),
-    shared("NXITEM", ("I",), "next item of a list", made(structure.go_to, EACH_ITEM)),
-    shared(
-        "PRITEM",
-        ("alt-i",),
-        "previous item of a list",
-        made(structure.go_to, EACH_ITEM, backward=True),
-    ),
-    shared("NXTABLE", ("r",), "next table", made(structure.go_to, TABLE)),
-    shared("PRTABLE", ("R",), "previous table", made(structure.go_to, TABLE, backward=True)),
-    shared("NXQUOTE", ("Q",), "next quotation", made(structure.go_to, QUOTE)),
-    shared(
-        "PRQUOTE", ("alt-q",), "previous quotation", made(structure.go_to, QUOTE, backward=True)
-    ),
-    shared("NXLINK", ("k",), "next link or note", made(structure.go_to_mark, LINK)),
-    shared(
-        "PRLINK", ("K",), "previous link or note", made(structure.go_to_mark, LINK, backward=True)
-    ),
-    shared("NXFIGURE", (",",), "next figure or picture", made(structure.go_to_mark, IMAGE)),
-    shared(
-        "PRFIGURE",
-        (";",),
-        "previous figure or picture",
-        made(structure.go_to_mark, IMAGE, backward=True),
-    ),
+    *_both_ways("LIST", (("l",), ("L",)), "list", structure.go_to, LIST),
+    *_both_ways("ITEM", (("I",), ("alt-i",)), "item of a list", structure.go_to, EACH_ITEM),
+    *_both_ways("TABLE", (("r",), ("R",)), "table", structure.go_to, TABLE),
+    *_both_ways("QUOTE", (("Q",), ("alt-q",)), "quotation", structure.go_to, QUOTE),
+    *_both_ways("LINK", (("k",), ("K",)), "link or note", structure.go_to_mark, LINK),
+    *_both_ways("FIGURE", ((",",), (";",)), "figure or picture", structure.go_to_mark, IMAGE),
     shared(
         "FOLLOW",
         ("\n",),
@@ -231,8 +277,13 @@ COMMANDS = (
     ),
     Command("CONTENTS", ("O",), "list the headings, and go to one", structure.ask_heading),
     shared("BACK", ("b", "alt-left"), "back to the place before the last jump", moving.back),
-    Command("NXSEARCH", ("/", "f3"), "search forward for a text", searching.search_forward),
-    Command("PRSEARCH", ("\\", "f4"), "search backward for a text", searching.search_backward),
+    Command("NXSEARCH", ("/", "f3"), "search forward for a text", searching.ask_text),
+    Command(
+        "PRSEARCH",
+        ("\\", "f4"),
+        "search backward for a text",
+        calling(searching.ask_text, backward=True),
+    ),
     Command("SEARCH_AGAIN", (".",), "search again in the same direction", searching.search_again),
     Command("ACCENTS", ("'",), "let accents matter in a search, or not", searching.fold_accents),
     Command("CANCEL", ("escape",), "give the search up", searching.cancel),
@@ -251,39 +302,17 @@ COMMANDS = (
     Command("LANGUAGE", ("y",), "translate by the table of a language", turning.ask_language),
     shared("SKPBLNKWINS", ("z",), "pass over blank lines, or read them", turning.skip_blank),
     shared("AUTOSCROLL", ("v", "f6"), "lines come by time, or no longer", turning.scroll),
-    shared("AUTOSCROLL_FASTER", ("+", "f8"), "lines come sooner", turning.faster),
-    shared("AUTOSCROLL_SLOWER", ("-", "f7"), "lines come later", turning.slower),
-    shared("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
+    shared("AUTOSCROLL_FASTER", ("+", "f8"), "lines come sooner", calling(turning.change_speed, 1)),
+    shared("AUTOSCROLL_SLOWER", ("-", "f7"), "lines come later", calling(turning.change_speed, -1)),
+    PAUSE,
     *_knobs(),
     shared("MAPPING", ("#",), "another way to show dots by actuators", turning.change_mapping),
     shared("STRAYING", ("=",), "keep the finger on its line, or show all", turning.change_straying),
-    shared("BAND_UP", (")",), "leave a line of a page later", made(turning.turn_band, 1)),
-    shared("BAND_DOWN", ("(",), "leave a line of a page sooner", made(turning.turn_band, -1)),
+    shared("BAND_UP", (")",), "leave a line of a page later", calling(turning.turn_band, 1)),
+    shared("BAND_DOWN", ("(",), "leave a line of a page sooner", calling(turning.turn_band, -1)),
     shared("UNDO", ("U",), "take back the last change of how braille feels", turning.undo_turn),
     Command("PREFSAVE", ("P",), "save how braille feels", turning.save_settings),
-    Command("HELP", ("h", "f1"), "say the keys", control.say_keys),
-    Command(
-        "LEARN",
-        ("?", "f2"),
-        "learn the keys: each says what it does, and does nothing",
-        control.learn,
-        (Context.READING, Context.LEARNING),
-    ),
-    Command(
-        "QUIT",
-        ("q",),
-        "stop reading",
-        control.stop,
-        (Context.READING, Context.PLACING, Context.LEARNING),
-    ),
-    *TYPING,
-    Command(
-        "ZERO",
-        (ANY,),
-        "the carriage is at the left stop, when that is asked for",
-        control.set_zero,
-        (Context.PLACING,),
-    ),
+    *ending("reading", "the left stop", TYPING),
 )
 # Ready sets of keys, each for what it does not leave as it is. NVDA's are those of its browse mode;
 # what its letters did moves to others that its users do not know as something else.

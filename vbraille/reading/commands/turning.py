@@ -13,31 +13,24 @@ from vbraille.translate import Book, BrailleTable, find_table
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from vbraille.config.options import StyleKnob
-    from vbraille.reading.advancing import Scroll
     from vbraille.reading.reader import Reader
     from vbraille.render.braille.style import BrailleStyle, Straying
 
 
-def turn(name: str, steps: int) -> Callable[[Reader], None]:
-    """Make a command that turns a knob up or down, as far as it goes.
+def turn(reader: Reader, name: str, steps: int) -> None:
+    """Turn a knob up or down, as far as it goes.
 
     Parameters
     ----------
     name
-        Name of the knob, such as "texture" or "dot_width_mm"; see `knobs.KNOBS`.
+        Name of the knob, such as "texture" or "dot_width_mm"; see `KNOBS`.
     steps
         Number of the knob's steps; negative turns it down.
     """
     knob = KNOBS[name]
-
-    def handler(reader: Reader) -> None:
-        after = knob.turned(knob.value(reader.style), steps)
-        _turn_knob(reader, knob, after, "most" if steps > 0 else "least")
-
-    return handler
+    after = knob.turned(knob.value(reader.style), steps)
+    _turn_knob(reader, knob, after, "most" if steps > 0 else "least")
 
 
 def turn_to(reader: Reader, name: str, value: float) -> None:
@@ -63,7 +56,7 @@ def change_mapping(reader: Reader) -> None:
     style, display = reader.style, reader.engine.display
     mapping = next_mapping(style, display)
     if mapping == style.mapping:
-        _stop(reader, f"{say_mapping(mapping)}, the only one for this display")
+        _say_limit(reader, f"{say_mapping(mapping)}, the only one for this display")
     else:
         _turn(reader, "mapping", mapping, say_mapping(mapping))
 
@@ -71,7 +64,7 @@ def change_mapping(reader: Reader) -> None:
 def undo_turn(reader: Reader) -> None:
     """Take back the last turn that was not taken back yet."""
     if not reader.styles_before:
-        _stop(reader, "undo: nothing was turned")
+        _say_limit(reader, "undo: nothing was turned")
         return
     style = reader.styles_before.pop()
     said = _differences(reader.style, style)
@@ -82,7 +75,7 @@ def undo_turn(reader: Reader) -> None:
 def save_settings(reader: Reader) -> None:
     """Save the present tuning in the profile in use."""
     if reader.save_style is None:
-        _stop(reader, "saved: nothing, since no settings file is in use")
+        _say_limit(reader, "saved: nothing, since no settings file is in use")
     else:
         try:
             reader.say(reader.save_style(reader.style))
@@ -96,17 +89,17 @@ def _turn_knob(reader: Reader, knob: StyleKnob, after: float, end: str) -> None:
     value = knob.value(style)
     why = fixed(knob, style) or obstacle(knob, style.geometry, reader.engine.display, after)
     if why or after == value:
-        _stop(reader, f"{knob.said(value)}, the {end}{why and f': {why}'}")
+        _say_limit(reader, f"{knob.said(value)}, the {end}{why and f': {why}'}")
     else:
         _turn(reader, knob.field, after, knob.said(after))
 
 
-def _turn(reader: Reader, field: str, value: object, said: str) -> None:
+def _turn(reader: Reader, field: str, value: object, sentence: str) -> None:
     """Show another style, and say what has changed."""
     before = reader.style
     reader.tune(**{field: value})
     reader.styles_before.append(before)
-    reader.say(said)
+    reader.say(sentence)
 
 
 def _fields(style: BrailleStyle) -> dict[str, Any]:
@@ -115,9 +108,10 @@ def _fields(style: BrailleStyle) -> dict[str, Any]:
     return {name: getattr(style, name) for name in names}
 
 
-def _stop(reader: Reader, said: str) -> None:
+def _say_limit(reader: Reader, sentence: str) -> None:
+    """Say how far something goes, where it goes no farther."""
     reader.cue(Cue.LIMIT)
-    reader.say(said)
+    reader.say(sentence)
 
 
 def _differences(one: BrailleStyle, other: BrailleStyle) -> str:
@@ -139,14 +133,12 @@ _STRAYING: Final = {
 }
 
 
-def next_page(reader: Reader) -> None:
-    """Turn to the next page of the surface; where that has one line, go to the next one."""
-    _turn_page(reader, 1)
-
-
-def previous_page(reader: Reader) -> None:
-    """Turn to the page of the surface before; where that has one line, go to the one before."""
-    _turn_page(reader, -1)
+def turn_page(reader: Reader, step: int) -> None:
+    """Turn to the next page of the surface, or to the one before; one line is a page, too."""
+    if not reader.turn_page(step):
+        _say_limit(reader, "last page" if step > 0 else "first page")
+    elif not reader.under.rows:
+        reader.announce()
 
 
 def change_straying(reader: Reader) -> None:
@@ -156,40 +148,23 @@ def change_straying(reader: Reader) -> None:
     _show_straying(reader, replace(straying, manner=manner), _STRAYING[manner])
 
 
-def turn_band(steps: int) -> Callable[[Reader], None]:
-    """Make a command that makes the band of a line wider, or narrower if negative."""
-
-    def handler(reader: Reader) -> None:
-        straying = reader.style.straying
-        low, high = BAND_BOUNDS
-        band = round(min(max(straying.band + steps * _BAND_STEP, low), high), 2)
-        if band == straying.band:
-            reader.cue(Cue.LIMIT)
-            reader.say(f"band: {band:g} line pitches, the {'most' if steps > 0 else 'least'}")
-        else:
-            _show_straying(reader, replace(straying, band=band), f"band: {band:g} line pitches")
-
-    return handler
+def turn_band(reader: Reader, steps: int) -> None:
+    """Make the band of a line wider, or narrower if negative."""
+    straying = reader.style.straying
+    low, high = BAND_BOUNDS
+    band = round(min(max(straying.band + steps * _BAND_STEP, low), high), 2)
+    if band == straying.band:
+        _say_limit(reader, f"band: {band:g} line pitches, the {'most' if steps > 0 else 'least'}")
+    else:
+        _show_straying(reader, replace(straying, band=band), f"band: {band:g} line pitches")
 
 
-def _turn_page(reader: Reader, step: int) -> None:
-    if not reader.turn_page(step):
-        reader.cue(Cue.LIMIT)
-        reader.say("last page" if step > 0 else "first page")
-    elif not reader.under.rows:
-        reader.announce()
-
-
-def _show_straying(reader: Reader, straying: Straying, said: str) -> None:
+def _show_straying(reader: Reader, straying: Straying, sentence: str) -> None:
     """Show pages with another straying, which can be taken back, and say what has changed."""
-    if not reader.under.rows:
-        reader.cue(Cue.LIMIT)
-        reader.say("straying: one line is under the hand, and the finger cannot leave it")
-        return
-    before = reader.style
-    reader.tune(straying=straying)
-    reader.styles_before.append(before)
-    reader.say(said)
+    if reader.under.rows:
+        _turn(reader, "straying", straying, sentence)
+    else:
+        _say_limit(reader, "straying: one line is under the hand, and the finger cannot leave it")
 
 
 _CONTRACTED = 2  # the grade that is asked for
@@ -224,42 +199,25 @@ def ask_language(reader: Reader) -> None:
 
 def skip_blank(reader: Reader) -> None:
     """Pass over lines without a dot, or no longer."""
-    reader.skip_blank = not reader.skip_blank
-    reader.say(f"blank lines: {'skipped' if reader.skip_blank else 'read'}")
+    skips = not reader.range.skip_blank
+    reader.range = replace(reader.range, skip_blank=skips)
+    reader.say(f"blank lines: {'skipped' if skips else 'read'}")
 
 
 def scroll(reader: Reader) -> None:
     """Have the next line come by time, or no longer."""
-    scrolling = _scroll(reader)
-    if scrolling is not None:
-        scrolling.on = not scrolling.on
-        reader.say(scrolling.sentence if scrolling.on else "autoscroll: off")
+    reader.scroll.on = not reader.scroll.on
+    reader.say(f"autoscroll: {reader.scroll.words if reader.scroll.on else 'off'}")
 
 
-def faster(reader: Reader) -> None:
-    """Have lines come sooner."""
-    scrolling = _scroll(reader)
-    if scrolling is not None:
-        _say_speed(reader, scrolling.faster())
-
-
-def slower(reader: Reader) -> None:
-    """Have lines come later."""
-    scrolling = _scroll(reader)
-    if scrolling is not None:
-        _say_speed(reader, scrolling.slower())
-
-
-def _scroll(reader: Reader) -> Scroll | None:
-    if reader.scroll is None:
-        reader.say("autoscroll: there is none here")
-    return reader.scroll
-
-
-def _say_speed(reader: Reader, words: str) -> None:
-    if "," in words:  # as fast or as slow as it can be
+def change_speed(reader: Reader, step: int) -> None:
+    """Have lines come sooner, or later if the step is -1."""
+    if not reader.scroll.turn(step):
         reader.cue(Cue.LIMIT)
-    reader.say(f"autoscroll: {words}")
+        end = ", the fastest" if step > 0 else ", the slowest"
+    else:
+        end = ""
+    reader.say(f"autoscroll: {reader.scroll.words}{end}")
 
 
 def _change(reader: Reader, language: str, grade: int | None = None) -> None:
