@@ -76,6 +76,9 @@ def test_a_folder_that_others_can_write_is_not_trusted_with_code(sealed, tmp_pat
     assert run(sealed, tmp_path, "-c", asked).stdout == "False\n"
     private.chmod(0o700)
     assert run(sealed, tmp_path, "-c", asked).stdout == "True\n"
+    if os.geteuid() == 0:  # another user has made it
+        os.chown(private, 65534, 65534)
+        assert run(sealed, tmp_path, "-c", asked).stdout == "False\n"
 
 
 def test_a_first_reading_says_that_it_compiles(tmp_path):

@@ -122,3 +122,13 @@ def test_a_message_that_comes_in_pieces_is_one():
     assert incoming.ended
     for descriptor in (read, middle, through):
         os.close(descriptor)
+
+
+def test_one_whose_parent_was_gone_before_it_could_be_told_ends_at_once():
+    left = subprocess.Popen(
+        [sys.executable, "-m", "tests.echoing", str(os.getpid() + 1)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+    )
+    with left:
+        assert left.wait(PATIENCE_S) == 0  # though its input is still open

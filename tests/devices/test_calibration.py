@@ -1,5 +1,7 @@
 """What was found of actuators, what is sent for it, and that nothing jumps."""
 
+import os
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -128,6 +130,20 @@ def test_inverted_actuators_go_back_before_a_device_is_left():
     assert seen[-1] == 0
 
 
+def test_one_actuator_that_is_felt_brings_inverted_ones_back_to_their_own_rest():
+    correction = Correction(SHAPE, FRAMES)
+    correction.aim(Calibration("bench", *SHAPE, (Tried(0, 1, inverted=True),)))
+    settled(correction)
+    correction.leave()
+    settled(correction)
+    felt = np.zeros(SHAPE)
+    felt[1, 2] = 0.5
+    for _ in range(FRAMES):
+        sent = correction.of(felt, 0)
+    assert sent[0, 1] == 1.0
+    assert sent[1, 2] == 0.5
+
+
 def test_a_driver_that_writes_by_itself_is_not_corrected():
     class Writer(SimulatedDevice):
         def write(self, frame):
@@ -158,6 +174,21 @@ def test_a_file_says_what_was_found(found, name):
         return
     named = Calibration(name, found.rows, found.columns, found.tried)
     assert parse(calibrations.to_toml(named), "file") == named
+
+
+def test_a_file_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypatch):
+    synced, real = [], os.fsync
+
+    def sync(descriptor):
+        synced.append(path.exists())
+        real(descriptor)
+
+    monkeypatch.setattr(os, "fsync", sync)
+    path = calibrations.path_of(tmp_path / "settings.toml", "bench")
+    calibrations.save(tmp_path / "settings.toml", Calibration("bench", *SHAPE))
+    assert path.exists()
+    assert synced[0] is False
+    assert synced[-1] is True  # and then its folder
 
 
 def test_each_device_has_a_file_of_its_own(tmp_path):

@@ -1,13 +1,14 @@
 """The host's loop on the manual clock: it does what its mailbox says."""
 
 import os
+import signal
 
 import numpy as np
 import pytest
 
 from tests.engine.test_loop import Recording, biggest_step, picture, straight
 from vbraille.engine.clock import ManualClock
-from vbraille.engine.hostprocess import OrderedLoop, warm_up
+from vbraille.engine.hostprocess import OrderedLoop, end_after, warm_up
 from vbraille.engine.loop import Loop
 from vbraille.engine.mailbox import _PIECE_WORDS, Extent, Mailbox, divide, watch
 from vbraille.engine.record import Flag
@@ -129,6 +130,21 @@ def test_it_ends_with_its_parent_and_by_a_signal(bench):
     assert not orphan.wanted
     bench.hosted.end(15, None)
     assert not bench.hosted.wanted
+
+
+def test_a_parent_that_was_gone_before_it_could_be_told_is_answered_at_once():
+    read, write = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            end_after(os.getppid() + 1)  # another has it by now
+            os.write(write, bytes([signal.alarm(0)]))
+        finally:
+            os._exit(0)
+    os.waitpid(child, 0)
+    os.close(write)
+    assert os.read(read, 1) in (b"\2", b"\3")  # seconds until the system ends it
+    os.close(read)
 
 
 def test_a_picture_that_does_not_fit_is_refused(bench):

@@ -306,6 +306,32 @@ def test_a_gap_is_caught_up_with_only_if_the_hand_moved_in_it(clock, device, mov
     assert (after["flags"] & Flag.CHANGED).any() == moving
 
 
+@pytest.mark.parametrize("late_us", [20_950, 30_900, 44_700])
+def test_a_frame_that_went_out_late_is_left_no_sooner_than_the_hand_asks_for(clock, late_us):
+    """A write that takes long ends just before the next tick: actuators have only just moved."""
+    out, slow = [], []
+
+    class Late(Recording):
+        def _send(self, frame):
+            if len(out) == 300:
+                clock.advance_ns(late_us * 1000)
+            out.append(clock.now_ns())
+            slow.append(frame.copy())
+
+    device, line, speed_mm_s = Late(clock), picture(mapping="sheared"), 15.0
+    device.move(straight((0, -5.0), (10, -5.0 + 10 * speed_mm_s)))
+    loop = Loop(device, clock)
+    loop.show(line)
+    run(loop, 0.6)
+    x_mm = np.arange(-8.0, 40.0, 0.005)  # a count of the encoder
+    steepest = np.abs(np.diff(line.path(x_mm), axis=0)).max() / 0.005
+    steps = np.abs(np.diff(slow[150:], axis=0)).max(axis=(1, 2))
+    passed_s = np.diff(out[150:]) / NS_PER_S
+    asked = steepest * (speed_mm_s * passed_s + 0.01)  # and what a count more or less tells
+    assert steps.max() > 0
+    assert (steps <= 3 * asked).all()
+
+
 @pytest.mark.parametrize("late_ms", [11, 39])
 def test_a_fade_goes_on_as_it_was_over_a_gap_in_which_the_hand_stands_still(clock, device, late_ms):
     device.move(straight((0, 3.0), (20, 3.0)))

@@ -303,3 +303,21 @@ def test_a_hasty_controller_s_ramp_is_cut_short_and_it_does_not_repeat():
     assert old.levels == SWING
     old.send(Frame(old.sequence, packed(REST)))
     assert old.levels == REST
+
+
+def test_what_frames_have_moved_in_a_period_counts_in_the_next():
+    bench = Bench()
+    bench.send(Hello())
+    bench.show(SWING)
+    bench.tick(10)
+    near = [[TOP - step, 500, 0, 0, 500, TOP] for step in (10, 20, 30)]
+    bench.frame(near[0])
+    assert bench.levels == near[0]  # at once
+    bench.frame(near[1])
+    assert bench.levels == near[0]
+    bench.tick()
+    assert bench.levels == near[1]
+    bench.frame(near[2])
+    assert bench.levels == near[1]  # two have moved them since the tick before
+    bench.tick()
+    assert bench.levels == near[2]

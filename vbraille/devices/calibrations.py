@@ -9,7 +9,7 @@ from urllib.parse import quote
 from vbraille.devices.calibration import Calibration, State, Tried
 from vbraille.display import MOST_COLUMNS, MOST_ROWS
 from vbraille.errors import InputError, check_range
-from vbraille.files import read_text, write_file
+from vbraille.files import read_text, sync_names, write_file
 from vbraille.tomlfile import Table, TomlFile
 from vbraille.wording import setting
 
@@ -159,6 +159,7 @@ def save(settings: Path, calibration: Calibration) -> None:
     except OSError as error:
         raise InputError(f"{path.parent} cannot be made: {error.strerror}") from None
     write_file(path, to_toml(calibration).encode(), replace=True, durable=True)
+    sync_names(path.parent)
 
 
 def to_toml(calibration: Calibration) -> str:

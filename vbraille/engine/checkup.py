@@ -6,9 +6,9 @@ Actuators swing, and rate, clock, place, round trip and watchdog are measured.
 from __future__ import annotations
 
 import math
-import resource
 from collections import deque
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -183,22 +183,24 @@ class Watch:
 
     def _timed(self, name: str, *given: Any) -> Any:
         clock, call = self._clock, self._calls[name]
-        waits, busy_ns, now_ns = _waits(), clock.busy_ns(), clock.now_ns()
+        queued_ns, now_ns = _queued_ns(), clock.now_ns()
         try:
             return call(*given)
         finally:
             # Time for which the system gave the processor to others is not the driver's.
-            waited = _waits() != waits
-            own_ns = clock.now_ns() - now_ns if waited else clock.busy_ns() - busy_ns
-            self._spent_ns[name].append(own_ns)
+            own_ns = clock.now_ns() - now_ns - (_queued_ns() - queued_ns)
+            self._spent_ns[name].append(max(own_ns, 0))
 
     def _find(self, kind: str, fault: str) -> None:
         self._found.setdefault(kind, fault)
 
 
-def _waits() -> int:
-    """Tell how often this thread has waited for something of its own accord."""
-    return resource.getrusage(resource.RUSAGE_THREAD).ru_nvcsw
+def _queued_ns() -> int:
+    """Time for which this thread could have gone on and had no processor; 0 if no kernel tells."""
+    try:
+        return int(Path("/proc/thread-self/schedstat").read_text().split()[1])
+    except OSError:
+        return 0
 
 
 def warm_up(display: Display) -> None:

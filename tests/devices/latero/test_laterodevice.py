@@ -69,6 +69,29 @@ def test_it_reads_shows_and_takes_leave(latero):
         os.kill(watching, 0)
 
 
+def test_the_watchdog_knows_where_the_blades_are_going_before_they_are_told():
+    with simulated() as latero, open_latero(address_of(latero), None) as device:
+        ticks(device, found=lambda *_: (latero.board.levels == 75).all())
+        known, sent = device.watchdog.board, []
+
+        class Line:
+            def send(self, request):
+                sent.append((bytes(known.levels), bytes(request[15:79])))
+
+            def recv_into(self, _room):
+                raise BlockingIOError
+
+            def close(self):
+                pass
+
+        device._line.close()
+        device._line = Line()
+        device.write(np.zeros((8, 8)))
+        device.write(FELT)
+        assert sent
+        assert all(told == shown for told, shown in sent)
+
+
 def test_at_the_lower_left_x_is_half_the_span_before_the_line():
     with (
         simulated(wait_s=60.0) as latero,

@@ -249,3 +249,55 @@ def test_nothing_to_feel_for_five_seconds_is_rest_until_there_is():
     assert told(device.take_events()) == []
     assert device.rested == 0
     device.close()
+
+
+def test_a_frame_that_found_no_room_counts_in_the_sequence_of_the_next():
+    made = Bench()
+    device = made.open()
+    made.settle(device)
+    last = device.conversation.frames.sequence
+    made.hear()
+    made.room = 0
+    made.run(device, 3)
+    assert device.counts()["frames not sent"] == 3
+    made.room, made.sent = 20_000, []
+    made.run(device, 2)
+    assert next(one for one in made.sent if isinstance(one, Frame)).sequence == last + 4
+
+
+def test_a_host_that_was_stopped_reads_all_that_waits_before_it_takes_a_place():
+    made = Bench()
+    device = made.open()
+    made.settle(device)
+    whole = made.port.read
+    left = bytearray()
+
+    def read():
+        """A little at a time, as a driver of the system may give it."""
+        left.extend(whole())
+        chunk = bytes(left[:100])
+        del left[:100]
+        return chunk
+
+    made.port.read = read
+    for way_mm in range(10, 70):
+        made.way_mm = float(way_mm)
+        made.pause(0.001)
+    pose = device.read()
+    assert not left
+    assert pose.x_mm == pytest.approx(69.0 + HOME_MM)
+
+
+def test_a_place_is_never_earlier_than_the_one_before():
+    made = Bench()
+    device = made.open()
+    made.settle(device)
+    before = made.run(device, 1)
+    made.mute = True
+    made.pause(0.001)
+    sequence = device.conversation.states.sequence + 1
+    made.mute = False
+    back_us = made.us - 5000  # a clock that is set back
+    taken = device.conversation.frames.sequence
+    made.say(encode(State(sequence, back_us, 0, taken, 1, 0, None, 0, 0, 0)))
+    assert device.read().time_ns == before.time_ns

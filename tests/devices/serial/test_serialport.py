@@ -3,6 +3,7 @@
 import errno
 import os
 import socket
+import termios
 import threading
 import tty
 from contextlib import suppress
@@ -253,3 +254,19 @@ def test_what_echoes_is_no_device(ends):
 
     with pytest.raises(DeviceError, match="makes no sense: it is no vbraille device"):
         open_serial(name, info(), now_ns=lambda: now_ns, pause=pause)
+
+
+@pytest.mark.parametrize("queued", [0, 7])
+def test_what_could_not_be_sent_is_dropped_for_closing_a_uart_would_wait_for_it(
+    ends, monkeypatch, queued
+):
+    line, flushed = open_line(Address(ends[1])), []
+
+    def ioctl(_descriptor, request, room):
+        assert request == termios.TIOCOUTQ
+        room[0] = queued
+
+    monkeypatch.setattr("fcntl.ioctl", ioctl)
+    monkeypatch.setattr("termios.tcflush", lambda _descriptor, queue: flushed.append(queue))
+    line.close()
+    assert flushed == [termios.TCOFLUSH] * bool(queued)
