@@ -44,7 +44,7 @@ _SUBREAPER, _NAME = 36, 15  # of prctl
 _LIMITS = sorted(number for name, number in vars(resource).items() if name.startswith("RLIMIT_"))
 _LENGTH = struct.Struct("<I")
 _MOST_DESCRIPTORS = 64
-_OUT_OF_THE_WAY = 300  # from here on are descriptors that no program is given
+_OUT_OF_THE_WAY = 500  # from here on are descriptors that no program is given
 # A program that leads its session, and whose first terminal is the session's: Ctrl-C works.
 _AT_TERMINAL = 'exec "$@" <>"$0" >&0 2>&0'
 
@@ -88,6 +88,7 @@ class Nursery:
             and asked["executable"] in (None, sys.executable)
             and asked["preexec_fn"] is None
             and asked["close_fds"]
+            and all(number < _OUT_OF_THE_WAY for number in asked["pass_fds"])
             and (folder is None or Path(os.fsdecode(folder)).is_dir())
             and not asked["shell"]
             and all(asked[name] is None for name in ("gid", "gids", "uid"))
@@ -265,7 +266,12 @@ def _be(order: dict[str, Any], descriptors: list[int]) -> NoReturn:
     _libc.prctl(_NAME, b"python")
     if order["leads"]:
         os.setsid()
-    nursery = Nursery(_fork_nursery(dict(zip(order["descriptors"], descriptors, strict=True))))
+    wanted = dict(zip(order["descriptors"], descriptors, strict=True))
+    if order["arguments"][0] == "vbraille":
+        nursery = Nursery(_fork_nursery(wanted))
+    else:  # a process of its own, such as a host, begins no others
+        _keep_descriptors(wanted)
+        nursery.used = False
     if order["terminal"] is not None:
         for number in range(3):
             with suppress(OSError):
@@ -298,29 +304,37 @@ def _fork_nursery(wanted: dict[int, int]) -> socket.socket:
     wanted
         Descriptors that this process has besides from now on: their numbers, and copies of them.
     """
-    line, end = socket.socketpair()
+    line, end = map(_move, socket.socketpair())
     if os.fork() != 0:
-        return _keep_descriptors(line, wanted)
+        _keep_descriptors(wanted, line)
+        return line
     _libc.prctl(_NAME, b"nursery")
     for number in signal.valid_signals() - {signal.SIGKILL, signal.SIGSTOP, signal.SIGCHLD}:
         if signal.getsignal(number) is not None:
             signal.signal(number, signal.SIG_IGN)
-    _serve(_keep_descriptors(end, dict.fromkeys(range(3), os.open(os.devnull, os.O_RDWR))))
+    _keep_descriptors(dict.fromkeys(range(3), os.open(os.devnull, os.O_RDWR)), end)
+    _serve(end)
 
 
-def _keep_descriptors(own: socket.socket, wanted: dict[int, int]) -> socket.socket:
-    """Have the descriptors of some numbers be copies of others, and no more but one of our own."""
-    free = max(_OUT_OF_THE_WAY, *wanted, 0) + 1
-    moved = fcntl.fcntl(own.detach(), fcntl.F_DUPFD_CLOEXEC, free)
-    held = {number: fcntl.fcntl(given, fcntl.F_DUPFD, free) for number, given in wanted.items()}
+def _move(own: socket.socket) -> socket.socket:
+    """Have a line be out of the way of descriptors that are wanted."""
+    return socket.socket(fileno=fcntl.fcntl(own.detach(), fcntl.F_DUPFD_CLOEXEC, _OUT_OF_THE_WAY))
+
+
+def _keep_descriptors(wanted: dict[int, int], *lines: socket.socket) -> None:
+    """Have the descriptors of some numbers be copies of others, and no more but our own lines."""
+    held = {
+        number: fcntl.fcntl(given, fcntl.F_DUPFD, _OUT_OF_THE_WAY)
+        for number, given in wanted.items()
+    }
+    kept = {*held.values(), *(line.fileno() for line in lines)}
     for name in os.listdir("/proc/self/fd"):  # noqa: PTH208 - numbers
-        if int(name) not in (moved, *held.values()):
+        if int(name) not in kept:
             with suppress(OSError):
                 os.close(int(name))
     for number, given in held.items():
         os.dup2(given, number)
         os.close(given)
-    return socket.socket(fileno=moved)
 
 
 def _open_streams() -> None:
@@ -404,9 +418,9 @@ def _main() -> NoReturn:
     _load()
     gc.collect()
     gc.freeze()
-    import tests.forking as module  # what forks is a module that a fork can import, too
+    import tests.forking as module  # in which a fork, whose main module is another, finds itself
 
-    subprocess.Popen._execute_child = module._execute
+    module.begin()
     module._serve(socket.socket(fileno=int(sys.argv[1])))
 
 
