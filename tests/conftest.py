@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pytest
 from hypothesis import is_hypothesis_test, settings
+from hypothesis.internal.conjecture import providers
 
 from tests import forking
 from tests.tiers import TIER, by_tier
@@ -58,6 +59,9 @@ settings.register_profile(
     "vbraille", derandomize=True, deadline=None, database=None, max_examples=EXAMPLES
 )
 settings.load_profile("vbraille")
+# It would try numbers of our own modules, too: of those that are loaded when a law's turn comes, so
+# that what is tried would go by the tests that came before. (And reading them takes seconds.)
+providers.is_local_module_file = lambda _: False
 
 
 def pytest_report_header() -> str:

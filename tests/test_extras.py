@@ -7,6 +7,7 @@ from importlib import import_module
 
 import pytest
 
+from tests.tiers import by_tier
 from vbraille.errors import EXTRAS, lacking, needing_extras
 
 # Python reads it when it starts, in child processes, too: what stands there as None is not there.
@@ -104,8 +105,12 @@ def ended(tmp_path, texts):
 
 
 def test_reading_feeling_and_sessions_need_no_extra(ended):
-    codes, said = ended(READING)
-    assert len(codes) == len(READING.splitlines())
+    lines = READING.splitlines()
+    # Those that drive a device in real time have processes, which load again.
+    quick = [line for line in lines if not line.startswith(("read", "feel", "device"))]
+    lines = by_tier(quick, lines, lines)
+    codes, said = ended("\n".join(lines))
+    assert len(codes) == len(lines)
     assert not any(codes.values()), said
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import louis
 import pytest
 
-from tests.tiers import heavy
+from tests.tiers import by_tier, heavy
 
 ROOT = Path(__file__).parents[1]
 LIGHT = [
@@ -71,7 +71,7 @@ def call(tmp_path_factory):
     return run
 
 
-@pytest.mark.parametrize("line", LIGHT)
+@pytest.mark.parametrize("line", by_tier(LIGHT[1:2], LIGHT, LIGHT))
 def test_the_wheel_does_without_the_checkout(call, line):
     done = call("-m", "vbraille", *line.split())
     assert done.returncode == 0, done.stderr

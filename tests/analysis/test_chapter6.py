@@ -6,6 +6,7 @@ import pytest
 
 from tests.sessions.bidsvalid import complaints
 from tests.sessions.sittings import crash
+from tests.tiers import by_tier
 from vbraille.analysis import analyse
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.protocolfiles import (
@@ -70,7 +71,10 @@ def test_pairs_of_wavelengths_are_as_often_as_in_the_source():
     assert counts == {n / 2: 22 - 2 * n for n in range(1, 11)}
 
 
-@pytest.mark.parametrize("name", EXPERIMENTS)
+# The two differ in all that a session goes by: choices, breaks, keys, limits of time.
+@pytest.mark.parametrize(
+    "name", by_tier(["orientation-coarse", "icons"], [*EXPERIMENTS], [*EXPERIMENTS])
+)
 def test_a_session_of_it_loses_nothing(name, tmp_path):
     protocol = shortened(name)
     folder = tmp_path / "s"

@@ -37,7 +37,7 @@ def test_power_of_a_t_test_is_that_of_statsmodels(d, n):
 
 
 def test_power_of_a_paired_design_is_that_of_its_closed_form():
-    studies = by_tier(2000, 10_000, 50_000)
+    studies = by_tier(600, 10_000, 50_000)
     question = legibility("means", sizes=(5, 12, 20), studies=studies)
     for row in power(question, ONE).rows:
         chance = 3.5 * math.sqrt(row.power * (1 - row.power) / studies)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tests.tiers import examples
@@ -18,6 +18,9 @@ from vbraille.reading.tuning_course import (
 from vbraille.render import STRESS2, VBD
 
 SHARE = st.floats(0, 1)
+# Of what is tried: where two values are as near to what is liked, a sixteenth from an end, and the
+# chooser takes the outer one, it is 0.0603 of it.
+MOST_OFF = 0.0625
 # Least and largest value that is tried, as the course has them for each of the two displays.
 TRIED = {
     "stress2": {
@@ -61,6 +64,8 @@ def nearer_to(liked, noise=0.0, rng=None):
 
 @examples(100)
 @given(shares=st.lists(SHARE, min_size=4, max_size=4), model=st.sampled_from((STRESS2, VBD)))
+@example(shares=[1 / 16] * 4, model=STRESS2)
+@example(shares=[15 / 16] * 4, model=VBD)
 def test_what_a_chooser_likes_is_found(shares, model):
     tried = TRIED[model.name]
     liked = {
@@ -70,7 +75,7 @@ def test_what_a_chooser_likes_is_found(shares, model):
     assert [found.knob.key for found in course.found] == list(ORDER)
     for knob, found, least, most in course.found:
         low, high = tried[knob.key]
-        assert abs(found - liked[knob.key]) <= 0.06 * (high - low) + 0.011
+        assert abs(found - liked[knob.key]) <= MOST_OFF * (high - low) + 0.011
         assert knob.value(course.style) == found
         assert low <= least <= found <= most <= high
         assert least - 0.011 <= liked[knob.key] <= most + 0.011
