@@ -324,7 +324,7 @@ class Setting(NamedTuple):
     Parameters
     ----------
     name, value, origin
-        Its name, its value, and the option, the line of the file or the default that gives it.
+        The setting's name, its value, and the option, line of the file or default that gives it.
     unit
         Unit of a length.
     """

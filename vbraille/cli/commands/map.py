@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _KINDS = ("png", "svg", "csv", "pdf", "gif")
 _FRAMES, _MOST_FRAMES = 8, 500
-_LEAST_AXES_PER_MM = 1.0
+_LEAST_RULERS_PER_MM = 1.0
 _FINE_PIXELS_PER_MM = 12.0  # of outlines, of which a PNG has edges
 # When vibrations of 50 Hz are at their ends: an array that is drawn shows them best then.
 _ARRAY_TIME_S = 0.005
@@ -272,12 +272,12 @@ class _Drawing:
     def _check_room(self, maps: int = 1) -> None:
         """Refuse maps of too many pixels before the first is made."""
         most = scenes.MOST_PIXELS[self._kind]
-        if self._kind == "png" and (self._arguments.axes or self._arguments.array):
+        if self._kind == "png" and (self._arguments.rulers or self._arguments.array):
             most = scenes.MOST_PLACED_PIXELS
-        if self._kind == "png" and self._arguments.axes and self._per_mm < _LEAST_AXES_PER_MM:
+        if self._kind == "png" and self._arguments.rulers and self._per_mm < _LEAST_RULERS_PER_MM:
             raise InputError(
-                f"--resolution is {self._per_mm:g}, at which numbers of axes are specks; give "
-                f"{_LEAST_AXES_PER_MM:g} or more, or end --out in .svg or .pdf"
+                f"--resolution is {self._per_mm:g}, at which numbers of rulers are specks; give "
+                f"{_LEAST_RULERS_PER_MM:g} or more, or end --out in .svg or .pdf"
             )
         scenes.check_pixels(self._scene.canvas, self._per_mm, maps, most)
 
