@@ -36,7 +36,7 @@ def epub():
         out.writestr("OPS/p.opf", opf(["a.xhtml", "b.xhtml"]))
         out.writestr("OPS/a.xhtml", xhtml(html(BEFORE, f"class='{'x' * 900}'")))
         out.writestr("OPS/b.xhtml", xhtml(f"<h1>Two</h1>{html(AFTER)}"))
-    return EpubBook.open(io.BytesIO(made.getvalue()), "b.epub")
+    return EpubBook(io.BytesIO(made.getvalue()), "b.epub")
 
 
 def page():

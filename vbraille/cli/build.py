@@ -26,7 +26,7 @@ from vbraille.translate import (
     Undefined,
     six_dot_table,
 )
-from vbraille.translate.formats import open_source, open_stream
+from vbraille.translate.formats import open_source
 from vbraille.translate.languages import has_tables
 from vbraille.wording import spelled
 
@@ -258,7 +258,7 @@ def _open(arguments: argparse.Namespace) -> Source:
         return open_source(arguments.file, **how)
     if sys.stdin.isatty():
         say_line("type the text; Ctrl-D on an empty line ends it", aside=True)
-    return open_stream(sys.stdin.buffer, "standard input", **how)
+    return open_source(sys.stdin.buffer, name="standard input", **how)
 
 
 def lay_out(

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import io
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from importlib import import_module
+from operator import attrgetter
 from pathlib import PurePath
-from typing import TYPE_CHECKING, BinaryIO, NamedTuple
+from typing import TYPE_CHECKING, BinaryIO
 
 from vbraille.errors import InputError
-from vbraille.translate.documents.document import Document
 from vbraille.translate.documents.encodings import (
     SAMPLE_BYTES,
     find_encoding,
@@ -19,18 +20,10 @@ from vbraille.translate.documents.encodings import (
 from vbraille.wording import nearest, setting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable
+    from collections.abc import Collection, Iterable, Mapping
     from zipfile import ZipFile
 
     from vbraille.translate.source import Source
-
-
-class FormatOptions(NamedTuple):
-    """Options of a user on how a file is read; see `open_source`."""
-
-    encoding: str | None = None
-    keep_lines: bool = False
-    brf_table: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,104 +34,80 @@ class Format:
     ----------
     name
         Name by which an option calls it.
-    read
-        Function that opens a book: of its bytes, its name in messages, and options.
+    reader
+        Function that opens a book, as a module of this package and a name in it. It is loaded when
+        a book needs it, and is given the book's bytes, its name in messages, and options.
     suffixes
         Ends of files' names, for those whose bytes do not show it.
     root
         Name of the first element, where it is markup.
-    has_lines, has_encodings
-        Whether lines can be kept, and an encoding be named.
+    takes
+        Options of `open_source` that the reader takes.
+    keeps_lines
+        Whether lines are kept in any case, so that the option for that is right and needless.
+    given
+        What the reader is given beside options.
     """
 
     name: str
-    read: Callable[[BinaryIO, str, FormatOptions], Source]
+    reader: str
     suffixes: tuple[str, ...] = ()
     root: str = ""
-    has_lines: bool = False
-    has_encodings: bool = False
+    takes: tuple[str, ...] = ()
+    keeps_lines: bool = False
+    given: Mapping[str, object] = field(default_factory=dict)
+
+    def read(self, stream: BinaryIO, name: str, **options: object) -> Source:
+        """Open a book of this format by its bytes."""
+        module, _, path = self.reader.partition(":")
+        read = attrgetter(path)(import_module(f"vbraille.translate.{module}"))
+        return read(stream, name, **self.given, **options)
 
 
-# Readers are loaded when a book needs them.
-
-
-def _read_text(stream: BinaryIO, name: str, options: FormatOptions) -> Source:
-    return Document(stream, name, options.encoding, keep_lines=options.keep_lines)
-
-
-def _read_markdown(stream: BinaryIO, name: str, options: FormatOptions) -> Source:
-    from vbraille.translate.documents.markdown import read_markdown
-
-    return read_markdown(stream, name, encoding=options.encoding)
-
-
-def _read_html(stream: BinaryIO, name: str, options: FormatOptions) -> Source:
-    from vbraille.translate.documents.html import HtmlBook
-
-    return HtmlBook.open(stream, name, encoding=options.encoding)
-
-
-def _read_dtbook(stream: BinaryIO, name: str, options: FormatOptions) -> Source:  # noqa: ARG001
-    from vbraille.translate.documents.html import HtmlBook
-
-    return HtmlBook.open(stream, name, is_dtbook=True)
-
-
-def _read_epub(stream: BinaryIO, name: str, options: FormatOptions) -> Source:  # noqa: ARG001
-    from vbraille.translate.documents.epub import EpubBook
-
-    return EpubBook.open(stream, name)
-
-
-def _office(form: str) -> Callable[[BinaryIO, str, FormatOptions], Source]:
-    def read(stream: BinaryIO, name: str, options: FormatOptions) -> Source:  # noqa: ARG001
-        from vbraille.translate.documents.office.officebook import open_office
-
-        return open_office(stream, name, form)
-
-    return read
-
-
-def _read_brf(stream: BinaryIO, name: str, options: FormatOptions) -> Source:
-    from vbraille.translate.braillefiles.lines import open_brf
-
-    if options.encoding is not None:
-        return _read_unicode_braille(stream, name, options)
-    return open_brf(stream, name, table=options.brf_table)
-
-
-def _read_unicode_braille(stream: BinaryIO, name: str, options: FormatOptions) -> Source:
-    from vbraille.translate.braillefiles.lines import open_unicode_braille
-
-    return open_unicode_braille(stream, name, options.encoding)
-
-
-def _read_pef(stream: BinaryIO, name: str, options: FormatOptions) -> Source:  # noqa: ARG001
-    from vbraille.translate.braillefiles.pef import PefBook
-
-    return PefBook.open(stream, name)
-
-
-_TEXT = Format("text", _read_text, has_lines=True, has_encodings=True)
-_EPUB = Format("epub", _read_epub)  # EPUB 2 and 3, and eBraille, which is made like one
-_DOCX, _ODT, _RTF = (Format(name, _office(name)) for name in ("docx", "odt", "rtf"))
-_BRF = Format("brf", _read_brf, (".brf", ".brl"), has_lines=True, has_encodings=True)
-_UNICODE_BRAILLE = Format(
-    "unicode-braille", _read_unicode_braille, has_lines=True, has_encodings=True
+_TEXT = Format("text", "documents.document:Document", takes=("encoding", "keep_lines"))
+_HTML = Format(
+    "html",
+    "documents.html:HtmlBook.open",
+    (".html", ".htm", ".xhtml"),
+    "html",
+    takes=("encoding",),
 )
-_HTML = Format("html", _read_html, (".html", ".htm", ".xhtml"), "html", has_encodings=True)
+# EPUB 2 and 3, and eBraille, which is made like one.
+_EPUB = Format("epub", "documents.epub:EpubBook")
+_DOCX, _ODT, _RTF = (
+    Format(name, "documents.office.officebook:open_office", given={"form": name})
+    for name in ("docx", "odt", "rtf")
+)
+_BRF = Format(
+    "brf",
+    "braillefiles.lines:open_brf",
+    (".brf", ".brl"),
+    takes=("encoding", "brf_table"),
+    keeps_lines=True,
+)
+_UNICODE_BRAILLE = Format(
+    "unicode-braille",
+    "braillefiles.lines:open_unicode_braille",
+    takes=("encoding",),
+    keeps_lines=True,
+)
 FORMATS = (
     _TEXT,
-    Format("markdown", _read_markdown, (".md", ".markdown"), has_encodings=True),
+    Format(
+        "markdown",
+        "documents.markdown:read_markdown",
+        (".md", ".markdown"),
+        takes=("encoding",),
+    ),
     _HTML,
     _EPUB,
-    Format("dtbook", _read_dtbook, root="dtbook"),
+    Format("dtbook", "documents.html:HtmlBook.open", root="dtbook", given={"is_dtbook": True}),
     _DOCX,
     _ODT,
     _RTF,
     _BRF,
     _UNICODE_BRAILLE,
-    Format("pef", _read_pef, (".pef",), "pef", has_lines=True),
+    Format("pef", "braillefiles.pef:PefBook.open", (".pef",), "pef", keeps_lines=True),
 )
 _BY_SUFFIX = {suffix: format_ for format_ in FORMATS for suffix in format_.suffixes}
 _BY_ROOT = {format_.root: format_ for format_ in FORMATS if format_.root}
@@ -355,72 +324,85 @@ def _mostly_braille(text: str) -> bool:
 
 
 def open_source(
-    file: str,
+    file: str | BinaryIO,
     *,
     name: str = "",
-    encoding: str | None = None,
-    keep_lines: bool = False,
-    brf_table: str | None = None,
     form: str | None = None,
     wishes: Collection[str] = (),
+    encoding: str | None = None,
+    brf_table: str | None = None,
+    keep_lines: bool = False,
 ) -> Source:
     """Open a book of any form that can be read here.
 
     Parameters
     ----------
     file
-        Name of the file.
+        Name of the file, or a stream such as standard input, which is read to its end first and
+        must have a file number.
     name
         Name of the book in messages; empty for that of the file.
-    encoding
-        Text encoding that overrides what the bytes say, for forms that are text.
-    keep_lines
-        Whether a plain text keeps its own line breaks.
-    brf_table
-        Display table of liblouis that says which character of a BRF file is which cell.
     form
         Name of the form that the book is in; None to find it out.
     wishes
         Options, of ``encoding`` and ``keep_lines``, that are passed over in a form that has no use
         for them.
+    encoding
+        Text encoding that overrides what the bytes say, for forms that are text.
+    brf_table
+        Display table of liblouis that says which character of a BRF file is which cell.
+    keep_lines
+        Whether a plain text keeps its own line breaks.
 
     Raises
     ------
     InputError
         If there is no such file or form, the book cannot be read, or an option is not for it.
     """
-    options = FormatOptions(encoding, keep_lines, brf_table)
-    return _open(open_file(file), name or str(file), options, form, wishes)
+    name = name or str(file)
+    stream = open_file(file) if isinstance(file, str) else keep_stream(file, name)
+    options = {"encoding": encoding, "brf_table": brf_table, "keep_lines": keep_lines or None}
+    try:
+        found = find_format(stream, name) if form is None else named_format(form)
+        if _is_empty(stream):
+            # What is empty is so in all formats, and the text's sentence says so.
+            found = _TEXT
+        elif found in (_BRF, _UNICODE_BRAILLE) and _is_blank(stream):
+            raise InputError(f"{name} has no braille in it; give a file of braille")
+        return found.read(stream, name, **_fitting(found, name, options, wishes))
+    except BaseException:
+        stream.close()
+        raise
 
 
-def open_stream(
-    stream: BinaryIO,
-    name: str,
-    *,
-    encoding: str | None = None,
-    keep_lines: bool = False,
-    brf_table: str | None = None,
-    form: str | None = None,
-    wishes: Collection[str] = (),
-) -> Source:
-    """Open a book that a stream gives, such as standard input; it is read to its end first.
-
-    Parameters
-    ----------
-    stream
-        Bytes of the book. It must have a file number.
-    name
-        Name of the book in messages.
-    encoding, keep_lines, brf_table, form, wishes
-        As in `open_source`.
+def _fitting(
+    form: Format, name: str, options: Mapping[str, str | bool | None], wishes: Collection[str]
+) -> dict[str, str | bool]:
+    """Options for a reader, of those that are not None, without wishes that it has no use for.
 
     Raises
     ------
     InputError
-        If the stream or the book cannot be read, there is no such form, or an option is not for it.
+        If an option is not for the format.
     """
-    options = FormatOptions(encoding, keep_lines, brf_table)
-    return _open(keep_stream(stream, name), name, options, form, wishes)
+    fits = {*form.takes, "keep_lines"} if form.keeps_lines else {*form.takes}
+    passed_over = {"encoding", "keep_lines"}.intersection(wishes) - fits
+    if form is _BRF and "encoding" in wishes:
+        passed_over.add("encoding")  # which is that of texts
+    given = {
+        option: value
+        for option, value in options.items()
+        if value is not None and option not in passed_over
+    }
+    if "encoding" in given:
+        fits.discard("brf_table")
+    for option in given:
+        if option not in fits:
+            raise InputError(
+                f"{name} is read as {form.name}, for which there is no "
+                f"{setting(option.replace('_', '-'))}; leave it out"
+            )
+    return {option: value for option, value in given.items() if option in form.takes}
 
 
 def named_format(name: str) -> Format:
@@ -430,36 +412,6 @@ def named_format(name: str) -> Format:
         known = nearest(name, list(found))
         raise InputError(f"there is no form of books {name!r}{known}")
     return found[name.lower()]
-
-
-def _open(
-    stream: BinaryIO, name: str, options: FormatOptions, form: str | None, wishes: Collection[str]
-) -> Source:
-    encoding, keep_lines, brf_table = options
-    try:
-        found = find_format(stream, name) if form is None else named_format(form)
-        if _is_empty(stream):
-            # What is empty is so in all formats, and the text's sentence says so.
-            found = _TEXT
-        elif found in (_BRF, _UNICODE_BRAILLE) and _is_blank(stream):
-            raise InputError(f"{name} has no braille in it; give a file of braille")
-        if "encoding" in wishes and (not found.has_encodings or found is _BRF):
-            encoding = None
-        keep_lines = keep_lines and (found.has_lines or "keep_lines" not in wishes)
-        for given, fits, option in (
-            (encoding is not None, found.has_encodings, "encoding"),
-            (brf_table is not None, found is _BRF and encoding is None, "brf-table"),
-            (keep_lines, found.has_lines, "keep-lines"),
-        ):
-            if given and not fits:
-                raise InputError(
-                    f"{name} is read as {found.name}, for which there is no {setting(option)}; "
-                    f"leave it out"
-                )
-        return found.read(stream, name, FormatOptions(encoding, keep_lines, brf_table))
-    except BaseException:
-        stream.close()
-        raise
 
 
 def _is_empty(stream: BinaryIO) -> bool:

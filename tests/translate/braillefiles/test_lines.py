@@ -103,16 +103,16 @@ def test_what_is_no_braille_is_named_with_its_place(content, wanted):
 
 
 def test_a_dialect_is_what_a_display_table_says():
-    assert said(opened(b"abc ABC", table="en-us-brf.dis")) == ["ABC ABC"]
-    (german,) = blocks(opened(b"aB~`%", table="de-eurobrl6.dis"))
+    assert said(opened(b"abc ABC", brf_table="en-us-brf.dis")) == ["ABC ABC"]
+    (german,) = blocks(opened(b"aB~`%", brf_table="de-eurobrl6.dis"))
     assert german.cells.to_dots() == "1 1-2 2-3-4-6 3-4-5 1-2-3-4-5-6"
-    (spanish,) = blocks(opened(b"aZ\xe9@", table="es-new.dis"))
+    (spanish,) = blocks(opened(b"aZ\xe9@", brf_table="es-new.dis"))
     assert spanish.cells.to_dots() == "1 1-3-5-6 2-3-4-6 5"
-    assert said(opened(b"@`A", table="text_nabcc.dis")) == ["@@A"]
+    assert said(opened(b"@`A", brf_table="text_nabcc.dis")) == ["@@A"]
     with pytest.raises(InputError, match=r"display table 'de-eurobrl7.dis'; the nearest are de-"):
-        opened(b"a", table="de-eurobrl7.dis")
+        opened(b"a", brf_table="de-eurobrl7.dis")
     with pytest.raises(InputError, match="byte 0x80 is no ASCII braille"):
-        blocks(opened(b"\x80", table="de-eurobrl6.dis"))
+        blocks(opened(b"\x80", brf_table="de-eurobrl6.dis"))
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le"])
@@ -160,7 +160,7 @@ def test_unicode_braille_comes_back_byte_for_byte(lines):
 def test_any_bytes_are_read_or_refused_in_one_sentence(content, dialect):
     table = "de-eurobrl6.dis" if dialect else None
     try:
-        found = blocks(opened(content, table=table))
+        found = blocks(opened(content, brf_table=table))
     except InputError as error:
         refused = str(error)
     else:
@@ -228,7 +228,7 @@ def test_what_stands_at_the_edge_of_a_part():
 
 
 def test_another_file_or_dialect_takes_no_index():
-    first, other = opened(b"A\nB\n"), opened(b"A\nB\n", table="en-us-brf.dis")
+    first, other = opened(b"A\nB\n"), opened(b"A\nB\n", brf_table="en-us-brf.dis")
     blocks(first)
     other.adopt(first.index())
     assert not other.complete

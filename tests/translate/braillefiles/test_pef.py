@@ -91,7 +91,7 @@ BOMB = "".join(f'<!ENTITY a{n} "{f"&a{n - 1};" * 10 if n else "⠁"}">' for n in
 @pytest.mark.parametrize(
     ("content", "wanted"),
     [
-        (b"", "is damaged XML"),
+        (b"", "is empty"),
         (b"<pef", "is damaged XML"),
         (b"<html/>", "is no PEF file: it begins with html"),
         (whole("<body/>"), "has no page in it"),

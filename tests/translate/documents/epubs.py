@@ -61,7 +61,7 @@ def epub(bodies, *, metadata="", items="", order=None, **members):
 
 def opened(content):
     """Book of an EPUB's bytes."""
-    return EpubBook.open(io.BytesIO(content), "b.epub")
+    return EpubBook(io.BytesIO(content), "b.epub")
 
 
 def blocks(source):

@@ -323,7 +323,7 @@ def test_ebraille_is_ready_cells(told):
 @pytest.mark.parametrize("version", [2, 3])
 def test_a_book_by_pandoc(version):
     with (FILES / f"pandoc{version}.epub").open("rb") as stream:
-        book = EpubBook.open(stream, "p.epub")
+        book = EpubBook(stream, "p.epub")
         found = blocks(book)
         outline = book.outline()
     assert (book.title, book.language) == ("A small book", "en-GB")

@@ -106,7 +106,9 @@ _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _PATTERN_BYTES = re.compile(rb"\xe2[\xa0-\xa3][\x80-\xbf]")  # U+2800 to U+28FF in UTF-8
 
 
-def open_brf(stream: BinaryIO, name: str, *, table: str | None = None) -> BrailleLines:
+def open_brf(
+    stream: BinaryIO, name: str, *, brf_table: str | None = None, encoding: str | None = None
+) -> BrailleLines:
     """Open a file of ASCII braille (BRF); Unicode braille patterns in it are read, too.
 
     Parameters
@@ -115,21 +117,25 @@ def open_brf(stream: BinaryIO, name: str, *, table: str | None = None) -> Braill
         Bytes of the file; the stream must be able to seek, and is closed with the source.
     name
         Name of the file in messages.
-    table
+    brf_table
         Display table of liblouis that has the file's dialect, such as ``de-eurobrl6.dis``;
         None for North American ASCII braille.
+    encoding
+        Text encoding of a file whose braille is in Unicode; None to find out how it is.
 
     Raises
     ------
     InputError
         If the file is empty, no text, or cannot be read, or there is no such table.
     """
+    if encoding is not None:
+        return open_unicode_braille(stream, name, encoding)
     sample = _read(stream, name, 0, PART_BYTES)
     _check_text(sample, name)
-    if table is None and (_PATTERN_BYTES.search(sample) or sample.startswith(_WIDE_MARKS)):
+    if brf_table is None and (_PATTERN_BYTES.search(sample) or sample.startswith(_WIDE_MARKS)):
         return open_unicode_braille(stream, name)
-    masks = north_american() if table is None else by_display_table(table)
-    return BrailleLines(stream, name, masks, dialect=table or "")
+    masks = north_american() if brf_table is None else by_display_table(brf_table)
+    return BrailleLines(stream, name, masks, dialect=brf_table or "")
 
 
 def open_unicode_braille(stream: BinaryIO, name: str, encoding: str | None = None) -> BrailleLines:

@@ -11,6 +11,7 @@ import numpy as np
 from vbraille.braille.cells import Cells
 from vbraille.errors import InputError
 from vbraille.translate.documents.chapters import ChapterSource, Passage
+from vbraille.translate.documents.html import read_whole
 from vbraille.translate.source import BlockKind
 
 if TYPE_CHECKING:
@@ -70,14 +71,7 @@ class PefBook(ChapterSource):
         InputError
             If it is no PEF file, is damaged, declares entities, or is larger than 200 MB.
         """
-        try:
-            with stream:
-                stream.seek(0)
-                content = stream.read(MOST_BYTES + 1)
-        except OSError as error:
-            raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
-        if len(content) > MOST_BYTES:
-            raise InputError(f"{name} is larger than 200 MB; give one volume of it at a time")
+        content = read_whole(stream, name, MOST_BYTES)
         root = _parse(content, name)
         pages = [_rows(page, name) for page in root.iter(f"{{{NAMESPACE}}}page")]
         if not pages:

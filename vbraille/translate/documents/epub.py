@@ -27,7 +27,6 @@ from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
-    from typing import Self
 
     from vbraille.translate.documents.markup.package import BookPart
 
@@ -71,17 +70,6 @@ class EpubBook(ChapterSource):
             language=self._package.language,
             in_cells=self._package.is_braille,
         )
-
-    @classmethod
-    def open(cls, stream: BinaryIO, name: str) -> Self:
-        """Open a file, whose stream is the book's from then on.
-
-        Raises
-        ------
-        InputError
-            If it is no EPUB, damaged, or locked.
-        """
-        return cls(stream, name)
 
     def outline(self) -> tuple[tuple[int, str, str], ...]:
         """Table of contents, as the book has it, without its chapters being read.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, BinaryIO
 
 from vbraille.errors import InputError
 from vbraille.translate.documents.encodings import SAMPLE_BYTES, TextDecoder
-from vbraille.translate.documents.html import HtmlBook
+from vbraille.translate.documents.html import HtmlBook, read_whole
 from vbraille.translate.documents.markup.tree import markup_encoding, read_tree
 
 if TYPE_CHECKING:
@@ -59,12 +59,7 @@ def read_markdown(stream: BinaryIO, name: str, encoding: str | None = None) -> H
     from mdit_py_plugins.subscript import sub_plugin
     from mdit_py_plugins.superscript import superscript_plugin
 
-    try:
-        with stream:
-            stream.seek(0)
-            content = stream.read()
-    except OSError as error:
-        raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
+    content = read_whole(stream, name)
     found = markup_encoding(content[:SAMPLE_BYTES], encoding)
     text = TextDecoder(found.name).decode(content[found.skip :], found.skip, final=True)
     parser = MarkdownIt("commonmark", {"maxNesting": _LIMIT}).enable(["table", "strikethrough"])
