@@ -102,6 +102,17 @@ def test_a_canvas_of_ten_metres_is_looked_at(tmp_path):
     assert any("hidden" in one for one in advice(tmp_path, circle(60, 60, 10), DISC, canvas=big))
 
 
+def test_a_wave_is_as_wide_as_its_shape_whichever_direction_is_named(tmp_path):
+    texture = 'fill = { texture = { kind = "linear-grating", ridge_mm = 14, %s } }'
+    corners = "[[20, 20], [80, 20], [80, 30], [20, 30]]"
+    flat = f'{{ kind = "polygon", vertices_mm = {corners}, %s }}'
+    said = {
+        angle: any("filled with waves" in one for one in advice(tmp_path, flat % (texture % angle)))
+        for angle in ("wave_angle_deg = 90", "ridge_angle_deg = 0", "ridge_angle_deg = 90")
+    }
+    assert list(said.values()) == [True, True, False]
+
+
 def test_the_box_of_a_label_is_that_of_its_dots(tmp_path):
     path = tmp_path / "a.scene"
     path.write_text(

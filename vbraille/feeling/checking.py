@@ -17,6 +17,7 @@ from vbraille.render.braille.models import STRESS2_8X8
 from vbraille.render.scene.compiling import SceneMap
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.checking import LEAST_BLANK_MM, frequencies, kind_of
+from vbraille.scene.measures import travel_deg
 from vbraille.scene.patterns import Circle, Dots, Group, Label, PathShape, Polygon
 from vbraille.scene.textures import LinearGrating
 from vbraille.scene.traversal import children, each
@@ -286,15 +287,16 @@ def _shapes(element: AnyPattern) -> Iterator[tuple[AnyPattern, str]]:
         points = np.concatenate(around) if around else np.zeros((1, 2))
         low, high = points.min(axis=0), points.max(axis=0)
         fill: Fill = pattern.fill
-        wave = fill.texture
-        if isinstance(wave, LinearGrating):
-            angle = math.radians(wave.wave_angle_deg or 0.0)
+        texture = fill.texture
+        if isinstance(texture, LinearGrating):
+            wave_mm = texture.wave.length
+            angle = math.radians(travel_deg(texture.wave_angle_deg, texture.ridge_angle_deg))
             width, height = high - low
             across_mm = abs(width * math.cos(angle)) + abs(height * math.sin(angle))
-            if wave.ridge_mm + wave.gap_mm > across_mm:
+            if wave_mm > across_mm:
                 yield (
                     pattern,
-                    f"is filled with waves of {wave.ridge_mm + wave.gap_mm:g} mm, longer than the "
+                    f"is filled with waves of {wave_mm:g} mm, longer than the "
                     f"{across_mm:.1f} mm that it is wide; shorten them",
                 )
         if fill.blended or not fill.gap_mm:

@@ -16,9 +16,7 @@ from PIL.PngImagePlugin import PngInfo
 
 from vbraille.errors import InputError
 from vbraille.pictures.words import plain
-from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 from vbraille.scene.signals import Pulse
-from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating
 from vbraille.scene.traversal import each, vibrations
 from vbraille.wording import setting
 
@@ -117,18 +115,8 @@ def slowest_s(scene: Scene) -> float | None:
     swings = [swing.frequency_hz for one in scene.elements for swing in vibrations(one)]
     periods = [1.0 / frequency_hz for frequency_hz in swings]
     periods += [one.period_s for one in scene.signals.values() if isinstance(one, Pulse)]
-    for part in each(*scene.elements):
-        match part:
-            case LinearGrating() | RadialGrating() if part.velocity_mm_s:
-                periods.append((part.ridge_mm + part.gap_mm) / abs(part.velocity_mm_s))
-            case AxialGrating() if part.velocity_deg_s:
-                periods.append((part.ridge_deg + part.gap_deg) / abs(part.velocity_deg_s))
-            case StraightLine() | Circle() | Polygon() | PathShape() if (
-                part.stroke and part.stroke.along
-            ):
-                along = part.stroke.along
-                if along.velocity_mm_s:
-                    periods.append((along.ridge_mm + along.gap_mm) / abs(along.velocity_mm_s))
+    waves = [part.wave for part in each(*scene.elements) if part.wave is not None]
+    periods += [wave.length / abs(wave.speed) for wave in waves if wave.speed]
     return max(periods, default=None)
 
 

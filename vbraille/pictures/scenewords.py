@@ -186,7 +186,7 @@ def _stroke_words(stroke: Stroke) -> str:
     if stroke.outlined:
         words.append("outlined")
     if stroke.along is not None:
-        words.append(f"cut every {stroke.along.ridge_mm + stroke.along.gap_mm:g} mm")
+        words.append(f"cut every {stroke.along.wave.length:g} mm")
     if stroke.across is not None:
         words.append(f"with {stroke.across.cycles} cycles across")
     if stroke.vibration is not None:

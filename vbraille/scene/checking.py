@@ -22,7 +22,7 @@ from vbraille.scene.patterns import (
     Tile,
 )
 from vbraille.scene.signals import made_of
-from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform
+from vbraille.scene.textures import Uniform
 from vbraille.scene.traversal import (
     ONE,
     children,
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from vbraille.scene.locations import OpenedScene
+    from vbraille.scene.measures import Wave
     from vbraille.scene.patterns import AnyPattern, Operation
     from vbraille.scene.scene import Canvas, Scene
     from vbraille.scene.strokes import Vibration
@@ -251,10 +252,6 @@ def _element_advice(element: AnyPattern, box: Box | None, canvas: Canvas) -> Ite
             if beyond > 1e-6:
                 yield f"reaches {beyond:.1f} mm beyond the canvas"
     for pattern in each(element):
-        if isinstance(pattern, LinearGrating | RadialGrating):
-            wave_mm = pattern.ridge_mm + pattern.gap_mm
-            yield from _of_wave("a grating", wave_mm)
-            yield from _of_flow("a grating", pattern.velocity_mm_s, wave_mm)
         if isinstance(pattern, Shape) and pattern.stroke is not None:
             stroke = pattern.stroke
             if not LEAST_STROKE_MM <= stroke.width_mm <= MOST_STROKE_MM:
@@ -262,26 +259,22 @@ def _element_advice(element: AnyPattern, box: Box | None, canvas: Canvas) -> Ite
                     f"has a stroke of {stroke.width_mm:g} mm; from {LEAST_STROKE_MM:g} to "
                     f"{MOST_STROKE_MM:g} mm they are felt best"
                 )
-            if stroke.along is not None:
-                length = stroke.along.ridge_mm + stroke.along.gap_mm
-                yield from _of_wave("a grating along a stroke", length)
-                yield from _of_flow("a grating along a stroke", stroke.along.velocity_mm_s, length)
+        if pattern.wave is not None and pattern.wave.in_mm:
+            along = " along a stroke" if isinstance(pattern, Shape) else ""
+            yield from _of_wave(f"a grating{along}", pattern.wave)
 
 
-def _of_wave(what: str, wave_mm: float) -> Iterator[str]:
+def _of_wave(what: str, wave: Wave) -> Iterator[str]:
+    """Sentences about a wave that is felt badly, or flows faster than was felt well: 9.7."""
+    wave_mm = wave.length
     if wave_mm < LEAST_WAVE_MM:
         yield f"has {what} of {wave_mm:g} mm, which is felt as noise; 2 to 15 mm are felt best"
     elif wave_mm > MOST_WAVE_MM:
         yield f"has {what} of {wave_mm:g} mm, which is felt weakly; 2 to 15 mm are felt best"
-
-
-def _of_flow(what: str, velocity_mm_s: float, wave_mm: float) -> Iterator[str]:
-    """Sentences about a flow that is faster than what was felt well: Lévesque 2009, 9.7."""
-    rate_hz = abs(velocity_mm_s) / wave_mm
-    if rate_hz > MOST_FLOW_HZ:
+    if wave.flow_hz > MOST_FLOW_HZ:
         yield (
-            f"has {what} that moves by {rate_hz:.3g} waves a second; 1 to {MOST_FLOW_HZ:g} are "
-            "felt best"
+            f"has {what} that moves by {wave.flow_hz:.3g} waves a second; 1 to {MOST_FLOW_HZ:g} "
+            "are felt best"
         )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from vbraille.errors import check_range
 
@@ -17,6 +18,22 @@ LEAST_MM = 0.05
 LEAST_APART_MM = 1e-6
 LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ = 0.1, 50.0
 LEAST_ZOOM, MOST_ZOOM = 0.5, 16.0
+
+
+class Wave(NamedTuple):
+    """A ridge and a gap that come again and again: their length, and their speed per second.
+
+    Both are in mm along a line, in degrees around a place.
+    """
+
+    length: float
+    speed: float
+    in_mm: bool = True
+
+    @property
+    def flow_hz(self) -> float:
+        """Number of waves that pass a place in a second."""
+        return abs(self.speed) / self.length
 
 
 def check_length(what: str, value_mm: float | None, least_mm: float = LEAST_MM) -> None:

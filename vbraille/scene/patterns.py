@@ -14,6 +14,7 @@ from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.measures import (
     LEAST_APART_MM,
     Point,
+    Wave,
     check_angle,
     check_file,
     check_length,
@@ -174,6 +175,11 @@ class Shape(Pattern, frozen=True, kw_only=True):
         super().__post_init__()
         if self.stroke is not None and self.dots is not None:
             raise ValueError("dots cannot be given beside a stroke; leave one out")
+
+    @property
+    def wave(self) -> Wave | None:
+        """Ridges and gaps along its stroke; None if it has none."""
+        return self.stroke.along.wave if self.stroke and self.stroke.along else None
 
 
 class StraightLine(Shape, frozen=True, kw_only=True, tag="line"):

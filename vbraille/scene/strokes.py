@@ -11,6 +11,7 @@ from vbraille.errors import check_range
 from vbraille.scene.measures import (
     LEAST_FREQUENCY_HZ,
     MOST_FREQUENCY_HZ,
+    Wave,
     check_angle,
     check_length,
     check_share,
@@ -117,6 +118,11 @@ class Along(Table, frozen=True, kw_only=True):
         check_share("amplitude", self.amplitude)
         check_range("velocity", self.velocity_mm_s, -1000, 1000, " mm/s")
         check_velocity_by(self.velocity_by, bool(self.velocity_mm_s))
+
+    @property
+    def wave(self) -> Wave:
+        """Its ridges and gaps."""
+        return Wave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
 
 
 class Stroke(Table, frozen=True, kw_only=True):

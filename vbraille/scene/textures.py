@@ -12,6 +12,7 @@ from vbraille.scene.measures import (
     MOST_FREQUENCY_HZ,
     MOST_MM,
     Point,
+    Wave,
     check_angle,
     check_length,
     check_point,
@@ -200,6 +201,11 @@ class LinearGrating(Pattern, frozen=True, kw_only=True, tag="linear-grating"):
         if self.wave_angle_deg is not None and self.ridge_angle_deg is not None:
             raise ValueError("ridge_angle_deg cannot be given beside wave_angle_deg; leave one out")
 
+    @property
+    def wave(self) -> Wave:
+        """Its ridges and gaps."""
+        return Wave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
+
 
 class RadialGrating(Pattern, frozen=True, kw_only=True, tag="radial-grating"):
     """Rings of ridges around a place: Lévesque 2009, eq. 8.4 with a distance as abscissa.
@@ -234,6 +240,11 @@ class RadialGrating(Pattern, frozen=True, kw_only=True, tag="radial-grating"):
         super().__post_init__()
         _check_grating(self)
         check_point("center", self.center_mm)
+
+    @property
+    def wave(self) -> Wave:
+        """Its ridges and gaps."""
+        return Wave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
 
 
 class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
@@ -297,6 +308,11 @@ class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
         check_velocity_by(self.velocity_by, bool(self.velocity_deg_s))
         if self.distortion is not None and self.velocity_deg_s:
             raise ValueError("velocity cannot be given beside a distortion; leave one out")
+
+    @property
+    def wave(self) -> Wave:
+        """Its ridges and gaps."""
+        return Wave(self.ridge_deg + self.gap_deg, self.velocity_deg_s, in_mm=False)
 
 
 def _check_grating(grating: LinearGrating | RadialGrating) -> None:

@@ -21,9 +21,8 @@ from vbraille.render.scene.labels import Assets
 from vbraille.render.scene.nodes import NodeKind, joined
 from vbraille.render.scene.trees import ONE, deflection, layer, mask
 from vbraille.render.work import ProgramKind
-from vbraille.scene.patterns import Group, Moving, Shape
+from vbraille.scene.patterns import Group, Moving
 from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch, ordered
-from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating
 from vbraille.scene.traversal import drawn_vibrations, driving, each
 
 if TYPE_CHECKING:
@@ -233,16 +232,9 @@ def _frequencies(pattern: AnyPattern) -> Iterator[float]:
     for vibration in (pattern.vibration, *drawn_vibrations(pattern)):
         if vibration is not None and vibration.amplitude > 0.0:
             yield vibration.frequency_hz
-    if isinstance(pattern, Shape):
-        along = None if pattern.stroke is None else pattern.stroke.along
-        if along is not None and along.velocity_mm_s:
-            yield abs(along.velocity_mm_s) / (along.ridge_mm + along.gap_mm)
-    elif isinstance(pattern, LinearGrating | RadialGrating):
-        if pattern.velocity_mm_s:
-            yield abs(pattern.velocity_mm_s) / (pattern.ridge_mm + pattern.gap_mm)
-    elif isinstance(pattern, AxialGrating) and pattern.velocity_deg_s:
-        yield abs(pattern.velocity_deg_s) / (pattern.ridge_deg + pattern.gap_deg)
-    elif isinstance(pattern, Moving) and any(pattern.velocity_mm_s):
+    if pattern.wave is not None and pattern.wave.speed:
+        yield pattern.wave.flow_hz
+    if isinstance(pattern, Moving) and any(pattern.velocity_mm_s):
         yield _MOVING_HZ
 
 

@@ -246,10 +246,10 @@ def _speed(
     """Speed of the texture along a stroke, in mm/s, once the cues that are not shown are said."""
     own = 0.0
     if fill is not None and along is not None:
-        own = speed_of(fill.part("Grating"), "mm", along.ridge_mm + along.gap_mm)
+        own = speed_of(fill.part("Grating"), "mm", along.wave.length)
     motion = stroke.one("motion", CUE)
     if motion is None:
-        return own if along is None else travelled(own, along.ridge_mm + along.gap_mm, context)
+        return own if along is None else travelled(own, along.wave.length, context)
     cue = motion["cue"] if motion.one("cue") else None
     speed = motion["velocity"]
     motion.forget()
@@ -258,7 +258,7 @@ def _speed(
     elif cue not in (None, "none", "inherent"):
         motion.say(f'the motion cue "{cue}" is not shown')
     shown = speed if cue == "inherent" else own if cue is None else 0.0
-    return shown if along is None else travelled(shown, along.ridge_mm + along.gap_mm, context)
+    return shown if along is None else travelled(shown, along.wave.length, context)
 
 
 def speed_of(grating: GenElement, unit: str, cycle: float, most: float = _MOST_SPEED) -> float:
