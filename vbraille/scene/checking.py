@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,18 +12,20 @@ from msgspec.structs import replace
 
 from vbraille.carriers.carrier import LATERO, PANTOGRAPH, TACTOGRAPH
 from vbraille.scene.bounds import EMPTY, Box, bounds
+from vbraille.scene.measures import travel_deg
 from vbraille.scene.patterns import (
     Circle,
     Group,
     Image,
     Label,
+    Moving,
     PathShape,
     Polygon,
     Shape,
     Tile,
 )
 from vbraille.scene.signals import made_of
-from vbraille.scene.textures import Uniform
+from vbraille.scene.textures import LinearGrating, Uniform
 from vbraille.scene.traversal import (
     ONE,
     children,
@@ -39,7 +42,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from vbraille.scene.locations import OpenedScene
-    from vbraille.scene.measures import Wave
+    from vbraille.scene.measures import Point, RidgeWave
     from vbraille.scene.patterns import AnyPattern, Operation
     from vbraille.scene.scene import Canvas, Scene
     from vbraille.scene.strokes import Vibration
@@ -259,18 +262,33 @@ def _element_advice(element: AnyPattern, box: Box | None, canvas: Canvas) -> Ite
                     f"has a stroke of {stroke.width_mm:g} mm; from {LEAST_STROKE_MM:g} to "
                     f"{MOST_STROKE_MM:g} mm they are felt best"
                 )
-        if pattern.wave is not None and pattern.wave.in_mm:
+        if pattern.wave is not None:
             along = " along a stroke" if isinstance(pattern, Shape) else ""
             yield from _of_wave(f"a grating{along}", pattern.wave)
+        elif isinstance(pattern, Moving):
+            for wave in each(pattern.part):
+                if isinstance(wave, LinearGrating):
+                    across = _across(wave, pattern.velocity_mm_s)
+                    yield from _of_flow("a grating", wave.wave._replace(speed=across))
 
 
-def _of_wave(what: str, wave: Wave) -> Iterator[str]:
-    """Sentences about a wave that is felt badly, or flows faster than was felt well: 9.7."""
-    wave_mm = wave.length
-    if wave_mm < LEAST_WAVE_MM:
-        yield f"has {what} of {wave_mm:g} mm, which is felt as noise; 2 to 15 mm are felt best"
-    elif wave_mm > MOST_WAVE_MM:
-        yield f"has {what} of {wave_mm:g} mm, which is felt weakly; 2 to 15 mm are felt best"
+def _of_wave(what: str, wave: RidgeWave) -> Iterator[str]:
+    """Sentences about a wave that is felt badly, or flows faster than was felt well."""
+    if wave.in_mm and wave.length < LEAST_WAVE_MM:
+        yield f"has {what} of {wave.length:g} mm, which is felt as noise; 2 to 15 mm are felt best"
+    elif wave.in_mm and wave.length > MOST_WAVE_MM:
+        yield f"has {what} of {wave.length:g} mm, which is felt weakly; 2 to 15 mm are felt best"
+    yield from _of_flow(what, wave)
+
+
+def _across(wave: LinearGrating, velocity_mm_s: Point) -> float:
+    """Speed of a grating along its wave that moves as a whole, in mm/s."""
+    angle = math.radians(travel_deg(wave.wave_angle_deg, wave.ridge_angle_deg))
+    return velocity_mm_s[0] * math.cos(angle) + velocity_mm_s[1] * math.sin(angle)
+
+
+def _of_flow(what: str, wave: RidgeWave) -> Iterator[str]:
+    """Sentences about a flow that is faster than what was felt well: Lévesque 2009, 9.7."""
     if wave.flow_hz > MOST_FLOW_HZ:
         yield (
             f"has {what} that moves by {wave.flow_hz:.3g} waves a second; 1 to {MOST_FLOW_HZ:g} "

@@ -20,7 +20,7 @@ LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ = 0.1, 50.0
 LEAST_ZOOM, MOST_ZOOM = 0.5, 16.0
 
 
-class Wave(NamedTuple):
+class RidgeWave(NamedTuple):
     """A ridge and a gap that come again and again: their length, and their speed per second.
 
     Both are in mm along a line, in degrees around a place.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from vbraille.scene.measures import Wave, check_share, check_zooms
+from vbraille.scene.measures import RidgeWave, check_share, check_zooms
 from vbraille.scene.strokes import Vibration
 from vbraille.tomlfile import Table
 
@@ -52,6 +52,6 @@ class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
         check_zooms(self.zoom_from, self.zoom_to)
 
     @property
-    def wave(self) -> Wave | None:
-        """Ridges and gaps of its own; None if it has none."""
+    def wave(self) -> RidgeWave | None:
+        """Length and speed of ridges and gaps of its own; None if it has none."""
         return None

@@ -14,7 +14,7 @@ from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.measures import (
     LEAST_APART_MM,
     Point,
-    Wave,
+    RidgeWave,
     check_angle,
     check_file,
     check_length,
@@ -177,8 +177,8 @@ class Shape(Pattern, frozen=True, kw_only=True):
             raise ValueError("dots cannot be given beside a stroke; leave one out")
 
     @property
-    def wave(self) -> Wave | None:
-        """Ridges and gaps along its stroke; None if it has none."""
+    def wave(self) -> RidgeWave | None:
+        """Length and speed of ridges and gaps along its stroke; None if it has none."""
         return self.stroke.along.wave if self.stroke and self.stroke.along else None
 
 

@@ -11,7 +11,7 @@ from vbraille.errors import check_range
 from vbraille.scene.measures import (
     LEAST_FREQUENCY_HZ,
     MOST_FREQUENCY_HZ,
-    Wave,
+    RidgeWave,
     check_angle,
     check_length,
     check_share,
@@ -120,9 +120,9 @@ class Along(Table, frozen=True, kw_only=True):
         check_velocity_by(self.velocity_by, bool(self.velocity_mm_s))
 
     @property
-    def wave(self) -> Wave:
-        """Its ridges and gaps."""
-        return Wave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
+    def wave(self) -> RidgeWave:
+        """Length and speed of its ridges and gaps."""
+        return RidgeWave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
 
 
 class Stroke(Table, frozen=True, kw_only=True):

@@ -12,7 +12,7 @@ from vbraille.scene.measures import (
     MOST_FREQUENCY_HZ,
     MOST_MM,
     Point,
-    Wave,
+    RidgeWave,
     check_angle,
     check_length,
     check_point,
@@ -202,9 +202,9 @@ class LinearGrating(Pattern, frozen=True, kw_only=True, tag="linear-grating"):
             raise ValueError("ridge_angle_deg cannot be given beside wave_angle_deg; leave one out")
 
     @property
-    def wave(self) -> Wave:
-        """Its ridges and gaps."""
-        return Wave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
+    def wave(self) -> RidgeWave:
+        """Length and speed of its ridges and gaps."""
+        return RidgeWave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
 
 
 class RadialGrating(Pattern, frozen=True, kw_only=True, tag="radial-grating"):
@@ -242,9 +242,9 @@ class RadialGrating(Pattern, frozen=True, kw_only=True, tag="radial-grating"):
         check_point("center", self.center_mm)
 
     @property
-    def wave(self) -> Wave:
-        """Its ridges and gaps."""
-        return Wave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
+    def wave(self) -> RidgeWave:
+        """Length and speed of its ridges and gaps."""
+        return RidgeWave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
 
 
 class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
@@ -310,9 +310,9 @@ class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
             raise ValueError("velocity cannot be given beside a distortion; leave one out")
 
     @property
-    def wave(self) -> Wave:
-        """Its ridges and gaps."""
-        return Wave(self.ridge_deg + self.gap_deg, self.velocity_deg_s, in_mm=False)
+    def wave(self) -> RidgeWave:
+        """Length and speed of its ridges and gaps."""
+        return RidgeWave(self.ridge_deg + self.gap_deg, self.velocity_deg_s, in_mm=False)
 
 
 def _check_grating(grating: LinearGrating | RadialGrating) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from msgspec.structs import replace
 
 from vbraille.scene.measures import LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ
-from vbraille.scene.openlatero.elements import ON, SHARE, Number, Word
+from vbraille.scene.openlatero.elements import ON, SHARE, NumberField, WordField
 from vbraille.scene.patterns import Group
 from vbraille.scene.signals import MOST_SIGNALS
 from vbraille.scene.strokes import Vibration
@@ -30,7 +30,7 @@ DEEPEST = 32  # patterns within one another
 Maker = Callable[["GenElement", "GenContext"], "AnyPattern | None"]
 
 
-class Kind(NamedTuple):
+class ElementKind(NamedTuple):
     """A kind of pattern: the fields that its element has, and what makes a pattern of them.
 
     That makes None, and says so, where there is nothing to show, and raises ValueError where there
@@ -41,14 +41,14 @@ class Kind(NamedTuple):
     make: Maker
 
 
-class Kinds(dict[str, Kind]):
+class Kinds(dict[str, ElementKind]):
     """Table of kinds by their names in a file."""
 
     def row(self, *names: str, **fields: Field) -> Callable[[Maker], Maker]:
         """Put into the table what the decorated function makes of elements with these fields."""
 
         def keep(make: Maker) -> Maker:
-            self.update(dict.fromkeys(names, Kind(fields, make)))
+            self.update(dict.fromkeys(names, ElementKind(fields, make)))
             return make
 
         return keep
@@ -138,12 +138,12 @@ class GenContext:
         return self._found.get(id(pattern), (None, None))[1]
 
 
-FREQUENCY = Number(MOST_FREQUENCY_HZ, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, "Hz")
+FREQUENCY = NumberField(MOST_FREQUENCY_HZ, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, "Hz")
 VIBRATION = {
     "enable": ON,
     "frequency": FREQUENCY,
     "amplitude": SHARE,
-    "blend_mode": Word("high", ("high", "low")),
+    "blend_mode": WordField("high", ("high", "low")),
 }
 
 

@@ -328,7 +328,7 @@ class GenElement:
             self.say(f"{self.path} is in {counts}, although its units say {_short(named)}")
 
 
-class Number(NamedTuple):
+class NumberField(NamedTuple):
     """A number.
 
     Parameters
@@ -381,11 +381,11 @@ class Number(NamedTuple):
         return value
 
 
-SHARE = Number(1.0, 0.0, 1.0, "share")
-ANGLE = Number(0.0, -1e6, 1e6, "°")
+SHARE = NumberField(1.0, 0.0, 1.0, "share")
+ANGLE = NumberField(0.0, -1e6, 1e6, "°")
 
 
-class Switch(NamedTuple):
+class YesNoField(NamedTuple):
     """A yes or no."""
 
     default: bool
@@ -399,10 +399,10 @@ class Switch(NamedTuple):
         return word in ("yes", "true")
 
 
-OFF, ON = Switch(False), Switch(True)
+OFF, ON = YesNoField(False), YesNoField(True)
 
 
-class Word(NamedTuple):
+class WordField(NamedTuple):
     """One of a few words, and what counts for all others."""
 
     default: str
@@ -413,7 +413,7 @@ class Word(NamedTuple):
         return element.chosen(element.text, self.words, self.default)
 
 
-class Place(NamedTuple):
+class PlaceField(NamedTuple):
     """A place, x and y in mm."""
 
     default: Point = (0.0, 0.0)
@@ -446,8 +446,8 @@ class Place(NamedTuple):
         return point
 
 
-ORIGIN = Place()
-Field = Number | Switch | Word | Place
+ORIGIN = PlaceField()
+Field = NumberField | YesNoField | WordField | PlaceField
 
 
 def cleaned(text: str) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, Literal
 from msgspec.structs import replace
 
 from vbraille.scene.openlatero.context import Kinds
-from vbraille.scene.openlatero.elements import ANGLE, OFF, Number, Word
+from vbraille.scene.openlatero.elements import ANGLE, OFF, NumberField, WordField
 from vbraille.scene.openlatero.shapes import operation_of
 from vbraille.scene.patterns import Group, Tile
 from vbraille.scene.signals import Direction, Speed, Switch
@@ -45,19 +45,19 @@ _AT_REST: Final[dict[str, Literal["high", "low", "keep"]]] = {
 _TEXTURES = (Uniform, UniformVibration, LinearGrating, RadialGrating, AxialGrating, Tile)
 
 
-_SPEED = Number(5.0, 0.1, 1000.0, "mm/s")
+_SPEED = NumberField(5.0, 0.1, 1000.0, "mm/s")
 VELOCITY = {
-    "limit": Number(5.0, 0.0, 1000.0, "mm/s"),
+    "limit": NumberField(5.0, 0.0, 1000.0, "mm/s"),
     "transition": _SPEED,
-    "delay": Number(500.0, 0.0, 20_000.0, "ms"),
+    "delay": NumberField(500.0, 0.0, 20_000.0, "ms"),
 }
 DIRECTION = {
-    "low_velocity_mode": Word("toggle", tuple(_AT_REST)),
+    "low_velocity_mode": WordField("toggle", tuple(_AT_REST)),
     "direction": ANGLE,
     "symmetric": OFF,
-    "direction_tolerance": Number(30.0, 0.0, 180.0, "°"),
-    "direction_transition": Number(20.0, 0.1, 180.0, "°"),
-    "velocity_tolerance": Number(0.0, 0.0, 1000.0, "mm/s"),
+    "direction_tolerance": NumberField(30.0, 0.0, 180.0, "°"),
+    "direction_transition": NumberField(20.0, 0.1, 180.0, "°"),
+    "velocity_tolerance": NumberField(0.0, 0.0, 1000.0, "mm/s"),
     "velocity_transition": _SPEED,
 }
 

@@ -14,7 +14,7 @@ from vbraille.scene.filebytes import read_bytes
 from vbraille.scene.imagefiles import KINDS, MOST_PIXELS
 from vbraille.scene.measures import MOST_MM
 from vbraille.scene.openlatero.context import SURFACE_MM, Kinds
-from vbraille.scene.openlatero.elements import OFF, ON, Number, Place, cleaned
+from vbraille.scene.openlatero.elements import OFF, ON, NumberField, PlaceField, cleaned
 from vbraille.scene.patterns import Image
 from vbraille.scene.svg.numbers import length_px
 from vbraille.scene.textures import Uniform
@@ -127,7 +127,7 @@ _EVEN = 0.01  # share by which pixels may be longer than they are wide
 MASK = {
     "reference_maximized": ON,
     "blur": OFF,
-    "default_alpha": Number(0.0, 0.0, 1.0, "share"),
+    "default_alpha": NumberField(0.0, 0.0, 1.0, "share"),
 }
 
 
@@ -230,9 +230,9 @@ def _extent(mask: GenElement, name: str, fitting: float, reference: float) -> fl
     if element is None:
         return fitting
     if element.units() == "%":
-        share = Number(1.0, _LEAST_SIZE_MM / reference, MOST_MM / reference, "share")
+        share = NumberField(1.0, _LEAST_SIZE_MM / reference, MOST_MM / reference, "share")
         return share.read(element) * reference
-    return Number(fitting, _LEAST_SIZE_MM).read(element)
+    return NumberField(fitting, _LEAST_SIZE_MM).read(element)
 
 
 def _place(mask: GenElement, width: float, height: float) -> Point:
@@ -241,7 +241,7 @@ def _place(mask: GenElement, width: float, height: float) -> Point:
     middle = ((SURFACE_MM[0] - width) / 2, (SURFACE_MM[1] - height) / 2)
     if element is None or element.text.strip() == "centered":
         return middle
-    return Place(middle).read(element)
+    return PlaceField(middle).read(element)
 
 
 def _blur(mask: GenElement, picture: MaskPicture, width: float, height: float) -> float:

@@ -20,7 +20,15 @@ from vbraille.scene.openlatero.context import (
     travelled,
     vibration,
 )
-from vbraille.scene.openlatero.elements import ANGLE, OFF, ORIGIN, SHARE, Number, Place, Word
+from vbraille.scene.openlatero.elements import (
+    ANGLE,
+    OFF,
+    ORIGIN,
+    SHARE,
+    NumberField,
+    PlaceField,
+    WordField,
+)
 from vbraille.scene.patterns import Circle, Dots, Fill, PathShape, Polygon, StraightLine
 from vbraille.scene.strokes import (
     Across,
@@ -51,27 +59,30 @@ _SPANS = {
 }
 
 # Parts of shapes.
-STROKE = {"width": Number(10.0), "intensity": SHARE}
-DOTS = {"enable": OFF, "height": SHARE, "min_spacing": Number(1.0)}
-RIDGE = {"edge_width": Number(1.0, 0.1)}
-DOT_RIDGE = {"edge_width": Number(0.2, 0.1)}
+STROKE = {"width": NumberField(10.0), "intensity": SHARE}
+DOTS = {"enable": OFF, "height": SHARE, "min_spacing": NumberField(1.0)}
+RIDGE = {"edge_width": NumberField(1.0, 0.1)}
+DOT_RIDGE = {"edge_width": NumberField(0.2, 0.1)}
 ACROSS = {
     "enable": OFF,
-    "amplitude": Number(0.0, 0.0, 1.0, "share"),
-    "nb_cycles": Number(3, 0, 49, ""),  # on one side of a stroke
+    "amplitude": NumberField(0.0, 0.0, 1.0, "share"),
+    "nb_cycles": NumberField(3, 0, 49, ""),  # on one side of a stroke
 }
 FILL = {"gutter": OFF}
-ALONG = {"enable": OFF, "ridge_size": Number(2.0), "gap_size": Number(0.0), "invert": OFF}
-CUE = {"cue": Word("none", _CUES), "velocity": Number(50.0, -_MOST_SPEED, _MOST_SPEED, "mm/s")}
-FILL_TEXTURE = {"enable": OFF, "gap": Number(0.0, -MOST_MM), "edge_size": Number(1.0)}
-JOIN = {"type": Word("round", ("straight", "round")), "rounding_offset": Number(0.0)}
+ALONG = {"enable": OFF, "ridge_size": NumberField(2.0), "gap_size": NumberField(0.0), "invert": OFF}
+CUE = {
+    "cue": WordField("none", _CUES),
+    "velocity": NumberField(50.0, -_MOST_SPEED, _MOST_SPEED, "mm/s"),
+}
+FILL_TEXTURE = {"enable": OFF, "gap": NumberField(0.0, -MOST_MM), "edge_size": NumberField(1.0)}
+JOIN = {"type": WordField("round", ("straight", "round")), "rounding_offset": NumberField(0.0)}
 CORNER = {
     "enable": OFF,
-    "span": Word("circle intercept", _SPANS),
-    "type": Word("solid", ("solid", "invert vib")),
-    "user_angle": Number(30.0, 1.0, 180.0, "°"),
-    "blend": Word("out", ("in", "out")),
-    "blend_size": Number(1.0, LEAST_MM),
+    "span": WordField("circle intercept", _SPANS),
+    "type": WordField("solid", ("solid", "invert vib")),
+    "user_angle": NumberField(30.0, 1.0, 180.0, "°"),
+    "blend": WordField("out", ("in", "out")),
+    "blend_size": NumberField(1.0, LEAST_MM),
 }
 
 
@@ -174,7 +185,7 @@ def filling(shape: GenElement, context: GenContext) -> Fill | None:
 
 def _profiled(ridge: GenElement, width: float) -> float:
     """Width of a stroke whose profile may have another one."""
-    other = ridge.read("width", Number(width))
+    other = ridge.read("width", NumberField(width))
     if other != width:
         narrower = min(other, width)
         ridge.say(
@@ -295,7 +306,7 @@ def _against(above: GenElement, context: GenContext) -> Vibration:
     return swung(element, context)
 
 
-@ROWS.row("Line", start_point=ORIGIN, end_point=Place(SURFACE_MM))
+@ROWS.row("Line", start_point=ORIGIN, end_point=PlaceField(SURFACE_MM))
 def _line(element: GenElement, context: GenContext) -> AnyPattern | None:
     start, end = element["start_point"], element["end_point"]
     look = drawn(element, context)
@@ -306,7 +317,7 @@ def _line(element: GenElement, context: GenContext) -> AnyPattern | None:
     )
 
 
-@ROWS.row("Circle", center=ORIGIN, radius=Number(100.0))
+@ROWS.row("Circle", center=ORIGIN, radius=NumberField(100.0))
 def _circle(element: GenElement, context: GenContext) -> AnyPattern | None:
     center, radius = element["center"], element["radius"]
     look = drawn(element, context)
@@ -383,7 +394,7 @@ def _path(
     )
 
 
-@ROWS.row("Dot", "Dots", dot_radius=Number(100.0), height=SHARE)
+@ROWS.row("Dot", "Dots", dot_radius=NumberField(100.0), height=SHARE)
 def _dots(element: GenElement, context: GenContext) -> AnyPattern | None:
     one = element.attribute("type") == "Dot"
     places = element.every("dot")[: 1 if one else None]

@@ -17,7 +17,7 @@ from vbraille.scene.openlatero.context import (
     travelled,
     vibration,
 )
-from vbraille.scene.openlatero.elements import ANGLE, OFF, ON, ORIGIN, SHARE, Number, Word
+from vbraille.scene.openlatero.elements import ANGLE, OFF, ON, ORIGIN, SHARE, NumberField, WordField
 from vbraille.scene.openlatero.groups import joined, reacting, read_group
 from vbraille.scene.openlatero.shapes import speed_of
 from vbraille.scene.patterns import Circle, Group, Moving, Tile
@@ -61,29 +61,29 @@ _CUES = (
 
 MOTION = {
     "enable": OFF,
-    "velocity": Number(50.0, -_MOST_MM_S, _MOST_MM_S, "mm/s"),
+    "velocity": NumberField(50.0, -_MOST_MM_S, _MOST_MM_S, "mm/s"),
     "direction": ANGLE,
 }
-_FACTOR = Number(5.0, 0.05, 20.0, "")
+_FACTOR = NumberField(5.0, 0.05, 20.0, "")
 PITCH = {
     "enable": OFF,
     "factor": _FACTOR,
-    "length": Number(113.0, LEAST_MM),
-    "position": Number(0.0, -MOST_MM),
+    "length": NumberField(113.0, LEAST_MM),
+    "position": NumberField(0.0, -MOST_MM),
 }
 # That of an axial grating is in degrees.
 PITCH_DEG = {
     "enable": OFF,
     "factor": _FACTOR,
-    "length": Number(113.0, _LEAST_DEG, 360.0, "°"),
-    "position": Number(0.0, 0.0, 360.0, "°"),
+    "length": NumberField(113.0, _LEAST_DEG, 360.0, "°"),
+    "position": NumberField(0.0, 0.0, 360.0, "°"),
 }
-WAVE = {"enable": ON, "invert": OFF, "ridge_size": Number(8.0), "gap_size": Number(0.0)}
+WAVE = {"enable": ON, "invert": OFF, "ridge_size": NumberField(8.0), "gap_size": NumberField(0.0)}
 WAVE_DEG = {
     "enable": ON,
     "invert": OFF,
-    "ridge_size": Number(36.0, 0.0, 360.0, "°"),
-    "gap_size": Number(0.0, 0.0, 360.0, "°"),
+    "ridge_size": NumberField(36.0, 0.0, 360.0, "°"),
+    "gap_size": NumberField(0.0, 0.0, 360.0, "°"),
 }
 
 
@@ -230,11 +230,11 @@ def turned(angle_deg: float) -> float:
     "DoubleLinearGrating",
     seed=ORIGIN,
     angle=ANGLE,
-    primary_ridge_size=Number(8.0),
-    primary_gap_size=Number(0.0),
-    secondary_scale=Number(1.0, unit=""),
+    primary_ridge_size=NumberField(8.0),
+    primary_gap_size=NumberField(0.0),
+    secondary_scale=NumberField(1.0, unit=""),
     # OpenLatero takes whatever it does not know as parallel.
-    constraint=Word("parallel", ("orthogonal", "parallel")),
+    constraint=WordField("parallel", ("orthogonal", "parallel")),
     primary_amplitude=SHARE,
     secondary_amplitude=SHARE,
 )
@@ -285,7 +285,7 @@ def _blend(element: GenElement, context: GenContext) -> AnyPattern | None:
     return _changed(_carried(pattern, element), element, context)
 
 
-@ROWS.row("Motion", cue_type=Word("none", _CUES), direction=ANGLE, velocity=MOTION["velocity"])
+@ROWS.row("Motion", cue_type=WordField("none", _CUES), direction=ANGLE, velocity=MOTION["velocity"])
 def _motion(element: GenElement, context: GenContext) -> AnyPattern | None:
     cue, angle, speed = element["cue_type"], turned(element["direction"]), element["velocity"]
     part = element.one("Pattern")
@@ -320,7 +320,7 @@ def _cued(pattern: AnyPattern, cue: str, angle_deg: float, speed_mm_s: float) ->
     return Group(operation="add", parts=(pattern, weak))
 
 
-@ROWS.row("Pattern", grid_width=Number(20.0, 0.1), grid_height=Number(20.0, 0.1))
+@ROWS.row("Pattern", grid_width=NumberField(20.0, 0.1), grid_height=NumberField(20.0, 0.1))
 def _tile(element: GenElement, context: GenContext) -> AnyPattern | None:
     width, height = element["grid_width"], element["grid_height"]
     found = element.one("Pattern")

@@ -269,6 +269,10 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
         """Answer by what was felt, with normal noise of a standard deviation."""
         raise NotImplementedError
 
+    def guess(self, trial: Trial, random: np.random.Generator, /) -> str:
+        """Answer to a trial that was not attended to: any, by chance alone."""
+        raise NotImplementedError
+
 
 def of_all(number: int, rows: Sequence[Any], noun: str, of_the: str = "") -> str:
     """Words for a number of things out of all.
@@ -426,6 +430,10 @@ class IdentifyQuestion(QuestionTable, frozen=True, kw_only=True, tag="identify")
         """Give the cells as they were felt."""
         return to_answer(felt.cells(random))
 
+    def guess(self, trial: Trial, _random: np.random.Generator, /) -> str:
+        """Say that no cell was read."""
+        return to_answer([None] * (trial.asked[1] - trial.asked[0]))
+
 
 class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
     """The question which of two or more stimuli it was: the one with most, or nearest to something.
@@ -530,6 +538,10 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
         felt_so = [-math.inf if math.isnan(w) else w + d for w, d in zip(worth, drawn, strict=True)]
         return f"{felt_so.index(max(felt_so)) + 1}"
 
+    def guess(self, trial: Trial, random: np.random.Generator, /) -> str:
+        """Choose any."""
+        return str(random.integers(len(trial.stimuli)) + 1)
+
 
 class OddQuestion(QuestionTable, frozen=True, kw_only=True, tag="odd"):
     """The question which of the stimuli differed from the others."""
@@ -572,6 +584,10 @@ class OddQuestion(QuestionTable, frozen=True, kw_only=True, tag="odd"):
         off = [abs(value - np.median(so)) for value in so]
         return f"{off.index(max(off)) + 1}"
 
+    def guess(self, trial: Trial, random: np.random.Generator, /) -> str:
+        """Choose any."""
+        return str(random.integers(len(trial.stimuli)) + 1)
+
 
 class MatchQuestion(QuestionTable, frozen=True, kw_only=True, tag="match"):
     """The question which of the first two stimuli the third one was (ABX)."""
@@ -609,6 +625,10 @@ class MatchQuestion(QuestionTable, frozen=True, kw_only=True, tag="match"):
         so = [0.0 if math.isnan(v) else v + d for v, d in zip(values, drawn, strict=True)]
         return "2" if abs(so[1] - so[2]) < abs(so[0] - so[2]) else "1"
 
+    def guess(self, _trial: Trial, random: np.random.Generator, /) -> str:
+        """Choose either."""
+        return str(random.integers(2) + 1)
+
 
 class OneOfTwo(QuestionTable, frozen=True, kw_only=True):
     """A question answered by one of two words; trials with a signal are answered by the first."""
@@ -629,6 +649,10 @@ class OneOfTwo(QuestionTable, frozen=True, kw_only=True):
     def outcome(self, trial: Trial, answer: str, /) -> str:
         """Hit or miss with a signal, false alarm or correct rejection without one."""
         return self.score(self.has_signal(trial), answer)
+
+    def guess(self, _trial: Trial, random: np.random.Generator, /) -> str:
+        """Say either word."""
+        return self.words[random.integers(2)]
 
     @classmethod
     def score(cls, signal: bool, answer: str) -> str:
@@ -775,6 +799,10 @@ class RatingQuestion(QuestionTable, frozen=True, kw_only=True, tag="rating"):
         share = felt.strength(-1) + noise * float(random.standard_normal())
         return str(self.least + round(min(max(share, 0.0), 1.0) * (self.most - self.least)))
 
+    def guess(self, _trial: Trial, random: np.random.Generator, /) -> str:
+        """Give any step of the scale."""
+        return str(random.integers(self.least, self.most + 1))
+
 
 class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude"):
     """The question how strong something is, as a positive number.
@@ -829,6 +857,10 @@ class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude
         share = max(felt.share(), LEAST_MAGNITUDE)
         share *= math.exp(noise * float(random.standard_normal()))
         return f"{(self.modulus or 1.0) * max(share, LEAST_MAGNITUDE):.3g}"
+
+    def guess(self, _trial: Trial, random: np.random.Generator, /) -> str:
+        """Give any number around the modulus."""
+        return f"{(self.modulus or 1.0) * math.exp(random.standard_normal()):.3g}"
 
 
 class Naming(Table, frozen=True, kw_only=True):
@@ -1074,6 +1106,10 @@ class AdjustQuestion(QuestionTable, frozen=True, kw_only=True, tag="adjust"):
         steps = min(round(abs(apart) / step), round(span)) if felt.by_length else 1
         return ("-" if apart > 0 else "+") * max(steps, 1)
 
+    def guess(self, _trial: Trial, _random: np.random.Generator, /) -> str:
+        """Leave the value where it is."""
+        return "equal"
+
 
 class ReadQuestion(QuestionTable, frozen=True, kw_only=True, tag="read"):
     """The request to read a passage, and to say that it was read."""
@@ -1103,6 +1139,10 @@ class ReadQuestion(QuestionTable, frozen=True, kw_only=True, tag="read"):
         return f"They read passages, line by line, {of_all(read, rows, 'passage')} to the end"
 
     def simulate(self, _felt: FeltTrial, _noise: float, _random: np.random.Generator, /) -> str:
+        """Say that it was read."""
+        return self.words[0]
+
+    def guess(self, _trial: Trial, _random: np.random.Generator, /) -> str:
         """Say that it was read."""
         return self.words[0]
 
