@@ -226,7 +226,7 @@ def choose_cues(asked: str | None, *, attended: bool) -> CueKind:
 
 
 class Cues(Output):
-    """Cues that are heard, at most ten a second. A context manager.
+    """Cues that are heard, at most ten a second.
 
     A process of its own gives them, so that reading never waits for a sound. Where there is no
     audio output the terminal's bell rings.
@@ -262,9 +262,3 @@ class Cues(Output):
         worker, self._worker = self._worker, None
         if worker is not None:
             worker.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
