@@ -12,7 +12,7 @@ import pytest
 
 from vbraille.reading.cueing import MELODIES, give
 from vbraille.reading.outputs import CueKind, Cues, choose_cues
-from vbraille.reading.view import Cue
+from vbraille.reading.view import Cue, SoundFile
 from vbraille.sounds import melody
 from vbraille.workers import Incoming, Outgoing
 
@@ -64,7 +64,7 @@ def given(cues, kind, speaker=None):
         return speaker
 
     read, write = os.pipe()
-    thread = threading.Thread(target=give, args=(Incoming(read, Cue), kind, open_tones))
+    thread = threading.Thread(target=give, args=(Incoming(read, Cue | SoundFile), kind, open_tones))
     thread.start()
     with os.fdopen(write, "wb", buffering=0):
         for cue in cues:
