@@ -42,27 +42,3 @@ def test_no_kind_of_frame_takes_a_bad_deflection_to_the_actuators(kind, bad, ord
         with pytest.raises(DeviceError, match="not in"):
             device.write(frame)
     assert device.frames == 1
-
-
-@pytest.mark.parametrize("broken", [False, True])
-def test_a_device_is_brought_to_rest_before_it_is_let_go_and_let_go_once(broken):
-    done = []
-
-    class Felt(SimulatedDevice):
-        def _send(self, frame):
-            done.append("felt" if frame.any() else "rest")
-            if broken and not frame.any():
-                raise DeviceError("the cable is gone")
-
-        def _release(self):
-            done.append("let go")
-
-    device = Felt(info())
-    device.write(np.full((6, 10), 0.5))
-    if broken:
-        with pytest.raises(DeviceError, match="cable"):
-            device.close()
-    else:
-        device.close()
-    device.close()
-    assert done == ["felt", "rest", "let go"]

@@ -318,16 +318,17 @@ def test_a_frame_that_went_out_late_is_left_no_sooner_than_the_hand_asks_for(clo
             out.append(clock.now_ns())
             slow.append(frame.copy())
 
-    device, line, speed_mm_s = Late(clock), picture(mapping="sheared"), 15.0
+    device, speed_mm_s = Late(clock, counts_per_mm=20_000.0), 15.0
+    line = picture(mapping="sheared")
     device.move(straight((0, -5.0), (10, -5.0 + 10 * speed_mm_s)))
     loop = Loop(device, clock)
     loop.show(line)
     run(loop, 0.6)
-    x_mm = np.arange(-8.0, 40.0, 0.005)  # a count of the encoder
+    x_mm = np.arange(-8.0, 40.0, 0.005)
     steepest = np.abs(np.diff(line.path(x_mm), axis=0)).max() / 0.005
     steps = np.abs(np.diff(slow[150:], axis=0)).max(axis=(1, 2))
     passed_s = np.diff(out[150:]) / NS_PER_S
-    asked = steepest * (speed_mm_s * passed_s + 0.01)  # and what a count more or less tells
+    asked = steepest * (speed_mm_s * passed_s + 2 / 20_000)  # a count more or less at either end
     assert steps.max() > 0
     assert (steps <= 3 * asked).all()
 

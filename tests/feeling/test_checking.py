@@ -138,3 +138,15 @@ def test_each_zoom_from_which_something_is_there_is_looked_at(tmp_path):
     assert (
         "line 2: element 2, circle is filled with waves of 24 mm, longer than the 20.0 mm" in said
     )
+
+
+SWINGS = "stroke = { width_mm = 3, vibration = { frequency_hz = 50 } }"
+
+
+@pytest.mark.parametrize(("apart_mm", "is_said"), [(3, True), (8, True), (9.5, False)])
+def test_two_vibrations_under_one_finger_are_said(tmp_path, apart_mm, is_said):
+    elements = [circle(60 + x, 60, 10).replace(STROKE, SWINGS) for x in (0, 23 + apart_mm)]
+    said = advice(tmp_path, *elements)
+    assert bool(said) == is_said
+    assert all("vibrates" in one and "element 2" in one for one in said)
+    assert advice(tmp_path, elements[0], circle(83 + apart_mm, 60, 10)) == []

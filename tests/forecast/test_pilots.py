@@ -11,6 +11,7 @@ from vbraille.errors import InputError
 from vbraille.forecast.pilots import MARK, PilotTask, conduct, mark_rows, marked, pilot
 from vbraille.forecast.workers import Workers
 from vbraille.sessions.planning.protocolfiles import parse_protocol
+from vbraille.sessions.running.reader import ReaderHabits
 
 TEXT = """format = 1
 name = "two"
@@ -66,7 +67,7 @@ blocks = 1
 
 
 def piloted(folder, **changed):
-    given = {"noise": 0.4, "seed": 3, "workers": Workers()} | changed
+    given = {"habits": ReaderHabits(0.4), "seed": 3, "workers": Workers()} | changed
     protocol = given.pop("protocol", TWO)
     return pilot(protocol, given.pop("participants", 2), folder, **given)
 
@@ -143,7 +144,7 @@ def test_two_workers_pilot_what_one_does(text, tmp_path):
     ("changed", "sentence"),
     [
         ({"participants": 0}, "is 0; it must be 1 to 500"),
-        ({"noise": 101.0}, "noise is 101; it must be 0 to 100"),
+        ({"habits": ReaderHabits(101.0)}, "noise is 101; it must be 0 to 100"),
     ],
 )
 def test_what_cannot_be_piloted_leaves_nothing(changed, sentence, tmp_path):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.reading.felt import DISPLAY, SCENE, Felt
+from tests.tiers import heavy
 from vbraille.feeling.aperture import ZOOMS, Aperture
 from vbraille.scene.scene import Canvas
 from vbraille.simulation.steering import GlideTo, Steering
@@ -220,3 +221,69 @@ def test_a_picture_smaller_than_the_reach_is_moved_within_it():
     assert moved == aperture
     moved = aperture.panned(-0.5, 0.0, canvas)
     assert (moved.left_mm, moved.top_mm) == (-50.0, 0.0)
+
+
+LAYERS = """
+canvas = { width_mm = 120, height_mm = 90 }
+
+[signals.land]
+kind = "switch"
+levels = [1, 0.3, 0]
+
+[signals.sea]
+kind = "inverse"
+of = "land"
+
+[[elements]]
+kind = "linear-grating"
+ridge_mm = 4
+factor = "sea"
+
+[[elements]]
+kind = "circle"
+title = "Island"
+center_mm = [60, 50]
+radius_mm = 20
+stroke = { width_mm = 4 }
+fill = { texture = { kind = "use", name = "stock:dots" } }
+factor = "land"
+
+[[elements]]
+kind = "use"
+name = "stock:linear-45"
+zoom_from = 3
+"""
+
+
+def felt_at_random(path, frames, seed):
+    """Keys, poses that do not come and carriages that are lost, at random; largest steps."""
+    rng = np.random.default_rng(seed)
+    felt = Felt(path)
+    felt.at = (60.0, 50.0)
+    felt.bench.run(0.3)
+    largest = [0.0]
+    while frames > 0:
+        key = rng.choice([*"++--]}[{0", "1", "1", "c", "C", "silent", "elsewhere"])
+        if key == "silent":
+            felt.bench.device.place = lambda _: None
+        elif key == "elsewhere":
+            felt.at = tuple(rng.uniform((0.0, 0.0), (120.0, 90.0)).tolist())
+        else:
+            felt.press(key)
+            wait(felt)
+        begin = len(felt.bench.device.sent) - 1
+        count = int(rng.integers(1, 150))
+        felt.bench.run(count / 1000)
+        felt.bench.device.place = lambda _: (*felt.at, 0.0)
+        frames -= count
+        largest.append(np.abs(np.diff(felt.bench.device.sent[begin:], axis=0)).max())
+    return np.array(largest)
+
+
+@pytest.mark.parametrize("frames", [2_000, pytest.param(100_000, marks=heavy)])
+def test_nothing_jumps_by_switches_pans_and_troubles(tmp_path, frames):
+    path = tmp_path / "a.scene"
+    path.write_text(LAYERS)
+    largest = felt_at_random(path, frames, seed=32)
+    # A fade of 0.1 s, and in it another by a switch.
+    assert 0.005 < largest.max() <= 0.0201

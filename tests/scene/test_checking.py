@@ -14,6 +14,7 @@ from vbraille.scene.patterns import (
     Fill,
     Group,
     Label,
+    Moving,
     Polygon,
     Tile,
     Use,
@@ -22,7 +23,7 @@ from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import Inverse, Pulse, Speed, Switch
 from vbraille.scene.strokes import Along, DotStyle, Dotting, Stroke, VertexMarkers, Vibration
-from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
+from vbraille.scene.textures import AxialGrating, LinearGrating, Uniform, UniformVibration
 
 LATERO = Canvas(width_mm=280, height_mm=217)
 MID = Vibration(frequency_hz=25.0)
@@ -192,6 +193,14 @@ ADVICE = {
     "a quick flow": (
         circle(fill=Fill(texture=LinearGrating(ridge_mm=3, gap_mm=2, velocity_mm_s=-40))),
         "has a grating that moves by 8 waves a second; 1 to 5 are felt best",
+    ),
+    "spokes that turn quickly": (
+        AxialGrating(center_mm=(60, 60), ridge_deg=20, velocity_deg_s=-120),
+        "has a grating that moves by 6 waves a second",
+    ),
+    "what moves quickly as a whole": (
+        Moving(part=LinearGrating(ridge_mm=5, wave_angle_deg=90), velocity_mm_s=(90, -30)),
+        "has a grating that moves by 6 waves a second",
     ),
     "a quick flow along a stroke": (
         circle(stroke=Stroke(along=Along(ridge_mm=2, velocity_mm_s=12))),

@@ -56,37 +56,6 @@ def test_a_motion_checks_its_other_axes(name):
         motion([0, 1], [0, 1], **{name: [0, np.nan]})
 
 
-def test_samples_stand_at_multiples_of_a_tick():
-    way = motion([0, 1, 1.5, 2.25], [0, 10, 10, -5])
-    assert way.duration_s == 2.25
-    np.testing.assert_allclose(way.sample(2), [0, 5, 10, 10, 0])
-    np.testing.assert_allclose(way.sample(4), [0, 2.5, 5, 7.5, 10, 10, 10, 5, 0, -5])
-    assert way.sample(4).dtype == np.float64
-
-
-def test_a_tick_on_the_end_is_not_lost_to_rounding():
-    assert 0.29 * 100 < 29
-    assert motion([0, 0.29], [0, 29]).sample(100).size == 30
-
-
-@given(rate=st.floats(0.5, 500), size=st.integers(1, 50), duration=st.floats(0.01, 10))
-def test_samples_in_parts_are_the_samples_in_one(rate, size, duration):
-    way = motion([0, duration / 3, duration], [0, 7, -2])
-    whole = way.sample(rate)
-    parts = [way.sample(rate, first, size) for first in range(0, whole.size, size)]
-    np.testing.assert_array_equal(np.concatenate(parts), whole)
-    assert way.sample(rate, whole.size).size == 0
-
-
-@pytest.mark.parametrize(
-    ("rate", "first", "count"),
-    [(0, 0, 1), (-1, 0, 1), (np.inf, 0, 1), (np.nan, 0, 1), (1, -1, 1), (1, 0, -1)],
-)
-def test_samples_out_of_range_are_refused(rate, first, count):
-    with pytest.raises(ValueError, match=r"it must be|they must be"):
-        motion([0, 1], [0, 1]).sample(rate, first, count)
-
-
 def test_a_way_keeps_its_speeds_and_waits():
     way = Way(1.0)
     way.move(6.0, 10.0)

@@ -27,6 +27,7 @@ from vbraille.analysis.measures import (
     trends,
 )
 from vbraille.analysis.methods import analysed_by, methods
+from vbraille.analysis.orders import order_of
 from vbraille.analysis.primary import (
     EXPLORED,
     PRIMARY,
@@ -142,6 +143,8 @@ def analyse_study(
         chapters.append(_of_comparisons(study, study.comparisons, options))
     if study.judgements is not None:
         chapters += _of_judgements(study, study.judgements, plan)
+    if (order := order_of(study, places, plan.analysis)) is not None:
+        chapters.append(order)
     if any(session.notes for session in study.sessions):
         table = rated.notes(study.sessions)
         chapters.append(Chapter("Notes", (table,)))

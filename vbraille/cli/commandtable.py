@@ -439,7 +439,8 @@ ACTIONS = {
         "pilot": CommandRow(
             "Conduct a whole study with the simulated reader, its report and all.",
             (
-                *(_PROTOCOL, _of("participants", kind=int, metavar="N"), "noise"),
+                *(_PROTOCOL, _of("participants", kind=int, metavar="N")),
+                *("noise", "lapses", "false_alarms"),
                 _of("out", metavar="DIR", usual="pilot-PROTOCOL"),
                 *("seed", "workers"),
             ),

@@ -660,7 +660,7 @@ OPTIONS = {
         Option(
             "answers",
             "Take answers that are typed, from a file with a line for each trial, or from a "
-            "simulated reader, simulated[:NOISE].",
+            "simulated reader, simulated[:NOISE][,lapses=SHARE][,false-alarms=SHARE].",
             str,
             "SOURCE",
             default="typed",
@@ -779,6 +779,21 @@ OPTIONS = {
             float,
             "NOISE",
             default=0.4,
+        ),
+        Option(
+            "lapses",
+            "Let the simulated reader answer this share of the trials by chance alone.",
+            float,
+            "0…1",
+            default=0.0,
+        ),
+        Option(
+            "false_alarms",
+            'Let the simulated reader say "yes", or "different", in this share of the trials, '
+            "whatever it feels.",
+            float,
+            "0…1",
+            default=0.0,
         ),
         Option(
             "keep",

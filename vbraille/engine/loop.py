@@ -144,7 +144,7 @@ class Loop:
     @property
     def paused(self) -> bool:
         """Tell whether the array rests until told otherwise; setting it takes effect at once."""
-        return self.state.paused
+        return bool(self.state.now["paused"])
 
     @paused.setter
     def paused(self, paused: bool) -> None:
@@ -152,8 +152,11 @@ class Loop:
 
     @property
     def switches(self) -> int:
-        """States of a scene's switches; setting them takes effect with the next tick."""
-        return self.state.switches
+        """States of a scene's switches, as `vbraille.scene.signals.packed` has them.
+
+        Setting them takes effect with the next tick.
+        """
+        return int(self.state.now["switches"])
 
     @switches.setter
     def switches(self, switches: int) -> None:

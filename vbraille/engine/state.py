@@ -162,21 +162,11 @@ class LoopState:
         self._program = program
         self._arrays = self._gathered()
 
-    @property
-    def paused(self) -> bool:
-        """Tell whether the array rests until told otherwise."""
-        return bool(self.now["paused"])
-
     def pause(self, paused: bool, now_ns: int) -> None:
         """Let the array rest, or go on, from the next tick on."""
         self.now["paused"] = paused
         self.now["moved_ns"] = now_ns
         self.now["begun"] = self.now["exhausted"] = 0
-
-    @property
-    def switches(self) -> int:
-        """States of a scene's switches, as `vbraille.scene.signals.packed` has them."""
-        return int(self.now["switches"])
 
     def switch(self, switches: int, now_ns: int) -> None:
         """Change the states of switches from the next tick on; what rests comes back for it."""

@@ -34,6 +34,8 @@ _STEP_MM: Final = 0.25  # between the places at which it is looked what is felt
 _MOST_STEPS: Final = 1_200  # of these along a side of the canvas
 _MOST_PARTS: Final = 300
 _MOST_SAID: Final = 20  # pairs of parts
+# Ours: two vibrations that are no farther apart are under one fingertip, as wide as the array.
+_TOGETHER_MM: Final = 9.0
 _FELT, _SOLID = 0.001, 0.98
 # Ours: what swings less than so much of the full swing is hardly felt beside what swings fully.
 LEAST_AMPLITUDE: Final = 0.2
@@ -184,11 +186,14 @@ class _Check:
 
     def _beside(self, parts: list[_Part]) -> Iterator[str]:
         """Sentences about labels that lie on shapes, and parts with too little blank between."""
-        reach = math.ceil(LEAST_BLANK_MM / self._step_mm) + 1
+        near = math.ceil(LEAST_BLANK_MM / self._step_mm) + 1
+        far = math.ceil(_TOGETHER_MM / self._step_mm) + 1
         told = 0
         for first, second in combinations(parts, 2):
             if first.layer and second.layer and first.layer != second.layer:
                 continue  # they may never be there together
+            vibrating = [bool(frequencies(part.pattern)) for part in (first, second)]
+            reach = far if all(vibrating) else near
             (rows, columns), (other_rows, other_columns) = first.where, second.where
             if (
                 rows.start - reach >= other_rows.stop
@@ -207,10 +212,18 @@ class _Check:
             elif not common and told < _MOST_SAID and not _are_dots(first, second):
                 blank_mm = self._blank_mm(first, second, reach)
                 # Nearer, they touch; and where a stroke begins is felt no finer.
-                if self._step_mm < blank_mm < LEAST_BLANK_MM - 1.01 * self._step_mm:
+                if all(vibrating) and LEAST_BLANK_MM <= blank_mm < _TOGETHER_MM:
                     told += 1
-                    vibrates = frequencies(first.pattern) or frequencies(second.pattern)
-                    more = ", which a vibration fills" if vibrates else ""
+                    yield self._said(
+                        first.number,
+                        first.pattern,
+                        f"vibrates {blank_mm:.0f} mm from {self._called(second)}, which vibrates, "
+                        "too; both are under one finger, and each drowns the other: let one be "
+                        f"still, or set them {_TOGETHER_MM:g} mm apart",
+                    )
+                elif self._step_mm < blank_mm < LEAST_BLANK_MM - 1.01 * self._step_mm:
+                    told += 1
+                    more = ", which a vibration fills" if any(vibrating) else ""
                     yield self._said(
                         first.number,
                         first.pattern,

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from vbraille.forecast.workers import Workers
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.running.reader import ReaderHabits
 
 MARK = "simulated reader, no data about people"
 MOST_PILOTS = 500
@@ -122,7 +123,7 @@ def pilot(
     folder: Path,
     workers: Workers,
     *,
-    noise: float,
+    habits: ReaderHabits,
     seed: int,
     report: Callable[[int, int], None] = lambda _done, _all: None,
 ) -> Path:
@@ -138,8 +139,8 @@ def pilot(
         New directory; or that of the same pilot, ended early, which then goes on.
     workers
         Processes that conduct the sessions, which do not depend on their number.
-    noise
-        Noise of the simulated reader.
+    habits
+        Noise, lapses and false alarms of the simulated reader.
     seed
         What plans, hands and noise are drawn by.
     report
@@ -156,7 +157,7 @@ def pilot(
         raise InputError(
             f"{setting('participants')} is {participants}; it must be 1 to {MOST_PILOTS}"
         )
-    answers = f"simulated:{noise:g}"
+    answers = habits.checked().spec
     tasks = [
         PilotTask(
             text=protocol.text,

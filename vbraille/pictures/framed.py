@@ -114,7 +114,7 @@ class FramedScene(OpenedScene):
         time_s = np.arange(len(at)) / rate_hz
         step_mm_s = np.gradient(at[:, :2], axis=0) * rate_hz if len(at) > 1 else 0.0
         loaded, canvas = with_assets(self, model.style), self.resolved.canvas
-        drawn = small_png(self.resolved, loaded.assets)
+        drawn = small_png(loaded.scene, loaded.assets)
         text = write_scene(self.written).encode()
         return Recording(
             time_s,
@@ -147,7 +147,8 @@ class FramedScene(OpenedScene):
 
     def _repr_png_(self) -> bytes:
         """Deflection map for a notebook: rest is white, full swing is black."""
-        return small_png(self.resolved, with_assets(self, STRESS2_8X8.style).assets)
+        loaded = with_assets(self, STRESS2_8X8.style)
+        return small_png(loaded.scene, loaded.assets)
 
 
 def _poses(poses: ArrayLike) -> NDArray[np.float64]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,18 +12,20 @@ from msgspec.structs import replace
 
 from vbraille.carriers.carrier import LATERO, PANTOGRAPH, TACTOGRAPH
 from vbraille.scene.bounds import EMPTY, Box, bounds
+from vbraille.scene.measures import travel_deg
 from vbraille.scene.patterns import (
     Circle,
     Group,
     Image,
     Label,
+    Moving,
     PathShape,
     Polygon,
     Shape,
     Tile,
 )
 from vbraille.scene.signals import made_of
-from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform
+from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, Uniform
 from vbraille.scene.traversal import (
     ONE,
     children,
@@ -39,6 +42,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from vbraille.scene.locations import OpenedScene
+    from vbraille.scene.measures import Point
     from vbraille.scene.patterns import AnyPattern, Operation
     from vbraille.scene.scene import Canvas, Scene
     from vbraille.scene.strokes import Vibration
@@ -255,6 +259,14 @@ def _element_advice(element: AnyPattern, box: Box | None, canvas: Canvas) -> Ite
             wave_mm = pattern.ridge_mm + pattern.gap_mm
             yield from _of_wave("a grating", wave_mm)
             yield from _of_flow("a grating", pattern.velocity_mm_s, wave_mm)
+        elif isinstance(pattern, AxialGrating):
+            wave_deg = pattern.ridge_deg + pattern.gap_deg
+            yield from _of_flow("a grating", pattern.velocity_deg_s, wave_deg)
+        elif isinstance(pattern, Moving):
+            for wave in each(pattern.part):
+                if isinstance(wave, LinearGrating):
+                    across_mm_s = _across(wave, pattern.velocity_mm_s)
+                    yield from _of_flow("a grating", across_mm_s, wave.ridge_mm + wave.gap_mm)
         if isinstance(pattern, Shape) and pattern.stroke is not None:
             stroke = pattern.stroke
             if not LEAST_STROKE_MM <= stroke.width_mm <= MOST_STROKE_MM:
@@ -275,9 +287,18 @@ def _of_wave(what: str, wave_mm: float) -> Iterator[str]:
         yield f"has {what} of {wave_mm:g} mm, which is felt weakly; 2 to 15 mm are felt best"
 
 
-def _of_flow(what: str, velocity_mm_s: float, wave_mm: float) -> Iterator[str]:
-    """Sentences about a flow that is faster than what was felt well: Lévesque 2009, 9.7."""
-    rate_hz = abs(velocity_mm_s) / wave_mm
+def _across(wave: LinearGrating, velocity_mm_s: Point) -> float:
+    """Speed of a grating along its wave that moves as a whole, in mm/s."""
+    angle = math.radians(travel_deg(wave.wave_angle_deg, wave.ridge_angle_deg))
+    return velocity_mm_s[0] * math.cos(angle) + velocity_mm_s[1] * math.sin(angle)
+
+
+def _of_flow(what: str, velocity: float, wave: float) -> Iterator[str]:
+    """Sentences about a flow that is faster than what was felt well: Lévesque 2009, 9.7.
+
+    Speed and wave are both of a length, or both of an angle.
+    """
+    rate_hz = abs(velocity) / wave
     if rate_hz > MOST_FLOW_HZ:
         yield (
             f"has {what} that moves by {rate_hz:.3g} waves a second; 1 to {MOST_FLOW_HZ:g} are "

@@ -80,41 +80,6 @@ class Motion:
         """Duration of the motion: the time of its last knot."""
         return float(self.t_s[-1])
 
-    def sample(
-        self, rate_hz: float, first: int = 0, count: int | None = None
-    ) -> NDArray[np.float64]:
-        """Places along x at multiples of 1 / rate, up to the end.
-
-        Parameters
-        ----------
-        rate_hz
-            Ticks a second, above 0.
-        first
-            Number of the first tick wanted; tick 0 is at time 0.
-        count
-            Largest number of ticks, to take a long motion in parts; None is all.
-
-        Returns
-        -------
-        float64[n]
-            Places in mm. The end itself is among them only if it falls on a tick.
-
-        Raises
-        ------
-        ValueError
-            If the rate, the first tick or the count is out of range.
-        """
-        if not 0 < rate_hz < math.inf:
-            raise ValueError(f"rate is {rate_hz:g} Hz; it must be a number above 0")
-        if first < 0 or (count is not None and count < 0):
-            raise ValueError(
-                f"first tick and count are {first} and {count}; they must be 0 or more"
-            )
-        stop = 1 + math.floor(self.duration_s * rate_hz + SLACK)
-        if count is not None:
-            stop = min(stop, first + count)
-        return np.interp(np.arange(first, stop) / rate_hz, self.t_s, self.x_mm)
-
 
 class Way:
     """A motion in the making.

@@ -57,25 +57,15 @@ def test_one_factor_is_pingouins(rng, pingouin, shape):
     named = {"data": data, "dv": "score", "within": "A", "subject": "who"}
     theirs = pingouin.rm_anova(**named, correction=True).iloc[0]
     n, k = shape
+    assert ours.note == ""
     assert (ours.df1, ours.df2) == (k - 1, (k - 1) * (n - 1))
     assert ours.f == pytest.approx(theirs["F"])
     assert ours.p == pytest.approx(theirs["p_unc"])
     assert ours.epsilon == pytest.approx(theirs["eps"])
-    assert ours.generalised_eta2 == pytest.approx(theirs["ng2"])
-    partial = pingouin.rm_anova(**named, effsize="np2").iloc[0]["np2"]
-    assert ours.partial_eta2 == pytest.approx(partial)
     if k == 2:
         assert ours.p_corrected == ours.p
-        assert ours.mauchly_w is None
-        assert ours.note == "two levels: sphericity holds by itself"
     else:
         assert ours.p_corrected == pytest.approx(theirs["p_GG_corr"])
-    if 2 < k <= n:
-        sphericity = pingouin.sphericity(data, dv="score", within="A", subject="who")
-        assert ours.mauchly_w == pytest.approx(sphericity.W)
-        assert ours.note == ""
-    if k == 3:  # with more contrasts pingouin adds a second-order term to p
-        assert ours.mauchly_p == pytest.approx(sphericity.pval)
 
 
 @pytest.mark.parametrize("shape", [(6, 3, 2), (9, 2, 4), (10, 3, 3)])
@@ -83,14 +73,11 @@ def test_two_factors_are_pingouins(rng, pingouin, shape):
     table = long_form(random_cube(rng, *shape))
     named = {"data": frame(*table), "dv": "score", "within": ["A", "B"], "subject": "who"}
     theirs = pingouin.rm_anova(**named)
-    partial = pingouin.rm_anova(**named, effsize="np2")["np2"]
     for i, ours in enumerate(anova(*table).effects):
         row = theirs.iloc[i]
         assert (ours.df1, ours.df2) == (row["ddof1"], row["ddof2"])
         assert ours.f == pytest.approx(row["F"])
         assert ours.p == pytest.approx(row["p_unc"])
-        assert ours.generalised_eta2 == pytest.approx(row["ng2"])
-        assert ours.partial_eta2 == pytest.approx(partial.iloc[i])
         # Of interactions too in pingouin 0.6 and later; before, of those with a factor of two.
         if " × " not in ours.name or 2 in shape[1:]:
             assert ours.epsilon == pytest.approx(row["eps"])
@@ -106,7 +93,6 @@ def test_any_number_of_factors_is_statsmodels_and_the_projections(rng, shape):
     names = list(table[1])
     theirs = AnovaRM(frame(*table), "score", "who", names).fit().anova_table
     parts = projections(cube)
-    errors = sum(error for _, error, _ in parts.values())
     assert len(found.effects) == 2 ** len(names) - 1 == len(theirs)
     for ours in found.effects:
         acting = ours.name.split(" × ")
@@ -114,18 +100,13 @@ def test_any_number_of_factors_is_statsmodels_and_the_projections(rng, shape):
         assert ours.f == pytest.approx(row["F Value"])
         assert (ours.df1, ours.df2) == (row["Num DF"], row["Den DF"])
         assert ours.p == pytest.approx(row["Pr > F"])
-        effect, error, covariance = parts[tuple(names.index(n) for n in acting)]
-        assert ours.partial_eta2 == pytest.approx(effect / (effect + error))
-        assert ours.generalised_eta2 == pytest.approx(effect / (effect + errors))
+        *_, covariance = parts[tuple(names.index(n) for n in acting)]
         # Box 1954, from the doubly centred covariance: no contrasts are chosen.
         box = np.trace(covariance) ** 2 / (ours.df1 * np.trace(covariance @ covariance))
         assert ours.epsilon == pytest.approx(box)
         assert ours.p_corrected == pytest.approx(
             f.sf(ours.f, ours.epsilon * ours.df1, ours.epsilon * ours.df2)
         )
-        if ours.mauchly_w is not None:
-            values = np.sort(np.linalg.eigvalsh(covariance))[-ours.df1 :]
-            assert ours.mauchly_w == pytest.approx(np.prod(values / values.mean()))
 
 
 def test_missing_and_repeated_cells(rng, pingouin):
@@ -147,7 +128,6 @@ def test_missing_and_repeated_cells(rng, pingouin):
     means = means[means["who"].isin(found.participants)]
     theirs = pingouin.rm_anova(means, dv="score", within=["A", "B"], subject="who")
     np.testing.assert_allclose([e.f for e in found.effects], theirs["F"])
-    np.testing.assert_allclose([e.generalised_eta2 for e in found.effects], theirs["ng2"])
 
 
 def test_rows_may_come_in_any_order(rng):
@@ -197,24 +177,14 @@ def test_the_published_f_has_the_published_p(rng):
         assert (found.df1, found.df2, round(found.p, 3)) == (2, 10, p)
 
 
-@pytest.mark.no_cover
-def test_mauchlys_test_keeps_its_level_if_sphericity_holds(rng):
-    p = [anova(*long_form(rng.normal(size=(12, 3)))).effects[0].mauchly_p for _ in range(300)]
-    assert 0.02 < np.mean(np.array(p) < 0.05) < 0.09
-
-
-def test_too_few_participants_for_sphericity(rng):
+def test_fewer_participants_than_contrasts_have_an_epsilon(rng):
     effect = anova(*long_form(random_cube(rng, 4, 3, 4))).effects[2]
-    assert effect.note == "4 participants are too few to test the sphericity of 6 contrasts"
-    assert effect.mauchly_w is effect.mauchly_p is None
     assert effect.epsilon is not None
     assert 1 / 6 <= effect.epsilon <= 0.5  # of six eigenvalues three are 0
-    assert anova(*long_form(random_cube(rng, 4, 4))).effects[0].mauchly_w is not None
 
 
 def test_two_by_two_is_one_contrast(rng):
     effect = anova(*long_form(random_cube(rng, 5, 2, 2))).effects[2]
-    assert effect.note == "one contrast: sphericity holds by itself"
     assert effect.epsilon == 1
 
 
@@ -222,8 +192,6 @@ def test_conditions_that_follow_from_each_other(rng):
     cube = random_cube(rng, 8, 3)
     cube[:, 2] = cube[:, :2].mean(axis=1) + 3
     (effect,) = anova(*long_form(cube)).effects
-    assert effect.mauchly_w is None
-    assert "follow from the others" in effect.note
     assert effect.epsilon == pytest.approx(0.5)
 
 
@@ -232,10 +200,8 @@ def test_participants_who_all_respond_alike(rng):
     (effect,) = anova(*long_form(level + step)).effects
     assert effect.note == "all participants differ alike between its levels; F has no value"
     assert (effect.f, effect.p, effect.epsilon, effect.p_corrected) == (None,) * 4
-    assert effect.partial_eta2 is None
-    assert effect.generalised_eta2 is not None
     (same,) = anova(*long_form(np.full((4, 3), 0.1))).effects
-    assert (same.f, same.generalised_eta2) == (None, None)
+    assert same.f is None
     # One factor alike, the other not.
     first, second, _ = anova(*long_form(rng.normal(size=(6, 3, 1)) + np.array([0.3, 1.7]))).effects
     assert first.f is not None

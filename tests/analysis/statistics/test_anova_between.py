@@ -6,7 +6,7 @@ import pytest
 import statsmodels.formula.api as smf
 from statsmodels.stats.anova import anova_lm
 
-from vbraille.analysis.statistics.anova import anova, huynh_feldt
+from vbraille.analysis.statistics.anova import anova
 from vbraille.analysis.statistics.intervals import Unanswerable
 
 # O'Brien and Kaiser 1985, table 7: scores before, after and later, five hours each.
@@ -65,17 +65,12 @@ def test_as_published(published, name, df1, df2, f, p):
 
 
 @pytest.mark.parametrize(
-    ("name", "narrow", "wide"),
-    [
-        ("phase", 0.79953, 0.92786),
-        ("treatment × phase", 0.79953, 0.92786),
-        ("hour", 0.46028, 0.55928),
-        ("phase × hour", 0.44950, 0.73306),
-    ],
-)
-def test_epsilons_as_published(published, name, narrow, wide):
-    assert published[name].epsilon == pytest.approx(narrow, abs=1e-5)
-    assert published[name].huynh_feldt == pytest.approx(wide, abs=1e-5)
+    ("name", "epsilon"),
+    [("phase", 0.79953), ("treatment × phase", 0.79953), ("hour", 0.46028),
+     ("phase × hour", 0.44950)],
+)  # fmt: skip
+def test_epsilons_as_published(published, name, epsilon):
+    assert published[name].epsilon == pytest.approx(epsilon, abs=1e-5)
 
 
 def made(groups=(4, 6, 3), levels=3, seed=1):
@@ -123,12 +118,6 @@ def test_as_by_regression():
     assert found["group"].p == pytest.approx(other["PR(>F)"].iloc[1])
 
 
-def test_one_group_is_an_analysis_within():
-    frame = made()
-    plain = anova(frame["who"].tolist(), {"level": frame["level"].tolist()}, frame["score"])
-    assert huynh_feldt(plain.effects[0].epsilon, 13, 2, groups=1) == plain.effects[0].huynh_feldt
-
-
 def test_who_misses_a_cell_is_named():
     frame = made()
     found = of_frame(frame.drop(index=0))
@@ -141,7 +130,7 @@ def test_scores_alike_have_no_f():
     alike = frame["level"].map({"L0": 1.0, "L1": 2.0, "L2": 4.0})
     effect = of_frame(frame.assign(score=alike)).effects[1]
     assert effect.f is None
-    assert effect.note.startswith("all participants of a group are alike; F has no value")
+    assert effect.note == "all participants of a group are alike; F has no value"
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,13 @@ import pytest
 from scipy import stats
 
 from vbraille.analysis.statistics.anova import anova
-from vbraille.analysis.statistics.comparisons import CellDesign, CellScores, CellShares, effects
-from vbraille.analysis.statistics.effectsizes import hedges_correction
+from vbraille.analysis.statistics.comparisons import (
+    CellDesign,
+    CellScores,
+    CellShares,
+    effects,
+    hedges_correction,
+)
 from vbraille.analysis.statistics.intervals import Interval, adjust
 
 ANY = Interval(-math.inf, math.inf)
@@ -198,3 +203,17 @@ def test_wrong_findings_are_as_rare_as_said(random):
         every = [effect.p for effect in found] + [p for e in found for *_, p in e.pairs]
         wrong += min(every) < 0.05
     assert wrong <= 20  # 10 are expected; more than 20 come by chance once in 600 times
+
+
+@pytest.mark.parametrize(
+    # Hedges 1981, table 1.
+    ("df", "factor"),
+    [(2, 0.5642), (3, 0.7236), (4, 0.7979), (10, 0.9228), (50, 0.9849)],
+)
+def test_hedges_correction_is_the_published_one(df, factor):
+    assert hedges_correction(df) == pytest.approx(factor, abs=6e-5)
+
+
+def test_one_degree_of_freedom_has_no_correction():
+    with pytest.raises(ValueError, match="needs two"):
+        hedges_correction(1)

@@ -3,7 +3,7 @@
 `intervals`
     Intervals of proportions, means, shares and correlations; corrections of p; the error of a
     question that the scores cannot answer.
-`comparisons`, `anova`, `effectsizes`
+`comparisons`, `anova`
     Means, effects and differences in the cells of a design.
 `bradleyterry`
     Scales and preferred values of paired comparisons.

@@ -6,8 +6,8 @@ own columns add to all others ("type III", which groups of unequal size do not b
 groups the one column is the mean (Winer, Brown and Michels 1991, ch. 4 and 7; Kirk 2013, ch. 10
 and 12; Maxwell, Delaney and Kelley 2018, ch. 12 and 14). statsmodels' AnovaRM gives the same F
 within participants, and the tests hold the two against each other; but it fits a dummy for each
-participant in each cell (2 s and 0.4 GB for 200 participants and 26 letters), keeps no sums of
-squares and knows no sphericity, so that the contrasts would be needed beside it.
+participant in each cell (2 s and 0.4 GB for 200 participants and 26 letters), and knows no
+sphericity, so that the contrasts would be needed beside it.
 """
 
 from __future__ import annotations
@@ -16,13 +16,11 @@ import math
 from collections import defaultdict
 from dataclasses import dataclass
 from itertools import combinations, product
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-from scipy.stats import chi2
 from scipy.stats import f as fisher
 
-from vbraille.analysis.statistics.effectsizes import partial_eta2_interval
 from vbraille.analysis.statistics.intervals import Unanswerable
 
 if TYPE_CHECKING:
@@ -40,7 +38,6 @@ MOST_FACTORS = 4
 MOST_CELLS = 2000  # a hundred times what a session holds; contrasts grow with the square of this
 # Sums of squares below this share of the scores' own are rounding.
 ROUNDING = 1e-24
-BETWEEN = "beside a factor between participants: no test of sphericity, no interval"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +50,6 @@ class Effect:
         The factors' names, those between participants first, joined by " × ".
     df1, df2
         Degrees of freedom of the effect and of its error.
-    generalised_eta2
-        SS_effect over the sum of itself, the participants' SS and all errors' SS (Olejnik and
-        Algina 2003, all factors manipulated); None beside groups.
     note
         Why something is None, or ought not to be read on its own; may be empty.
     f, p
@@ -63,31 +57,16 @@ class Effect:
     epsilon, p_corrected
         Greenhouse and Geisser's epsilon, and p with both degrees of freedom multiplied by it; 1
         and p for an effect between participants.
-    huynh_feldt, p_huynh_feldt
-        Huynh and Feldt's epsilon, and p with both degrees of freedom multiplied by it.
-    mauchly_w, mauchly_p
-        Mauchly's test of sphericity, p as R's ``mauchly.test`` has it; None beside groups.
-    partial_eta2, partial_low, partial_high
-        SS_effect / (SS_effect + SS_error), and its 95 % interval by noncentral F, which is None
-        beside groups.
     """
 
     name: str
     df1: int
     df2: int
-    generalised_eta2: float | None
-    note: str
+    note: str = ""
     f: float | None = None
     p: float | None = None
     epsilon: float | None = None
     p_corrected: float | None = None
-    huynh_feldt: float | None = None
-    p_huynh_feldt: float | None = None
-    mauchly_w: float | None = None
-    mauchly_p: float | None = None
-    partial_eta2: float | None = None
-    partial_low: float | None = None
-    partial_high: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,14 +136,11 @@ def anova(
         for size in range(len(names) + 1)
         for subset in combinations(range(len(names)), size)
     }
-    errors = None if between else sum(_deviations(z) for z in contrasts.values())
     rounding = ROUNDING * float((cube**2).sum())
     effects = [
         effect
         for subset, z in contrasts.items()
-        for effect in _effects(
-            z, parts, [names[i] for i in subset], errors, rounding, math.prod(cube.shape[1:])
-        )
+        for effect in _effects(z, parts, [names[i] for i in subset], rounding)
     ]
     return Anova(complete, dropped, averaged, tuple(effects))
 
@@ -249,60 +225,13 @@ def contrast_scores(cube: Floats, subset: tuple[int, ...]) -> Floats:
     return cube.reshape(cube.shape[0], -1)
 
 
-def huynh_feldt(epsilon: float, n: int, d: int, groups: int = 1) -> float:
-    """Huynh and Feldt's epsilon from Greenhouse and Geisser's.
-
-    With N participants in g groups it is ((N - g + 1) d ε - 2) / (d (N - g - d ε)), which is what
-    Lecoutre (1991) made of it: their own has N in place of N - g + 1, the same for one group. It
-    is taken for 1 where it is larger, and for Greenhouse and Geisser's where it is smaller.
-
-    Parameters
-    ----------
-    epsilon
-        Greenhouse and Geisser's epsilon.
-    n, d, groups
-        Numbers of participants, contrasts and groups.
-    """
-    rank = epsilon * d  # 1 … n - groups; at its upper end the estimate is without bound
-    left = n - groups
-    if left < 2 or left - rank <= 1e-9:
-        return epsilon if left < 2 else 1.0
-    return max(epsilon, min(1.0, ((left + 1) * rank - 2) / (d * (left - rank))))
-
-
-def mauchly_p(log_w: float, n: int, d: int, cells: int) -> float:
-    """P of Mauchly's W with the second-order term.
-
-    P = P(χ²_f > z) + ω (P(χ²_{f+4} > z) - P(χ²_f > z)), Anderson 2003, 10.7.4, as R's
-    ``mauchly.test`` has it: its ω has 3 times the number of cells where Anderson's has 3 d,
-    which makes a difference in the fourth decimal.
-
-    Parameters
-    ----------
-    log_w
-        Natural logarithm of W.
-    n, d
-        Numbers of participants and contrasts, d below n.
-    cells
-        Number of cells of the whole design, in which all factors are crossed.
-    """
-    df = d * (d + 1) // 2 - 1
-    scale = n - 1 - (2 * d**2 + d + 2) / (6 * d)  # ρ times n - 1
-    first, second = (float(chi2.sf(-scale * log_w, degrees)) for degrees in (df, df + 4))
-    order = (d + 2) * (d - 1) * (d - 2) * (2 * d**3 + 6 * d**2 + 3 * cells + 2)
-    p = first + order / (288 * (d * scale) ** 2) * (second - first)
-    return min(max(p, 0.0), 1.0)
-
-
 def _effects(
-    z: Floats,
-    parts: Sequence[tuple[Cell, Floats]],
-    acting: Sequence[str],
-    errors: float | None,
-    rounding: float,
-    cells: int,
+    z: Floats, parts: Sequence[tuple[Cell, Floats]], acting: Sequence[str], rounding: float
 ) -> Iterator[Effect]:
     """Effects of a set of contrasts, float64[n, d], by itself and by group.
+
+    With S the covariance of d contrasts, Greenhouse and Geisser 1959 estimate Box's (1954)
+    ε = tr(S)² / (d tr(S²)).
 
     Parameters
     ----------
@@ -310,8 +239,8 @@ def _effects(
         Columns of the groups by the names of the factors between; one column of ones for none.
     acting
         Factors within that the contrasts are of.
-    errors
-        Sum of squares of all errors; None beside groups.
+    rounding
+        Sum of squares up to which an error is none.
     """
     n, d = z.shape
     whole = np.hstack([columns for _, columns in parts])
@@ -323,84 +252,50 @@ def _effects(
         rest = [others for name, others in parts if name != own]
         own_columns = np.linalg.qr(_left_over(columns, np.hstack(rest)) if rest else columns)[0]
         effect = float(((own_columns.T @ z) ** 2).sum())
-        generalised = None
-        if errors is not None and effect + errors > rounding:
-            generalised = effect / (effect + errors)
-        head: dict[str, Any] = {
-            "name": " × ".join((*own, *acting)),
-            "df1": d * columns.shape[1],
-            "df2": d * df_error,
-            "generalised_eta2": generalised,
-        }
+        name, df1, df2 = " × ".join((*own, *acting)), d * columns.shape[1], d * df_error
         if error <= rounding:
-            alike = "of a group are alike" if errors is None else "differ alike between its levels"
-            note = f"all participants {alike}; F has no value"
-            yield Effect(**head, note="; ".join([note] if errors is not None else [note, BETWEEN]))
+            alike = "differ alike between its levels" if len(parts) == 1 else "of a group are alike"
+            yield Effect(name, df1, df2, f"all participants {alike}; F has no value")
             continue
-        yield _tested(head, effect, left, df_error, cells if errors is not None else None)
+        spread = np.linalg.svd(left, compute_uv=False) ** 2  # eigenvalues of S, but for a factor
+        ratio = (effect / df1) / (error / df2)
+        epsilon = min(1.0, float(spread.sum() ** 2 / (d * (spread**2).sum())))
+        p, p_corrected = (float(fisher.sf(ratio, by * df1, by * df2)) for by in (1.0, epsilon))
+        yield Effect(name, df1, df2, "", ratio, p, epsilon, p_corrected)
 
 
-def _tested(
-    head: dict[str, Any], effect: float, left: Floats, df_error: int, cells: int | None
-) -> Effect:
-    """Test an effect against what is left over of its contrasts, float64[n, d].
-
-    With S the covariance of d contrasts, Greenhouse and Geisser 1959 estimate Box's (1954)
-    ε = tr(S)² / (d tr(S²)); Huynh and Feldt 1976 take (n d ε - 2) / (d (n - 1 - d ε)), 1 at most;
-    Mauchly 1940 tests W = |S| / (tr(S)/d)^d.
+def added_by(own: Floats, others: Floats, y: Floats) -> tuple[float, int, int, float]:
+    """Test what some columns add to others in a regression, by least squares.
 
     Parameters
     ----------
-    head
-        Name, degrees of freedom and generalised eta².
-    effect
-        Sum of squares of the effect.
-    cells
-        Number of cells of the whole design; None beside groups.
+    own, others : float64[n, columns]
+        Columns that are tested, and those they are adjusted for; they may depend on each other.
+    y : float64[n]
+        Values.
+
+    Returns
+    -------
+    f, df1, df2, p
+        F of the sum of squares that ``own`` adds, its degrees of freedom, and its p.
+
+    Raises
+    ------
+    Unanswerable
+        If the columns add nothing, or leave no error.
     """
-    n, d = left.shape
-    df1, df2 = head["df1"], head["df2"]
-    spread = np.linalg.svd(left, compute_uv=False) ** 2  # eigenvalues of S, but for a factor
-    shares, error = spread / spread.sum(), float((left**2).sum())
-    ratio = (effect / df1) / (error / df2)
-    epsilon = min(1.0, 1 / (d * float((shares**2).sum())))
-    wide = huynh_feldt(epsilon, n, d, groups=n - df_error)
-    p, p_narrow, p_wide = (
-        float(fisher.sf(ratio, by * df1, by * df2)) for by in (1.0, epsilon, wide)
-    )
-    found: dict[str, Any] = {
-        "f": ratio,
-        "p": p,
-        "epsilon": epsilon,
-        "p_corrected": p_narrow,
-        "huynh_feldt": wide,
-        "p_huynh_feldt": p_wide,
-        "partial_eta2": effect / (effect + error),
-    }
-    if cells is None:
-        return Effect(**head, **found, note=BETWEEN)
-    notes = []
-    if d == 1:
-        only = "one contrast" if " × " in head["name"] else "two levels"
-        notes.append(f"{only}: sphericity holds by itself")
-    elif n - 1 < d:
-        notes.append(f"{n} participants are too few to test the sphericity of {d} contrasts")
-    elif shares.min() <= 1e-12 * shares.max():
-        notes.append("some contrasts follow from the others; sphericity cannot be tested")
-    else:
-        log_w = min(0.0, float(np.log(d * shares).sum()))
-        found |= {"mauchly_w": math.exp(log_w), "mauchly_p": mauchly_p(log_w, n, d, cells)}
-    try:
-        interval = partial_eta2_interval(ratio, df1, df2)
-        found |= {"partial_low": interval.low, "partial_high": interval.high}
-    except Unanswerable as reason:
-        notes.append(f"no interval of partial eta²: {reason}")
-    return Effect(**head, **found, note="; ".join(notes))
-
-
-def _deviations(z: Floats) -> float:
-    """Sum of squares about the mean over participants."""
-    return float(((z - z.mean(axis=0)) ** 2).sum())
+    whole = np.hstack([own, others])
+    rank, rank_others = (int(np.linalg.matrix_rank(each)) for each in (whole, others))
+    df1, df2 = rank - rank_others, y.size - rank
+    if not df1:
+        raise Unanswerable("these orders do not tell it from the other effects")
+    if df2 < 1:
+        raise Unanswerable("too few blocks for so many effects")
+    left, without = (float((_left_over(y[:, None], each) ** 2).sum()) for each in (whole, others))
+    if left <= ROUNDING * float((y**2).sum()):
+        raise Unanswerable("nothing is left over of the effects; F has no value")
+    f = max(0.0, without - left) / df1 / (left / df2)
+    return f, df1, df2, float(fisher.sf(f, df1, df2))
 
 
 def _left_over(z: Floats, columns: Floats) -> Floats:

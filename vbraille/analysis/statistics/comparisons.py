@@ -18,11 +18,10 @@ from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.special import expit
+from scipy.special import expit, gammaln
 from scipy.stats import t as student
 
-from vbraille.analysis.statistics.anova import anova, orthonormal_contrasts
-from vbraille.analysis.statistics.effectsizes import hedges_correction
+from vbraille.analysis.statistics.anova import Anova, anova, orthonormal_contrasts
 from vbraille.analysis.statistics.intervals import (
     FEWEST_PARTICIPANTS,
     ROUNDING,
@@ -383,6 +382,19 @@ class CellScores:
 
     def _varied(self, own: tuple[int, ...]) -> JointEffect | None:
         """Test by the analysis of variance; None where it is none of such a design."""
+        found = self._anova
+        if found is None or isinstance(found, JointEffect):
+            return found
+        wanted = {str(at) for at in own}
+        effect = next(one for one in found.effects if set(one.name.split(" × ")) == wanted)
+        if effect.p_corrected is None:
+            return JointEffect(note=f"no test: {effect.note or _ALIKE}")
+        epsilon = effect.epsilon or 1.0
+        return JointEffect(effect.f, effect.df1 * epsilon, effect.df2 * epsilon, effect.p_corrected)
+
+    @cached_property
+    def _anova(self) -> Anova | JointEffect | None:
+        """Analysis of variance of all effects, or why there is none; see `_varied`."""
         levels = self.design.levels
         names = [str(at) for at in range(levels.shape[1])]
         apart = [
@@ -406,12 +418,7 @@ class CellScores:
             return JointEffect(note=f"no test: {reason}")
         if len(found.participants) < FEWEST_PARTICIPANTS:
             return JointEffect(note=f"no test: {too_few(len(found.participants))}")
-        wanted = {names[at] for at in own}
-        effect = next(one for one in found.effects if set(one.name.split(" × ")) == wanted)
-        if effect.p_corrected is None:
-            return JointEffect(note=f"no test: {effect.note or _ALIKE}")
-        epsilon = effect.epsilon or 1.0
-        return JointEffect(effect.f, effect.df1 * epsilon, effect.df2 * epsilon, effect.p_corrected)
+        return found
 
     def _smallest(self, own: tuple[int, ...]) -> JointEffect:
         """Smallest p of the pairs of a factor, times their number."""
@@ -424,6 +431,22 @@ class CellScores:
         return JointEffect(
             p=min(1.0, min(known) * len(known)), note="by the smallest p of its pairs"
         )
+
+
+def hedges_correction(df: int) -> float:
+    """Factor that makes a standardised mean difference unbiased, below 1.
+
+    J = Γ(df/2) / (√(df/2) · Γ((df - 1)/2)), Hedges 1981, equation 6e. This is the
+    exact factor, not its approximation 1 - 3/(4 df - 1).
+
+    Raises
+    ------
+    ValueError
+        If `df` is below 2.
+    """
+    if df < 2:
+        raise ValueError(f"{df} degrees of freedom; the correction needs two")
+    return math.exp(float(gammaln(df / 2) - gammaln((df - 1) / 2)) - math.log(df / 2) / 2)
 
 
 class ComparedEffect(NamedTuple):

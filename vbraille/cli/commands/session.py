@@ -185,6 +185,7 @@ def _pilot(arguments: argparse.Namespace) -> int:
     from vbraille.cli.terminal import WorkProgress
     from vbraille.forecast.pilots import MARK, pilot
     from vbraille.forecast.workers import Workers
+    from vbraille.sessions.running.reader import ReaderHabits
 
     protocol = load_protocol(arguments.protocol)
     folder = Path(arguments.out or f"pilot-{protocol.name}")
@@ -195,7 +196,7 @@ def _pilot(arguments: argparse.Namespace) -> int:
         arguments.participants,
         folder,
         workers,
-        noise=arguments.noise,
+        habits=ReaderHabits(arguments.noise, arguments.lapses, arguments.false_alarms),
         seed=arguments.seed,
         report=progress.of,
     )

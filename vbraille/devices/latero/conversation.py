@@ -190,45 +190,34 @@ class RequestNumbering:
     ----------
     late, doubled, unasked : int
         How many answers were dropped, by what they were.
+    next : int
+        Number of the next request.
+    lost : int
+        How many requests were never answered, of those that are older than the last few.
     """
 
     def __init__(self, first: int = 1) -> None:
         self.late = self.doubled = self.unasked = 0
-        self._next = first & _U16
+        self.next = first & _U16
         self._newest: int | None = None  # the newest request that was answered
         self._sent_ns = [0] * KEPT
         self._numbers = [-1] * KEPT
         self._open = [False] * KEPT
         self._sent = 0
-        self._gone = 0  # requests whose answers never came, and are not known any more
-
-    @property
-    def next(self) -> int:
-        """Number of the next request."""
-        return self._next
+        self.lost = 0
 
     @property
     def caught_up(self) -> bool:
         """Tell whether the newest request was answered, so that nothing newer can come."""
-        return self._newest is not None and self._newest == (self._next - 1) & _U16
-
-    @property
-    def lost(self) -> int:
-        """Tell how many requests were never answered, of those that are older than the last few."""
-        return self._gone
-
-    @property
-    def unanswered(self) -> int:
-        """Tell how many requests were not answered until now, those on their way included."""
-        return self._gone + sum(self._open)
+        return self._newest is not None and self._newest == (self.next - 1) & _U16
 
     def sent(self, now_ns: int) -> int:
         """Note that a request goes out now; give its number."""
-        sequence = self._next
+        sequence = self.next
         at = sequence % KEPT
-        self._gone += self._open[at]
+        self.lost += self._open[at]
         self._numbers[at], self._sent_ns[at], self._open[at] = sequence, now_ns, True
-        self._next = (sequence + 1) & _U16
+        self.next = (sequence + 1) & _U16
         return sequence
 
     def sent_ns(self, sequence: int) -> int:
@@ -263,9 +252,9 @@ class RequestNumbering:
 
     def _unknown(self, sequence: int) -> Fate:
         """Judge an answer to a request that is not kept: it was long ago, or never."""
-        if not_before(self._next - 1, sequence) and self._numbers[sequence % KEPT] != -1:
+        if not_before(self.next - 1, sequence) and self._numbers[sequence % KEPT] != -1:
             self.late += 1
-            self._gone = max(self._gone - 1, 0)  # none is, if it was answered in time as well
+            self.lost = max(self.lost - 1, 0)  # none is, if it was answered in time as well
             return Fate.LATE
         self.unasked += 1
         return Fate.UNASKED

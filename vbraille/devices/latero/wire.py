@@ -32,7 +32,6 @@ NO_IO: Final = 0x0000
 # Commands of RAW.
 READ, WRITE = 0x01, 0x02
 CONTROLLER, INTERFACE = 0x10, 0x20
-ADC_VOLTS: Final = 4.096 / 65536
 
 _HEAD: Final = struct.Struct(">BBBH")
 _FULL: Final = struct.Struct(">H4H")
@@ -65,7 +64,7 @@ class Answer(NamedTuple):
         Counts of the four encoders, each of 32 bits. Those of the arms, from the root, are
         encoders 2, 1 and 0.
     adc
-        Analogue inputs, in steps of `ADC_VOLTS`.
+        Analogue inputs, in steps of 4.096 V / 65536.
     """
 
     sequence: int

@@ -10,8 +10,8 @@ are: a length in mm, or how strong its strongest dot is felt, in units of E₀
 nearer to the length that it was told, or the stronger one. Noise is normal. It says yes, or
 different, beyond one standard deviation of its noise, so that it gives a false alarm in 16 % of
 trials with nothing. On a scale it puts strengths of 0 to 1 evenly from end to end, and as a
-magnitude it gives the strength times the modulus. How sure it is it cannot tell: its confidence is
-the middle of the scale. All this is for trying out protocols, and claims nothing about people.
+magnitude it gives the strength times the modulus. All this is for trying out protocols, and claims
+nothing about people.
 """
 
 from __future__ import annotations
@@ -130,6 +130,10 @@ class IdentifyQuestion(QuestionTable, frozen=True, kw_only=True, tag="identify")
         """Give the cells as they were felt."""
         return to_answer(felt.cells(random))
 
+    def guess(self, trial: Trial, _random: np.random.Generator, /) -> str:
+        """Say that no cell was read."""
+        return to_answer([None] * (trial.asked[1] - trial.asked[0]))
+
 
 class _Chosen(QuestionTable, frozen=True, kw_only=True):
     """A question that is answered by the number of a stimulus."""
@@ -158,6 +162,10 @@ class _Chosen(QuestionTable, frozen=True, kw_only=True):
     def said(self, answer: str, _keys: dict[str, int], /) -> str:
         """Words for the one that was chosen."""
         return ORDINALS[int(answer) - 1]
+
+    def guess(self, trial: Trial, random: np.random.Generator, /) -> str:
+        """Choose any."""
+        return str(random.integers(self.among or len(trial.stimuli)) + 1)
 
 
 class WhichQuestion(_Chosen, frozen=True, kw_only=True, tag="which"):
@@ -337,6 +345,10 @@ class OneOfTwo(QuestionTable, frozen=True, kw_only=True):
         """Hit or miss with a signal, false alarm or correct rejection without one."""
         return self.score(self.has_signal(trial), answer)
 
+    def guess(self, _trial: Trial, random: np.random.Generator, /) -> str:
+        """Say either word."""
+        return self.words[random.integers(2)]
+
     @classmethod
     def score(cls, signal: bool, answer: str) -> str:
         """Score an answer to a trial with a signal, or without one."""
@@ -485,6 +497,10 @@ class RatingQuestion(QuestionTable, frozen=True, kw_only=True, tag="rating"):
         share = felt.strength(-1) + noise * float(random.standard_normal())
         return str(self.least + round(min(max(share, 0.0), 1.0) * (self.most - self.least)))
 
+    def guess(self, _trial: Trial, random: np.random.Generator, /) -> str:
+        """Give any step of the scale."""
+        return str(random.integers(self.least, self.most + 1))
+
 
 class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude"):
     """The question how strong something is, as a positive number.
@@ -534,6 +550,10 @@ class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude
         share = max(felt.share(), LEAST_MAGNITUDE)
         share *= math.exp(noise * float(random.standard_normal()))
         return f"{(self.modulus or 1.0) * max(share, LEAST_MAGNITUDE):.3g}"
+
+    def guess(self, _trial: Trial, random: np.random.Generator, /) -> str:
+        """Give any number around the modulus."""
+        return f"{(self.modulus or 1.0) * math.exp(random.standard_normal()):.3g}"
 
 
 class AdjustQuestion(QuestionTable, frozen=True, kw_only=True, tag="adjust"):
@@ -631,6 +651,10 @@ class AdjustQuestion(QuestionTable, frozen=True, kw_only=True, tag="adjust"):
         steps = min(round(abs(apart) / step), round(span)) if felt.by_length else 1
         return ("-" if apart > 0 else "+") * max(steps, 1)
 
+    def guess(self, _trial: Trial, _random: np.random.Generator, /) -> str:
+        """Leave the value where it is."""
+        return "equal"
+
 
 class ReadQuestion(QuestionTable, frozen=True, kw_only=True, tag="read"):
     """The request to read a passage, and to say that it was read."""
@@ -654,6 +678,10 @@ class ReadQuestion(QuestionTable, frozen=True, kw_only=True, tag="read"):
         return f"They read passages, line by line, {of_all(read, rows, 'passage')} to the end"
 
     def simulate(self, _felt: FeltTrial, _noise: float, _random: np.random.Generator, /) -> str:
+        """Say that it was read."""
+        return self.words[0]
+
+    def guess(self, _trial: Trial, _random: np.random.Generator, /) -> str:
         """Say that it was read."""
         return self.words[0]
 

@@ -250,6 +250,10 @@ class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
         """Answer by what was felt, with normal noise of a standard deviation."""
         raise NotImplementedError
 
+    def guess(self, trial: Trial, random: np.random.Generator, /) -> str:
+        """Answer to a trial that was not attended to: any, by chance alone."""
+        raise NotImplementedError
+
 
 def _of_forms(forms: Sequence[str]) -> str:
     """Words for forms of trials."""

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.questions import NameQuestion
-from vbraille.sessions.running.reader import INSTEAD, SimulatedPerson
+from vbraille.sessions.running.reader import INSTEAD, ReaderHabits, SimulatedPerson
 from vbraille.sessions.simulated.matching import differences, name_one
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Stimulus, Trial
@@ -29,22 +31,22 @@ class SimulatedNaming(SimulatedPerson):
     protocol, plan
         Protocol and plan of the session: they have the pictures that are learnt, and what the
         noise is drawn by.
-    noise
-        Standard deviation of the noise, in units of the mean difference of the pictures.
+    habits
+        Habits of the person; noise is in units of the mean difference of the pictures.
 
     Raises
     ------
     InputError
-        If the protocol asks for something else than names, or the noise is out of range.
+        If the protocol asks for something else than names, or a habit cannot be used.
     """
 
-    def __init__(self, protocol: Protocol, plan: Plan, noise: float = 0.0) -> None:
+    def __init__(self, protocol: Protocol, plan: Plan, habits: ReaderHabits) -> None:
         if not isinstance(protocol.asks, NameQuestion):
             raise InputError(
                 f"{protocol.name} asks a question of the kind {protocol.asks.name!r} about "
                 f"pictures, which the simulated reader cannot answer; {INSTEAD}"
             )
-        super().__init__(plan, noise)
+        super().__init__(protocol, plan, habits)
         self._protocol, self._plan = protocol, plan
 
     @cached_property
@@ -64,8 +66,14 @@ class SimulatedNaming(SimulatedPerson):
 
     def next(self, trial: Trial, attempt: int, felt: list[FeltFrames], /) -> tuple[str, int]:
         """Answer to a trial, by what was felt of it."""
-        random = self._random(trial, attempt)
         answers, frames = zip(*self._learnt[trial.condition].values(), strict=True)
-        scale = self._protocol.asks.confidence
-        sure = "" if scale is None else f"; {(scale.least + scale.most) // 2}"
-        return answers[name_one(differences(felt[-1], frames), self._noise, random)] + sure, 0
+        apart = differences(felt[-1], frames)
+        line = self._answered(
+            trial, attempt, lambda random: answers[name_one(apart, self._noise, random)]
+        )
+        return line, 0
+
+    def _guess(self, trial: Trial, random: np.random.Generator) -> str:
+        """Give the name of any picture."""
+        answers = [answer for answer, _ in self._learnt[trial.condition].values()]
+        return answers[random.integers(len(answers))]

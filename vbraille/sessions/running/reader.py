@@ -8,12 +8,13 @@ from __future__ import annotations
 from dataclasses import replace
 from hashlib import sha256
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.design import Choice
+from vbraille.sessions.planning.questions import OneOfTwo
 from vbraille.sessions.planning.style import CONVENTIONAL, Condition
 from vbraille.sessions.record.trajectory import columns_of, edges_mm
 from vbraille.sessions.running.responses import TrialResponses
@@ -21,8 +22,8 @@ from vbraille.sessions.simulated.feeling import CELL_GAP, LENGTHS, DotPair, Felt
 from vbraille.sessions.simulated.observer import Observer
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
     from collections.abc import Mapping as Named
-    from collections.abc import Sequence
 
     from vbraille.braille.geometry import Geometry
     from vbraille.render import Mapping
@@ -61,29 +62,105 @@ MOST_NOISE = 100.0
 INSTEAD = "type the answers, or give a file of them"
 
 
-class SimulatedPerson(TrialResponses):
-    """A simulated person, whose noise and replies are drawn by protocol, participant and seed.
+class ReaderHabits(NamedTuple):
+    """ReaderHabits of a simulated person.
 
     Parameters
     ----------
-    plan
-        Plan of the session.
     noise
         Standard deviation of the noise, in a unit of the person's own.
+    lapses
+        Share of the trials that are not attended to, and answered by chance alone.
+    false_alarms
+        Share of the other trials with "yes" or "different" whatever was felt, where that is asked.
+    """
+
+    noise: float = 0.0
+    lapses: float = 0.0
+    false_alarms: float = 0.0
+
+    @property
+    def spec(self) -> str:
+        """Source of answers that names them: "simulated:0.4,lapses=0.05"."""
+        shares = {"lapses": self.lapses, "false-alarms": self.false_alarms}
+        told = [f"{name}={share:g}" for name, share in shares.items() if share]
+        return ",".join([f"simulated:{self.noise:g}", *told])
+
+    @classmethod
+    def parse(cls, text: str) -> ReaderHabits:
+        """Read what follows "simulated:", such as "0.4,lapses=0.05,false-alarms=0.1".
+
+        Raises
+        ------
+        InputError
+            If it cannot be read, or is out of range.
+        """
+        found = {}
+        for part in filter(None, text.split(",")):
+            name, _, value = part.rpartition("=")
+            field = (name or "noise").replace("-", "_")
+            try:
+                found[field] = float(value)
+            except ValueError:
+                field = ""
+            if field not in cls._fields:
+                raise InputError(
+                    f"{part!r} is no habit of a simulated reader; give its noise, lapses or false "
+                    f"alarms, such as simulated:0.2,lapses=0.05,false-alarms=0.1"
+                )
+        return cls(**found).checked()
+
+    def checked(self) -> ReaderHabits:
+        """These habits, if all are in range.
+
+        Raises
+        ------
+        InputError
+            If one is not.
+        """
+        for name, value, most in zip(self._fields, self, (MOST_NOISE, 1.0, 1.0), strict=True):
+            if not 0 <= value <= most:
+                words = name.replace("_", " ")
+                verb = "is" if name == "noise" else "are"
+                raise InputError(f"{words} {verb} {value:g}; it must be 0 to {most:g}")
+        return self
+
+
+USUAL = ReaderHabits()
+
+
+class SimulatedPerson(TrialResponses):
+    """A simulated person, whose noise and replies are drawn by protocol, participant and seed.
+
+    Of how sure an answer is, the person tells whether it would be given again: after a lapse, the
+    least of the scale; else a quarter or three quarters of it, as the same frames, thought of once
+    more with noise of their own, give another answer or the same.
+
+    Parameters
+    ----------
+    protocol, plan
+        Protocol and plan of the session.
+    habits
+        Noise, lapses and false alarms.
 
     Raises
     ------
     InputError
-        If the noise is out of range.
+        If a habit is out of range, or false alarms are given where no answer can be one.
     """
 
     felt = True
 
-    def __init__(self, plan: Plan, noise: float) -> None:
-        if not 0 <= noise <= MOST_NOISE:
-            raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
-        self.name = f"simulated:{noise:g}"
-        self._noise = noise
+    def __init__(self, protocol: Protocol, plan: Plan, habits: ReaderHabits) -> None:
+        self._habits = habits.checked()
+        self._question = protocol.asks
+        if habits.false_alarms and not isinstance(self._question, OneOfTwo):
+            raise InputError(
+                f"false alarms are of the questions detect and same-different, and "
+                f"{protocol.name} asks {self._question.name}; leave them out"
+            )
+        self.name = habits.spec
+        self._noise = habits.noise
         self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"
         self._replied = 0
 
@@ -93,10 +170,35 @@ class SimulatedPerson(TrialResponses):
         random = np.random.default_rng(seed_of(f"{self._drawn} {item.name} {self._replied}"))
         return item.simulate(columns, self._noise, random), 0
 
-    def _random(self, trial: Trial, attempt: int) -> np.random.Generator:
-        """Make the generator of an attempt at a trial."""
-        drawn = f"{self._drawn} {trial.practice} {trial.number} {attempt}"
-        return np.random.default_rng(seed_of(drawn))
+    def _answered(
+        self, trial: Trial, attempt: int, by_feeling: Callable[[np.random.Generator], str]
+    ) -> str:
+        """Answer to an attempt at a trial, and how sure it is if that is asked.
+
+        Parameters
+        ----------
+        by_feeling
+            Function that answers by what was felt, with noise of a generator.
+        """
+        of = f"{self._drawn} {trial.practice} {trial.number} {attempt}"
+        noise, habits = (np.random.default_rng(seed_of(f"{of}{part}")) for part in ("", " habits"))
+        question, scale = self._question, self._question.confidence
+        lapsed = habits.random() < self._habits.lapses
+        alarmed = habits.random() < self._habits.false_alarms
+        if lapsed:
+            line = self._guess(trial, habits)
+        elif alarmed and isinstance(question, OneOfTwo):
+            line = question.words[0]
+        else:
+            line = by_feeling(noise)
+        if scale is None:
+            return line
+        quarters = 0 if lapsed else 3 if by_feeling(habits) == line else 1
+        return f"{line}; {scale.least + round(quarters * (scale.most - scale.least) / 4)}"
+
+    def _guess(self, trial: Trial, random: np.random.Generator) -> str:
+        """Answer by chance alone."""
+        return self._question.guess(trial, random)
 
 
 class Simulated(SimulatedPerson):
@@ -112,16 +214,16 @@ class Simulated(SimulatedPerson):
     plan
         Plan of the session. The noise is drawn by its protocol, participant and seed, and by the
         number and the attempt of the trial.
-    noise
-        Noise of the reader, described at `vbraille.sessions.simulated.observer`.
+    habits
+        Habits of the reader; its noise is described at `vbraille.sessions.simulated.observer`.
 
     Raises
     ------
     InputError
-        If the protocol is for paper, or the noise is out of range.
+        If the protocol is for paper, or a habit cannot be used.
     """
 
-    def __init__(self, protocol: Protocol, plan: Plan, noise: float = 0.0) -> None:
+    def __init__(self, protocol: Protocol, plan: Plan, habits: ReaderHabits = USUAL) -> None:
         if protocol.medium == "paper":
             raise InputError(
                 f"{protocol.name} is read on paper, which the simulated reader cannot feel; "
@@ -132,18 +234,17 @@ class Simulated(SimulatedPerson):
                 f"{protocol.name} is read on a conventional display too, which the simulated "
                 f"reader cannot feel; {INSTEAD}"
             )
-        super().__init__(plan, noise)
+        super().__init__(protocol, plan, habits)
         model: Model = protocol.model
 
         def told(condition: Condition) -> Observer:
             style = protocol.style_of(condition)
             style = replace(model.style, mapping=style.mapping, geometry=style.geometry)
-            return Observer(model.display, style, noise=noise)
+            return Observer(model.display, style, noise=habits.noise)
 
         self._observers = {c.name: told(c) for c in protocol.conditions}
         self._lead_cells = protocol.lead_cells
         self._parameter = protocol.parameter or ""
-        self._question = protocol.asks
         self._pairs = {c.name: _dot_pair(protocol, c) for c in protocol.conditions}
         self._turned: tuple[int, int, int] | None = None  # trial and showings when it turned last
         pairs = isinstance(protocol.design, Choice) and protocol.design.form == "pairs"
@@ -152,9 +253,6 @@ class Simulated(SimulatedPerson):
 
     def next(self, trial: Trial, attempt: int, felt: list[FeltFrames], /) -> tuple[str, int]:
         """Answer to a trial, by what was felt of it."""
-        random = self._random(trial, attempt)
-        scale = self._question.confidence
-        sure = "" if scale is None else f"; {(scale.least + scale.most) // 2}"
         number = len(trial.stimuli)  # of what was turned only the newest counts
         told = FeltTrial(
             self._observers[trial.condition],
@@ -165,13 +263,15 @@ class Simulated(SimulatedPerson):
             self._pairs[trial.condition],
             len(felt) - number,
         )
-        line = self._question.simulate(told, self._noise, random)
+        line = self._answered(
+            trial, attempt, lambda random: self._question.simulate(told, self._noise, random)
+        )
         if self._question.turns:
             known = None if line == "equal" else (trial.number, attempt, len(felt))
             if known is not None and known == self._turned:
                 line, known = "equal", None  # the value was at its end: nothing more was felt
             self._turned = known
-        return line + sure, 0
+        return line, 0
 
 
 def _dot_pair(protocol: Protocol, condition: Condition) -> DotPair | None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from vbraille.errors import InputError
 from vbraille.sessions.running.console import find_command, read_line
 from vbraille.sessions.running.naming import SimulatedNaming
-from vbraille.sessions.running.reader import Simulated
+from vbraille.sessions.running.reader import ReaderHabits, Simulated
 from vbraille.sessions.running.responses import (
     PROGRAM,
     Responses,
@@ -176,25 +176,21 @@ def _is_answer(protocol: Protocol, trial: Trial, line: str) -> bool:
 def parse_responses(spec: str, protocol: Protocol, plan: Plan, after: int = 0) -> Responses:
     """Make the source of answers for a spec.
 
-    That is ``typed``, ``simulated[:NOISE]``, or a file's name.
+    That is ``typed``, ``simulated[:NOISE][,lapses=SHARE][,false-alarms=SHARE]``, or a file's name.
 
     Raises
     ------
     InputError
         If the spec, or the file that it names, cannot be used.
     """
-    kind, _, noise = spec.partition(":")
-    if kind == "typed" and not noise:
+    kind, _, habits = spec.partition(":")
+    if kind == "typed" and not habits:
         return Typed()
     if spec == PROGRAM:
         raise InputError(f"the answers came from a program; give {setting('answers')} typed")
     if kind == "simulated":
-        try:
-            loud = float(noise or 0.0)
-        except ValueError:
-            raise InputError(f"noise is {noise!r}; give a number, such as simulated:0.2") from None
-        kind = SimulatedNaming if protocol.pictures else Simulated
-        answers = kind(protocol, plan, loud)
+        person = SimulatedNaming if protocol.pictures else Simulated
+        answers = person(protocol, plan, ReaderHabits.parse(habits))
     else:
         from difflib import get_close_matches  # takes long to load
 
