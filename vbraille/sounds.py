@@ -6,13 +6,17 @@ import os
 import sys
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Protocol
+from wave import Error as WaveError
+from wave import open as open_wave
 
 import numpy as np
 
-from vbraille.errors import lacking
+from vbraille.errors import InputError, lacking
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from pathlib import Path
+    from wave import Wave_read
 
     from numpy.typing import NDArray
 
@@ -106,11 +110,83 @@ class Tones:
         OSError
             If the audio output is gone.
         """
+        self._begin(melody(tones), _RATE_HZ)
+
+    def play_file(self, path: Path) -> None:
+        """Begin to play a file of sound, in place of what is being played.
+
+        Raises
+        ------
+        OSError
+            If the audio output is gone, or does not take so many samples a second.
+        InputError
+            If the file cannot be played; see `check_sound`.
+        """
+        self._begin(*read_sound(path))
+
+    def _begin(self, samples: NDArray[np.float32], rate_hz: int) -> None:
         try:
             with _quiet():
-                self._play(melody(tones), _RATE_HZ)
-        except self._fault as error:
+                self._play(samples, rate_hz)
+        except (self._fault, ValueError) as error:
             raise OSError(f"there is no audio output any more ({error})") from None
+
+
+MOST_BYTES = 10_000_000  # of a file of sound: a minute of it, as music is recorded
+_TYPES = {1: np.dtype("u1"), 2: np.dtype("<i2"), 4: np.dtype("<i4")}  # by the bytes of a sample
+
+
+def check_sound(path: Path) -> None:
+    """Check that a file is one of sound that can be played; its samples are not read.
+
+    Raises
+    ------
+    InputError
+        If it is not there, is larger than 10 MB, or is no WAV file of 8, 16 or 32 bits.
+    """
+    with _opened(path):
+        pass
+
+
+def read_sound(path: Path) -> tuple[NDArray[np.float32], int]:
+    """Read a file of sound: float32[n, channels] from -1 to 1, and how many a second.
+
+    Raises
+    ------
+    InputError
+        In the cases of `check_sound`.
+    """
+    with _opened(path) as file:
+        kind = _TYPES[file.getsampwidth()]
+        samples = np.frombuffer(file.readframes(file.getnframes()), kind)
+        rate_hz, channels = file.getframerate(), file.getnchannels()
+    middle = 128.0 if kind.itemsize == 1 else 0.0
+    whole = samples[: samples.size // channels * channels].reshape(-1, channels)
+    return ((whole - middle) / 2.0 ** (8 * kind.itemsize - 1)).astype(np.float32), rate_hz
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Wave_read]:
+    """Open a file of sound, with its head read and checked."""
+    try:
+        size = path.stat().st_size
+        if not path.is_file():
+            raise InputError(f"sound {path} is no file; give a WAV file")
+        if size > MOST_BYTES:
+            raise InputError(
+                f"sound {path} has {size / 1e6:.0f} MB; {MOST_BYTES / 1e6:.0f} are the most: "
+                "make it shorter"
+            )
+        with open_wave(str(path), "rb") as file:
+            if file.getsampwidth() not in _TYPES:
+                raise WaveError(f"{8 * file.getsampwidth()} bits")
+            yield file
+    except OSError as error:
+        raise InputError(f"sound {path} cannot be read: {error.strerror}") from None
+    except (WaveError, EOFError):
+        raise InputError(
+            f"sound {path} is no WAV file of 8, 16 or 32 bits; another program can make one of it"
+        ) from None
 
 
 def wave(tone: Pitched) -> NDArray[np.float32]:

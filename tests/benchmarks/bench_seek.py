@@ -16,8 +16,8 @@ from tests.benchmarks.big_texts import big_text
 from tests.benchmarks.timing import Result
 from vbraille.reading.library import KeptPlace, KeptPlaces
 from vbraille.reading.search.questions import BookOpening, FindShare, FindText, NotFound, Searched
-from vbraille.reading.search.seeker import Seeker, answer
-from vbraille.translate import Document
+from vbraille.reading.search.seeker import Answering, Seeker
+from vbraille.translate import Book, Document
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -59,7 +59,7 @@ def run() -> Iterator[Result]:
 def _rate(document: Document, *, accents: bool) -> float:
     """MB of text a second up to the first hit, which is at the end of the text."""
     before = process_time()
-    *_, found = answer(document, FindText(_LAST.upper(), 0, fold_accents=accents))
+    *_, found = Answering(Book(document)).answer(FindText(_LAST.upper(), 0, fold_accents=accents))
     took = process_time() - before
     assert getattr(found, "character", 0) > 0
     return _SIZE / 1e6 / took

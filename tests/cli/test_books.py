@@ -71,7 +71,8 @@ def test_no_database_is_one_sentence(call, tmp_path, monkeypatch):
 @pytest.mark.usefixtures("kept")
 def test_what_cannot_be_written_is_not_said_to_be_forgotten(call):
     before = call("books").out
-    limited = ["sh", "-c", 'ulimit -f 0; exec "$@"', "sh", *program.PROGRAM]
+    limit = 'export PYTHONDONTWRITEBYTECODE=1; ulimit -f 0; exec "$@"'
+    limited = ["sh", "-c", limit, "sh", *program.PROGRAM]
     done = subprocess.run(
         [*limited, "books", "1", "--forget"], check=False, capture_output=True, encoding="utf-8"
     )

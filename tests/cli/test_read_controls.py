@@ -18,7 +18,8 @@ from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulator import Simulator
 
 FADE_S = 0.1
-STEADY = 300  # frames that are alike when the picture has faded in and the hand stays
+STEADY = 60  # frames that are alike when the picture has faded in and the hand stays
+STAYS_S = 1.0  # from then on the hand stays
 TOP = STRESS2.display.levels - 1
 # A knob that is turned in many steps, then jitters by one count, then is pressed a button beside.
 SCRIPT = "\n".join(
@@ -51,8 +52,8 @@ def kept_device(script):
     Each entry of the frames is the levels of the last of some that came at once, when that was in
     µs, where the knob stood, and whether the device was at rest or on its own way there before.
     """
-    stay_s = np.arange(0, 60, 0.4)
-    hand = Recorded(stay_s, np.minimum(20.0 * stay_s, 20.0))
+    stay_s = np.arange(0, 60, 0.5)
+    hand = Recorded(stay_s, 20.0 * np.minimum(stay_s, STAYS_S))
     info = describe(STRESS2.display, Encoder.ABSOLUTE)
     port, stopped, frames = Port(), Event(), []
     controls = ControlsInTime(parse_script(script, "script"))
@@ -66,7 +67,8 @@ def kept_device(script):
             levels = controller.levels.astype(int)
             frames.append((levels, now_us, controller.knobs[0], resting))
             before = frames[-STEADY:][0][0]
-            controls.felt |= levels.max() > TOP / 2 and np.array_equal(levels, before)
+            stays = now_us > STAYS_S * 1e6
+            controls.felt |= stays and levels.max() > TOP / 2 and np.array_equal(levels, before)
         return answer
 
     controller.receive = seen

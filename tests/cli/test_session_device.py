@@ -220,7 +220,6 @@ def test_fast_and_in_real_time_the_answers_are_the_same(tmp_path, mini):
     ]  # fmt: skip
 
 
-@pytest.mark.new_processes
 def test_an_experimenter_at_a_terminal(tmp_path, mini):
     mini.write_text(mini.read_text() + '[[fields]]\nname = "hand"\nask = "Reading hand"\n')
     arguments = session(mini, tmp_path / "s", "--hand", "sweep:200", "--cues", "bell")

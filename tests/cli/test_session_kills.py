@@ -10,7 +10,6 @@ KILLS = by_tier(3, 20, 300)
 KILLS_BY_ANSWERS = by_tier(1, 20, 300)
 
 
-@pytest.mark.new_processes
 def test_a_session_that_is_killed_goes_on_where_it_was(tmp_path):
     print(f"seed: {SEED}")
     tally = kill_often(KILLS, SEED, tmp_path)

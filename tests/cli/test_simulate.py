@@ -144,7 +144,6 @@ def host_of(device, path):
         host.close()
 
 
-@pytest.mark.new_processes
 def test_a_host_reads_on_it(tmp_path):
     link = tmp_path / "vb0"
     options = ("--model", "stress2", "--hand", "sweep:500", "--link", link, "--travel", "80")

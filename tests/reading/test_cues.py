@@ -5,14 +5,14 @@ import select
 import sys
 import threading
 import time
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 
 import numpy as np
 import pytest
 
 from vbraille.reading.cueing import MELODIES, give
 from vbraille.reading.outputs import CueKind, Cues, choose_cues
-from vbraille.reading.view import Cue
+from vbraille.reading.view import Cue, SoundFile
 from vbraille.sounds import melody
 from vbraille.workers import Incoming, Outgoing
 
@@ -64,7 +64,7 @@ def given(cues, kind, speaker=None):
         return speaker
 
     read, write = os.pipe()
-    thread = threading.Thread(target=give, args=(Incoming(read, Cue), kind, open_tones))
+    thread = threading.Thread(target=give, args=(Incoming(read, Cue | SoundFile), kind, open_tones))
     thread.start()
     with os.fdopen(write, "wb", buffering=0):
         for cue in cues:
@@ -107,7 +107,7 @@ def test_without_an_audio_output_or_when_it_goes_the_bell_rings(speaker):
 
 def test_bells_come_from_a_process_of_its_own_ten_a_second_at_most():
     now_s = iter((0.0, 0.05, 0.0999, 5.0)).__next__
-    with terminal() as bells, Cues(CueKind.BELL, now_s) as cues:
+    with terminal() as bells, closing(Cues(CueKind.BELL, now_s)) as cues:
         for _ in range(3):
             cues.cue(Cue.LINE_END)
         assert bells(1) == b"\a"
@@ -116,13 +116,13 @@ def test_bells_come_from_a_process_of_its_own_ten_a_second_at_most():
 
 
 def test_no_cues_start_no_process():
-    with Cues(CueKind.NONE) as cues:
+    with closing(Cues(CueKind.NONE)) as cues:
         cues.cue(Cue.LIMIT)
         assert cues._worker is None
 
 
 def test_a_process_that_ends_is_no_fault():
-    with Cues(CueKind.BELL, iter(range(100)).__next__) as cues:
+    with closing(Cues(CueKind.BELL, iter(range(100)).__next__)) as cues:
         cues.cue(Cue.LIMIT)
         cues._worker.process.kill()
         cues._worker.process.wait(30.0)

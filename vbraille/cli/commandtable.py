@@ -122,7 +122,7 @@ COMMANDS = {
         (
             Argument("file", f"Feel this {_SHAPES}.", "FILE"),
             *("device", _of("model", usual=_DEVICES), *_unset("hand", "seed")),
-            *("rate", "y", "zoom", "say_entering", *HEARD, *LIVE),
+            *("rate", "y", "zoom", "say_entering", "sounds", *HEARD, *LIVE),
         ),
         "vbraille feel house.scene --device latero:192.168.1.10",
     ),

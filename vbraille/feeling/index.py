@@ -83,7 +83,7 @@ class Spot(NamedTuple):
 def label_of(pattern: AnyPattern) -> str:
     """Title of an element, or the text of a label, or the id; empty if it has none."""
     text = " ".join(pattern.text.split()) if isinstance(pattern, Label) else ""
-    return pattern.title or text or pattern.id
+    return pattern.title or text or pattern.id or pattern.words
 
 
 class _Leaf(NamedTuple):
@@ -287,7 +287,7 @@ class SceneIndex:
         """Patterns within one that are no groups, with the elements by whose names they go."""
         box = None if isinstance(pattern, Group) and above else bounds(pattern, self._known)
         name = label_of(pattern)
-        if name or (pattern.description and above is None):
+        if name or ((pattern.description or pattern.sound) and above is None):
             if isinstance(pattern, Group):
                 box = bounds(pattern, self._known)
             covered = self._canvas if box is None else box.common(self._canvas)

@@ -15,6 +15,7 @@ from vbraille.scene.patterns import Image, Label
 from vbraille.scene.reading import open_scene
 from vbraille.scene.traversal import each
 from vbraille.scene.zooming import levels, zoomed
+from vbraille.sounds import check_sound
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -113,6 +114,7 @@ def load_scene(path: Path | str, style: BrailleStyle) -> LoadedScene:
 def with_assets(opened: OpenedScene, style: BrailleStyle) -> LoadedScene:
     """Load the images of a scene that was opened, and translate its labels; see `load_scene`."""
     scene = opened.resolved
+    _check_sounds(opened)
     kinds = {type(pattern) for pattern in each(*scene.elements)}
     if kinds.isdisjoint((Image, Label)):  # Places take as long as all the rest of it.
         return shown_at(opened, Assets(), opened.warnings)
@@ -127,6 +129,17 @@ def with_assets(opened: OpenedScene, style: BrailleStyle) -> LoadedScene:
         there = {new: written[old] for new, old in made.labels.items()}
         notes |= dict.fromkeys(label_warnings(made.scene, there, [places[n] for n in made.numbers]))
     return shown_at(opened, Assets(bitmaps, written), tuple(notes))
+
+
+def _check_sounds(opened: OpenedScene) -> None:
+    """Refuse files of sound that cannot be played."""
+    for number, element in enumerate(opened.resolved.elements):
+        for pattern in each(element):
+            if pattern.sound:
+                try:
+                    check_sound(opened.folder / pattern.sound)
+                except InputError as error:
+                    raise InputError(f"{opened.place(number)}: {error}") from None
 
 
 def shown_at(

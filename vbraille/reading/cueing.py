@@ -1,4 +1,4 @@
-"""The process that gives cues: cues come, and sounds or bells go out.
+"""The process that gives cues and plays sounds: both come, and sounds or bells go out.
 
 It is told whether by "tones" or by "bell". Where there is no audio output, or none any more, it
 rings the bell.
@@ -9,9 +9,11 @@ from __future__ import annotations
 import sys
 from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from vbraille.reading.view import Cue
+from vbraille.errors import InputError
+from vbraille.reading.view import Cue, SoundFile
 from vbraille.sounds import Bell, Tones
 from vbraille.workers import begin
 
@@ -40,15 +42,18 @@ MELODIES: Final = {
 }
 
 
-def give(orders: Incoming[Cue], kind: str, open_tones: Callable[[], Tones] = Tones) -> None:
-    """Give cues until the orders end.
+def give(
+    orders: Incoming[Cue | SoundFile], kind: str, open_tones: Callable[[], Tones] = Tones
+) -> None:
+    """Give cues, and play files of sound, until the orders end.
 
     Parameters
     ----------
     orders
-        Cues that come.
+        Cues and files that come.
     kind
-        "tones" or "bell", by which cues are given.
+        "tones" or "bell", by which cues are given; files are played in any case, if
+        there is an audio output.
     open_tones
         Function that opens the audio output, or raises OSError.
     """
@@ -57,6 +62,7 @@ def give(orders: Incoming[Cue], kind: str, open_tones: Callable[[], Tones] = Ton
         with suppress(OSError):
             tones = open_tones()
     bell, rings = Bell(), 0
+    player = None  # of files
     while not orders.ended:
         if rings:
             bell.ring()
@@ -67,6 +73,11 @@ def give(orders: Incoming[Cue], kind: str, open_tones: Callable[[], Tones] = Ton
         if not cues:
             continue
         cue = cues[-1]  # of several the newest is what is true
+        if isinstance(cue, SoundFile):
+            with suppress(OSError, InputError):  # words are said beside it
+                player = player or tones or open_tones()
+                player.play_file(Path(cue.path))
+            continue
         rings = len(MELODIES[cue])
         if tones is not None:
             try:
@@ -77,4 +88,4 @@ def give(orders: Incoming[Cue], kind: str, open_tones: Callable[[], Tones] = Ton
 
 
 if __name__ == "__main__":
-    give(begin(Cue)[0], sys.argv[2])
+    give(begin(Cue | SoundFile)[0], sys.argv[2])

@@ -15,15 +15,14 @@ import msgspec
 
 from vbraille.config.options import BOOK, held_in
 from vbraille.errors import InputError
-from vbraille.reading.search.questions import FindShare, FindText, Found
-from vbraille.reading.search.seeker import answer
+from vbraille.reading.search.questions import FindShare, FindText
+from vbraille.reading.search.seeker import find_place
 from vbraille.translate.source import Index, share_before
 from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from vbraille.reading.search.questions import Query
     from vbraille.translate.source import Source
 
 
@@ -519,10 +518,10 @@ def anchored(source: Source, place: KeptPlace) -> tuple[KeptPlace, bool]:
             reach = place.reach if before >= len(place.before) else len(head)
             character = found + reach
             if tail.strip():
-                nearer = _found(source, FindText(tail, found + reach // 2))
+                nearer = find_place(source, FindText(tail, found + reach // 2))
                 character = character if nearer is None else nearer
         return _again(source, place, character), True
-    character = _found(source, FindShare(place.share)) or 0
+    character = find_place(source, FindShare(place.share)) or 0
     return _again(source, place, character), False
 
 
@@ -533,15 +532,10 @@ def _again(source: Source, place: KeptPlace, character: int) -> KeptPlace:
 
 def _nearest(source: Source, text: str, character: int) -> int | None:
     character = max(0, character)
-    after = _found(source, FindText(text, character))
-    before = _found(source, FindText(text, character, backward=True))
+    after = find_place(source, FindText(text, character))
+    before = find_place(source, FindText(text, character, backward=True))
     near = [at for at in (after, before) if at is not None]
     return min(near, key=lambda at: abs(at - character), default=None)
-
-
-def _found(source: Source, query: Query) -> int | None:
-    *_, last = answer(source, query)
-    return last.character if isinstance(last, Found) else None
 
 
 EVERY_S = 0.5  # a place that changes all the time is written so often
@@ -849,16 +843,6 @@ class KeptPlaces:
         """
         return cls(Store(usual_path() if path is None else Path(path), now))
 
-    @property
-    def path(self) -> Path:
-        """Path of the database's file."""
-        return self._store.path
-
-    @property
-    def fault(self) -> str | None:
-        """Why what was written last is not on the disk; None if it is, or will be in a moment."""
-        return self._store.fault
-
     def note(self) -> str | None:
         """Sentence on why places are not kept, given once; None if they are."""
         return self._store.note()
@@ -895,11 +879,6 @@ class KeptPlaces:
         book = KeptBook(self._store, digest, place, name)
         self._books.append(book)
         return book
-
-    def last_path(self) -> Path | None:
-        """Path of the book that was read last; None if there is none."""
-        listed = self.listed()
-        return Path(listed[0].path) if listed else None
 
     def listed(self) -> list[ListedBook]:
         """All books, the one that was read last first."""
@@ -987,15 +966,10 @@ def last_book(places: KeptPlaces) -> KeptBook:
     InputError
         If no book was read, or its file is not where it was.
     """
-    path = places.last_path()
-    if path is None:
+    books = places.listed()
+    if not books:
         raise InputError("no book is kept from an earlier reading; give the name of a file")
-    if not path.exists():
-        raise InputError(
-            f"the last book, {path}, is not there any more; give its file, or choose another: "
-            f"vbraille books lists them"
-        )
-    return places.book(path)
+    return _open_listed(places, books[0], "the last book")
 
 
 def numbered_book(places: KeptPlaces, number: int) -> ListedBook:
@@ -1021,10 +995,13 @@ def book_to_open(places: KeptPlaces, number: int) -> KeptBook:
     InputError
         If there is none, it has no file, or the file is not where it was.
     """
-    book = numbered_book(places, number)
+    return _open_listed(places, numbered_book(places, number), f"book {number}")
+
+
+def _open_listed(places: KeptPlaces, book: ListedBook, name: str) -> KeptBook:
     if book.missing:
         raise InputError(
-            f"book {number}, {book.path}, is not there any more; give its file, or choose another: "
+            f"{name}, {book.path}, is not there any more; give its file, or choose another: "
             f"vbraille books lists them"
         )
     return places.book(book.path)

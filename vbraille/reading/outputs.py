@@ -8,10 +8,12 @@ from enum import Enum, StrEnum
 from typing import TYPE_CHECKING, Final, Self
 
 from vbraille.reading.position import place_sentence
+from vbraille.reading.view import SoundFile
 from vbraille.workers import Worker
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
 
     from vbraille.devices.events import Event
     from vbraille.layout.pages import Layout, Line
@@ -73,6 +75,9 @@ class Output:
     def cue(self, cue: Cue) -> None:
         """Take a short signal, beside the sentence that says the same."""
 
+    def sound(self, path: Path) -> None:
+        """Take a file of sound that is to be played."""
+
     def attend(self, events: Sequence[Event] = ()) -> None:
         """Look at what is under the hand, and at events of the device; called all the time."""
 
@@ -111,6 +116,11 @@ class Outputs(Output):
         """Have a signal given by each."""
         for output in self._outputs:
             output.cue(cue)
+
+    def sound(self, path: Path) -> None:
+        """Have a file of sound played."""
+        for output in self._outputs:
+            output.sound(path)
 
     def attend(self, events: Sequence[Event] = ()) -> None:
         """Have each look at what is under the hand."""
@@ -226,7 +236,7 @@ def choose_cues(asked: str | None, *, attended: bool) -> CueKind:
 
 
 class Cues(Output):
-    """Cues that are heard, at most ten a second. A context manager.
+    """Cues that are heard, at most ten a second.
 
     A process of its own gives them, so that reading never waits for a sound. Where there is no
     audio output the terminal's bell rings.
@@ -243,6 +253,7 @@ class Cues(Output):
         self._now_s = now_s
         self._given_s = float("-inf")
         self._kind = kind
+        self._closed = False
         self._worker: Worker | None = None  # started with the first cue
 
     def cue(self, cue: Cue) -> None:
@@ -251,20 +262,22 @@ class Cues(Output):
         if self._kind is CueKind.NONE or now_s - self._given_s < _APART_S:
             return
         self._given_s = now_s
+        self._send(cue)
+
+    def sound(self, path: Path) -> None:
+        """Play a file of sound, in place of what is still heard, whatever cues are given by."""
+        if not self._closed:
+            self._send(SoundFile(str(path)))
+
+    def _send(self, order: Cue | SoundFile) -> None:
         if self._worker is None:
             self._worker = Worker(_CUEING, self._kind.value)
-        if not self._worker.send(cue, alone=True):
+        if not self._worker.send(order, alone=True):
             self.close()  # whatever ended it, the sentences beside the cues are still said
 
     def close(self) -> None:
         """Give no more cues; further calls do nothing."""
-        self._kind = CueKind.NONE
+        self._kind, self._closed = CueKind.NONE, True
         worker, self._worker = self._worker, None
         if worker is not None:
             worker.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()

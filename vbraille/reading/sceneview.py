@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from vbraille.reading.device import OpenDevice
     from vbraille.reading.keys import Bound
     from vbraille.render.program import Program
+    from vbraille.scene.patterns import AnyPattern
 
 _EVERY_S: Final = 1.0
 _NS_PER_S: Final = 1_000_000_000
@@ -140,6 +141,10 @@ class SceneView(View):
         that is all.
     zoom
         Zoom to begin with.
+    sound
+        Function that plays a file of sound; None where nothing plays them.
+    sounding
+        Whether the sounds of elements are played beside their words.
 
     Attributes
     ----------
@@ -172,6 +177,8 @@ class SceneView(View):
         watched: bool = False,
         goes: bool = False,
         zoom: float = 1.0,
+        sound: Callable[[Path], None] | None = None,
+        sounding: bool = False,
     ) -> None:
         super().__init__(device.engine, say, bound, cue)
         self.loaded = loaded
@@ -179,7 +186,9 @@ class SceneView(View):
         reach_mm = device.engine.display.travel_mm, device.engine.display.height_mm
         self.aperture = Aperture(reach_mm, zoom)
         self.contrast = 1.0
-        self.entering = entering
+        self.entering = entering or sounding
+        self.sounding = sounding
+        self._sound = sound
         self.under: NamedElement | None = None
         self._device = device
         self._room = room
@@ -285,8 +294,16 @@ class SceneView(View):
             if not self._index.encloses(before.element, *place):
                 self.say(f"leaving: {before.element.name}")
             before = None
-        if spot is not None:
-            self.say(f"{'entering' if before is None else spot.where}: {spot.element.name}")
+        if spot is not None and before is None:
+            self._enter(spot.element.pattern, spot.element.name)
+        elif spot is not None:
+            self.say(f"{spot.where}: {spot.element.name}")
+
+    def _enter(self, pattern: AnyPattern, name: str) -> None:
+        """Say that the finger comes to an element, and play its sound."""
+        self.say(pattern.words or f"entering: {name}")
+        if self.sounding and pattern.sound and self._sound is not None:
+            self._sound(self.loaded.opened.folder / pattern.sound)
 
     # What is asked for
 
@@ -391,9 +408,16 @@ class SceneView(View):
             self.say("way: no longer said")
 
     def toggle_entering(self) -> None:
-        """Say each element when the finger comes to it, or no longer."""
-        self.entering = not self.entering
-        self.say(f"entering: {'said' if self.entering else 'not said'}")
+        """Say each element when the finger comes to it, then with its sound, then no longer."""
+        has_sounds = self._sound is not None and any(
+            element.pattern.sound for element in self._index.elements
+        )
+        self.entering, self.sounding = (
+            not self.entering or (has_sounds and not self.sounding),
+            self.entering and has_sounds and not self.sounding,
+        )
+        said = "said, with sounds" if self.sounding else "said"
+        self.say(f"entering: {said if self.entering else 'not said'}")
 
     # What is changed
 

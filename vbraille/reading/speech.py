@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Final, Self
+from typing import TYPE_CHECKING, Final
 
 import msgspec
 
@@ -30,7 +30,7 @@ class Speech:
 
     A sentence takes the place of what is being said, unless it follows the sentence before it so
     soon that both belong together. A process of its own speaks (`vbraille.reading.speaking`); where
-    there is no speech it says so once, and everything here does nothing. A context manager.
+    there is no speech it says so once, and everything here does nothing.
 
     Parameters
     ----------
@@ -51,22 +51,9 @@ class Speech:
         now_s = self._now_s()
         instead = now_s - self._said_s >= TOGETHER_S
         self._said_s = now_s
-        self._tell(Spoken(printable(sentence), instead))
-
-    def hush(self) -> None:
-        """Say no more of what is being said."""
-        self._tell(Spoken("", instead=True))
+        if not self._worker.send(Spoken(printable(sentence), instead), alone=instead):
+            self.close()  # it has said why
 
     def close(self) -> None:
         """Speak no more than what was said so far; further calls do nothing."""
         self._worker.close()
-
-    def _tell(self, spoken: Spoken) -> None:
-        if not self._worker.send(spoken, alone=spoken.instead):
-            self.close()  # it has said why
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, ClassVar
 
+import msgspec
+
 from vbraille.reading.keys import LONGEST, PASTE, Context, pasted, spoken
 
 if TYPE_CHECKING:
@@ -27,6 +29,12 @@ class Cue(Enum):
     PAGE_END = "page end"
     NOT_FOUND = "not found"
     LIMIT = "limit reached"
+
+
+class SoundFile(msgspec.Struct, frozen=True):
+    """A file of sound that is to be played: its path."""
+
+    path: str
 
 
 @dataclass(slots=True)

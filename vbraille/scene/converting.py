@@ -241,7 +241,7 @@ def convert_scene(path: Path, folder: Path, *, as_shown: bool = False) -> Conver
 
 
 def seen_from(scene: Scene, old: Path, new: Path) -> Scene:
-    """Scene whose images are named as they are seen from another folder.
+    """Scene whose images and sounds are named as they are seen from another folder.
 
     Parameters
     ----------
@@ -255,6 +255,8 @@ def seen_from(scene: Scene, old: Path, new: Path) -> Scene:
         return scene
 
     def moved(_: Steps, pattern: AnyPattern) -> AnyPattern:
+        if pattern.sound:
+            pattern = replace(pattern, sound=_relative(start / pattern.sound, there))
         if isinstance(pattern, Image | ImageDots):
             pattern = replace(pattern, file=_relative(start / pattern.file, there))
         return with_children(pattern, moved)

@@ -104,8 +104,8 @@ def check_velocity_by(name: str, moves: bool) -> None:
         raise ValueError(f"velocity_by is {name!r} without a velocity; add one, or leave it out")
 
 
-def check_file(name: str) -> None:
-    """Check the name of a file that is read with a scene.
+def check_file(name: str, what: str = "file") -> None:
+    """Check the name of a file that is read with a scene, by a key.
 
     Raises
     ------
@@ -113,6 +113,6 @@ def check_file(name: str) -> None:
         If it is empty, or a place in the net, since nothing is fetched.
     """
     if not name.strip():
-        raise ValueError("file is empty; give the name of a file")
+        raise ValueError(f"{what} is empty; give the name of a file")
     if "://" in name:
-        raise ValueError(f"file is {name!r}; give the name of a file, since nothing is fetched")
+        raise ValueError(f"{what} is {name!r}; give the name of a file, since nothing is fetched")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from vbraille.scene.measures import check_share, check_zooms
+from vbraille.scene.measures import check_file, check_share, check_zooms
 from vbraille.scene.strokes import Vibration
 from vbraille.tomlfile import Table
 
@@ -24,6 +24,10 @@ class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
         Whether 1 - δ is shown in place of δ.
     vibration
         Vibration of its high or of its low parts; None for none.
+    words
+        Words that are said in place of its title when the finger comes to it; empty for none.
+    sound
+        Name of a WAV file that is played then, seen from the file of the scene; empty for none.
     factor
         Name of a signal by which its deflections, and what it hides of others, are multiplied;
         empty for none.
@@ -43,10 +47,14 @@ class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
     amplitude: float = 1.0
     inverted: bool = False
     vibration: Vibration | None = None
+    words: str = ""
+    sound: str = ""
     factor: str = ""
     zoom_from: float | None = None
     zoom_to: float | None = None
 
     def __post_init__(self) -> None:
         check_share("amplitude", self.amplitude)
+        if self.sound:
+            check_file(self.sound, "sound")
         check_zooms(self.zoom_from, self.zoom_to)

@@ -333,6 +333,8 @@ def _all_from(
 
 def _seen_from(pattern: AnyPattern, folder: Path, language: str) -> AnyPattern:
     """Pattern of an included file as one of the including file, in another folder and language."""
+    if pattern.sound:
+        pattern = replace(pattern, sound=str(folder / pattern.sound))
     if isinstance(pattern, Image | ImageDots):
         pattern = replace(pattern, file=str(folder / pattern.file))
     elif isinstance(pattern, Label) and language and not pattern.table:

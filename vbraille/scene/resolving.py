@@ -203,11 +203,14 @@ class _Resolving:
         title = use.title or pattern.title
         description = use.description or pattern.description
         changed = use.amplitude != 1.0 or use.inverted or use.vibration or use.factor
-        if not changed and use.zoom_from is None and use.zoom_to is None:
+        heard = use.words or use.sound
+        if not (changed or heard) and use.zoom_from is None and use.zoom_to is None:
             return _called(pattern, use.id, title, description)
         return Group(
             operation="maximum",
             parts=(_called(pattern, "", "", ""),),
+            words=use.words or pattern.words,
+            sound=use.sound or pattern.sound,
             amplitude=use.amplitude,
             inverted=use.inverted,
             vibration=use.vibration,

@@ -170,7 +170,7 @@ def test_intervals_hold_the_truth(guess):
     assert held / STUDIES > 0.95 - 3 * math.sqrt(0.05 / STUDIES)
 
 
-@pytest.mark.parametrize("alarms", [0.02, 0.2, 0.3])
+@pytest.mark.parametrize("alarms", by_tier([0.3], [0.02, 0.2, 0.3], [0.02, 0.2, 0.3]))
 def test_false_alarms_do_not_move_thresholds(alarms):
     """Seven levels of 24 trials and 24 blanks, as `bench_trials_coverage` tries 1,000 times."""
     found = curve(24, "logistic", alarms, 2 * STUDIES)

@@ -28,7 +28,6 @@ class Seeker:
         self.asked = []
         self.answers = []
         self.cancelled = 0
-        self.busy = False
 
     def ask(self, query):
         self.asked.append(query)
@@ -112,7 +111,6 @@ def test_what_is_far_is_looked_for_while_reading_goes_on():
     assert bench.press("b") == ["line: 5001"]
     assert bench.press("p") == ["line: 5000"]
     assert bench.press("b") == ["line: 2"]
-    assert not bench.reader.search.busy
 
 
 def test_progress_is_said_every_two_seconds_and_only_if_asked_for():

@@ -73,16 +73,30 @@ def test_what_is_not_there_is_said_and_given_as_a_cue():
     assert cues == [Cue.NOT_FOUND] * 4
 
 
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ("l", ["list, line"]),
+        ("I", ["item, line"]),
+        ("r", ["table, line"]),
+        ("QQ", ["quotation, line"] * 2),
+        (">L", ["line:", "list, line"]),
+    ],
+)
+def test_a_jump_says_what_it_has_come_to(keys, said):
+    assert [sentence.rpartition(" ")[0] for sentence in of_markdown(LISTS).press(keys)] == said
+
+
 def test_without_pages_of_print_a_page_has_25_lines():
     text = "\n\n".join(f"line {n}" for n in range(1, 60))
     bench = Bench(text)
     assert bench.press("ff") == ["line: 26", "line: 51"]
     assert bench.press("nF") == ["line: 52", "line: 51"]
     assert bench.press("FF") == ["line: 26", "line: 1"]
-    assert bench.press("F") == ["page: there is no such page"]
+    assert bench.press("F") == ["page: none before this"]
     assert bench.press("g2\n") == ["go to: type a page, or percent as in 40%, then Enter",
-                                   "page: 2", "line: 26"]  # fmt: skip
-    assert bench.press("g9\n")[2] == "9: there is no such page"
+                                   "go to: 2", "line: 26"]  # fmt: skip
+    assert bench.press("g9\n")[2] == "page 9: there is no such page"
     assert bench.press("gtwo\n")[2] == (
         "go to: 'two' is no page; type a number, or percent as in 40%"
     )
@@ -103,7 +117,7 @@ def test_without_pages_of_print_a_page_has_25_lines():
 )
 def test_a_page_of_print_or_a_share_is_typed(bench, typed, there):
     said = bench.press(["g", *typed, "\n"])
-    assert said[1] == f"page: {typed}"
+    assert said[1] == f"go to: {typed}"
     assert texts(said[2:]) == [there] or said[2:] == [there]
 
 
@@ -171,7 +185,7 @@ def test_pages_of_a_braille_file_are_counted_on(made):
     bench = Bench(book=Book(made(pages)), width=9, echo=Echo.TEXT)
     assert bench.press("ni")[-4:-2] == ["line: 2", "page: 1"]
     said = bench.press("g65\n")
-    assert said[1] == "page: 65"
+    assert said[1] == "go to: 65"
     bench.press("n")
     assert bench.reader.line.cells.to_brf() == "MC"
     assert "page: 65" in bench.press("i")
@@ -225,7 +239,7 @@ def test_a_page_that_is_far_is_looked_for_while_reading_goes_on():
     seeker = Seeker()
     bench = Bench(text, seeker=seeker)
     assert bench.press("g3\n")[-1] == "line: 51"
-    assert bench.press("g400\n")[1:] == ["page: 400", "searching"]
+    assert bench.press("g400\n")[1:] == ["go to: 400", "searching"]
     asked = seeker.asked[-1]
     assert (asked.line, asked.width) == (399 * 25 + 1, bench.layout.width)
     assert bench.layout.lines_to(asked.line) > 9_000  # which nobody waits for
@@ -297,7 +311,7 @@ def of_markdown(text, **options):
         ("II", ["1. First item.", "2. Second item."]),
         ("lnI", ["1. First item.", "Inside the first item.", "2. Second item."]),
         (["l", "n", "alt-i"], ["1. First item.", "Inside the first item.", "1. First item."]),
-        ("QQQ", ["A quotation here.", "Another quotation.", "quote: none after this"]),
+        ("QQQ", ["A quotation here.", "Another quotation.", "quotation: none after this"]),
         ([">", "alt-q", "alt-q"], ["After the lists.", "Another quotation.",
                                    "A quotation here."]),
     ],
@@ -396,18 +410,18 @@ def test_the_contents_are_listed_and_a_heading_is_chosen_by_number_words_or_arro
         for line in (f"{2 * n - 1}: Part {n}, level 1", f"{2 * n}: Section {n} of winter, level 2")
     ]
     assert bench.press("O") == [*lines, ASKED]
-    assert bench.press("4\n") == ["heading: 4", "heading 2: Section 2 of winter, line 7"]
+    assert bench.press("4\n") == ["contents: 4", "heading 2: Section 2 of winter, line 7"]
     assert bench.press("nO")[1:] == [*lines, ASKED]
     assert bench.press(["down", "up", "up", "\n"])[1:] == [  # from the heading here
-        "heading: 4: Section 2 of winter, level 2",
-        "heading: 3: Part 2, level 1",
-        "heading: 3: Part 2, level 1",
+        "contents: 4: Section 2 of winter, level 2",
+        "contents: 3: Part 2, level 1",
+        "contents: 3: Part 2, level 1",
         "heading 1: Part 2, line 5",
     ]
     said = bench.press("OPART 3\n")
-    assert said[-2:] == ["heading: PART 3", "heading 1: Part 3, line 9"]
+    assert said[-2:] == ["contents: PART 3", "heading 1: Part 3, line 9"]
     said = bench.press("Owinter\n")
-    assert said[-5:] == ["heading: winter", lines[1], lines[3], lines[5], ASKED]
+    assert said[-5:] == ["contents: winter", lines[1], lines[3], lines[5], ASKED]
     assert bench.press("2\n")[-1] == "heading 2: Section 1 of winter, line 3"
     assert bench.press("Osummer\n")[-1] == "contents: no such heading"
     assert bench.press("b") == ["heading 1: Part 3, line 9"]

@@ -69,7 +69,7 @@ class TestWriting:
         with opened(folder) as places:
             kept = places.book(folder / "book.txt")
             kept.keep(KeptPlace(1))
-            other = sqlite3.connect(places.path, isolation_level=None)
+            other = sqlite3.connect(folder / "kept" / "places.sqlite", isolation_level=None)
             other.execute("BEGIN IMMEDIATE")
             kept.keep(KeptPlace(2))
             kept.set_bookmark(Bookmark("a", 1))

@@ -17,7 +17,7 @@ from vbraille.reading.search.questions import (
     NotFound,
     Searched,
 )
-from vbraille.reading.search.seeker import Answering, answer
+from vbraille.reading.search.seeker import Answering
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.documents.chapters import ChapterSource, Passage
@@ -44,7 +44,7 @@ class Structured(ChapterSource):
 
 
 def final(source, query):
-    *before, last = answer(source, query)
+    *before, last = Answering(Book(source)).answer(query)
     assert all(isinstance(step, Searched) and 0 <= step.share <= 1 for step in before)
     return last
 

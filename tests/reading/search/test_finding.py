@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from tests.tiers import by_tier, examples
 from vbraille.reading.search.questions import FindText, Found, NotFound, Searched
-from vbraille.reading.search.seeker import answer, steps
+from vbraille.reading.search.seeker import Answering, steps
 from vbraille.reading.search.text import Sieve, ahead, fold, needle_of, unfolded
-from vbraille.translate import Document
+from vbraille.translate import Book, Document
 from vbraille.translate.documents.chapters import ChapterSource, Passage
 from vbraille.translate.documents.encodings import Encoding
 from vbraille.translate.formats import open_source
@@ -86,7 +86,7 @@ def hits(source, text, accents):
 
 
 def ask(source, *question, **how):
-    *before, last = answer(source, FindText(*question, **how))
+    *before, last = Answering(Book(source)).answer(FindText(*question, **how))
     assert all(isinstance(step, Searched) for step in before)
     return last.character if isinstance(last, Found) else None
 
@@ -197,7 +197,7 @@ class TestLong:
     def test_the_index_reaches_the_hit(self):
         text = "nothing to see here\n\n" * 20_000 + "needle\n\n" + "nothing more\n\n" * 20_000
         document = Document(io.BytesIO(text.encode()), "a", "utf-8")
-        *progress, found = answer(document, FindText("Needle", 0))
+        *progress, found = Answering(Book(document)).answer(FindText("Needle", 0))
         assert isinstance(found, Found)
         assert found.character == text.index("needle")
         assert progress
@@ -210,7 +210,7 @@ class TestLong:
 
     def test_what_is_not_there_needs_no_blocks(self):
         document = Document(io.BytesIO(b"nothing to see here\n\n" * 20_000), "a", "utf-8")
-        *_, last = answer(document, FindText("needle", 0))
+        *_, last = Answering(Book(document)).answer(FindText("needle", 0))
         assert isinstance(last, NotFound)
         assert len(document.index().rows) == 1
 

@@ -11,9 +11,7 @@ FOUND = Calibration("bench", 6, 10, (Tried(0, 1, "dead"),)).to_json()
 class Calibrated(BatchEngine):
     """An engine that says so of its device."""
 
-    def __init__(self, *given, **named):
-        super().__init__(*given, **named)
-        self.calibration = FOUND
+    calibration = FOUND
 
 
 def test_each_run_keeps_what_was_made_up_for(tmp_path):

@@ -81,6 +81,8 @@ def run(arguments: argparse.Namespace) -> int:
                 watched=True,
                 goes=not still,
                 zoom=arguments.zoom,
+                sound=outputs.sound,
+                sounding=arguments.sounds,
             )
             device.explore(view)
             view.start(program)

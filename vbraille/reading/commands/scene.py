@@ -37,7 +37,7 @@ COMMANDS = (
     Command(
         "ENTERING",
         ("v", "f6"),
-        "say each element when the finger comes to it, or no longer",
+        "say each element when the finger comes to it, with its sound, or no longer",
         methodcaller("toggle_entering"),
     ),
     Command(

@@ -33,8 +33,16 @@ if TYPE_CHECKING:
     Numbered = dict[int, ListedHeading]
 
 HEADING, LIST, TABLE = (kind.value for kind in (BlockKind.HEADING, BlockKind.ITEM, BlockKind.ROW))
-_NAMES = {LIST: "list", TABLE: "table", EACH_ITEM: "item", IMAGE: "figure", START: "paragraph"}
-_TOGETHER = (LIST, TABLE, BlockKind.QUOTE.value)  # which are gone to as a whole
+QUOTE = BlockKind.QUOTE.value
+_NAMES = {
+    LIST: "list",
+    TABLE: "table",
+    EACH_ITEM: "item",
+    IMAGE: "figure",
+    START: "paragraph",
+    QUOTE: "quotation",
+}
+_TOGETHER = (LIST, TABLE, QUOTE)  # which are gone to as a whole
 _NEAR_LINES = 500  # that are laid out while the reader waits; farther ones are looked for meanwhile
 _PAGE_OR_SHARE = re.compile(r"(\d{1,3})(?:[.,](\d))? ?%")
 
@@ -57,7 +65,8 @@ def go_to(reader: Reader, kind: str, *, backward: bool = False, level: int = 0) 
     if backward and kind not in _TOGETHER and not _begins_here(line, source.block(number)):
         number += 1  # in the middle of a heading, the one before is that heading itself
     query = FindKind(kind, number, backward, level)
-    reader.find(query, lambda place: arrive(reader, place, name, backward=backward))
+    what = name if kind in (*_TOGETHER, EACH_ITEM) else ""
+    reader.find(query, lambda place: arrive(reader, place, name, what, backward=backward))
 
 
 def go_to_mark(reader: Reader, kind: str, *, backward: bool = False) -> None:
@@ -102,12 +111,13 @@ def go_to_page(reader: Reader, *, backward: bool = False) -> None:
         return
     page, above = divmod(reader.layout.number_of(line) - 1, LINES_PER_PAGE)  # both from 0
     wanted = (page if above else page - 1) if backward else page + 1
-    _go_to_braille_page(reader, wanted + 1, "page")
+    missing = f"page: none {'before' if backward else 'after'} this"
+    _go_to_braille_page(reader, wanted + 1, missing)
 
 
 def ask_place(reader: Reader) -> None:
     """Ask for a page or a percentage, and go there."""
-    reader.ask("go to", "type a page, or percent as in 40%, then Enter", "page", _go_to_typed)
+    reader.ask("go to", "type a page, or percent as in 40%, then Enter", "go to", _go_to_typed)
 
 
 def follow(reader: Reader) -> None:
@@ -120,8 +130,7 @@ def follow(reader: Reader) -> None:
     if names and (mark is None or _refers(source, leads_to, names)):
         _go_back_from_note(reader, names)
     elif mark is None:
-        reader.cue(Cue.NOT_FOUND)
-        reader.say("link: none here")
+        _say_not_found(reader, "link: none here")
     elif not mark.target.startswith("#"):
         reader.say(f"link: {mark.target}")
     else:
@@ -129,7 +138,15 @@ def follow(reader: Reader) -> None:
         arrive(reader, leads_to, mark.kind.value, backward=False)
 
 
-def arrive(reader: Reader, place: int | None, name: str, *, backward: bool, kind: str = "") -> None:
+def arrive(
+    reader: Reader,
+    place: int | None,
+    name: str,
+    what: str = "",
+    *,
+    backward: bool,
+    kind: str = "",
+) -> None:
     """Go to a place that was looked for, and say so; or that it was not found.
 
     Parameters
@@ -138,14 +155,20 @@ def arrive(reader: Reader, place: int | None, name: str, *, backward: bool, kind
         The place; None if there is none.
     name
         What was looked for.
+    what
+        Words for what stands at the place, which are said with the line.
     backward
         Whether it was looked for backward.
     kind
         "link" or "image" if the place is one's, whose words are said.
     """
-    if not reader.arrive(place, _mark_at(reader, place, kind) if kind else ""):
-        reader.cue(Cue.NOT_FOUND)
-        reader.say(f"{name}: none {'before' if backward else 'after'} this")
+    if not reader.arrive(place, _mark_at(reader, place, kind) if kind else what):
+        _say_not_found(reader, f"{name}: none {'before' if backward else 'after'} this")
+
+
+def _say_not_found(reader: Reader, sentence: str) -> None:
+    reader.cue(Cue.NOT_FOUND)
+    reader.say(sentence)
 
 
 def _mark_at(reader: Reader, place: int | None, kind: str) -> str:
@@ -216,7 +239,8 @@ def _before_unnumbered(source: Source, number: int) -> int:
     return number
 
 
-def _go_to_braille_page(reader: Reader, page: int, name: str) -> None:
+def _go_to_braille_page(reader: Reader, page: int, missing: str) -> None:
+    """Go to a page of 25 lines, or say that it is missing."""
     before, number, layout = reader.character, (page - 1) * LINES_PER_PAGE + 1, reader.layout
     if page >= 1 and reader.search.seeker is not None and layout.lines_to(number) > _NEAR_LINES:
         table = "" if layout.book.table is None else layout.book.table.name
@@ -226,8 +250,7 @@ def _go_to_braille_page(reader: Reader, page: int, name: str) -> None:
         reader.keep_way_back(before)
         reader.announce_jump()
     else:
-        reader.cue(Cue.NOT_FOUND)
-        reader.say(f"{name}: there is no such page")
+        _say_not_found(reader, missing)
 
 
 def _go_to_typed(reader: Reader, typed: str) -> None:
@@ -247,7 +270,7 @@ def _go_to_typed(reader: Reader, typed: str) -> None:
     elif reader.search.seeker is None and not reader.layout.counted:
         reader.say("go to: pages of this book are not counted yet; type percent as in 40%")
     else:
-        _go_to_braille_page(reader, int(typed), typed)
+        _go_to_braille_page(reader, int(typed), f"page {typed}: there is no such page")
 
 
 def _arrive_at_share(reader: Reader, place: int | None, typed: str) -> None:
@@ -263,8 +286,7 @@ def _arrive_at_share(reader: Reader, place: int | None, typed: str) -> None:
 
 def _arrive_at_page(reader: Reader, place: int | None, typed: str) -> None:
     if not reader.arrive(place):
-        reader.cue(Cue.NOT_FOUND)
-        reader.say(f"page {typed}: there is no such page")
+        _say_not_found(reader, f"page {typed}: there is no such page")
 
 
 def _link_here(reader: Reader) -> Mark | None:
@@ -295,8 +317,7 @@ def ask_heading(reader: Reader) -> None:
         elif found:
             _ask(reader, dict(enumerate(found, 1)))
         else:
-            reader.cue(Cue.NOT_FOUND)
-            reader.say("contents: the book has no headings")
+            _say_not_found(reader, "contents: the book has no headings")
 
     reader.find(ListHeadings(), ask)
 
@@ -317,7 +338,7 @@ def _ask(reader: Reader, headings: Numbered) -> None:
     reader.ask(
         "contents",
         "type a number or words, Enter; up and down go through the headings",
-        "heading",
+        "contents",
         lambda reader, typed: _go(reader, headings, typed),
         others=[_line(number, heading) for number, heading in headings.items()],
         at=here - 1,
@@ -339,8 +360,9 @@ def _go(reader: Reader, headings: Numbered, typed: str) -> None:
     if len(found) > 1:
         _ask(reader, found)
     elif not found or not reader.arrive(next(iter(found.values())).character):
-        reader.cue(Cue.NOT_FOUND)
-        reader.say(f"contents: {'not in the lines that are read' if found else 'no such heading'}")
+        _say_not_found(
+            reader, f"contents: {'not in the lines that are read' if found else 'no such heading'}"
+        )
 
 
 def feel(reader: Reader) -> None:
@@ -348,13 +370,11 @@ def feel(reader: Reader) -> None:
     under, address = reader.under, figure_of_block(reader.line)
     figures = under.figured.all if address else None
     if figures is None:
-        reader.cue(Cue.NOT_FOUND)
-        reader.say("figure: none on this line")
+        _say_not_found(reader, "figure: none on this line")
         return
     try:
         under.alone = figures.feel(address, reader.say, reader.cue)
     except InputError as error:
-        reader.cue(Cue.NOT_FOUND)
-        reader.say(f"figure not felt: {spelled(str(error))}")
+        _say_not_found(reader, f"figure not felt: {spelled(str(error))}")
         return
     reader.say(f"{under.alone.key('BACK', 'G')} or escape goes back to the text")

@@ -204,11 +204,6 @@ class Answering:
         yield Indexed(self.book.source.index())
 
 
-def answer(book: Book | Source, query: Query) -> Iterator[Answer]:
-    """Answer a question on a book in this process; see `Answering.answer`."""
-    return Answering(book if isinstance(book, Book) else Book(book)).answer(query)
-
-
 def _find(source: Source, query: Place) -> Iterator[Answer]:
     for step in steps(source, query):
         if isinstance(step, float):
@@ -243,11 +238,6 @@ class Seeker:
         self._last = 0
         self._asked: dict[bool, int] = {}  # number of a question, and of a count of lines
         self._answers: list[Answer] = []
-
-    @property
-    def busy(self) -> bool:
-        """Tell whether a question has not been answered; a count of lines is no question here."""
-        return False in self._asked
 
     @property
     def descriptor(self) -> int | None:
@@ -369,11 +359,6 @@ class Search:
         self._then: Callable[[Any], None] | None = None
         self._said_s: float | None = None
 
-    @property
-    def busy(self) -> bool:
-        """Tell whether something is looked for."""
-        return self._then is not None
-
     def find(self, source: Source, query: Query, then: Callable[[Any], None]) -> None:
         """Look for something; one that was looked for before is given up.
 
@@ -477,6 +462,12 @@ def look_everywhere(source: Source, query: Query) -> Hit | None:
         return None
     found = (step for step in steps(source, query) if not isinstance(step, float))
     return next(found, None)
+
+
+def find_place(source: Source, query: FindText | FindShare) -> int | None:
+    """Look for a place, however long that takes; None if it is nowhere."""
+    found = look_everywhere(source, query)
+    return found if isinstance(found, int) else None
 
 
 PROGRESS_S = 0.5
