@@ -11,8 +11,8 @@ from statsmodels.stats.anova import anova_lm
 from vbraille.analysis.input.study import Study
 from vbraille.analysis.input.trials import factor
 from vbraille.analysis.orders import order_of
-from vbraille.sessions.planning.chance import balanced_orders
 from vbraille.sessions.planning.protocolfiles import parse_protocol
+from vbraille.sessions.planning.sequencing import balanced_orders
 
 TEXT = """
 format = 1

@@ -1,5 +1,6 @@
 """Layouts that begin deep in a book: the same lines, and no more of them than are looked at."""
 
+import gc
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 from tests.laid import laid_out
 from tests.tiers import examples
 from tests.translate.blocks import BlockList, text_of
+from vbraille.layout.blocks import LaidBlock
 from vbraille.layout.pages import NEAR, Layout, Line
 from vbraille.translate import Block, BlockKind, Book, BrailleTable, Document, Text
 
@@ -223,6 +225,21 @@ class TestFarAway:
         assert layout.line(numbers[-1]) is not None
         assert layout.line(1).number == 1
         assert all(b > a for a, b in pairwise(numbers))
+
+    def test_of_what_is_laid_out_only_the_place_looked_at_last_is_kept(self):
+        def kept():
+            gc.collect()
+            return sum(type(one) is LaidBlock for one in gc.get_objects())
+
+        before = kept()
+        layout = Layout(Book(watched(50 * FAR), FRENCH), 26)
+        layout.line(1)
+        once = kept() - before
+        for jump in range(1, 20):
+            layout.place(2_000 * FAR * jump)
+            assert 0 < kept() - before <= once + 2
+        layout.line(1)
+        assert 0 < kept() - before <= once + 2
 
 
 def test_a_page_without_a_number_at_the_beginning_has_no_line():

@@ -16,11 +16,11 @@ from vbraille.analysis.statistics.comparisons import CellShares
 from vbraille.analysis.statistics.intervals import METHODS
 from vbraille.braille.spelling import to_braille
 from vbraille.render.braille.models import MODELS
-from vbraille.sessions.planning.chance import balanced_orders
 from vbraille.sessions.planning.factors import within
 from vbraille.sessions.planning.nexttrial import varied
 from vbraille.sessions.planning.procedures import QuestProcedure, StaircaseProcedure
 from vbraille.sessions.planning.questions import of_all
+from vbraille.sessions.planning.sequencing import balanced_orders
 from vbraille.sessions.planning.stimuli import GAP, KNOBS
 from vbraille.sessions.record.codebook import ASKED
 from vbraille.version import __version__

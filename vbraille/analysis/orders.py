@@ -27,7 +27,7 @@ from vbraille.analysis.results import (
 )
 from vbraille.analysis.statistics.anova import added_by
 from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, Unanswerable
-from vbraille.sessions.planning.chance import balanced_orders
+from vbraille.sessions.planning.sequencing import balanced_orders
 from vbraille.wording import count
 
 if TYPE_CHECKING:

@@ -33,7 +33,8 @@ from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, Interval
 from vbraille.analysis.statistics.psychometric import fit_psychometric
 from vbraille.pictures.charts import Bars, Series
 from vbraille.sessions.planning.analysis import ITEM, MEASURES
-from vbraille.sessions.planning.questions import GOOD, RatingQuestion
+from vbraille.sessions.planning.questions import RatingQuestion
+from vbraille.sessions.planning.questiontable import GOOD
 from vbraille.wording import count
 
 if TYPE_CHECKING:

@@ -43,7 +43,7 @@ LEFT_OUT = {
         "a blend is of 3 patterns, and this has 2",
     ),
     "half a toggle": (f'<Pattern type="Toggle">{circle()}</Pattern>', "a toggle is of 2 patterns"),
-    "sounds": ('<Pattern type="Audio"><sound/><sound/></Pattern>', "its 2 sounds are not played"),
+    "sounds": ('<Pattern type="Audio"><sound/><sound/></Pattern>', "its sound is not named"),
     "a product with nothing": (
         f'<Pattern type="Group"><operation>multiply</operation>{circle()}{grating(ridge=0)}'
         "</Pattern>",

@@ -3,9 +3,9 @@
 from collections import Counter
 from itertools import groupby, pairwise, permutations, product
 
-from vbraille.sessions.planning.chance import balanced_orders
 from vbraille.sessions.planning.design import Choice, Combinations, name_item
 from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.sequencing import balanced_orders
 from vbraille.sessions.planning.stimuli import KNOBS
 from vbraille.sessions.planning.style import TUNED
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.sessions.planning.rulebook import check_balance
-from vbraille.sessions.planning.chance import Chance, balanced_orders
+from vbraille.sessions.planning.sequencing import Chance, balanced_orders
 
 
 class TestChance:

@@ -12,10 +12,10 @@ from tests.sessions.planning.rulebook import check_rules
 from tests.sessions.planning.test_bad_protocols import VBD_HEAD
 from tests.tiers import examples
 from vbraille.errors import InputError
-from vbraille.sessions.planning.chance import balanced_orders
 from vbraille.sessions.planning.making import check_plan, make_plan
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
+from vbraille.sessions.planning.sequencing import balanced_orders
 
 ITEMS = "string,kind\nac,word\nca,word\ncc,non\naa,non\n"
 TEXTURE = (

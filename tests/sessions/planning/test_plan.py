@@ -14,10 +14,10 @@ from msgspec import structs
 from tests.sessions.planning.rulebook import broken_rules, check_rules
 from vbraille.braille.spelling import LETTERS
 from vbraille.errors import InputError
-from vbraille.sessions.planning.design import Rules
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import builtin_names, load_protocol, parse_protocol
+from vbraille.sessions.planning.sequencing import Rules
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\nmodel = "stress2"\n'
 ABC = "".join(f'[[conditions]]\nname = "{name}"\n' for name in "ABC")

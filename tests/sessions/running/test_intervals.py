@@ -143,7 +143,10 @@ def test_the_exponent_is_found_again(tmp_path):
         (toml("single", [1.0], 'kind = "detect"'), "leave one of them out"),
         (toml("abx", [1.0], MATCH, intervals=3), "intervals are of form = 'one'"),
         (toml("abx", [1.0], MATCH, same=1), "same is of form = 'pairs'"),
-        (toml("single", [1.0, 3.0], 'kind = "identify"', reference=None), "which is asked of form"),
+        (
+            toml("single", [1.0, 3.0], 'kind = "identify"', reference=None),
+            "which is asked of strings",
+        ),
     ],
 )
 def test_forms_that_cannot_be_are_refused(text, says):

@@ -138,7 +138,7 @@ def test_ways_back_are_counted_from_half_a_cell():
         (PASSAGES.replace('table = "en-ueb-g1.ctb"', ""), "lank"),
         (MINI + '[question]\nkind = "read"\n', "which is asked of passages"),
         (PASSAGES + '[analysis]\nmodel = "trials"\n', "shares of right answers, not of reading_s"),
-        (PASSAGES + '[question]\nkind = "identify"\n', "which is asked of form"),
+        (PASSAGES + '[question]\nkind = "identify"\n', "which is asked of strings"),
         (PASSAGES.replace("passage = true", "passage = true\ncatch = { every = 2 }"), "neither"),
         (PASSAGES.replace('"stress2"', '"stress2"\nmedium = "paper"'), "line by line on a device"),
     ],

@@ -1,4 +1,4 @@
-"""Groups of patterns of OpenLatero's files, toggles and sounds."""
+"""Groups of patterns of OpenLatero's files, and toggles."""
 
 from __future__ import annotations
 
@@ -128,6 +128,13 @@ def joined(
     ValueError
         If the scene has too many signals.
     """
+    sounds = [one for part in parts for one in _sounds(part)]
+    if sounds:  # which are heard, and change nothing of what is felt
+        felt = joined(element, [None if _sounds(part) else part for part in parts], context)
+        shown = [] if felt is None else [felt]
+        if isinstance(felt, Group) and felt.operation in ("maximum", "add"):
+            return replace(felt, parts=(*felt.parts, *sounds))
+        return Group(operation="maximum", parts=(*shown, *sounds))
     name = operation_of(element, "max")
     if not parts:
         element.say("it has no patterns; left out")
@@ -149,6 +156,12 @@ def joined(
     if len(found) < 2:
         return found[0] if found else None
     return Group(operation=OPERATIONS[name], parts=tuple(found))
+
+
+def _sounds(part: AnyPattern | None) -> tuple[AnyPattern, ...]:
+    """Masks of sounds, if a part is of these alone."""
+    found = part.parts if isinstance(part, Group) else () if part is None else (part,)
+    return found if all(one.sound for one in found) else ()
 
 
 def _blended(element: GenElement, parts: list[AnyPattern | None]) -> AnyPattern | None:
@@ -188,13 +201,3 @@ def _layer(pattern: AnyPattern, factor: str) -> AnyPattern:
     if pattern.factor:
         pattern = Group(operation="maximum", parts=(pattern,))
     return replace(pattern, factor=factor)
-
-
-@ROWS.row("Audio")
-def _audio(element: GenElement, context: GenContext) -> None:
-    """Sounds, which are not played."""
-    del context
-    sounds = count(len(element.every("sound")), "sound")
-    element.forget()
-    element.say(f"its {sounds} are not played; left out" if sounds[0] != "1" else
-                "its sound is not played; left out")  # fmt: skip

@@ -7,7 +7,10 @@ import re
 import warnings
 from dataclasses import dataclass
 from io import BytesIO
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.scene.filebytes import read_bytes
@@ -15,13 +18,12 @@ from vbraille.scene.imagefiles import KINDS, MOST_PIXELS
 from vbraille.scene.measures import MOST_MM
 from vbraille.scene.openlatero.context import SURFACE_MM, Kinds
 from vbraille.scene.openlatero.elements import OFF, ON, NumberField, PlaceField, cleaned
-from vbraille.scene.patterns import Image
+from vbraille.scene.patterns import Group, Image
 from vbraille.scene.svg.numbers import length_px
 from vbraille.scene.textures import Uniform
+from vbraille.sounds import check_sound
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from vbraille.scene.measures import Point
     from vbraille.scene.openlatero.context import GenContext
     from vbraille.scene.openlatero.elements import GenElement
@@ -151,12 +153,42 @@ def _image(element: GenElement, context: GenContext) -> AnyPattern | None:
             element.say(f"it is the mask of a {kind}, which OpenLatero does not show; left out")
             return None
         element.say(f"it is the mask of a {kind}, as the file says; OpenLatero does not show it")
+    masked = _masked(mask, context)
+    if masked is None:
+        return None
+    mask.say("between pixels it is bilinear here, and the nearest pixel counts there")
+    return replace(masked, texture=None if texture == Uniform() else texture)
+
+
+@ROWS.row("Audio")
+def _audio(element: GenElement, context: GenContext) -> AnyPattern | None:
+    """Masks that are not felt, each with the sound of those that are in it."""
+    found: list[AnyPattern] = []
+    for sound in element.every("sound"):
+        file, mask = sound.one("audiofile"), sound.part("mask", MASK)
+        name = "" if file is None else cleaned(file.text)
+        try:
+            if not name:
+                raise InputError("its sound is not named")
+            check_sound(context.folder / name)
+        except InputError as error:
+            mask.forget()
+            sound.say(f"{_in(context.folder, error)}; left out")
+            continue
+        masked = _masked(mask, context)
+        if masked is not None:
+            found.append(replace(masked, amplitude=0.0, sound=name, title=Path(name).stem))
+    return Group(operation="maximum", parts=tuple(found)) if found else None
+
+
+def _masked(mask: GenElement, context: GenContext) -> Image | None:
+    """Picture of a mask where it is; None if there is none."""
     file = mask.one("imgfile")
     found = None if file is None else _found(file, context)
     if file is None or found is None:
         mask.forget()
         if file is None:
-            element.say("its picture is not named; left out")
+            mask.say("its picture is not named; left out")
         return None
     name, picture = found
     width, height = _size(mask, picture)
@@ -164,7 +196,6 @@ def _image(element: GenElement, context: GenContext) -> AnyPattern | None:
     channel = "alpha" if file.attribute("type") == "alpha" else "gray"
     blur = _blur(mask, picture, width, height)
     _say_channel(file, picture, channel)
-    mask.say("between pixels it is bilinear here, and the nearest pixel counts there")
     return Image(
         file=name,
         place_mm=(_plain(place[0]), _plain(place[1])),
@@ -173,7 +204,6 @@ def _image(element: GenElement, context: GenContext) -> AnyPattern | None:
         channel=channel,
         blur_mm=_plain(blur),
         outside=mask["default_alpha"],
-        texture=None if texture == Uniform() else texture,
     )
 
 

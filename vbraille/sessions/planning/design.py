@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from msgspec import structs
 
-from vbraille.braille.spelling import LETTERS, name_dots, to_braille
+from vbraille.braille.spelling import name_dots, to_braille
 from vbraille.errors import check_range
 from vbraille.sessions.planning.pace import check_file_name
 from vbraille.sessions.planning.spellings import Mask, Masks, WrittenText
@@ -57,6 +57,13 @@ class Catch(Table, frozen=True, kw_only=True):
         assert self.share is not None
         return max(1, round(trials * self.share / (1 - self.share)))
 
+    def stretches(self, trials: int) -> list[int]:
+        """Ends of the stretches of so many other trials, each of which has one catch trial."""
+        number = self.number(trials)
+        if self.every is not None:
+            return [(self.every - 1) * part for part in range(1, number + 1)]
+        return [part * trials // number for part in range(1, number + 1)]
+
 
 class BlockOrder(Table, frozen=True, kw_only=True):
     """The table ``[order]``: in which order participants have the blocks of the conditions.
@@ -91,6 +98,27 @@ class BlockOrder(Table, frozen=True, kw_only=True):
         if self.kind == "random":
             return "shuffled"
         return "balanced" if self.kind in ("williams", "balanced") else "listed"
+
+    def check(self, design: Design, conditions: int) -> None:
+        """Check that so many conditions of a design can be ordered so.
+
+        Raises
+        ------
+        ValueError
+            If they cannot.
+        """
+        if design.order is not None:
+            raise ValueError("kind stands beside order of [design]; leave one of the two out")
+        if design.blocks != "conditions" and self.kind != "random":
+            raise ValueError(
+                f"kind is {self.kind!r}, which orders blocks of a condition each; give 'random', "
+                f"or [design] blocks = 'conditions'"
+            )
+        if self.kind != "listed" and conditions < 2:
+            raise ValueError(
+                f"kind is {self.kind!r}, and there is one condition, so that nothing can be "
+                f"ordered; leave it out, or give more conditions"
+            )
 
 
 MOST_TRIALS = 10_000
@@ -437,75 +465,6 @@ def _check_distinct(what: str, names: Iterable[str]) -> None:
 def _bounds(knob: StimulusKnob) -> tuple[float, float]:
     """Bounds of the values compared; geometry itself says which lengths go together."""
     return (0, max(50, knob.high)) if knob.unit else (knob.low, knob.high)
-
-
-class Rules(Table, frozen=True):
-    """Rules that a plan must follow beside its design.
-
-    Parameters
-    ----------
-    each_letter
-        Exact number of times that each letter of the alphabet is shown in each condition; None
-        for any number.
-    each_letter_at_least
-        Least number of times that each letter is shown in each condition; None for any number.
-    never_twice_running
-        Whether no two neighbouring trials may show the same. Two trials show the same if they
-        have the same string, the same cells in any order where cells are reordered, or the same
-        two values in the same order.
-    at_most_running
-        Largest number of neighbouring trials that may have the same level of a factor, by the
-        factor's name; "condition" stands for the conditions, and a column of the items' file for
-        itself.
-    balanced_quarters
-        Whether each quarter of the test has each condition equally often, as far as numbers allow.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range.
-    """
-
-    each_letter: int | None = None
-    each_letter_at_least: int | None = None
-    never_twice_running: bool = False
-    at_most_running: dict[str, int] = {}  # noqa: RUF012  (msgspec copies an empty default)
-    balanced_quarters: bool = False
-
-    def __post_init__(self) -> None:
-        check_range("each_letter", self.each_letter, 1, MOST_TRIALS)
-        check_range("each_letter_at_least", self.each_letter_at_least, 1, MOST_TRIALS)
-        for most in self.at_most_running.values():
-            check_range("at_most_running: one", most, 1, MOST_TRIALS)
-
-    @property
-    def searched(self) -> bool:
-        """True if an order that keeps the rules must be searched for."""
-        return bool(self.at_most_running) or self.balanced_quarters
-
-    def check_letters(self, lines: Iterable[tuple[int, ...]]) -> None:
-        """Check how often each letter is shown in a condition.
-
-        Raises
-        ------
-        ValueError
-            If one is shown too often or too seldom.
-        """
-        shown = Counter(mask for masks in lines for mask in masks)
-        for letter, mask in LETTERS.items():
-            least = self.each_letter_at_least or 0
-            if self.each_letter in (None, shown[mask]) and shown[mask] >= least:
-                continue
-            exactly = self.each_letter not in (None, shown[mask])
-            name = "each_letter" if exactly else "each_letter_at_least"
-            raise ValueError(
-                f"{letter} is shown {_times(shown[mask])}; {name} is {getattr(self, name)}; "
-                f"change the strings or the rule"
-            )
-
-
-def _times(number: int) -> str:
-    return "once" if number == 1 else f"{number} times"
 
 
 class Practice(Table, frozen=True):

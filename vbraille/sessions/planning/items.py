@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Literal
 
 from vbraille.braille.spelling import spell_string
 from vbraille.errors import InputError, check_range
-from vbraille.sessions.planning.chance import Chance
 from vbraille.sessions.planning.design import MOST_TRIALS
 from vbraille.sessions.planning.pace import NAME, check_file_name
+from vbraille.sessions.planning.sequencing import Chance
 from vbraille.sessions.planning.spellings import Mask, Masks, SpellingKeys, read_written
 from vbraille.sessions.planning.stimuli import check_seed
 from vbraille.tomlfile import Table, which

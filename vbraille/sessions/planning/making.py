@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from itertools import cycle, zip_longest
 from typing import TYPE_CHECKING
 
 from msgspec import structs
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.chance import Chance, balanced_orders
-from vbraille.sessions.planning.design import Catch, Choice, Item, StringList
+from vbraille.sessions.planning.design import Choice, Item, StringList
 from vbraille.sessions.planning.nexttrial import varied
 from vbraille.sessions.planning.plan import Plan
-from vbraille.sessions.planning.sequencing import arranged
+from vbraille.sessions.planning.sequencing import (
+    Chance,
+    apart,
+    balanced_orders,
+    sequenced,
+    with_catch,
+)
 from vbraille.sessions.planning.spellings import WrittenText
 from vbraille.sessions.planning.stimuli import Stimuli, Trial, check_participant, check_seed, joined
 from vbraille.tomlfile import which
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.style import Condition
@@ -74,12 +78,18 @@ def make_plan(
     order = choose_order(protocol, participant, order)
     drawn = f"{protocol.name} {seed} {participant}"
     chance = Chance(drawn)
-    if protocol.rules.searched:
-        blocks = arranged(protocol, lambda: _blocks(protocol, conditions, order, chance), chance)
-        if blocks is None:
-            raise InputError(_unfound(protocol))
-    else:
-        blocks = _ordered(protocol, _blocks(protocol, conditions, order, chance), chance)
+    try:
+        blocks = sequenced(
+            protocol.rules,
+            protocol.design,
+            protocol.levels_of,
+            lambda: _blocks(protocol, conditions, order, chance),
+            chance,
+        )
+        # Practice is shuffled separately: the number of its trials does not change the others.
+        practice = _practice(protocol, conditions, Chance(f"{drawn} practice"))
+    except ValueError as error:
+        raise InputError(f"{protocol.name} {error}") from None
     trials = [
         _trial(protocol, item, condition, block)
         for block, shown in enumerate(blocks, 1)
@@ -87,8 +97,6 @@ def make_plan(
     ]
     if protocol.design.catch is not None:
         trials = with_catch(trials, protocol.design.catch, Chance(f"{drawn} catch"))
-    # Practice is shuffled separately, so that the number of its trials does not change the others.
-    practice = _practice(protocol, conditions, Chance(f"{drawn} practice"))
     return Plan(
         protocol=protocol.name,
         participant=participant,
@@ -213,41 +221,6 @@ def _blocks(
     return blocks
 
 
-def _ordered(protocol: Protocol, blocks: list[list[_Shown]], chance: Chance) -> list[list[_Shown]]:
-    """Items and conditions of each block, in the order in which they are shown."""
-    if not protocol.rules.never_twice_running:
-        return [chance.shuffled(block) for block in blocks]
-
-    def shows(shown: _Shown) -> Item:
-        return protocol.design.content(shown[0])
-
-    ordered: list[list[_Shown]] = []
-    before: Item | None = None
-    for block in blocks:
-        try:
-            ordered.append(chance.apart(block, shows, before))
-        except ValueError:
-            raise InputError(
-                f"{protocol.name} cannot keep never_twice_running: one thing is shown too often "
-                f"in a block or in practice; show more different ones, or leave the rule out"
-            ) from None
-        if block:
-            before = shows(ordered[-1][-1])
-    return ordered
-
-
-def _unfound(protocol: Protocol) -> str:
-    """Sentence that says which rules no order was found for."""
-    rules = protocol.rules
-    said = [f"at_most_running {name} = {most}" for name, most in rules.at_most_running.items()]
-    said += ["balanced_quarters"] if rules.balanced_quarters else []
-    said += ["never_twice_running"] if rules.never_twice_running else []
-    return (
-        f"{protocol.name} cannot keep {' with '.join(said)}: no order of its trials was found that "
-        f"does; make the rules weaker, or show more different items"
-    )
-
-
 def _items(protocol: Protocol, chance: Chance) -> list[list[Item]]:
     """Items of each condition; if the design reorders strings, their cells are shuffled."""
     items: list[Item] = [*protocol.design.items()]
@@ -292,7 +265,7 @@ def _practice(protocol: Protocol, conditions: list[Condition], chance: Chance) -
         (next(orders[item]) if reorders else item, condition)
         for item, condition in zip(deck[: practice.trials], cycle(conditions), strict=False)
     ]
-    (shown,) = _ordered(protocol, [drawn], chance)
+    (shown,) = apart(protocol.rules, design, [drawn], chance)
     return [_trial(protocol, item, condition, 0) for item, condition in shown]
 
 
@@ -409,42 +382,3 @@ def _number(participant: str, what: str, give: str) -> int:
             f"has none; give {setting(what)} {give}, or a participant such as P07"
         )
     return int(numbers[-1])
-
-
-def stretches(trials: int, catch: Catch) -> list[int]:
-    """Ends of the stretches of other trials, each of which has one catch trial."""
-    number = catch.number(trials)
-    if catch.every is not None:
-        return [(catch.every - 1) * part for part in range(1, number + 1)]
-    return [part * trials // number for part in range(1, number + 1)]
-
-
-def with_catch(trials: Sequence[Trial], catch: Catch, chance: Chance) -> list[Trial]:
-    """Trials with catch trials among them, one at a random place of each stretch.
-
-    A catch trial stands after a trial of its stretch, whose block and condition it has. So it is
-    never the first of the session, and no two are neighbours.
-    """
-    found: list[Trial] = []
-    first = 0
-    for end in stretches(len(trials), catch):
-        after = first + chance.below(end - first)
-        found += [*trials[first : after + 1], _caught(trials[after], catch)]
-        found += trials[after + 1 : end]
-        first = end
-    return [*found, *trials[first:]]
-
-
-def _caught(trial: Trial, catch: Catch) -> Trial:
-    if catch.show == "repeat":
-        return structs.replace(trial, catch="repeat")
-    first, stop = trial.asked
-    blank = [
-        replace(
-            s,
-            masks=(*s.masks[:first], *(0,) * (stop - first), *s.masks[stop:]),
-            text=None if s.text is None else "",
-        )
-        for s in trial.stimuli
-    ]
-    return structs.replace(trial, catch="blank", stimuli=Stimuli(blank))

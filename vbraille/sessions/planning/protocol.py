@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -23,7 +23,6 @@ from vbraille.sessions.planning.design import (
     Item,
     ItemList,
     Practice,
-    Rules,
     StringList,
 )
 from vbraille.sessions.planning.factors import (
@@ -48,12 +47,9 @@ from vbraille.sessions.planning.pace import (
 )
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
 from vbraille.sessions.planning.questionnaire import AnyItem
-from vbraille.sessions.planning.questions import (
-    AnyQuestion,
-    CellSpelling,
-    ReadQuestion,
-    usual_question,
-)
+from vbraille.sessions.planning.questions import AnyQuestion, ReadQuestion, usual_question
+from vbraille.sessions.planning.questiontable import CellSpelling
+from vbraille.sessions.planning.sequencing import Rules
 from vbraille.sessions.planning.spellings import SpellingKeys, WrittenText, cells_of
 from vbraille.sessions.planning.stimuli import Stimuli, Stimulus, broken, with_value
 from vbraille.sessions.planning.style import (
@@ -66,6 +62,8 @@ from vbraille.sessions.planning.style import (
 from vbraille.tomlfile import Table, which
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from vbraille.braille.geometry import Geometry
     from vbraille.render import BrailleStyle, Mapping, Model, Tuning
     from vbraille.render.program import Program
@@ -275,6 +273,23 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         ):
             found |= dict(zip([factor.name for factor in factors], levels, strict=False))
         return found
+
+    @property
+    def levels_of(self) -> dict[str, Callable[[tuple[Item, Condition]], str]]:
+        """Names that ``at_most_running`` may have, with the level of an item in a condition."""
+        levels = {c.name: self.levels(c.name) for c in self.conditions}
+
+        def level(name: str, shown: tuple[Item, Condition]) -> str:
+            return levels[shown[1].name][name]
+
+        def told(name: str, shown: tuple[Item, Condition]) -> str:
+            return self.columns_of(tuple(map(int, shown[0])))[name]
+
+        return {
+            CONDITION: lambda shown: shown[1].name,
+            **{factor.name: partial(level, factor.name) for factor in within(self.factors)},
+            **{column: partial(told, column) for column in self.item_columns},
+        }
 
     @property
     def written(self) -> bool:

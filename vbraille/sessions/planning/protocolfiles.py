@@ -15,11 +15,11 @@ from vbraille.braille.spelling import name_dots, to_braille
 from vbraille.errors import InputError
 from vbraille.files import read_text
 from vbraille.render import Profile
+from vbraille.sessions.planning.analysis import CONDITION
 from vbraille.sessions.planning.design import MOST_TRIALS, UNFELT, Choice, ItemList, StringList
 from vbraille.sessions.planning.factors import check_factors
 from vbraille.sessions.planning.items import read_items, read_orders, read_words
 from vbraille.sessions.planning.protocol import FORMAT, Protocol, ProtocolFile
-from vbraille.sessions.planning.sequencing import CONDITION, check_possible, limited
 from vbraille.sessions.planning.spellings import (
     SpellingKeys,
     cells_of,
@@ -311,7 +311,9 @@ def check_protocol(protocol: Protocol, *, planned: bool = False) -> None:
     with _naming("[practice]"):
         protocol.practice.check(protocol.design, pictures=protocol.pictures)
     _check_trials(protocol)
-    _check_order(protocol)
+    if protocol.order is not None:
+        with _naming("[order]"):
+            protocol.order.check(protocol.design, len(protocol.conditions))
     _check_tables(protocol, planned=planned)
     _check_varies(protocol)
     if protocol.pictures:
@@ -319,8 +321,10 @@ def check_protocol(protocol: Protocol, *, planned: bool = False) -> None:
     elif not protocol.written or not (planned or _ungrouped(protocol)):
         check_cells(protocol)
         check_lines(protocol)
-    _check_letters(protocol)
-    _check_rules(protocol)
+    with _naming("[rules]"):
+        protocol.rules.check(
+            protocol.design, protocol.conditions, protocol.levels_of, adaptive=protocol.adaptive
+        )
     with _naming("[analysis]"):
         protocol.planned_analysis  # noqa: B018
     if not protocol.group:
@@ -400,7 +404,7 @@ def _check_pictures(protocol: Protocol) -> None:
             "scene shows pictures of [design] kind = 'list' or 'items' in a fixed order; leave "
             "reorder, catch and [procedure] out"
         )
-    if protocol.asks.name in ("identify", "detect"):
+    if protocol.asks.asked_of == "cells":
         raise ValueError("scene shows pictures, which have no cells; give [question] kind = 'name'")
     if protocol.trial.exposure_from != "cue":
         raise ValueError("[trial] exposure_from is of dots; leave it out, as for all pictures")
@@ -439,7 +443,7 @@ def _check_styles(protocol: Protocol) -> None:
 
 
 def _check_varies(protocol: Protocol) -> None:
-    """Check that what is compared or chosen can be felt, and that there is something to order."""
+    """Check that what is compared or chosen can be felt."""
     chosen = getattr(protocol.procedure, "parameter", None)
     for table, name in (("design", protocol.parameter), ("procedure", chosen)):
         if name == "texture_cycles" and protocol.model.style.profile is Profile.HALF_SINE:
@@ -459,17 +463,9 @@ def _check_varies(protocol: Protocol) -> None:
                     f"[{table}] parameter is {name!r}, which the condition {condition.name} sets "
                     f"itself; leave it out there"
                 )
-    order = protocol.order
-    if order is not None and order.kind != "listed" and len(protocol.conditions) < 2:
-        raise ValueError(
-            f"[order] kind is {order.kind!r}, and there is one condition, so that nothing can be "
-            f"ordered; leave it out, or give more conditions"
-        )
 
 
 def _check_question(protocol: Protocol) -> None:
-    form = protocol.design.form if isinstance(protocol.design, Choice) else ""
-    form = "passage" if protocol.passages else form
     there = any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions)
     if protocol.passages and (not protocol.written or there or protocol.medium == "paper"):
         raise ValueError(
@@ -478,38 +474,28 @@ def _check_question(protocol: Protocol) -> None:
         )
     if protocol.passages and (protocol.design.catch is not None or protocol.adaptive):
         raise ValueError("[design] passage goes with neither catch nor [procedure]; leave it out")
-    with _naming("[question]"):
-        protocol.asks.check(protocol.intervals, form, adaptive=protocol.adaptive)
-    if getattr(protocol.asks, "buttons", False) and protocol.trial.button is not None:
+    asks = protocol.asks
+    asks.check(
+        protocol.design,
+        passages=protocol.passages,
+        pictures=protocol.pictures,
+        adaptive=protocol.adaptive,
+    )
+    asks.check_items(protocol.item_columns, [row.columns for row in protocol.item_rows])
+    if getattr(asks, "buttons", False) and protocol.trial.button is not None:
         raise ValueError("[trial] end is a button, and [question] buttons takes all; leave one out")
-    columns = protocol.item_columns
-    for choice in getattr(protocol.asks, "choices", ()):
-        if choice.of is not None and choice.of not in columns:
-            raise ValueError(f"[question] choices of is {choice.of!r}{which(choice.of, columns)}")
-        named = {row.columns[choice.of] for row in protocol.item_rows} if choice.of else set()
-        if unknown := sorted(named - set(choice.names.values())):
-            raise ValueError(
-                f"[question] choices of {choice.of} have no name {unknown[0]!r}, which an item "
-                f"has; add it"
-            )
-    if protocol.asks.name == "name" and not protocol.pictures:
-        raise ValueError("[question] kind is 'name', which is asked of pictures; give a scene")
-    same = isinstance(protocol.design, Choice) and protocol.design.same
-    if same and (protocol.asks.name != "same-different" or protocol.adaptive):
+    if asks.turns and protocol.medium == "paper":
         raise ValueError(
-            "[design] same is of [question] kind = 'same-different' in a fixed order; leave it out"
+            f"[question] kind is {asks.name!r}, which turns what a device shows; leave it"
         )
-    if isinstance(protocol.design, Choice) and protocol.asks.name == "which":
-        standard = protocol.design.reference
-        if standard in protocol.design.values:
-            raise ValueError(
-                f"[design] reference is {standard:g}, which is one of values, and of two that are "
-                f"the same none can be chosen; leave it out there"
-            )
+    if asks.of_catch and getattr(protocol.procedure, "guess", None) == (0.0,):
+        # With a fifth of false alarms the threshold would be told far too low.
+        raise ValueError(
+            "[procedure] guess is 0, and people say yes at nothing too; give the shares that may "
+            "be, such as guess = [0.01, 0.05, 0.1, 0.2, 0.3, 0.4]"
+        )
     if protocol.trial.end is not None and protocol.medium == "paper":
         raise ValueError("[trial] end is of a device; on paper Enter ends reading, leave it out")
-    if protocol.asks.turns and protocol.medium == "paper":
-        raise ValueError("[question] kind is 'adjust', which turns what a device shows; leave it")
     if protocol.trial.exposure_s is not None and (there or protocol.medium == "paper"):
         raise ValueError(
             "[trial] exposure_s is of a device, and strings stand on paper or on a conventional "
@@ -522,12 +508,6 @@ def _check_procedure(protocol: Protocol) -> None:
         protocol.procedure.check(protocol.design)
     if not protocol.adaptive:
         return
-    if protocol.asks.name == "detect" and getattr(protocol.procedure, "guess", None) == (0.0,):
-        # With a fifth of false alarms the threshold would be told far too low.
-        raise ValueError(
-            "[procedure] guess is 0, and people say yes at nothing too; give the shares that may "
-            "be, such as guess = [0.01, 0.05, 0.1, 0.2, 0.3, 0.4]"
-        )
     if protocol.trial.late == "missed":
         raise ValueError(
             "[trial] late is 'missed', which leaves trials without an answer, and [procedure] goes "
@@ -595,51 +575,6 @@ def _check_trials(protocol: Protocol) -> None:
             f"[design] blocks is {blocks}; it must be 1 to {trials}, "
             f"since there are {trials} trials"
         )
-
-
-def _check_order(protocol: Protocol) -> None:
-    order, design = protocol.order, protocol.design
-    if order is None:
-        return
-    if design.order is not None:
-        raise ValueError("[order] kind stands beside order of [design]; leave one of the two out")
-    if design.blocks != "conditions" and order.kind != "random":
-        raise ValueError(
-            f"[order] kind is {order.kind!r}, which orders blocks of a condition each; give "
-            f"'random', or [design] blocks = 'conditions'"
-        )
-
-
-def _check_letters(protocol: Protocol) -> None:
-    rules = protocol.rules
-    if isinstance(protocol.design, StringList):
-        with _naming("[rules]"):
-            rules.check_letters(protocol.design.items())
-    elif (rules.each_letter, rules.each_letter_at_least) != (None, None):
-        raise ValueError("[rules] count the letters of kind = 'list'; leave them out")
-
-
-def _check_rules(protocol: Protocol) -> None:
-    """Check that rules on the order of trials name what there is, and can be kept."""
-    rules, design = protocol.rules, protocol.design
-    if not rules.searched:
-        return
-    if protocol.adaptive:
-        raise ValueError(
-            "[rules] at_most_running and balanced_quarters are of a fixed order; leave them out, "
-            "since [procedure] chooses the trials"
-        )
-    known = limited(protocol)
-    for name in rules.at_most_running:
-        if name not in known:
-            raise ValueError(f"[rules] at_most_running has {name!r}{which(name, known)}")
-    if rules.balanced_quarters and design.blocks == "conditions" and len(protocol.conditions) > 1:
-        raise ValueError(
-            "[rules] balanced_quarters cannot be kept: each condition has a block of its own; "
-            "give [design] blocks = 1, or leave the rule out"
-        )
-    with _naming("[rules]"):
-        check_possible(protocol)
 
 
 def check_cells(protocol: Protocol) -> None:

@@ -6,18 +6,18 @@ each trial, after each block, or at the end.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, ClassVar, Literal, get_args
 
 from vbraille.errors import check_range
 from vbraille.sessions.planning.pace import LONGEST_LINE, check_line, check_name
-from vbraille.sessions.planning.questions import (
+from vbraille.sessions.planning.scales import (
     LARGEST,
     check_labels,
     check_scale,
     labels_of,
     quoted,
     read_label,
+    read_number,
     say_scale,
 )
 from vbraille.tomlfile import Table
@@ -203,14 +203,9 @@ class NumberItem(_Item, frozen=True, kw_only=True, tag="number"):
 
     def parse(self, text: str, _columns: Mapping[str, str], /) -> str:
         """Read a number, with a point or a comma in it."""
-        try:
-            number = float(text.strip().replace(",", "."))
-        except ValueError:
-            number = math.nan
         low = -LARGEST if self.least is None else self.least
-        if not low <= number <= (LARGEST if self.most is None else self.most):
-            raise ValueError(f"{quoted(text)}type {self.prompt({})}")
-        return f"{number:.15g}"
+        high = LARGEST if self.most is None else self.most
+        return f"{read_number(text, low, high, self.prompt({})):.15g}"
 
     def guess(self, _columns: Mapping[str, str], random: np.random.Generator, /) -> str:
         """Give any number between the bounds."""

@@ -10,14 +10,13 @@ are: a length in mm, or how strong its strongest dot is felt, in units of E₀
 nearer to the length that it was told, or the stronger one. Noise is normal. It says yes, or
 different, beyond one standard deviation of its noise, so that it gives a false alarm in 16 % of
 trials with nothing. On a scale it puts strengths of 0 to 1 evenly from end to end, and as a
-magnitude it gives the strength times the modulus. How sure it is it cannot tell: its confidence is
-the middle of the scale. All this is for trying out protocols, and claims nothing about people.
+magnitude it gives the strength times the modulus. All this is for trying out protocols, and claims
+nothing about people.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 import numpy as np
@@ -32,246 +31,41 @@ from vbraille.braille.spelling import (
     to_braille,
 )
 from vbraille.errors import check_range
-from vbraille.sessions.planning.pace import LONGEST_LINE, MOST_BUTTONS, check_line, check_name
+from vbraille.sessions.planning.naming import NameQuestion
+from vbraille.sessions.planning.pace import LONGEST_LINE, MOST_BUTTONS, check_line
+from vbraille.sessions.planning.questiontable import (
+    FALSE_ALARM,
+    HIT,
+    MISS,
+    REJECTION,
+    RIGHT,
+    WRONG,
+    CellSpelling,
+    QuestionTable,
+)
+from vbraille.sessions.planning.scales import (
+    LARGEST,
+    check_labels,
+    check_scale,
+    labels_of,
+    quoted,
+    read_label,
+    read_number,
+    say_scale,
+)
 from vbraille.sessions.planning.spellings import parse_text
 from vbraille.sessions.planning.stimuli import KNOBS, said_value
-from vbraille.sessions.simulated.feeling import nearer
+from vbraille.sessions.simulated.feeling import LENGTHS, nearer
 from vbraille.sessions.simulated.observer import LEAST_FELT, TIE
-from vbraille.tomlfile import Table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from vbraille.sessions.planning.design import Design
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.simulated.feeling import FeltTrial
 
-
-RIGHT, WRONG = "right", "wrong"
-HIT, MISS, FALSE_ALARM, REJECTION = "hit", "miss", "false alarm", "correct rejection"
-_NUMBERS = ("", "one", "two", "three", "four", "five")
-GOOD = frozenset((RIGHT, HIT, REJECTION))  # outcomes of right answers
-_MOST_STEPS = 101
-LARGEST = 1e9
 LEAST_MAGNITUDE = 1e-3  # smallest magnitude given, as a share of the modulus: none may be 0
-
-
-@dataclass(frozen=True, slots=True)
-class CellSpelling:
-    """Spelling of cells in answers.
-
-    Parameters
-    ----------
-    keys
-        Dot mask of each key of the protocol.
-    shown_dots
-        Mask of the dots that the display shows.
-    """
-
-    keys: dict[str, int]
-    shown_dots: int
-
-
-class ConfidenceScale(Table, frozen=True, kw_only=True):
-    """The scale on which participants say how sure an answer is.
-
-    Parameters
-    ----------
-    least, most
-        Ends of the scale, in whole numbers: least sure and most sure.
-
-    Raises
-    ------
-    ValueError
-        If the scale is read backwards, or is too long.
-    """
-
-    least: int
-    most: int
-
-    def __post_init__(self) -> None:
-        check_scale(self.least, self.most)
-
-    @property
-    def typed(self) -> str:
-        """Words for what may be typed."""
-        return f"{self.least} to {self.most}"
-
-    def parse(self, text: str) -> int:
-        """Read a confidence.
-
-        Raises
-        ------
-        ValueError
-            If the text is no whole number of the scale.
-        """
-        return read_step(text, self.least, self.most)
-
-    def split(self, line: str, spelling: CellSpelling) -> tuple[str, int | None]:
-        """Part a line into an answer and the confidence after a semicolon; None if it has none."""
-        answer, semicolon, rest = line.rpartition(";")
-        if not semicolon or ";" in spelling.keys or not is_whole(rest.strip()):
-            return line, None
-        return answer.strip(), self.parse(rest)
-
-
-class QuestionTable(Table, frozen=True, kw_only=True, tag_field="kind"):
-    """Common part of the questions of every kind.
-
-    Parameters
-    ----------
-    ask
-        The question in words, for the experimenter to say; may be empty.
-    confidence
-        Scale on which it is asked how sure the answer is; None if it is not asked.
-
-    Raises
-    ------
-    ValueError
-        If the words are too long.
-    """
-
-    stimuli: ClassVar[tuple[int, ...]] = (1, 2)  # how many stimuli a trial may have
-    forms: ClassVar[tuple[str, ...]] = ()  # forms of a choice that it can be asked of; none for any
-    outcomes: ClassVar[frozenset[str]] = frozenset()  # how answers may be scored
-    words: ClassVar[tuple[str, ...]] = ()  # all answers, the one that is looked for first
-    numeric: ClassVar[bool] = False  # whether answers are numbers on a scale
-    positive_known: ClassVar[bool] = False  # whether a procedure can go by the answers
-    turns: ClassVar[bool] = False  # whether the participant turns the value of the last stimulus
-    simulated: ClassVar[bool] = True  # whether the simulated reader can answer
-    typed: ClassVar[str] = "the answer"  # what may be typed as an answer
-
-    ask: str = ""
-    confidence: ConfidenceScale | None = None
-
-    def __post_init__(self) -> None:
-        if self.ask:
-            check_line("ask", self.ask)
-
-    @property
-    def name(self) -> str:
-        """Name of the kind in tables."""
-        return str(self.__struct_config__.tag)
-
-    def prompt(self) -> str:
-        """Say what may be typed as an answer."""
-        return self.typed
-
-    def check(self, stimuli: int, form: str, *, adaptive: bool) -> None:
-        """Check that this question can be asked of trials.
-
-        Parameters
-        ----------
-        stimuli
-            Number of stimuli in a trial.
-        form
-            Form of a choice; empty if strings are read.
-        adaptive
-            Whether the answers choose what is shown.
-
-        Raises
-        ------
-        ValueError
-            If it cannot.
-        """
-        if stimuli not in self.stimuli:
-            more = " or more" if len(self.stimuli) > 1 else ""
-            fewest = min(self.stimuli)
-            wanted = "one stimulus" if fewest == 1 else f"{_NUMBERS[fewest]} stimuli{more}"
-            given = _NUMBERS[stimuli]
-            raise ValueError(
-                f"kind is {self.name!r}, which is asked of {wanted}, and each trial of [design] "
-                f"has {given}; choose another kind of question or of design"
-            )
-        if form and self.forms and form not in self.forms:
-            raise ValueError(
-                f"kind is {self.name!r}, which is asked of form = "
-                f"{' or '.join(map(repr, self.forms))}, and form of [design] is {form!r}; choose "
-                f"another"
-            )
-        if adaptive and not self.positive_known:
-            raise ValueError(
-                f"kind is {self.name!r}, whose answers cannot choose what is shown next; leave "
-                f"[procedure] out, or ask something else"
-            )
-
-    def help(self, _keys: dict[str, int], _written: bool, /) -> str:
-        """Say at the console what may be typed, where strings are written in print or in cells."""
-        return self.prompt()
-
-    def right_of(self, _picture: str, _columns: dict[str, str], /) -> str | None:
-        """Right answer about a picture, by the columns of the file of items; None if none is."""
-        return None
-
-    def by_button(self, _number: int, /) -> str:
-        """Answer that a button of the device stands for; empty if it stands for none."""
-        return ""
-
-    def parse(self, text: str, trial: Trial, spelling: CellSpelling, /) -> str:
-        """Read an answer, and bring it into the spelling in which it is kept.
-
-        Raises
-        ------
-        ValueError
-            If the text is no answer to the question.
-        """
-        raise NotImplementedError
-
-    def positive(self, trial: Trial, answer: str, /) -> bool:
-        """True if an answer counts as a positive one for a procedure."""
-        return self.good(trial, answer)
-
-    def outcome(self, _trial: Trial, _answer: str, /) -> str:
-        """Score an answer, as "right" or "hit" for example; empty if it is not scored."""
-        return ""
-
-    def good(self, trial: Trial, answer: str, /) -> bool:
-        """True if an answer is right."""
-        return self.outcome(trial, answer) in GOOD
-
-    def was(self, _trial: Trial, _keys: dict[str, int], /) -> str:
-        """Words for what is right; empty if nothing is."""
-        return ""
-
-    def said(self, answer: str, _keys: dict[str, int], /) -> str:
-        """Words for an answer."""
-        return answer
-
-    def verdict(self, trial: Trial, answer: str, keys: dict[str, int], _knob: str | None, /) -> str:
-        """Words for an answer, and for whether it is right."""
-        said, was = self.said(answer, keys), self.was(trial, keys)
-        if not was:
-            return said
-        return f"{said}, right" if self.good(trial, answer) else f"{said}, wrong: it was {was}"
-
-    def feedback(self, trial: Trial, answer: str, keys: dict[str, int], knob: str | None, /) -> str:
-        """Words for what a practice trial has shown; empty if there is nothing to say."""
-        if was := self.was(trial, keys):
-            return f"{'right' if self.good(trial, answer) else 'wrong'}, it was {was}"
-        values = [said_value(s.value, knob) for s in trial.stimuli if s.value is not None]
-        return f"they were {', '.join(values[:-1])} and {values[-1]}" if len(values) > 1 else ""
-
-    def cell(self, _trial: Trial, answer: str, /) -> str:
-        """Text for an answer in tables."""
-        return answer
-
-    def columns(self, trial: Trial, answer: str | None, /) -> dict[str, Any]:
-        """Cells of a trial's row for the question and the answer's score; see `COLUMNS`."""
-        row: dict[str, Any] = {"question": self.name}
-        if answer is not None and (outcome := self.outcome(trial, answer)):
-            row |= {"outcome": outcome, "correct": int(outcome in GOOD)}
-        return row
-
-    def describe(self, _rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
-        """Sentence on the question in a report, for some answered trials; may be empty."""
-        return ""
-
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator, /) -> str:
-        """Answer by what was felt, with normal noise of a standard deviation."""
-        raise NotImplementedError
-
-    def guess(self, trial: Trial, random: np.random.Generator, /) -> str:
-        """Answer to a trial that was not attended to: any, by chance alone."""
-        raise NotImplementedError
 
 
 def of_all(number: int, rows: Sequence[Any], noun: str, of_the: str = "") -> str:
@@ -288,101 +82,6 @@ def of_all(number: int, rows: Sequence[Any], noun: str, of_the: str = "") -> str
     return f"{part} {of_the}{noun}{'s' * (len(rows) != 1)}"
 
 
-def check_scale(least: int, most: int) -> None:
-    """Check the ends of a scale.
-
-    Raises
-    ------
-    ValueError
-        If the scale is read backwards, or is too long.
-    """
-    if least >= most:
-        raise ValueError(
-            f"least is {least} and most is {most}, so that the scale is read backwards; "
-            f"make most larger than least"
-        )
-    if most - least + 1 > _MOST_STEPS:
-        raise ValueError(f"the scale has more than {_MOST_STEPS} steps; make it shorter")
-
-
-def check_labels(labels: tuple[str, ...], least: int, most: int) -> None:
-    """Check the words for the steps of a scale.
-
-    Raises
-    ------
-    ValueError
-        If they are not one for each step or for each end, or two are alike.
-    """
-    steps = most - least + 1
-    if len(labels) not in (0, 2, steps):
-        raise ValueError(
-            f"labels are {len(labels)}; give 2 for the ends of the scale, {steps} for all its "
-            f"steps, or none"
-        )
-    known: set[str] = set()
-    for label in labels:
-        check_line("labels: one", label)
-        if label.strip().lower() in known:
-            raise ValueError(f"labels have {label!r} twice; give each step its own")
-        if is_whole(label.strip()):
-            raise ValueError(f"labels have {label!r}, which is a number; give words")
-        known.add(label.strip().lower())
-
-
-def labels_of(labels: tuple[str, ...], least: int, most: int) -> dict[int, str]:
-    """Words of the steps that have some."""
-    if len(labels) == 2:
-        return dict(zip((least, most), labels, strict=True))
-    return dict(enumerate(labels, least))
-
-
-def say_scale(least: int, most: int, named: dict[int, str], what: str = "") -> str:
-    """Name the numbers of a scale, what they are for, and the words of its ends."""
-    said = f"{least} to {most}{what}"
-    return f"{said}: {least} is {named[least]}, {most} is {named[most]}" if named else said
-
-
-def read_label(text: str, least: int, most: int, named: dict[int, str]) -> int:
-    """Read a step of a scale: its number, or its words.
-
-    Raises
-    ------
-    ValueError
-        If the text is neither.
-    """
-    for step, label in named.items():
-        if text.strip().lower() == label.strip().lower():
-            return step
-    return read_step(text, least, most)
-
-
-def read_step(text: str, least: int, most: int) -> int:
-    """Read a step of a scale.
-
-    Raises
-    ------
-    ValueError
-        If the text is no whole number of the scale.
-    """
-    word = text.strip()
-    if not is_whole(word) or not least <= int(word) <= most:
-        raise ValueError(f"{quoted(text)}type a whole number, {least} to {most}")
-    return int(word)
-
-
-def is_whole(word: str) -> bool:
-    """True if a word is a whole number."""
-    return len(word) < 10 and word.removeprefix("-").isdecimal()
-
-
-def quoted(text: str) -> str:
-    """Words for what was typed and is no answer, as the beginning of a sentence."""
-    word = text.strip()
-    if not word:
-        return "nothing was typed; "
-    return f"{word if len(word) <= 20 else word[:20] + '…'!r} is not an answer; "
-
-
 YES, NO = "yes", "no"
 SAME, DIFFERENT = "same", "different"
 
@@ -392,8 +91,9 @@ class IdentifyQuestion(QuestionTable, frozen=True, kw_only=True, tag="identify")
 
     positive_known: ClassVar[bool] = True
     stimuli: ClassVar[tuple[int, ...]] = (1,)
-    forms: ClassVar[tuple[str, ...]] = ("",)
+    forms: ClassVar[tuple[str, ...]] = ("strings",)
     outcomes: ClassVar[frozenset[str]] = frozenset((RIGHT, WRONG))
+    asked_of: ClassVar[str] = "cells"
 
     def help(self, keys: dict[str, int], written: bool, /) -> str:
         """Say how cells, or a text, may be typed."""
@@ -435,7 +135,40 @@ class IdentifyQuestion(QuestionTable, frozen=True, kw_only=True, tag="identify")
         return to_answer([None] * (trial.asked[1] - trial.asked[0]))
 
 
-class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
+class _Chosen(QuestionTable, frozen=True, kw_only=True):
+    """A question that is answered by the number of a stimulus."""
+
+    outcomes: ClassVar[frozenset[str]] = frozenset((RIGHT, WRONG))
+    among: ClassVar[int | None] = None  # how many may be chosen from; None for all
+
+    def right_one(self, trial: Trial) -> str:
+        """Right answer, such as "1" or "2"; empty if there is none."""
+        raise NotImplementedError
+
+    def outcome(self, trial: Trial, answer: str, /) -> str:
+        """Right or wrong, if one is right."""
+        right = self.right_one(trial)
+        return "" if not right else RIGHT if answer == right else WRONG
+
+    def was(self, trial: Trial, _keys: dict[str, int], /) -> str:
+        """Words for the right one."""
+        right = self.right_one(trial)
+        return self.said(right, {}) if right else ""
+
+    def parse(self, text: str, trial: Trial, _spelling: CellSpelling, /) -> str:
+        """Read a choice; see `vbraille.braille.spelling.parse_choice`."""
+        return parse_choice(text, self.among or len(trial.stimuli))
+
+    def said(self, answer: str, _keys: dict[str, int], /) -> str:
+        """Words for the one that was chosen."""
+        return ORDINALS[int(answer) - 1]
+
+    def guess(self, trial: Trial, random: np.random.Generator, /) -> str:
+        """Choose any."""
+        return str(random.integers(self.among or len(trial.stimuli)) + 1)
+
+
+class WhichQuestion(_Chosen, frozen=True, kw_only=True, tag="which"):
     """The question which of two or more stimuli it was: the one with most, or nearest to something.
 
     Parameters
@@ -454,7 +187,6 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
     positive_known: ClassVar[bool] = True
     stimuli: ClassVar[tuple[int, ...]] = (2, 3, 4, 5)
     forms: ClassVar[tuple[str, ...]] = ("pairs", "standard", "one")
-    outcomes: ClassVar[frozenset[str]] = frozenset((RIGHT, WRONG))
     typed: ClassVar[str] = "1 or 2, for the first or the second"
 
     right: Literal["more", "less", "nearest"] | None = None
@@ -468,11 +200,33 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
                 "right = 'nearest' and reference go together; give both, or neither of them"
             )
 
-    def check(self, stimuli: int, form: str, *, adaptive: bool) -> None:
+    def check(self, design: Design, *, passages: bool, pictures: bool, adaptive: bool) -> None:
         """Check that this question can be asked of trials; see `QuestionTable.check`."""
-        super().check(stimuli, form, adaptive=adaptive)
-        if stimuli > 2 and self.right is None:
-            raise ValueError("right is missing, and there are more than two to choose from; add it")
+        super().check(design, passages=passages, pictures=pictures, adaptive=adaptive)
+        if getattr(design, "stimuli", 1) > 2 and self.right is None:
+            raise ValueError(
+                "[question] right is missing, and there are more than two to choose from; add it"
+            )
+        standard = getattr(design, "reference", None)
+        if standard is not None and standard in getattr(design, "values", ()):
+            raise ValueError(
+                f"[design] reference is {standard:g}, which is one of values, and of two that are "
+                f"the same none can be chosen; leave it out there"
+            )
+
+    def unfelt(self, parameter: str, *, pairs: bool) -> str:
+        """Reason why the simulated reader cannot answer; see `QuestionTable.unfelt`."""
+        if parameter == "texture_cycles":
+            return (
+                f"compares {parameter}, and the simulated reader does not feel which texture is "
+                f"finer"
+            )
+        if self.right == "nearest" and parameter not in LENGTHS:
+            return (
+                f"asks which of two is nearest to a {parameter} of {self.reference:g}, and the "
+                f"simulated reader feels how strong a dot is, not its {parameter}"
+            )
+        return super().unfelt(parameter, pairs=pairs)
 
     def right_one(self, trial: Trial) -> str:
         """Right answer, such as "1" or "2"; empty if there is none."""
@@ -487,24 +241,6 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
         if self.right == "nearest":
             return -abs(value - (self.reference or 0.0))
         return value if self.right == "more" else -value
-
-    def outcome(self, trial: Trial, answer: str, /) -> str:
-        """Right or wrong, if one of the two is right."""
-        right = self.right_one(trial)
-        return "" if not right else RIGHT if answer == right else WRONG
-
-    def was(self, trial: Trial, _keys: dict[str, int], /) -> str:
-        """Words for the right one."""
-        right = self.right_one(trial)
-        return self.said(right, {}) if right else ""
-
-    def parse(self, text: str, trial: Trial, _spelling: CellSpelling, /) -> str:
-        """Read a choice; see `vbraille.braille.spelling.parse_choice`."""
-        return parse_choice(text, len(trial.stimuli))
-
-    def said(self, answer: str, _keys: dict[str, int], /) -> str:
-        """Words for the one that was chosen."""
-        return ORDINALS[int(answer) - 1]
 
     def cell(self, trial: Trial, answer: str, /) -> str:
         """Value that was chosen."""
@@ -538,39 +274,18 @@ class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
         felt_so = [-math.inf if math.isnan(w) else w + d for w, d in zip(worth, drawn, strict=True)]
         return f"{felt_so.index(max(felt_so)) + 1}"
 
-    def guess(self, trial: Trial, random: np.random.Generator, /) -> str:
-        """Choose any."""
-        return str(random.integers(len(trial.stimuli)) + 1)
 
-
-class OddQuestion(QuestionTable, frozen=True, kw_only=True, tag="odd"):
+class OddQuestion(_Chosen, frozen=True, kw_only=True, tag="odd"):
     """The question which of the stimuli differed from the others."""
 
     stimuli: ClassVar[tuple[int, ...]] = (3, 4, 5)
     forms: ClassVar[tuple[str, ...]] = ("one", "triangle")
-    outcomes: ClassVar[frozenset[str]] = frozenset((RIGHT, WRONG))
     typed: ClassVar[str] = "1, 2 or 3, for the one that differs"
 
     def right_one(self, trial: Trial) -> str:
         """Right answer: the place of the value that is there once."""
         values = [stimulus.value for stimulus in trial.stimuli]
         return next(f"{n}" for n, value in enumerate(values, 1) if values.count(value) == 1)
-
-    def outcome(self, trial: Trial, answer: str, /) -> str:
-        """Right if it is the one that differs."""
-        return RIGHT if answer == self.right_one(trial) else WRONG
-
-    def was(self, trial: Trial, _keys: dict[str, int], /) -> str:
-        """Words for the right one."""
-        return ORDINALS[int(self.right_one(trial)) - 1]
-
-    def parse(self, text: str, trial: Trial, _spelling: CellSpelling, /) -> str:
-        """Read a choice; see `vbraille.braille.spelling.parse_choice`."""
-        return parse_choice(text, len(trial.stimuli))
-
-    def said(self, answer: str, _keys: dict[str, int], /) -> str:
-        """Words for the one that was chosen."""
-        return ORDINALS[int(answer) - 1]
 
     def describe(self, _rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
         """Sentence on what was asked."""
@@ -584,35 +299,19 @@ class OddQuestion(QuestionTable, frozen=True, kw_only=True, tag="odd"):
         off = [abs(value - np.median(so)) for value in so]
         return f"{off.index(max(off)) + 1}"
 
-    def guess(self, trial: Trial, random: np.random.Generator, /) -> str:
-        """Choose any."""
-        return str(random.integers(len(trial.stimuli)) + 1)
 
-
-class MatchQuestion(QuestionTable, frozen=True, kw_only=True, tag="match"):
+class MatchQuestion(_Chosen, frozen=True, kw_only=True, tag="match"):
     """The question which of the first two stimuli the third one was (ABX)."""
 
     stimuli: ClassVar[tuple[int, ...]] = (3,)
     forms: ClassVar[tuple[str, ...]] = ("abx",)
-    outcomes: ClassVar[frozenset[str]] = frozenset((RIGHT, WRONG))
+    among: ClassVar[int | None] = 2
     typed: ClassVar[str] = "1 or 2, for the one that the third was like"
 
-    def outcome(self, trial: Trial, answer: str, /) -> str:
-        """Right if the third has the value of the one that was chosen."""
+    def right_one(self, trial: Trial) -> str:
+        """Right answer: the first that has the value of the third."""
         values = [stimulus.value for stimulus in trial.stimuli]
-        return RIGHT if values[int(answer) - 1] == values[2] else WRONG
-
-    def was(self, trial: Trial, _keys: dict[str, int], /) -> str:
-        """Words for the right one."""
-        return ORDINALS[0 if self.good(trial, "1") else 1]
-
-    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
-        """Read a choice of two; see `vbraille.braille.spelling.parse_choice`."""
-        return parse_choice(text)
-
-    def said(self, answer: str, _keys: dict[str, int], /) -> str:
-        """Words for the one that was chosen."""
-        return ORDINALS[int(answer) - 1]
+        return f"{values.index(values[2]) + 1}"
 
     def describe(self, _rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
         """Sentence on what was asked."""
@@ -624,10 +323,6 @@ class MatchQuestion(QuestionTable, frozen=True, kw_only=True, tag="match"):
         drawn = noise * unit * random.standard_normal(3)
         so = [0.0 if math.isnan(v) else v + d for v, d in zip(values, drawn, strict=True)]
         return "2" if abs(so[1] - so[2]) < abs(so[0] - so[2]) else "1"
-
-    def guess(self, _trial: Trial, random: np.random.Generator, /) -> str:
-        """Choose either."""
-        return str(random.integers(2) + 1)
 
 
 class OneOfTwo(QuestionTable, frozen=True, kw_only=True):
@@ -682,6 +377,7 @@ class SameQuestion(OneOfTwo, frozen=True, kw_only=True, tag="same-different"):
     stimuli: ClassVar[tuple[int, ...]] = (2,)
     forms: ClassVar[tuple[str, ...]] = ("pairs",)
     words: ClassVar[tuple[str, ...]] = (DIFFERENT, SAME)
+    of_equals: ClassVar[bool] = True
     noun: ClassVar[str] = "pair"
     clauses: ClassVar[tuple[str, str]] = (
         "Of each pair it was said whether the two were the same or different; ",
@@ -711,6 +407,8 @@ class DetectQuestion(OneOfTwo, frozen=True, kw_only=True, tag="detect"):
     positive_known: ClassVar[bool] = True
     stimuli: ClassVar[tuple[int, ...]] = (1,)
     words: ClassVar[tuple[str, ...]] = (YES, NO)
+    asked_of: ClassVar[str] = "cells"
+    of_catch: ClassVar[bool] = True
     noun: ClassVar[str] = "trial"
     clauses: ClassVar[tuple[str, str]] = (
         "It was said whether there was anything; there was something in ",
@@ -835,13 +533,8 @@ class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude
 
     def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
         """Read a positive number, with a point or a comma in it."""
-        try:
-            number = float(text.strip().replace(",", "."))
-        except ValueError:
-            number = math.nan
-        if not 0 < number <= LARGEST:
-            raise ValueError(f"{quoted(text)}type a number above 0, such as 12 or 0.5")
-        return f"{number:.15g}"
+        wanted = "a number above 0, such as 12 or 0.5"
+        return f"{read_number(text, math.ulp(0.0), LARGEST, wanted):.15g}"
 
     def describe(self, _rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
         """Sentence on the standard."""
@@ -861,149 +554,6 @@ class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude
     def guess(self, _trial: Trial, random: np.random.Generator, /) -> str:
         """Give any number around the modulus."""
         return f"{(self.modulus or 1.0) * math.exp(random.standard_normal()):.3g}"
-
-
-class Naming(Table, frozen=True, kw_only=True):
-    """One of the names that a picture is given.
-
-    Parameters
-    ----------
-    of
-        Column of the file of items that has the right name, such as "shape"; None if the picture's
-        own name is right.
-    names
-        Names that may be given, by the keys that stand for them, such as 1 or s.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two, a name is given twice, or one cannot be typed.
-    """
-
-    names: dict[str, str]
-    of: str | None = None
-
-    def __post_init__(self) -> None:
-        if len(self.names) < 2:
-            raise ValueError(f"names are {len(self.names)}; give two or more to choose from")
-        for key, name in self.names.items():
-            check_name("names: one", name)
-            if len(key) != 1 or not key.isprintable() or key.isspace():
-                raise ValueError(f"names have the key {key!r}; a key must be one character")
-            if [*self.names.values()].count(name) > 1:
-                raise ValueError(f"names have {name!r} twice; give each its own")
-
-    @property
-    def words(self) -> str:
-        """Words for the keys and their names."""
-        return ", ".join(f"{key} {name}" for key, name in self.names.items())
-
-
-class NameQuestion(QuestionTable, frozen=True, kw_only=True, tag="name"):
-    """The question which of some names a picture has; or several, such as its shape and its size.
-
-    Parameters
-    ----------
-    choices
-        The names to choose from, in the order in which answers keep them.
-    confirm
-        Whether a typed answer is said back, and counts only when it is typed again, or by Enter.
-        Until then another one takes its place.
-    buttons
-        Whether the buttons of the device stand for the keys, in their order.
-
-    Raises
-    ------
-    ValueError
-        If there is no choice, a key or a name is in two, or the device cannot have so many buttons.
-    """
-
-    stimuli: ClassVar[tuple[int, ...]] = (1,)
-    outcomes: ClassVar[frozenset[str]] = frozenset((RIGHT, WRONG))
-
-    choices: tuple[Naming, ...]
-    confirm: bool = True
-    buttons: bool = False
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not self.choices:
-            raise ValueError("choices are none; give one or more")
-        marks = [mark for each in self.choices for mark in (*each.names, *each.names.values())]
-        for mark in marks:
-            if sum(mark in (*one.names, *one.names.values()) for one in self.choices) > 1:
-                raise ValueError(f"choices have {mark!r} twice; give each its own")
-        if self.buttons and len(self.keys) > MOST_BUTTONS:
-            raise ValueError(
-                f"buttons would be {len(self.keys)}, and a device has up to {MOST_BUTTONS}; leave "
-                f"it out"
-            )
-
-    @property
-    def keys(self) -> tuple[str, ...]:
-        """All keys, in their order."""
-        return tuple(key for each in self.choices for key in each.names)
-
-    def by_button(self, number: int, /) -> str:
-        """Key that a button stands for."""
-        return self.keys[number - 1] if self.buttons and number <= len(self.keys) else ""
-
-    def prompt(self) -> str:
-        """Name the keys of each choice."""
-        return "; ".join(each.words for each in self.choices)
-
-    def right_of(self, picture: str, columns: dict[str, str], /) -> str:
-        """Right answer about a picture, by the columns of the file of items."""
-        return " ".join(picture if each.of is None else columns[each.of] for each in self.choices)
-
-    def marked(self, text: str, before: Sequence[str | None] = ()) -> list[str | None]:
-        """Names that a line gives, in the order of the choices, over those given before.
-
-        Raises
-        ------
-        ValueError
-            If the line has something else.
-        """
-        found = list(before) or [None] * len(self.choices)
-        words = text.replace(",", " ").split()
-        if not words:
-            raise ValueError(f"nothing was typed; type {self.prompt()}")
-        for word in words:
-            known = any(word in (*one.names, *one.names.values()) for one in self.choices)
-            for mark in (word,) if known else word:  # keys may stand without a blank between them
-                for number, one in enumerate(self.choices):
-                    name = one.names.get(mark, mark)
-                    if name in one.names.values():
-                        found[number] = name
-                        break
-                else:
-                    raise ValueError(f"{quoted(word)}type {self.prompt()}")
-        return found
-
-    def missing(self, names: Sequence[str | None]) -> str:
-        """Words for the keys of the first choice that has no name yet; empty if all have one."""
-        return next((o.words for o, n in zip(self.choices, names, strict=True) if n is None), "")
-
-    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
-        """Read keys or names, one for each choice, in any order."""
-        names = self.marked(text)
-        if missing := self.missing(names):
-            raise ValueError(f"a name is missing; type one of {missing} as well")
-        return " ".join(map(str, names))
-
-    def outcome(self, trial: Trial, answer: str, /) -> str:
-        """Right if all names are."""
-        right = trial.stimuli[0].answer
-        return "" if right is None else RIGHT if answer == right else WRONG
-
-    def was(self, trial: Trial, _keys: dict[str, int], /) -> str:
-        """Words for the right names."""
-        return trial.stimuli[0].answer or ""
-
-    def describe(self, _rows: Sequence[dict[str, Any]], _knob: str | None, /) -> str:
-        """Sentence on the names."""
-        many = " and ".join(str(len(each.names)) for each in self.choices)
-        return f"Of each picture it was said which of {many} names it has"
 
 
 class AdjustQuestion(QuestionTable, frozen=True, kw_only=True, tag="adjust"):
@@ -1052,36 +602,31 @@ class AdjustQuestion(QuestionTable, frozen=True, kw_only=True, tag="adjust"):
         """Say how the value is turned."""
         return "+ or - to turn it (++ twice), equal when it is; standard shows both again"
 
-    def check(self, stimuli: int, form: str, *, adaptive: bool) -> None:
-        """Check that this question can be asked of trials; see `QuestionTable.check`."""
-        super().check(stimuli, form, adaptive=adaptive)
-        if not form:
-            raise ValueError("kind is 'adjust', which turns values of kind = 'choice' of [design]")
-
-    def steps(self, line: str) -> int:
-        """Steps by which a typed line turns the value; 0 if it does not."""
+    def steps(self, line: str, /) -> int | None:
+        """Steps by which a line turns the value; 0 for "standard", which shows both again."""
         word = line.strip()
-        return 0 if set(word) - {"+", "-"} else word.count("+") - word.count("-")
+        turned = word.count("+") - word.count("-") if not set(word) - {"+", "-"} else 0
+        return turned or (0 if word == "standard" else None)
 
-    def turned(self, value: float, steps: int) -> float:
+    def turned(self, value: float, steps: int, /) -> float:
         """Value turned by some steps, within the bounds."""
         return round(min(max(value + steps * self.step, self.least), self.most), 9)
 
-    def at(self, share: float) -> float:
+    def by_knob(self, number: int, share: float, /) -> float | None:
         """Value at which the knob stands, given the share of its way."""
-        return self.turned(self.least, round(share * (self.most - self.least) / self.step))
+        steps = round(share * (self.most - self.least) / self.step)
+        return self.turned(self.least, steps) if number == self.knob else None
+
+    def by_button(self, number: int, /) -> str:
+        """Line for less, for more, or for equal."""
+        lines = dict(zip(self.buttons, ("-", "+", "equal"), strict=False))
+        return lines.get(number, "")
 
     def parse(self, text: str, trial: Trial, _spelling: CellSpelling, /) -> str:
         """Take the value that the last stimulus has, or one that is typed as a number."""
         if text.strip().lower() in ("equal", "="):
             return f"{trial.stimuli[-1].value:.9g}"
-        try:
-            number = float(text.strip().replace(",", "."))
-        except ValueError:
-            number = math.nan
-        if not self.least <= number <= self.most:
-            raise ValueError(f"{quoted(text)}type {self.prompt()}")
-        return f"{number:.9g}"
+        return f"{read_number(text, self.least, self.most, self.prompt()):.9g}"
 
     def describe(self, _rows: Sequence[dict[str, Any]], knob: str | None, /) -> str:
         """Sentence on what was turned."""
@@ -1115,15 +660,9 @@ class ReadQuestion(QuestionTable, frozen=True, kw_only=True, tag="read"):
     """The request to read a passage, and to say that it was read."""
 
     stimuli: ClassVar[tuple[int, ...]] = (1,)
-    forms: ClassVar[tuple[str, ...]] = ("passage",)
+    forms: ClassVar[tuple[str, ...]] = ("passages",)
     words: ClassVar[tuple[str, ...]] = ("read", "broken off")
     typed: ClassVar[str] = "read, or broken off (r or b)"
-
-    def check(self, stimuli: int, form: str, *, adaptive: bool) -> None:
-        """Check that this question can be asked of trials; see `QuestionTable.check`."""
-        super().check(stimuli, form, adaptive=adaptive)
-        if form != "passage":
-            raise ValueError("kind is 'read', which is asked of passages; give passage = true")
 
     def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
         """Read one of the two words, or its first letter."""

@@ -271,7 +271,7 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
         "paused_s": round(told.paused_s, 6),
         "early": int(told.early),
         "analysed": int(
-            told.answer is not None and not (trial.catch and protocol.asks.name != "detect")
+            told.answer is not None and not (trial.catch and not protocol.asks.of_catch)
         ),
         "warned": int("warning" in t_s),
         "faults": "; ".join(told.faults),

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from vbraille.braille.spelling import ordinal
 from vbraille.errors import InputError
 from vbraille.sessions.planning.pace import ENTER
-from vbraille.sessions.planning.questions import AdjustQuestion, NameQuestion
+from vbraille.sessions.planning.questions import NameQuestion
 from vbraille.sessions.record import events
 from vbraille.sessions.running.runner import PendingAnswer, Phase, Runner
 
@@ -183,15 +183,10 @@ class Console:
 
     def _turn(self, line: str) -> bool:
         """Turn the open trial's value, or show the standard again; True if the line says so."""
-        question, runner = self._runner.protocol.asks, self._runner
-        if not isinstance(question, AdjustQuestion):
+        steps = self._runner.protocol.asks.steps(line)
+        if steps is None or self._runner.more_to_come:
             return False
-        if line == "standard" and not runner.more_to_come:
-            runner.show_standard()
-        elif (steps := question.steps(line)) and not runner.more_to_come:
-            runner.turn(steps)
-        else:
-            return False
+        self._runner.turn(steps)
         return True
 
     def undo(self, _: str = "") -> None:
@@ -441,5 +436,5 @@ def read_line(protocol: Protocol, trial: Trial, line: str) -> tuple[str, int | N
     question, spelling = protocol.asks, protocol.cell_spelling(trial.stimuli[0])
     confidence = None
     if question.confidence is not None:
-        line, confidence = question.confidence.split(line, spelling)
+        line, confidence = question.confidence.split(line, spelling.keys)
     return question.parse(line, trial, spelling), confidence

@@ -343,9 +343,6 @@ class OnDevice(Presenter):
         Record of the newest tick that was polled; None before the first.
     ended : bool
         Whether the participant's key has ended the reading of this stimulus.
-    pressed : list[int]
-        Numbers of the buttons that were pressed while a stimulus was shown, but for the one that
-        ends reading; the runner takes them.
     """
 
     by_key = False
@@ -375,7 +372,6 @@ class OnDevice(Presenter):
         self._button = button
         self._by_hand = by_hand
         self.ended = False
-        self.pressed: list[int] = []
         self._trace: TraceWriter | None = None
         self.newest: np.void | None = None
         self._placing = Placing.DONE
@@ -501,7 +497,6 @@ class OnDevice(Presenter):
         """
         ticks = self.engine.poll()
         given = self.engine.take_events()
-        self._controls += [event for event in given if isinstance(event, Button | Knob)]
         notices = _notices_of(given)
         if not ticks.size:
             return notices + self._pressed(given)
@@ -529,7 +524,10 @@ class OnDevice(Presenter):
         return notices + self._pressed(given)
 
     def take_controls(self) -> list[Button | Knob]:
-        """Buttons and knobs of the device that were moved since the last call."""
+        """Presses and turns since the last call, while a stimulus was shown.
+
+        The button that ends reading is not among them.
+        """
         controls, self._controls = self._controls, []
         return controls
 
@@ -538,8 +536,11 @@ class OnDevice(Presenter):
         if self._shown is None:
             return []
         for event in given:
-            if isinstance(event, Button) and event.pressed and event.number != self._button:
-                self.pressed.append(event.number)
+            if isinstance(event, Button):
+                if event.pressed and event.number != self._button:
+                    self._controls.append(event)
+            elif isinstance(event, Knob):
+                self._controls.append(event)
         if self.ended:
             return []
         for event in given:

@@ -14,7 +14,7 @@ import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.design import Choice
-from vbraille.sessions.planning.questions import OneOfTwo, WhichQuestion
+from vbraille.sessions.planning.questions import OneOfTwo
 from vbraille.sessions.planning.style import CONVENTIONAL, Condition
 from vbraille.sessions.record.trajectory import columns_of, edges_mm
 from vbraille.sessions.running.responses import TrialResponses
@@ -248,12 +248,8 @@ class Simulated(SimulatedPerson):
         self._pairs = {c.name: _dot_pair(protocol, c) for c in protocol.conditions}
         self._turned: tuple[int, int, int] | None = None  # trial and showings when it turned last
         pairs = isinstance(protocol.design, Choice) and protocol.design.form == "pairs"
-        if not self._question.simulated or (pairs and 1 in self._question.stimuli):
-            raise InputError(
-                f"{protocol.name} asks a question of the kind {self._question.name!r}, which the "
-                f"simulated reader cannot answer; {INSTEAD}"
-            )
-        self._check_feels(protocol)
+        if why := self._question.unfelt(self._parameter, pairs=pairs):
+            raise InputError(f"{protocol.name} {why}; {INSTEAD}")
 
     def next(self, trial: Trial, attempt: int, felt: list[FeltFrames], /) -> tuple[str, int]:
         """Answer to a trial, by what was felt of it."""
@@ -276,23 +272,6 @@ class Simulated(SimulatedPerson):
                 line, known = "equal", None  # the value was at its end: nothing more was felt
             self._turned = known
         return line, 0
-
-    def _check_feels(self, protocol: Protocol) -> None:
-        """Raise InputError if the model cannot tell what the question is about."""
-        question, parameter = self._question, self._parameter
-        if not isinstance(question, WhichQuestion):
-            return
-        if parameter == "texture_cycles":
-            raise InputError(
-                f"{protocol.name} compares {parameter}, and the simulated reader does not feel "
-                f"which texture is finer; {INSTEAD}"
-            )
-        if question.right == "nearest" and parameter not in LENGTHS:
-            raise InputError(
-                f"{protocol.name} asks which of two is nearest to a {parameter} of "
-                f"{question.reference:g}, and the simulated reader feels how strong a dot is, not "
-                f"its {parameter}; {INSTEAD}"
-            )
 
 
 def _dot_pair(protocol: Protocol, condition: Condition) -> DotPair | None:

@@ -19,11 +19,10 @@ from enum import Enum, auto
 from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.spelling import ordinal
-from vbraille.devices.events import Button, Knob
+from vbraille.devices.events import Knob
 from vbraille.engine.host import HostDiedError
 from vbraille.sessions.planning.pace import ENTER
 from vbraille.sessions.planning.plan import stimulus_to_json
-from vbraille.sessions.planning.questions import AdjustQuestion
 from vbraille.sessions.planning.stimuli import with_value
 from vbraille.sessions.record import events
 from vbraille.sessions.record.folder import versions
@@ -196,7 +195,6 @@ class Runner:
         self._asked: TimePoint | None = None  # from when the time for the answer counts
         self._told_late = False
         self._turned: Stimulus | None = None  # what the participant has turned in the open trial
-        self._take_line: Callable[[str, int], None] = lambda _line, _number: None
         self._deaths = 0
         self._why = ""  # what the experimenter was told that the trial waits for
         self._prompted = False  # whether the experimenter was asked for the answer
@@ -341,7 +339,6 @@ class Runner:
         if self.progress.correcting is not None:
             self._say(f"undo: {self.name(self.progress.correcting)}; type its answer")
         self._watch_key()
-        self._take_line = take
         self.next()
         try:
             with Suspension() as suspension:
@@ -372,11 +369,7 @@ class Runner:
             else:
                 take(line, 0)
         self.poll()
-        if self.device is not None:
-            pressed, self.device.pressed = self.device.pressed, []
-            for word in filter(None, map(self.protocol.asks.by_button, pressed)):
-                if self.open_trial is not None and not self.paused:
-                    take(f"answer {word}", 0)
+        self._take_controls(take)
         if not self.responses.typed:
             self._ask(take)
         return True
@@ -614,15 +607,11 @@ class Runner:
         self._say(f"ended: {seconds:.2f} s, by {key}; type {self.prompt}")
 
     def turn(self, steps: int) -> None:
-        """Turn the value of the stimulus that is shown, as the question has it."""
-        question = self.protocol.asks
-        if isinstance(question, AdjustQuestion) and (value := self._value) is not None:
-            self._turn_to(question.turned(value, steps))
-
-    def show_standard(self) -> None:
-        """Show the stimuli of the open trial again, the last one as it was turned."""
-        if (trial := self.open_trial) is not None:
+        """Turn the value of the stimulus that is shown; by 0 steps the standard is shown again."""
+        if not steps and (trial := self.open_trial) is not None:
             self._show(trial, 0)
+        elif (value := self._value) is not None:
+            self._turn_to(self.protocol.asks.turned(value, steps))
 
     @property
     def _value(self) -> float | None:
@@ -645,20 +634,17 @@ class Runner:
         self._present(trial)
         self._say(f"turned: {self.name(trial)}")
 
-    def _take_controls(self) -> None:
-        """Turn the stimulus by the device's knob and buttons, if the question has them do so."""
+    def _take_controls(self, take: Callable[[str, int], None]) -> None:
+        """Take the device's buttons as lines, and its knobs as values, as the question has them."""
         question = self.protocol.asks
         for event in [] if self.device is None else self.device.take_controls():
-            if not isinstance(question, AdjustQuestion) or self._value is None or self.paused:
-                continue
-            if isinstance(event, Knob) and event.number == question.knob:
-                self._turn_to(question.at(event.value))
-            elif isinstance(event, Button) and event.pressed and event.number in question.buttons:
-                which = question.buttons.index(event.number)
-                if which == 2:
-                    self._take_line("equal", 0)
-                else:
-                    self.turn((-1, 1)[which])
+            if not self.open_trial or self.paused or self.pending or self.more_to_come:
+                continue  # nothing can be answered, or turned, yet
+            if isinstance(event, Knob):
+                if (value := question.by_knob(event.number, event.value)) is not None:
+                    self._turn_to(value)
+            elif line := question.by_button(event.number):
+                take(f"answer {line}", 0)
 
     def retune(self, tuning: dict[str, float]) -> None:
         """Show the open trial and all later ones with another contrast or texture."""
@@ -699,7 +685,6 @@ class Runner:
         """
         if not self.look():
             return
-        self._take_controls()
         trial = self.trial
         if trial is None or self.paused:
             return

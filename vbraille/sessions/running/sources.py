@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.questions import AdjustQuestion
 from vbraille.sessions.running.console import find_command, read_line
 from vbraille.sessions.running.naming import SimulatedNaming
 from vbraille.sessions.running.reader import ReaderHabits, Simulated
@@ -129,7 +128,7 @@ def check_script(script: Scripted, protocol: Protocol, progress: Progress) -> No
             half, again = None, half
         elif word == "undo":
             correcting = correcting or answered
-        if word != "answer" or _turns(protocol, line):
+        if word != "answer" or protocol.asks.steps(line) is not None:
             continue
         trial = half or again or correcting or next(trials, None)
         if trial is None:
@@ -153,14 +152,6 @@ def check_script(script: Scripted, protocol: Protocol, progress: Progress) -> No
         correcting, answered = None, trial if correcting is None else answered
 
 
-def _turns(protocol: Protocol, line: str) -> bool:
-    """True if a line turns a value, and answers nothing yet."""
-    question = protocol.asks
-    return isinstance(question, AdjustQuestion) and (
-        bool(question.steps(line)) or line.strip() == "standard"
-    )
-
-
 def _is_whole(protocol: Protocol, trial: Trial, line: str) -> bool:
     """True if a line has all that is asked; ValueError if it does not suit its trial."""
     found = find_command(line)
@@ -171,7 +162,8 @@ def _is_whole(protocol: Protocol, trial: Trial, line: str) -> bool:
 def _is_answer(protocol: Protocol, trial: Trial, line: str) -> bool:
     """True if a line is an answer and no command; ValueError if it does not suit its trial."""
     found = find_command(line)
-    if (found is not None and found[0].word != "answer") or _turns(protocol, line):
+    turns = protocol.asks.steps(line) is not None
+    if (found is not None and found[0].word != "answer") or turns:
         return False
     scale = protocol.asks.confidence
     if not _is_whole(protocol, trial, line) and scale is not None:
