@@ -267,8 +267,7 @@ class GameView(View):
     def begin(self, players: int) -> None:
         """Deal the cards for so many players, unless a game is going on."""
         if self.game.turns + len(self.game.up) and not self.game.over:
-            self.cue(Cue.NOT_FOUND)
-            self.say(f"game: it is not over; {self.key('QUIT', 'q')} stops it")
+            self.say_not_found(f"game: it is not over; {self.key('QUIT', 'q')} stops it")
             return
         self._seed += 1
         self._deal(players)
