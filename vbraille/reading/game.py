@@ -326,5 +326,5 @@ class GameView(View):
 def programs_of(deck: Sequence[LoadedScene], display: Display, rate_hz: float) -> list[Program]:
     """Compile the pictures of a deck for a display, and last a picture in which nothing is felt."""
     first = deck[0]
-    blank = replace(first, opened=replace(first.opened, resolved=Scene(canvas=first.scene.canvas)))
+    blank = replace(first, scene=Scene(canvas=first.scene.canvas), numbers=())
     return [compose(card, display, rate_hz=rate_hz) for card in (*deck, blank)]
