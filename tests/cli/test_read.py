@@ -239,7 +239,7 @@ def test_a_book_is_found_one_s_way_in_by_keys_at_a_terminal(text):
         press("i", "line: 60", "page: 3 in braille", "percent: 98", "words left: 11")
         press("b", "line: 7")
         press("\x1b[6~", "line: 26")
-        press("g100 %\n", "go to: type a page, or percent as in 40%, then Enter", "page: 100 %",
+        press("g100 %\n", "go to: type a page, or percent as in 40%, then Enter", "go to: 100 %",
               "line: 60")  # fmt: skip
         press("ohere\n", "go to bookmark: type its name, Enter", "name: here", "line: 7")
         press("\x1b[H", "cells: 1 to 26")  # it was in the second part

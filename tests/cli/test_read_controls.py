@@ -82,6 +82,21 @@ def kept_device(script):
         port.unplug()
 
 
+def settled_at(frames, most):
+    """Number of the last frame when so many were alike, felt, and no higher than this.
+
+    On a busy machine the array rests now and then, and is late for what is said of it.
+    """
+    end_s = time.monotonic() + program.PATIENCE_S
+    while True:
+        assert time.monotonic() < end_s
+        last = len(frames)
+        levels, _, _, resting = zip(*frames[last - STEADY : last], strict=True)
+        if not any(resting) and np.ptp(levels, axis=0).max() == 0 < np.max(levels) <= most:
+            return last
+        time.sleep(0.01)
+
+
 def said_until(process, enough):
     """Lines that a process prints until one of them is the last that is waited for."""
     lines, end_s = [], time.monotonic() + program.PATIENCE_S
@@ -102,7 +117,7 @@ def test_a_knob_turns_contrast_while_the_hand_stays_and_is_said_once(tmp_path, t
         with program.start(*arguments, env=environment, encoding="utf-8", bufsize=1) as process:
             try:
                 lines = said_until(process, lambda line: line.startswith("learn: "))
-                turned = len(frames)
+                turned = settled_at(frames, 0.2 * TOP + 2)  # as it was turned
             finally:
                 process.terminate()
                 process.communicate()
@@ -115,7 +130,7 @@ def test_a_knob_turns_contrast_while_the_hand_stays_and_is_said_once(tmp_path, t
     levels, at_us, knob, resting = map(np.array, zip(*frames, strict=True))
     highest = levels.max(axis=1)
     settled = highest[turned - 1]
-    assert 0.1 * TOP < settled <= 0.2 * TOP + 2  # as it was turned
+    assert settled > 0.1 * TOP
     assert highest.max() > 2 * settled  # as it was before
     # Faded: by no more than a fade goes meanwhile. Where the machine was busy, what comes at once
     # has waited since the time before, and what is next found the line full. The hand stays since

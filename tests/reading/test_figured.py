@@ -61,7 +61,7 @@ class Bench(Held):
         self.y_mm = PITCH_MM / 2
         own = self.own.style.replace(**style)
         self.opened.start(replace(self.own, style=own))
-        source = open_source(folder / "text.md")
+        source = open_source(str(folder / "text.md"))
         self.figures = BookFigures(
             source, folder, self.opened, self.notes.append, rate_hz=1000.0, room=1 << 21
         )
@@ -286,7 +286,7 @@ def test_a_host_sends_its_frames(tmp_path):
     (tmp_path / "water.scene").write_text(SCENE)
     (tmp_path / "text.md").write_text(TEXT)
     display = replace(STRESS2_8X8.display, height_mm=(ROWS + 0.5) * PITCH_MM, travel_mm=60.0)
-    source, notes, seen = open_source(tmp_path / "text.md"), [], []
+    source, notes, seen = open_source(str(tmp_path / "text.md")), [], []
     with OpenDevice("sim", display, hand="sweep:300") as opened:
         opened.find()
         opened.start(model_of(display), 1 << 21)

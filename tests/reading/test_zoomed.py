@@ -9,6 +9,7 @@ import pytest
 
 from tests.reading.felt import DISPLAY, SCENE, Felt
 from tests.tiers import heavy
+from vbraille.engine.constants import CATCH_UP
 from vbraille.feeling.aperture import ZOOMS, Aperture
 from vbraille.scene.scene import Canvas
 from vbraille.simulation.steering import GlideTo, Steering
@@ -285,5 +286,5 @@ def test_nothing_jumps_by_switches_pans_and_troubles(tmp_path, frames):
     path = tmp_path / "a.scene"
     path.write_text(LAYERS)
     largest = felt_at_random(path, frames, seed=32)
-    # A fade of 0.1 s, and in it another by a switch.
-    assert 0.005 < largest.max() <= 0.0201
+    # A fade of 0.1 s, which goes quicker where poses were late, and in it another by a switch.
+    assert 0.005 < largest.max() <= 0.01 * (CATCH_UP + 1.0) + 1e-6

@@ -319,7 +319,10 @@ def to_csv(frame: pd.DataFrame) -> str:
     """Text of a table as CSV: numbers in full precision, a missing value empty, no formulas."""
     safe = frame.copy(deep=False)
     for name, values in frame.select_dtypes(["object", "string", "category"]).items():
-        safe[name] = values.map(lambda text: no_formula(text) if isinstance(text, str) else text)
+        texts = (text for text in values.unique() if isinstance(text, str))
+        spelled = {text: cell for text in texts if (cell := no_formula(text)) != text}
+        if spelled:
+            safe[name] = values.map(lambda text, spelled=spelled: spelled.get(text, text))
     return safe.to_csv(index=False, lineterminator="\n")
 
 

@@ -338,11 +338,12 @@ class BrlapiDisplay:
             self._do(library.brlapi__enterTtyModeWithPath, None, 0, None)
 
     def _pressed(self) -> Iterator[KeyPressed | KeyTyped]:
-        code, told = ctypes.c_uint64(), _KeyCode()
+        code, described = ctypes.c_uint64(), _KeyCode()
         while self._do(self._library.brlapi__readKey, 0, ctypes.byref(code)):
             if code.value & _TYPE_MASK == _COMMAND:
-                self._library.brlapi_describeKeyCode(code, ctypes.byref(told))
-                yield KeyPressed((told.command or b"").decode("ascii", "replace"), told.argument)
+                self._library.brlapi_describeKeyCode(code, ctypes.byref(described))
+                name = (described.command or b"").decode("ascii", "replace")
+                yield KeyPressed(name, described.argument)
             elif key := typed(code.value & _SYMBOL_MASK):
                 yield KeyTyped(key)
 

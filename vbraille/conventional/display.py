@@ -105,13 +105,13 @@ class ConventionalDisplay:
         messages = self._worker.receive()
         if messages or self._given_back:
             self._heard_s = self._now_s()
-        happened = [each for message in messages for each in self._take(message)]
+        changes = [each for message in messages for each in self._take(message)]
         if not self._closed and self._now_s() - self._heard_s > SILENT_S:
-            happened += self._take(DisplayAway(_STILL))
+            changes += self._take(DisplayAway(_STILL))
             if self._worker.ended:
                 self._worker.close()
                 self._worker = self._launch()
-        return happened
+        return changes
 
     def close(self) -> None:
         """Give the display back, and end the process; further calls do nothing."""

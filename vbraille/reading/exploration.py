@@ -78,7 +78,7 @@ class Exploration:
 
     def _pressed(self) -> list[str]:
         """Take the keys typed; before that, the process stops for a while if it is told to."""
-        if self._keys.asked:
+        if self._keys.must_stop:
             self._suspend()
         attached = self._keys.attached
         keys = self._keys.pressed(POLL_S)

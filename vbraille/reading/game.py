@@ -267,8 +267,7 @@ class GameView(View):
     def begin(self, players: int) -> None:
         """Deal the cards for so many players, unless a game is going on."""
         if self.game.turns + len(self.game.up) and not self.game.over:
-            self.cue(Cue.NOT_FOUND)
-            self.say(f"game: it is not over; {self.key('QUIT', 'q')} stops it")
+            self.say_not_found(f"game: it is not over; {self.key('QUIT', 'q')} stops it")
             return
         self._seed += 1
         self._deal(players)
@@ -327,5 +326,5 @@ class GameView(View):
 def programs_of(deck: Sequence[LoadedScene], display: Display, rate_hz: float) -> list[Program]:
     """Compile the pictures of a deck for a display, and last a picture in which nothing is felt."""
     first = deck[0]
-    blank = replace(first, opened=replace(first.opened, resolved=Scene(canvas=first.scene.canvas)))
+    blank = replace(first, scene=Scene(canvas=first.scene.canvas), numbers=())
     return [compose(card, display, rate_hz=rate_hz) for card in (*deck, blank)]

@@ -30,8 +30,8 @@ class Keyboard:
 
     Keys come one at a time between `take` and `release`; `pressed` gives what was typed
     since the last call. Where standard input is no terminal there are no keys. A loop that may be
-    stopped for a while takes them by `taken`, and looks at `asked` before it takes keys: if that is
-    true, it brings the array to rest, and then calls `stop`.
+    stopped for a while takes them by `taken`, and looks at `must_stop` before it takes keys: if
+    that is true, it brings the array to rest, and then calls `stop`.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class Keyboard:
             self._own = self._descriptor = None
 
     @property
-    def asked(self) -> bool:
+    def must_stop(self) -> bool:
         """Tell whether the process is to stop for a while."""
         return self._suspension.asked
 

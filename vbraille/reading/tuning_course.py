@@ -92,9 +92,9 @@ class Span:
 
     def found(self, knob: StyleKnob) -> TunedKnob:
         """Value that is liked best; an end from which every choice led nowhere else is it."""
-        told = _quest().estimate(self.asked, _LIKED)
-        low, high = self._scaled((told.low, told.high))
-        value, _ = self._scaled((told.mean, told.mean))
+        estimate = _quest().estimate(self.asked, _LIKED)
+        low, high = self._scaled((estimate.low, estimate.high))
+        value, _ = self._scaled((estimate.mean, estimate.mean))
         lower = {chosen for _, chosen in self.asked}
         if lower == {1}:
             value = low = self.low
@@ -130,7 +130,7 @@ def _next(asked: Compared) -> tuple[float, float]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Stand:
+class _Progress:
     """Progress of a course after its choices."""
 
     style: BrailleStyle
@@ -167,25 +167,25 @@ class TuningCourse:
     @property
     def knob(self) -> StyleKnob | None:
         """StyleKnob that the next choice is about; None at the end."""
-        return self._stand().knob
+        return self._progress().knob
 
     @property
     def found(self) -> tuple[TunedKnob, ...]:
         """Knobs that are settled so far, with their values."""
-        return self._stand().found
+        return self._progress().found
 
     @property
     def style(self) -> BrailleStyle:
         """Style with all values that are settled so far."""
-        return self._stand().style
+        return self._progress().style
 
     def shown(self, which: Which) -> BrailleStyle:
         """Style of the one or the other of the next choice; at the end, the one that was found."""
-        stand = self._stand()
-        if stand.knob is None or stand.span is None:
-            return stand.style
-        value = stand.span.pair[which - 1 if self._lower_first else 2 - which]
-        return stand.knob.applied(stand.style, value)
+        progress = self._progress()
+        if progress.knob is None or progress.span is None:
+            return progress.style
+        value = progress.span.pair[which - 1 if self._lower_first else 2 - which]
+        return progress.knob.applied(progress.style, value)
 
     def choose(self, which: Which) -> TuningCourse:
         """Course after a choice.
@@ -207,7 +207,7 @@ class TuningCourse:
     def _lower_first(self) -> bool:
         return _lower_first(len(self.choices))
 
-    def _stand(self) -> _Stand:
+    def _progress(self) -> _Progress:
         style, found = self.start.style, []
         choices = iter(enumerate(self.choices))
         for name in ORDER:
@@ -216,13 +216,13 @@ class TuningCourse:
             for _ in range(CHOICES_PER_KNOB):
                 made = next(choices, None)
                 if made is None:
-                    return _Stand(style, tuple(found), knob, span)
+                    return _Progress(style, tuple(found), knob, span)
                 number, which = made
                 span = span.after(lower=(which == 1) == _lower_first(number))
             settled = span.found(knob)
             style = knob.applied(style, settled.value)
             found.append(settled)
-        return _Stand(style, tuple(found), None, None)
+        return _Progress(style, tuple(found), None, None)
 
 
 def _lower_first(number: int) -> bool:

@@ -197,6 +197,16 @@ class View:
         keys = self.bound.keys_of(name)
         return keys[0] if keys else spoken(usual)
 
+    def say_not_found(self, sentence: str) -> None:
+        """Give the cue of what is not there, and say what that is."""
+        self.cue(Cue.NOT_FOUND)
+        self.say(sentence)
+
+    def say_limit(self, sentence: str) -> None:
+        """Give the cue of a limit, and say which was reached."""
+        self.cue(Cue.LIMIT)
+        self.say(sentence)
+
     def quit(self) -> None:
         """Do no more."""
         self.done = True

@@ -19,7 +19,7 @@ from vbraille.reading.commands.turning import (
     turn,
     undo_turn,
 )
-from vbraille.reading.view import Cue
+from vbraille.reading.view import Cue, View
 from vbraille.render import STRESS2, VBD, Tuning
 from vbraille.translate import Book, BrailleTable, Document
 
@@ -107,14 +107,13 @@ def test_mappings_come_in_turn_and_dot_rows_where_one_is_shown():
     assert len(set(said)) == 7
 
 
-class OneRow:
+class OneRow(View):
     """As much of a reader as a turn needs, on a display that shows one row of dots."""
 
     def __init__(self):
         self.style, self.engine = VBD.style, SimpleNamespace(display=VBD.display)
         self.said, self.cues, self.styles_before = [], [], []
         self.say, self.cue = self.said.append, self.cues.append
-        self.styles_before = []
 
     def tune(self, **turned):
         self.style = self.style.replace(**turned)

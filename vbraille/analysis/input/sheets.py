@@ -144,20 +144,21 @@ def _frame(reader: Any, name: str) -> pd.DataFrame:
     twice = sorted({head for head in heads if heads.count(head) > 1})
     if twice:
         raise InputError(f"{name} has column {twice[0] or 'without a name'} twice; rename one")
-    columns: list[list[str]] = [[] for _ in heads]
+    kept: list[list[str]] = []
     lines: list[int] = []
     known: dict[str, str] = {}  # few different values, which occur many times
+    shared = known.setdefault
     for row in rows:
         if len(row) != len(heads):
             raise InputError(
                 f"{name} line {reader.line_num} has {len(row)} values, and the first line has "
                 f"{len(heads)} columns; mend that line"
             )
-        for column, value in zip(columns, row, strict=True):
-            if (text := known.get(value)) is None:
-                text = known[value] = cell_text(value)
-            column.append(text)
+        kept.append([shared(value, value) for value in row])
         lines.append(reader.line_num)
+    columns = [list(column) for column in zip(*kept, strict=True)] or [[] for _ in heads]
+    if spelled := {cell: text for cell in known if (text := cell_text(cell)) != cell}:
+        columns = [[spelled.get(cell, cell) for cell in column] for column in columns]
     return pd.DataFrame(dict(zip(heads, columns, strict=True)), lines, dtype=object)
 
 

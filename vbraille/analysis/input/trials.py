@@ -50,6 +50,7 @@ CellKeys = Mapping[int, str]  # a protocol's name of a cell, by its dot mask
 NO_KEYS: CellKeys = {}
 UNREAD_MASK = 0x100  # one more than masks of eight dots
 _LETTER_OF = {mask: letter for letter, mask in LETTERS.items()}
+_LETTERS = {UNICODE_BLANK + mask: letter for mask, letter in _LETTER_OF.items()}
 
 
 def natural(name: str) -> list[tuple[int, float, str]]:
@@ -226,6 +227,8 @@ def masks_of(text: str) -> list[int]:
 
 def name_string(text: str, keys: CellKeys = NO_KEYS) -> str:
     """Name of a string: "word" if all of it is letters and keys, else its cells' names."""
+    if not keys and (word := text.translate(_LETTERS)).isascii():
+        return word
     masks = masks_of(text)
     known = [keys.get(mask) or _LETTER_OF.get(mask) for mask in masks]
     if all(letter or mask == UNREAD_MASK for letter, mask in zip(known, masks, strict=True)):

@@ -259,7 +259,7 @@ def _effects(
             continue
         spread = np.linalg.svd(left, compute_uv=False) ** 2  # eigenvalues of S, but for a factor
         ratio = (effect / df1) / (error / df2)
-        epsilon = min(1.0, float(spread.sum() ** 2 / (d * (spread**2).sum())))
+        epsilon = min(1.0, 1 / (d * float(((spread / spread.sum()) ** 2).sum())))
         p, p_corrected = (float(fisher.sf(ratio, by * df1, by * df2)) for by in (1.0, epsilon))
         yield Effect(name, df1, df2, "", ratio, p, epsilon, p_corrected)
 

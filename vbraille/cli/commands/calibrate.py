@@ -232,7 +232,7 @@ class _Guided:
                 self._ask()
                 while not self._left:
                     self._tick()
-                    if keys.asked:
+                    if keys.must_stop:
                         self._suspend(keys)
                     for key in keys.pressed():
                         if not self._left:

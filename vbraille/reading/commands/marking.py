@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.library import Bookmark, place_in
-from vbraille.reading.view import Cue
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
@@ -62,8 +61,7 @@ def _go(reader: Reader, name: str) -> None:
     if mark is None:
         return
     if not reader.arrive(mark.character):
-        reader.cue(Cue.NOT_FOUND)
-        reader.say(f"bookmark {name}: not in the lines that are read")
+        reader.say_not_found(f"bookmark {name}: not in the lines that are read")
 
 
 def _delete(reader: Reader, name: str) -> None:
@@ -86,8 +84,7 @@ def _named(reader: Reader, name: str) -> Bookmark | None:
     alike = [mark for mark in marks.values() if mark.name.casefold() == name.casefold()]
     found = marks.get(name) or (alike[0] if len(alike) == 1 else None)
     if found is None:
-        reader.cue(Cue.NOT_FOUND)
-        reader.say(f"bookmark {name}: there is none{nearest(name, marks)}")
+        reader.say_not_found(f"bookmark {name}: there is none{nearest(name, marks)}")
     return found
 
 

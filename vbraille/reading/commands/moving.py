@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.search.questions import FindShare
-from vbraille.reading.view import Cue
 
 if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
@@ -23,8 +22,7 @@ def go_by_line(reader: Reader, step: int, *, at_end: bool = False) -> None:
     if reader.go_by(step, at_end=at_end):
         reader.announce()
     else:
-        reader.cue(Cue.LIMIT)
-        reader.say("last line" if step > 0 else "first line")
+        reader.say_limit("last line" if step > 0 else "first line")
 
 
 def pan(reader: Reader, step: int) -> None:
@@ -88,8 +86,7 @@ def back(reader: Reader) -> None:
     if reader.jump_back():
         reader.announce_jump()
     else:
-        reader.cue(Cue.LIMIT)
-        reader.say("back: there was no jump")
+        reader.say_limit("back: there was no jump")
 
 
 def _show(reader: Reader, window: Window, end: str) -> None:

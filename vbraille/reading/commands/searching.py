@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.search.questions import FindText
-from vbraille.reading.view import Cue
 
 if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
@@ -52,7 +51,6 @@ def _search(reader: Reader) -> None:
 
     def arrive(place: int | None) -> None:
         if not reader.arrive(place):
-            reader.cue(Cue.NOT_FOUND)
-            reader.say(f"not found {'before' if backward else 'after'} this: {text}")
+            reader.say_not_found(f"not found {'before' if backward else 'after'} this: {text}")
 
     reader.find(FindText(text, start, backward, reader.fold_accents), arrive)

@@ -20,7 +20,6 @@ from vbraille.reading.search.structure import (
     marks_of,
     within,
 )
-from vbraille.reading.view import Cue
 from vbraille.translate.source import BlockKind, MarkKind
 from vbraille.wording import count, spelled
 
@@ -130,7 +129,7 @@ def follow(reader: Reader) -> None:
     if names and (mark is None or _refers(source, leads_to, names)):
         _go_back_from_note(reader, names)
     elif mark is None:
-        _say_not_found(reader, "link: none here")
+        reader.say_not_found("link: none here")
     elif not mark.target.startswith("#"):
         reader.say(f"link: {mark.target}")
     else:
@@ -163,12 +162,7 @@ def arrive(
         "link" or "image" if the place is one's, whose words are said.
     """
     if not reader.arrive(place, _mark_at(reader, place, kind) if kind else what):
-        _say_not_found(reader, f"{name}: none {'before' if backward else 'after'} this")
-
-
-def _say_not_found(reader: Reader, sentence: str) -> None:
-    reader.cue(Cue.NOT_FOUND)
-    reader.say(sentence)
+        reader.say_not_found(f"{name}: none {'before' if backward else 'after'} this")
 
 
 def _mark_at(reader: Reader, place: int | None, kind: str) -> str:
@@ -250,7 +244,7 @@ def _go_to_braille_page(reader: Reader, page: int, missing: str) -> None:
         reader.keep_way_back(before)
         reader.announce_jump()
     else:
-        _say_not_found(reader, missing)
+        reader.say_not_found(missing)
 
 
 def _go_to_typed(reader: Reader, typed: str) -> None:
@@ -286,7 +280,7 @@ def _arrive_at_share(reader: Reader, place: int | None, typed: str) -> None:
 
 def _arrive_at_page(reader: Reader, place: int | None, typed: str) -> None:
     if not reader.arrive(place):
-        _say_not_found(reader, f"page {typed}: there is no such page")
+        reader.say_not_found(f"page {typed}: there is no such page")
 
 
 def _link_here(reader: Reader) -> Mark | None:
@@ -317,7 +311,7 @@ def ask_heading(reader: Reader) -> None:
         elif found:
             _ask(reader, dict(enumerate(found, 1)))
         else:
-            _say_not_found(reader, "contents: the book has no headings")
+            reader.say_not_found("contents: the book has no headings")
 
     reader.find(ListHeadings(), ask)
 
@@ -360,8 +354,8 @@ def _go(reader: Reader, headings: Numbered, typed: str) -> None:
     if len(found) > 1:
         _ask(reader, found)
     elif not found or not reader.arrive(next(iter(found.values())).character):
-        _say_not_found(
-            reader, f"contents: {'not in the lines that are read' if found else 'no such heading'}"
+        reader.say_not_found(
+            f"contents: {'not in the lines that are read' if found else 'no such heading'}"
         )
 
 
@@ -370,11 +364,11 @@ def feel(reader: Reader) -> None:
     under, address = reader.under, figure_of_block(reader.line)
     figures = under.figured.all if address else None
     if figures is None:
-        _say_not_found(reader, "figure: none on this line")
+        reader.say_not_found("figure: none on this line")
         return
     try:
         under.alone = figures.feel(address, reader.say, reader.cue)
     except InputError as error:
-        _say_not_found(reader, f"figure not felt: {spelled(str(error))}")
+        reader.say_not_found(f"figure not felt: {spelled(str(error))}")
         return
     reader.say(f"{under.alone.key('BACK', 'G')} or escape goes back to the text")

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 from vbraille.config.settings import KNOBS, fixed, next_mapping, obstacle, say_mapping
 from vbraille.errors import InputError, VbrailleError
-from vbraille.reading.view import Cue
 from vbraille.render.braille.style import BAND_BOUNDS
 from vbraille.translate import Book, BrailleTable, find_table
 from vbraille.wording import spelled
@@ -56,7 +55,7 @@ def change_mapping(reader: Reader) -> None:
     style, display = reader.style, reader.engine.display
     mapping = next_mapping(style, display)
     if mapping == style.mapping:
-        _say_limit(reader, f"{say_mapping(mapping)}, the only one for this display")
+        reader.say_limit(f"{say_mapping(mapping)}, the only one for this display")
     else:
         _turn(reader, "mapping", mapping, say_mapping(mapping))
 
@@ -64,7 +63,7 @@ def change_mapping(reader: Reader) -> None:
 def undo_turn(reader: Reader) -> None:
     """Take back the last turn that was not taken back yet."""
     if not reader.styles_before:
-        _say_limit(reader, "undo: nothing was turned")
+        reader.say_limit("undo: nothing was turned")
         return
     style = reader.styles_before.pop()
     said = _differences(reader.style, style)
@@ -75,7 +74,7 @@ def undo_turn(reader: Reader) -> None:
 def save_settings(reader: Reader) -> None:
     """Save the present tuning in the profile in use."""
     if reader.save_style is None:
-        _say_limit(reader, "saved: nothing, since no settings file is in use")
+        reader.say_limit("saved: nothing, since no settings file is in use")
     else:
         try:
             reader.say(reader.save_style(reader.style))
@@ -89,7 +88,7 @@ def _turn_knob(reader: Reader, knob: StyleKnob, after: float, end: str) -> None:
     value = knob.value(style)
     why = fixed(knob, style) or obstacle(knob, style.geometry, reader.engine.display, after)
     if why or after == value:
-        _say_limit(reader, f"{knob.said(value)}, the {end}{why and f': {why}'}")
+        reader.say_limit(f"{knob.said(value)}, the {end}{why and f': {why}'}")
     else:
         _turn(reader, knob.field, after, knob.said(after))
 
@@ -106,12 +105,6 @@ def _fields(style: BrailleStyle) -> dict[str, Any]:
     """All that commands of this module change in a style."""
     names = ("geometry", "tuning", "mapping", "straying")
     return {name: getattr(style, name) for name in names}
-
-
-def _say_limit(reader: Reader, sentence: str) -> None:
-    """Say how far something goes, where it goes no farther."""
-    reader.cue(Cue.LIMIT)
-    reader.say(sentence)
 
 
 def _differences(one: BrailleStyle, other: BrailleStyle) -> str:
@@ -136,7 +129,7 @@ _STRAYING: Final = {
 def turn_page(reader: Reader, step: int) -> None:
     """Turn to the next page of the surface, or to the one before; one line is a page, too."""
     if not reader.turn_page(step):
-        _say_limit(reader, "last page" if step > 0 else "first page")
+        reader.say_limit("last page" if step > 0 else "first page")
     elif not reader.under.rows:
         reader.announce()
 
@@ -154,7 +147,7 @@ def turn_band(reader: Reader, steps: int) -> None:
     low, high = BAND_BOUNDS
     band = round(min(max(straying.band + steps * _BAND_STEP, low), high), 2)
     if band == straying.band:
-        _say_limit(reader, f"band: {band:g} line pitches, the {'most' if steps > 0 else 'least'}")
+        reader.say_limit(f"band: {band:g} line pitches, the {'most' if steps > 0 else 'least'}")
     else:
         _show_straying(reader, replace(straying, band=band), f"band: {band:g} line pitches")
 
@@ -164,7 +157,7 @@ def _show_straying(reader: Reader, straying: Straying, sentence: str) -> None:
     if reader.under.rows:
         _turn(reader, "straying", straying, sentence)
     else:
-        _say_limit(reader, "straying: one line is under the hand, and the finger cannot leave it")
+        reader.say_limit("straying: one line is under the hand, and the finger cannot leave it")
 
 
 _CONTRACTED = 2  # the grade that is asked for
@@ -212,12 +205,12 @@ def scroll(reader: Reader) -> None:
 
 def change_speed(reader: Reader, step: int) -> None:
     """Have lines come sooner, or later if the step is -1."""
-    if not reader.scroll.turn(step):
-        reader.cue(Cue.LIMIT)
-        end = ", the fastest" if step > 0 else ", the slowest"
+    scroll = reader.scroll
+    if scroll.turn(step):
+        reader.say(f"autoscroll: {scroll.words}")
     else:
-        end = ""
-    reader.say(f"autoscroll: {reader.scroll.words}{end}")
+        end = "fastest" if step > 0 else "slowest"
+        reader.say_limit(f"autoscroll: {scroll.words}, the {end}")
 
 
 def _change(reader: Reader, language: str, grade: int | None = None) -> None:

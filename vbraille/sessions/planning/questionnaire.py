@@ -6,7 +6,7 @@ each trial, after each block, or at the end.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Literal, get_args
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from vbraille.errors import check_range
 from vbraille.sessions.planning.pace import LONGEST_LINE, check_line, check_name
@@ -276,4 +276,3 @@ class RatingItem(_Item, frozen=True, kw_only=True, tag="rating"):
 
 
 AnyItem = ChoiceItem | NumberItem | TextItem | RatingItem
-ITEM_KINDS: tuple[type[_Item], ...] = get_args(AnyItem)

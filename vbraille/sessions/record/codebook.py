@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from vbraille.files import no_formula
+from vbraille.sessions.planning.questions import KINDS
 from vbraille.sessions.record.passages import COLUMNS as PASSAGE
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ COLUMNS = {
     "no, same or different, a number, or words; empty if not answered",
     "correct": "1 if all places are right, or the answer is, 0 if not; empty where nothing is "
     "right and without an answer",
-    "question": "what was asked: identify, which, same-different, detect, rating, magnitude, free",
+    "question": f"what was asked: {', '.join(KINDS)}",
     "outcome": "right or wrong; where something is looked for, hit, miss, false alarm or correct "
     "rejection; empty if nothing is right, and without an answer",
     "confidence": "how sure the answer is, on the scale of the protocol; empty if not asked",

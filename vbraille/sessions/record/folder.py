@@ -421,7 +421,7 @@ def check(record: Record) -> Iterator[Finding]:
     yield from _check_journal(contents)
     yield from _check_torn(record.folder, contents)
     yield from _check_watched(record)
-    progress = Progress(record.plan, contents.events, record.procedure)
+    progress = record.progress()
     yield from _check_traces(record, progress)
     yield from _check_choices(record, progress)
     why = f", {progress.why}" if progress.why else ""

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
 from vbraille.sessions.running.console import find_command, read_line
-from vbraille.sessions.running.naming import SimulatedNaming
-from vbraille.sessions.running.reader import ReaderHabits, Simulated
+from vbraille.sessions.running.reader import ReaderHabits, Simulated, SimulatedNaming
 from vbraille.sessions.running.responses import (
     PROGRAM,
     Responses,
