@@ -843,6 +843,11 @@ class KeptPlaces:
         """
         return cls(Store(usual_path() if path is None else Path(path), now))
 
+    @property
+    def fault(self) -> str | None:
+        """Why what was written last is not on the disk; None if it is, or will be in a moment."""
+        return self._store.fault
+
     def note(self) -> str | None:
         """Sentence on why places are not kept, given once; None if they are."""
         return self._store.note()
