@@ -199,3 +199,15 @@ def test_what_is_no_curve(change, error, reason):
     given = {"levels": LEVELS, "positive": COUNTS[0.5], "trials": [20] * 7}
     with pytest.raises(error, match=reason):
         fit_psychometric(**{**given, **change})
+
+
+def test_lapses_at_both_ends_leave_the_point_of_equality_and_the_spread():
+    """Of exact shares: with lapses at one end alone the curve comes out far too flat."""
+    levels, many = np.linspace(-2.1, 2.1, 7), 1000
+    share = 0.04 + 0.92 * norm.cdf(levels, 0.3, 0.5)
+    given = levels, np.round(many * share), np.full(7, many)
+    even = fit_psychometric(*given, shape="normal", even=True)
+    assert (even.threshold, even.spread) == pytest.approx((0.3, 0.5), abs=0.01)
+    assert even.guess == even.lapse == pytest.approx(0.04, abs=0.005)
+    assert even.shares(levels) == pytest.approx(share, abs=0.005)
+    assert fit_psychometric(*given, shape="normal", guess=0.0).spread > 0.6

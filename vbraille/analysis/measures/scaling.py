@@ -197,7 +197,7 @@ def _constant(part: pd.DataFrame, standard: float) -> Row:
         counts["sum"].to_numpy(np.int64),
         counts["size"].to_numpy(np.int64),
         shape="normal",
-        guess=0.0,
+        even=True,
     )
     jnd, of_jnd = QUARTILE * fit.spread, fit.spread_interval
     return {

@@ -2,10 +2,12 @@
 
 A share is γ + (1 - γ - λ) F(x): γ is the share of guesses, λ that of lapses, and F rises from 0 to
 1. The threshold m is where F is a half, in the unit of x. The lapses have a prior, beta with 1
-and 20, and 0.1 at most, since few trials tell of them (Wichmann and Hill 2001). Guesses are fixed,
-or free: even from 0 to 0.9, and blank trials, whose share of yes is γ, join their likelihood to
-that of the levels. Threshold and logarithm of the spread are even over what the levels could show,
-half their range below and above them, as far as the scale goes. The estimate is the most likely of
+and 20, and 0.1 at most, since few trials tell of them (Wichmann and Hill 2001). Guesses are fixed;
+as many as lapses, where a trial that is not attended to gets either answer as often; or free: even
+from 0 to 0.9, and blank trials, whose share of yes is γ, join their likelihood to that of the
+levels. Threshold and logarithm of the spread are even over what the levels could show, half their
+range below and above them, as far as the scale goes. The estimate is the most likely
+of
 all (MAP); intervals are between quantiles of the threshold's and the spread's own posterior, worked
 out on a grid (Schütt et al. 2016). docs/validation.md has how often they hold the truth.
 """
@@ -14,7 +16,7 @@ from __future__ import annotations
 
 import math
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize
@@ -93,6 +95,11 @@ class LevelCounts(NamedTuple):
     curve: Curve
     guess: float | None
     blanks: tuple[int, int]
+    even: bool
+
+    def floor(self, lapse: Any) -> Any:
+        """Fixed share of guesses, where a share lapses."""
+        return lapse if self.even else self.guess
 
 
 def fit_psychometric(
@@ -104,6 +111,7 @@ def fit_psychometric(
     guess: float | None = 0.5,
     blanks: tuple[int, int] = (0, 0),
     scale: tuple[float, float] = (-math.inf, math.inf),
+    even: bool = False,
 ) -> PsychometricFit:
     """Fit a psychometric function to the answers of one participant.
 
@@ -123,6 +131,9 @@ def fit_psychometric(
         of free guesses.
     scale
         Ends of what the levels are measured by, such as 0 and 1; no threshold is beyond them.
+    even
+        Whether lapses are at both ends alike, in place of guesses, as where one of two is chosen
+        that has more.
 
     Raises
     ------
@@ -130,7 +141,7 @@ def fit_psychometric(
         If there are fewer than three levels, all answers or none are positive, or their share
         does not rise.
     """
-    asked = _answers(levels, positive, trials, shape, guess, blanks)
+    asked = _answers(levels, positive, trials, shape, guess, blanks, even=even)
     edges = _first_edges(asked, shape, scale)
     within = [(float(axis[0]), float(axis[-1])) for axis in edges]
     for sizes in (_COARSE, _SIZE):
@@ -145,7 +156,7 @@ def fit_psychometric(
         own = mass.sum(axis=tuple(i for i in range(mass.ndim) if i != axis))
         ends.append(_between(edges[axis], own))
     threshold, spread, lapse = best[0], math.exp(best[1]), best[2]
-    floor = best[3] if asked.guess is None else asked.guess
+    floor = best[3] if asked.guess is None else asked.floor(lapse)
     interval = Interval(min(ends[0][0], threshold), max(ends[0][1], threshold))
     return PsychometricFit(
         shape,
@@ -166,6 +177,8 @@ def _answers(
     shape: str,
     guess: float | None,
     blanks: tuple[int, int],
+    *,
+    even: bool,
 ) -> LevelCounts:
     """Counts with equal levels put together, in their order, after checks."""
     x, y, n = (np.asarray(of, np.float64) for of in (levels, positive, trials))
@@ -178,7 +191,7 @@ def _answers(
         raise Unanswerable("all answers are the same; they show no threshold")
     if (n * (found - np.average(found, weights=n)) * (y / n)).sum() <= 0:
         raise Unanswerable("the share of answers does not rise with the level")
-    return LevelCounts(found, y, n, SHAPES[shape], guess, blanks)
+    return LevelCounts(found, y, n, SHAPES[shape], guess, blanks, even)
 
 
 def _first_edges(
@@ -215,7 +228,8 @@ def _log_posterior(asked: LevelCounts, edges: list[NDArray[np.float64]]) -> NDAr
     for number, guess in enumerate(guesses):
         of = total if asked.guess is not None else total[..., number]
         for at in range(asked.levels.size):
-            share = guess + (1 - guess - lapse[:, 0]) * rising[:, :, at, None]
+            floor = lapse[:, 0] if asked.even else guess
+            share = floor + (1 - floor - lapse[:, 0]) * rising[:, :, at, None]
             share = np.clip(share, _EDGE, 1 - _EDGE)
             yes, no = asked.positive[at], asked.trials[at] - asked.positive[at]
             of += yes * np.log(share) + no * np.log1p(-share)
@@ -243,7 +257,7 @@ def _nearer(
 
 
 def _shares(asked: LevelCounts, at: list[float]) -> NDArray[np.float64]:
-    floor = at[3] if asked.guess is None else asked.guess
+    floor = at[3] if asked.guess is None else asked.floor(at[2])
     rising = asked.curve(asked.levels, np.array(at[0]), np.array(math.exp(at[1])))
     return np.clip(floor + (1 - floor - at[2]) * rising, _EDGE, 1 - _EDGE)
 
