@@ -6,10 +6,9 @@ and 20, and 0.1 at most, since few trials tell of them (Wichmann and Hill 2001).
 as many as lapses, where a trial that is not attended to gets either answer as often; or free: even
 from 0 to 0.9, and blank trials, whose share of yes is γ, join their likelihood to that of the
 levels. Threshold and logarithm of the spread are even over what the levels could show, half their
-range below and above them, as far as the scale goes. The estimate is the most likely
-of
-all (MAP); intervals are between quantiles of the threshold's and the spread's own posterior, worked
-out on a grid (Schütt et al. 2016). docs/validation.md has how often they hold the truth.
+range below and above them, as far as the scale goes. The estimate is the most likely of all (MAP);
+intervals are between quantiles of the threshold's and the spread's own posterior, worked out on a
+grid (Schütt et al. 2016). docs/validation.md has how often they hold the truth.
 """
 
 from __future__ import annotations
