@@ -3,7 +3,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.simulation.sampled import sampled
 from vbraille.engine.engine import EndOfLine
 from vbraille.simulation.hand import DEVICE, FLUENT, HumanHand, Sweep
 
@@ -39,7 +38,7 @@ def test_places_in_parts_are_as_places_one_by_one(places, part):
 @pytest.mark.parametrize("end_mm", [6.3, 17.4, 285.0])
 def test_made_up_hands_are_done_once_and_at_the_last(hand, end_mm):
     for _ in range(5):
-        places = sampled(hand.read_line(-SPAN_MM, end_mm), 1000) + SPAN_MM / 2
+        places = hand.read_line(-SPAN_MM, end_mm).sample(1000) + SPAN_MM / 2
         done = EndOfLine(SPAN_MM, end_mm).find(places)
         assert done is not None
         assert done >= places.size - 10  # nothing but the last millimetre is left

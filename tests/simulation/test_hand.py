@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.simulation.sampled import sampled
 from vbraille.errors import InputError
 from vbraille.simulation.hand import (
     CLEAR_MM,
@@ -139,7 +138,7 @@ def test_a_sweep_out_of_range_is_refused(speed):
 
 @pytest.mark.parametrize("seed", range(5))
 def test_device_reads_forward_at_8_mm_s(seed):
-    steps = np.concatenate([np.diff(sampled(line, RATE_HZ)) for line in lines("device", 5, seed)])
+    steps = np.concatenate([np.diff(line.sample(RATE_HZ)) for line in lines("device", 5, seed)])
     assert np.median(steps[steps > 0]) * RATE_HZ == pytest.approx(8.0, abs=0.5)
 
 

@@ -80,6 +80,11 @@ class Motion:
         """Duration of the motion: the time of its last knot."""
         return float(self.t_s[-1])
 
+    def sample(self, rate_hz: float) -> NDArray[np.float64]:
+        """Places along x at multiples of 1 / rate, up to the end; float64[n], mm."""
+        stop = 1 + math.floor(self.duration_s * rate_hz + SLACK)
+        return np.interp(np.arange(stop) / rate_hz, self.t_s, self.x_mm)
+
 
 class Way:
     """A motion in the making.
