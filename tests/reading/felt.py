@@ -1,5 +1,7 @@
 """A picture that is felt on a device in memory, by the engine's own loop on a manual clock."""
 
+import time
+
 from tests.engine.planar import Bench
 from vbraille.display import Pose
 from vbraille.feeling.composing import compose
@@ -69,6 +71,15 @@ class Felt:
             self.feeler.press(key)
         said, self.said[:] = list(self.said), []
         return said
+
+    def wait(self):
+        """Wait until the picture that is being made is felt; what was said of it."""
+        end_s = time.monotonic() + 30.0
+        while self.feeler._making is not None:
+            assert time.monotonic() < end_s
+            self.feeler.attend(0.0)
+            time.sleep(0.001)
+        return self.press()
 
     def be_at(self, x_mm, y_mm, now_s=0.0):
         """Have the finger come to a place; what was said."""

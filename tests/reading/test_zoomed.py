@@ -1,7 +1,6 @@
 """Zoom and pan of a picture that is felt: what is said, where keys lead, and what is sent."""
 
 import re
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -24,19 +23,9 @@ def scene(tmp_path):
     return path
 
 
-def wait(felt):
-    """Wait until the picture that is being made is felt; what was said of it."""
-    end_s = time.monotonic() + 30.0
-    while felt.feeler._making is not None:
-        assert time.monotonic() < end_s
-        felt.feeler.attend(0.0)
-        time.sleep(0.001)
-    return felt.press()
-
-
 def zoomed(felt, *keys):
     felt.press(*keys)
-    return wait(felt)
+    return felt.wait()
 
 
 def test_zoom_keeps_the_place_under_the_finger(scene):
@@ -196,7 +185,7 @@ def test_what_is_sent_never_jumps(scene):
     felt.bench.run(0.3)
     for key in ("+", "]", "}", "-", "0", "+", "+", "[", "c", "0"):
         felt.press(key)
-        wait(felt)
+        felt.wait()
         felt.bench.run(0.13)
     steps = np.abs(np.diff(felt.bench.sent, axis=0))
     # A fade takes 0.1 s, so that full swing goes by a hundredth in a tick; still the hand is.
@@ -271,7 +260,7 @@ def felt_at_random(path, frames, seed):
             felt.at = tuple(rng.uniform((0.0, 0.0), (120.0, 90.0)).tolist())
         else:
             felt.press(key)
-            wait(felt)
+            felt.wait()
         begin = len(felt.bench.device.sent) - 1
         count = int(rng.integers(1, 150))
         felt.bench.run(count / 1000)

@@ -20,7 +20,7 @@ def test_every_command_says_something_or_moves_the_hand_or_ends(tmp_path):
     for command in BOUND.of(Context.READING):
         if command.name not in ("CANCEL", "MIDDLE", "QUIT"):
             felt.feeler.context = Context.READING
-            assert felt.press(command.keys[0]), command.name
+            assert felt.press(command.keys[0]) or felt.wait(), command.name
 
 
 def test_buttons_call_commands_that_there_are():
