@@ -86,7 +86,7 @@ BAD = {
     SlowToSend: "its write takes 1.",
     BlocksOnce: "its read took ",  # 150 ms or more, as busy as the machine is
     NotANumber: "a place that is no number",
-    Jumps: "its carriage jumps, once by 15",  # and by what the hand went where the machine stood
+    Jumps: "its carriage jumps, once by 1",  # and by what the hand went where the machine stood
     ClockGoesBack: "its clock goes back, once by ",
     TurnsWithoutSaying: "an angle of 0.3 rad, and its Display has no turns=True",
     NoPose: "where it must give a Pose or None",

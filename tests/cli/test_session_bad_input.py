@@ -94,7 +94,7 @@ def test_protocols_of_no_use(call, room, old, new, pattern):
             "^--hand is for the simulated device, and serial:/dev/ttyACM0 is moved by a",
         ),
         ("--device serial:/dev/ttyACM0", "--fast is for the simulated device; leave out --device"),
-        ("--answers simulated:loud", "noise is 'loud'; give a number, such as simulated:0.2"),
+        ("--answers simulated:loud", "'loud' is no habit of a simulated reader; give its noise"),
         ("--answers simulated:-1", "noise is -1; it must be 0 to"),
         ("--answers simulated:nan", "noise is nan; it must be 0 to"),
         ("--answers none", "none cannot be read: No such file or directory"),

@@ -176,7 +176,7 @@ def test_a_ready_set_of_keys_is_chosen_by_the_file_or_an_option(call, text, sett
         terminal.type(".")
         terminal.until("line: 2\r\n")
         terminal.type("q")
-        terminal.until("quote: none after this\r\n")
+        terminal.until("quotation: none after this\r\n")
         terminal.type("\x04")
         assert terminal.end() == 0
 

@@ -170,7 +170,7 @@ def test_nvda_s_letters_go_where_its_users_expect():
         "p": "• An item",
     }.items():
         assert bench.press(keys)[-1] == f"text: {text}", keys
-    assert bench.press("Q")[-1] == "quote: none before this"
+    assert bench.press("Q")[-1] == "quotation: none before this"
     assert not bench.reader.done
     assert bench.press(["f7"])[-1].startswith("contents: type a number")
     bench.press(["escape", "\x04"])

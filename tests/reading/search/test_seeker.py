@@ -98,7 +98,7 @@ def test_a_text_that_has_no_name(book):
 def test_the_headings_of_a_book(tmp_path):
     path = tmp_path / "book.md"
     path.write_text("# One\n\nText.\n\n## Two *and*\n\nMore.\n")
-    source = open_source(path)
+    source = open_source(str(path))
     with Seeker(BookOpening(os.fsencode(path), form="markdown")) as seeker:
         listed = final(seeker, ListHeadings())
     assert [(one.level, one.title) for one in listed.headings] == [(1, "One"), (2, "Two and")]

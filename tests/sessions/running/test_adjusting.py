@@ -84,9 +84,11 @@ def test_the_value_stays_within_its_bounds(tmp_path):
 
 
 def test_a_simulated_person_takes_the_last_value_where_equal_ones_are_beyond_it(tmp_path):
-    sat = Session(tmp_path / "s", ADJUST.replace("most = 3.0", "most = 1.6")).sit()
+    sure = "confidence = { least = 1, most = 5 }\n"
+    sat = Session(tmp_path / "s", ADJUST.replace("most = 3.0", "most = 1.6") + sure).sit()
     assert sat.progress.ended
     assert settings(sat) == [1.6, 1.6]
+    assert [event["confidence"] for event in of(sat.events, "answer")] == [4, 4]
 
 
 @pytest.mark.parametrize("keys", ["knob = 2", "buttons = [3, 1, 2]"])

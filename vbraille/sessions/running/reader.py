@@ -194,7 +194,7 @@ class SimulatedPerson(TrialResponses):
             line = question.words[0]
         else:
             line = by_feeling(noise)
-        if scale is None:
+        if scale is None or question.steps(line) is not None:
             return line
         quarters = 0 if lapsed else 3 if by_feeling(habits) == line else 1
         return f"{line}; {scale.least + round(quarters * (scale.most - scale.least) / 4)}"
@@ -249,7 +249,7 @@ class Simulated(SimulatedPerson):
         self._lead_cells = protocol.lead_cells
         self._parameter = protocol.parameter or ""
         self._pairs = {c.name: _dot_pair(protocol, c) for c in protocol.conditions}
-        self._turned: tuple[int, int, int] | None = None  # trial and showings when it turned last
+        self._turned: tuple[int, int, int] | None = None  # trial and showings, if it turned
         pairs = isinstance(protocol.design, Choice) and protocol.design.form == "pairs"
         if why := self._question.unfelt(self._parameter, pairs=pairs):
             raise InputError(f"{protocol.name} {why}; {INSTEAD}")
@@ -266,14 +266,14 @@ class Simulated(SimulatedPerson):
             self._pairs[trial.condition],
             len(felt) - number,
         )
-        line = self._answered(
-            trial, attempt, lambda random: self._question.simulate(told, self._noise, random)
-        )
-        if self._question.turns:
-            known = None if line == "equal" else (trial.number, attempt, len(felt))
-            if known is not None and known == self._turned:
-                line, known = "equal", None  # the value was at its end: nothing more was felt
-            self._turned = known
+        shown = (trial.number, attempt, len(felt))
+        at_end = shown == self._turned  # nothing more was felt since the value was turned
+
+        def answer(random: np.random.Generator) -> str:
+            return "equal" if at_end else self._question.simulate(told, self._noise, random)
+
+        line = self._answered(trial, attempt, answer)
+        self._turned = None if self._question.steps(line) is None else shown
         return line, 0
 
 
