@@ -5,7 +5,9 @@ Actuators swing, and rate, clock, place, round trip and watchdog are measured.
 
 from __future__ import annotations
 
+import gc
 import math
+import resource
 from collections import deque
 from dataclasses import dataclass
 from pathlib import Path
@@ -113,10 +115,15 @@ class Watch:
         self._last_ns = 0
 
     def __enter__(self) -> Self:
+        # As in the engine's process: looking for garbage may take a tenth of a second of a call.
+        self._collects = gc.isenabled()
+        gc.disable()
         vars(self._device).update(read=self._read, write=self._write)
         return self
 
     def __exit__(self, *_: object) -> None:
+        if self._collects:
+            gc.enable()
         for name in self._calls:
             del vars(self._device)[name]
         vars(self._device).update(self._own)
@@ -183,16 +190,24 @@ class Watch:
 
     def _timed(self, name: str, *given: Any) -> Any:
         clock, call = self._clock, self._calls[name]
-        queued_ns, now_ns = _queued_ns(), clock.now_ns()
+        waits, queued_ns = _waits(), _queued_ns()
+        busy_ns, now_ns = clock.busy_ns(), clock.now_ns()
         try:
             return call(*given)
         finally:
             # Time for which the system gave the processor to others is not the driver's.
-            own_ns = clock.now_ns() - now_ns - (_queued_ns() - queued_ns)
+            own_ns = clock.busy_ns() - busy_ns
+            if _waits() != waits:
+                own_ns = clock.now_ns() - now_ns - (_queued_ns() - queued_ns)
             self._spent_ns[name].append(max(own_ns, 0))
 
     def _find(self, kind: str, fault: str) -> None:
         self._found.setdefault(kind, fault)
+
+
+def _waits() -> int:
+    """Tell how often this thread has waited for something of its own accord."""
+    return resource.getrusage(resource.RUSAGE_THREAD).ru_nvcsw
 
 
 def _queued_ns() -> int:

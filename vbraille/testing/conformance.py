@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -71,8 +72,13 @@ def check_samples(open_device: Open) -> None:
     go back, and an angle is only told where the display turns.
     """
     clock = RealClock()
-    with _opened(open_device) as device, Watch(device, clock) as watch:
+    with ExitStack() as entered:
+        device = entered.enter_context(_opened(open_device))
         info, frame = device.display, _frame(device, 0.0)
+        # The first calls may load what is compiled.
+        device.read()
+        device.write(frame)
+        watch = entered.enter_context(Watch(device, clock))
         slack = 1 / info.counts_per_mm
         begun_ns = due_ns = clock.now_ns()
         while due_ns < begun_ns + _LOOKING_S * NS_PER_S:
