@@ -54,7 +54,7 @@ _parameters = inspect.signature(_really_execute)
 
 
 class Nursery:
-    """What asks for forks; its process begins when the first is wanted.
+    """A process that forks programs; it begins when the first fork is wanted.
 
     Parameters
     ----------
@@ -190,7 +190,7 @@ def _execute(process: subprocess.Popen, *given: Any, **named: Any) -> None:
 
 
 def _surroundings(environment: dict[str, str]) -> tuple[Any, ...]:
-    """What a fork takes from the process that it is of."""
+    """Environment, users and processors that a fork inherits from the process that forks it."""
     told = {
         name: value
         for name, value in environment.items()

@@ -13,7 +13,7 @@ ALIKE = ("PPid", "NSsid", "SigIgn", "SigBlk", "Umask", "NoNewPrivs")
 
 
 def seen(monkeypatch, used, folder, **options):
-    """What the system says of a program that waits, and how it ends when it is told to."""
+    """State of a waiting program as the system tells it, and the way it ends when told to."""
     monkeypatch.setattr(forking.nursery, "used", used)
     process = program.start("simulate", cwd=folder, **options)
     process.stdout.readline()

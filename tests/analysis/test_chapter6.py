@@ -71,7 +71,7 @@ def test_pairs_of_wavelengths_are_as_often_as_in_the_source():
     assert counts == {n / 2: 22 - 2 * n for n in range(1, 11)}
 
 
-# The two differ in all that a session goes by: choices, breaks, keys, limits of time.
+# These two protocols differ in choices, breaks, keys and limits of time.
 @pytest.mark.parametrize(
     "name", by_tier(["orientation-coarse", "icons"], [*EXPERIMENTS], [*EXPERIMENTS])
 )

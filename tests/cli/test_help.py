@@ -21,7 +21,7 @@ def options_of(command):
 
 
 def test_an_option_is_one_thing_whatever_the_command():
-    """Its sentence, form and reader are the same in each command; what is usual may differ."""
+    """An option has the same sentence, form and reader in each command; defaults may differ."""
     given = {}
     for command in ALL:
         for option in options_of(command):

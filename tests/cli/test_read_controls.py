@@ -83,7 +83,7 @@ def kept_device(script):
 
 
 def settled_at(frames, most):
-    """Number of the last frame when so many were alike, felt, and no higher than this.
+    """Number of the last frame once a run of equal frames is felt and within a bound.
 
     On a busy machine the array rests now and then, and is late for what is said of it.
     """

@@ -204,7 +204,7 @@ def test_wrong_findings_are_as_rare_as_said(random):
         found = effects(within(own + random.normal(size=(8, 6)), TWO_BY_THREE), "holm")
         every = [effect.p for effect in found] + [p for e in found for *_, p in e.pairs]
         wrong += min(every) < 0.05
-    # A twentieth is expected; so many more come by chance once in some hundred times.
+    # A twentieth of the studies is expected; chance exceeds this bound once in some hundred runs.
     assert wrong <= studies / 20 + 3 * math.sqrt(studies * 0.05 * 0.95)
 
 

@@ -202,7 +202,7 @@ def test_what_is_no_curve(change, error, reason):
 
 
 def test_lapses_at_both_ends_leave_the_point_of_equality_and_the_spread():
-    """Of exact shares: with lapses at one end alone the curve comes out far too flat."""
+    """The answers have exact shares; a fit with lapses at one end alone is far too flat."""
     levels, many = np.linspace(-2.1, 2.1, 7), 1000
     share = 0.04 + 0.92 * norm.cdf(levels, 0.3, 0.5)
     given = levels, np.round(many * share), np.full(7, many)
