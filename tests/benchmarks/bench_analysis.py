@@ -16,6 +16,7 @@ from tests.benchmarks.timing import Result, vbraille
 from tests.conftest import SEED
 from tests.sessions.sittings import Session
 from vbraille.engine.record import Flag
+from vbraille.sessions.planning.plan import stimulus_to_json
 from vbraille.sessions.planning.protocolfiles import builtin_text
 from vbraille.sessions.record import events
 from vbraille.sessions.record.folder import check_folder, versions
@@ -136,7 +137,8 @@ def _sit(session: Session, random: np.random.Generator) -> None:
             still = np.full(round(GAP_S * TICKS_A_S), -middle_mm)
             waiting = _ticks(still, ticks, trial.number - 1, Flag.PAUSED | Flag.RESTING, random)
             ticks += waiting.size
-            log(events.Presented, trial, attempt=1, stimulus=0, line=trial.number)
+            shown = stimulus_to_json(trial.stimuli[0])
+            log(events.Presented, trial, attempt=1, stimulus=0, line=trial.number, shown=shown)
             log(events.Cue, trial)
             motion = hand.read_line(-array.span_mm, end_mm)
             # As it reads, but stretched: all trials are of one length.
