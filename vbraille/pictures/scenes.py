@@ -115,8 +115,7 @@ def slowest_s(scene: Scene) -> float | None:
     swings = [swing.frequency_hz for one in scene.elements for swing in vibrations(one)]
     periods = [1.0 / frequency_hz for frequency_hz in swings]
     periods += [one.period_s for one in scene.signals.values() if isinstance(one, Pulse)]
-    waves = [part.wave for part in each(*scene.elements) if part.wave is not None]
-    periods += [wave.length / abs(wave.speed) for wave in waves if wave.speed]
+    periods += [1.0 / flow.flow_hz for part in each(*scene.elements) for flow in part.flows]
     return max(periods, default=None)
 
 

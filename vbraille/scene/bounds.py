@@ -109,14 +109,14 @@ def unchanged_bounds(
         case Image() | Label():
             return known.get(pattern)
         case StraightLine():
-            return around((pattern.start_mm, pattern.end_mm)).grown(drawn_radius_mm(pattern))
+            return around((pattern.start_mm, pattern.end_mm)).grown(reach_mm(pattern))
         case Circle():
-            return around((pattern.center_mm,)).grown(pattern.radius_mm + drawn_radius_mm(pattern))
+            return around((pattern.center_mm,)).grown(pattern.radius_mm + reach_mm(pattern))
         case Polygon():
-            return around(pattern.vertices_mm).grown(drawn_radius_mm(pattern))
+            return around(pattern.vertices_mm).grown(reach_mm(pattern))
         case PathShape():
             points = (point for contour in pattern.contours_mm for point in contour)
-            return around(points).grown(drawn_radius_mm(pattern))
+            return around(points).grown(reach_mm(pattern))
         case Dots():
             return around(pattern.centers_mm).grown(pattern.dot.radius_mm)
         case Group():
@@ -140,6 +140,14 @@ def drawn_radius_mm(shape: StraightLine | Circle | Polygon | PathShape) -> float
     if shape.stroke is not None:
         return shape.stroke.width_mm / 2
     return 0.0 if shape.dots is None else shape.dots.dot.radius_mm
+
+
+def reach_mm(shape: StraightLine | Circle | Polygon | PathShape) -> float:
+    """Tell how far anything of what a shape is drawn with reaches from its path."""
+    drawn_mm = drawn_radius_mm(shape)
+    # Dots that move go on in the path's direction beyond its ends, as far as they reach.
+    beyond = math.sqrt(2.0) if shape.dots is not None and shape.dots.velocity_mm_s else 1.0
+    return beyond * drawn_mm
 
 
 def around(points_mm: Iterable[Point]) -> Box:

@@ -265,6 +265,9 @@ def _element_advice(element: AnyPattern, box: Box | None, canvas: Canvas) -> Ite
         if pattern.wave is not None:
             along = " along a stroke" if isinstance(pattern, Shape) else ""
             yield from _of_wave(f"a grating{along}", pattern.wave)
+        if isinstance(pattern, Shape) and pattern.dots is not None:
+            for flow in pattern.flows:
+                yield from _of_flow("a row of dots", flow)
         elif isinstance(pattern, Moving):
             for wave in each(pattern.part):
                 if isinstance(wave, LinearGrating):

@@ -12,6 +12,11 @@ Ours is the rest. Of dots that would still be nearer than m, because edges are s
 each other, the later is left out, and one on a vertex counts before the others. A path has its
 vertices where it turns by more than 40°; between them dots are evenly spaced along it, so that a
 curve that is many short edges is dotted like a line.
+
+Dots that move (9.3.3) do so between the vertices of a shape, whose own dots stay, or between the
+ends of an open path. Dots that are evenly spaced are a row without end, which is seen as far as its
+window lets it: half a spacing from a vertex, or where the strokes of its two edges part; as far as
+a dot reaches beyond an open end.
 """
 
 from __future__ import annotations
@@ -46,6 +51,61 @@ class PlacedDot(NamedTuple):
     vertex: bool = False
 
 
+class DotRow(NamedTuple):
+    """A row of evenly spaced dots that moves along a part of a shape's path.
+
+    Parameters
+    ----------
+    points_mm
+        Places that the row goes through; none for a row around a circle.
+    pitch_mm
+        Distance between two dots along it; one of them is at its beginning at first.
+    begin_mm, end_mm
+        Window outside which there is nothing of it, from its beginning and from its end on. It is
+        below 0 at the ends of an open path, and infinite for a row that closes.
+    """
+
+    points_mm: tuple[Point, ...]
+    pitch_mm: float
+    begin_mm: float = -math.inf
+    end_mm: float = -math.inf
+
+
+@lru_cache(maxsize=_KEPT)
+def rows_of(
+    shape: StraightLine | Circle | Polygon | PathShape,
+) -> tuple[tuple[PlacedDot, ...], tuple[DotRow, ...]]:
+    """Compute which dots of a shape stay where they are, and the rows that move between them."""
+    if shape.dots is None or not shape.dots.velocity_mm_s:
+        return dots_of(shape), ()
+    radius_mm = shape.dots.dot.radius_mm
+    least_mm = 2 * radius_mm + shape.dots.separation_mm
+    if isinstance(shape, Circle):
+        return (), (DotRow((), math.tau * shape.radius_mm / len(dots_of(shape))),)
+    rows: list[DotRow] = []
+    stay: list[PlacedDot] = []
+    for run in _runs_of(shape, least_mm):
+        begin, end = run.points_mm[0], run.points_mm[-1]
+        first, last = (angle is not None for angle in run.angles)
+        if first:
+            stay.append(PlacedDot(*begin, vertex=True))
+        spaces, _ = _along(run)
+        if spaces < 1 + (first and last):  # There is no room for a row.
+            stay += [] if first else [PlacedDot(*begin)]
+            stay += [] if last or run.closes else [PlacedDot(*end)]
+            continue
+        pitch_mm = run.length_mm / spaces
+        if run.closes:
+            rows.append(DotRow(run.points_mm, pitch_mm))
+            continue
+        window_mm = (
+            -radius_mm if angle is None else max(pitch_mm / 2, radius_mm / math.tan(angle / 2))
+            for angle in run.angles
+        )
+        rows.append(DotRow(run.points_mm, pitch_mm, *window_mm))
+    return _apart(stay, least_mm), tuple(rows)
+
+
 @lru_cache(maxsize=_KEPT)
 def dots_of(shape: StraightLine | Circle | Polygon | PathShape) -> tuple[PlacedDot, ...]:
     """Compute where the dots of a dotted shape stand; none if it is not dotted."""
@@ -54,12 +114,7 @@ def dots_of(shape: StraightLine | Circle | Polygon | PathShape) -> tuple[PlacedD
     least_mm = 2 * shape.dots.dot.radius_mm + shape.dots.separation_mm
     if isinstance(shape, Circle):
         return _on_circle(shape, least_mm)
-    if isinstance(shape, Polygon):
-        return _apart(_on_polygon(shape.vertices_mm, least_mm), least_mm)
-    if isinstance(shape, StraightLine):
-        return _apart(_on_contour((shape.start_mm, shape.end_mm), False, least_mm), least_mm)
-    contours = (_on_contour(c, shape.closed, least_mm) for c in shape.contours_mm)
-    return _apart((dot for dots in contours for dot in dots), least_mm)
+    return _apart(_on_runs(shape, least_mm), least_mm)
 
 
 def most_dots_of(shape: AnyPattern) -> int:
@@ -87,32 +142,66 @@ def _on_circle(circle: Circle, least_mm: float) -> tuple[PlacedDot, ...]:
     return tuple(PlacedDot(x + radius * math.cos(a), y + radius * math.sin(a)) for a in angles)
 
 
-def _on_polygon(vertices: Sequence[Point], least_mm: float) -> Iterator[PlacedDot]:
-    count = len(vertices)
-    angles = [_turn(vertices[i - 1], vertices[i], vertices[(i + 1) % count]) for i in range(count)]
-    for i, (x, y) in enumerate(vertices):
-        end = vertices[(i + 1) % count]
-        widening = max(_widening(angles[i]), _widening(angles[(i + 1) % count]))
-        yield PlacedDot(x, y, vertex=True)
-        yield from _between((x, y), end, _spaces(math.dist((x, y), end), least_mm * widening))
+class _Run(NamedTuple):
+    """A part of a path from one of its corners or ends to the next.
+
+    Parameters
+    ----------
+    points_mm
+        Places that it goes through.
+    least_mm
+        Least distance of two dots on it.
+    angles
+        Angles θ of the corners where it begins and ends; None at an end of the path.
+    closes
+        Whether it is a closed path without a corner.
+    """
+
+    points_mm: Sequence[Point]
+    least_mm: float
+    angles: tuple[float | None, float | None] = (None, None)
+    closes: bool = False
+
+    @property
+    def length_mm(self) -> float:
+        """How long it is."""
+        return sum(edge_lengths_mm(self.points_mm, closed=False))
 
 
-def _on_contour(points: Sequence[Point], closed: bool, least_mm: float) -> Iterator[PlacedDot]:
-    """Put dots on a contour: on its corners and ends, and evenly along it between those."""
-    count = len(points)
-    corners = {
-        i: turn
-        for i in (range(count) if closed else range(1, count - 1))
-        if (turn := _turn(points[i - 1], points[i], points[(i + 1) % count])) < math.pi - _CORNER
-    }
-    for run in _runs(count, closed, sorted(corners)):
-        first, last = run[0], run[-1]
-        widening = max(_widening(corners.get(i, math.pi)) for i in (first, last))
-        places = [points[i] for i in run]
-        yield PlacedDot(*places[0], vertex=first in corners)
-        yield from _along(places, least_mm * widening)
-    if not closed:
-        yield PlacedDot(*points[-1])
+def _on_runs(shape: StraightLine | Polygon | PathShape, least_mm: float) -> Iterator[PlacedDot]:
+    """Put dots on corners and ends, and evenly between those."""
+    for run in _runs_of(shape, least_mm):
+        begin, end = run.points_mm[0], run.points_mm[-1]
+        yield PlacedDot(*begin, vertex=run.angles[0] is not None)
+        if isinstance(shape, Polygon):
+            yield from _between(begin, end, _spaces(math.dist(begin, end), run.least_mm))
+        else:
+            yield from _along(run)[1]
+        if run.angles[1] is None and not run.closes:
+            yield PlacedDot(*end)
+
+
+def _runs_of(shape: StraightLine | Polygon | PathShape, least_mm: float) -> Iterator[_Run]:
+    """Cut a shape's path at its corners, which are all vertices of a polygon, and at its ends."""
+    if isinstance(shape, StraightLine):
+        yield _Run((shape.start_mm, shape.end_mm), least_mm)
+        return
+    every = isinstance(shape, Polygon)
+    closed = isinstance(shape, Polygon) or shape.closed
+    for points in (shape.vertices_mm,) if isinstance(shape, Polygon) else shape.contours_mm:
+        count = len(points)
+        corners = {
+            i: turn
+            for i in (range(count) if closed else range(1, count - 1))
+            if (turn := _turn(points[i - 1], points[i], points[(i + 1) % count]))
+            < math.pi - _CORNER
+            or every
+        }
+        for run in _runs(count, closed, sorted(corners)):
+            ends = corners.get(run[0]), corners.get(run[-1])
+            widening = max(1.0 if angle is None else _widening(angle) for angle in ends)
+            places = [points[i] for i in run]
+            yield _Run(places, least_mm * widening, ends, closed and not corners)
 
 
 def _runs(count: int, closed: bool, corners: list[int]) -> Iterator[list[int]]:
@@ -125,11 +214,12 @@ def _runs(count: int, closed: bool, corners: list[int]) -> Iterator[list[int]]:
         yield [i % count for i in range(start, end + 1)]
 
 
-def _along(places: Sequence[Point], least_mm: float) -> Iterator[PlacedDot]:
-    """Divide a line through places evenly, without a dot at its ends.
+def _along(run: _Run) -> tuple[int, list[PlacedDot]]:
+    """Divide a run evenly: into how many spaces, and the dots between them.
 
     Where it is bent dots are nearer to each other than along it, so there may be fewer of them.
     """
+    places, least_mm = run.points_mm, run.least_mm
     lengths = edge_lengths_mm(places, closed=False)
     whole = sum(lengths)
     spaces = _spaces(whole, least_mm)
@@ -139,9 +229,9 @@ def _along(places: Sequence[Point], least_mm: float) -> Iterator[PlacedDot]:
         share = min(map(math.dist, chain, chain[1:])) / least_mm
         # Where it turns back on itself no even spacing does, and dots are left out afterwards.
         if share >= _TOLERANCE or share < 0.5:
-            yield from (PlacedDot(x, y) for x, y in inner)
-            return
+            return spaces, [PlacedDot(x, y) for x, y in inner]
         spaces = min(spaces - 1, math.floor(spaces * share) + 1)
+    return spaces, []
 
 
 def _at(

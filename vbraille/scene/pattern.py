@@ -63,3 +63,8 @@ class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
     def wave(self) -> RidgeWave | None:
         """Length and speed of ridges and gaps of its own; None if it has none."""
         return None
+
+    @property
+    def flows(self) -> tuple[RidgeWave, ...]:
+        """All that flows in it by itself, as waves."""
+        return () if self.wave is None or not self.wave.speed else (self.wave,)

@@ -181,6 +181,14 @@ class Shape(Pattern, frozen=True, kw_only=True):
         """Length and speed of ridges and gaps along its stroke; None if it has none."""
         return self.stroke.along.wave if self.stroke and self.stroke.along else None
 
+    @property
+    def flows(self) -> tuple[RidgeWave, ...]:
+        """All that flows along its path by itself, as waves; dots are no farther apart."""
+        dots = self.dots
+        if dots is None or not dots.velocity_mm_s:
+            return super().flows
+        return (RidgeWave(2 * dots.dot.radius_mm + dots.separation_mm, dots.velocity_mm_s),)
+
 
 class StraightLine(Shape, frozen=True, kw_only=True, tag="line"):
     """A straight line with round ends: Lévesque 2009, eqs. 8.15-8.17.

@@ -246,20 +246,29 @@ class Dotting(Table, frozen=True, kw_only=True):
         Least distance between the edges of two dots, also of those on two sides of a joint.
     vertex_vibration
         Vibration of the dots on a polygon's vertices; None if they are like the others.
+    velocity_mm_s
+        Speed at which the dots move along the path, in the order of its points. Those on vertices
+        stay; the others come and go there, and at the ends of an open path, over a millimetre.
+    velocity_by
+        Name of a signal that is the share of this speed at which they move; empty for all of it.
 
     Raises
     ------
     ValueError
-        If the separation is out of range, or what is down vibrates.
+        If a number is out of range, or what is down vibrates.
     """
 
     dot: DotStyle = DotStyle()
     separation_mm: float = 1.0
     vertex_vibration: Vibration | None = None
+    velocity_mm_s: float = 0.0
+    velocity_by: str = ""
 
     def __post_init__(self) -> None:
         check_length("separation", self.separation_mm, 0.0)
         _check_high(self.vertex_vibration, "dots")
+        check_range("velocity", self.velocity_mm_s, -1000, 1000, " mm/s")
+        check_velocity_by(self.velocity_by, bool(self.velocity_mm_s))
 
 
 class VertexMarkers(Table, frozen=True, kw_only=True):

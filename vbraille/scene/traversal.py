@@ -109,26 +109,30 @@ def signals_of(pattern: AnyPattern) -> list[tuple[Steps, str]]:
     found: list[tuple[Steps, str]] = [(("factor",), pattern.factor)]
     if isinstance(pattern, SignalLevel):
         found.append((("name",), pattern.name))
-    elif isinstance(pattern, Shape) and pattern.stroke is not None and pattern.stroke.along:
-        found.append((("stroke", "along", "velocity_by"), pattern.stroke.along.velocity_by))
+    elif isinstance(pattern, Shape):
+        if pattern.stroke is not None and pattern.stroke.along is not None:
+            found.append((("stroke", "along", "velocity_by"), pattern.stroke.along.velocity_by))
+        if pattern.dots is not None:
+            found.append((("dots", "velocity_by"), pattern.dots.velocity_by))
     else:
         found.append((("velocity_by",), getattr(pattern, "velocity_by", "")))
     return [(steps, name) for steps, name in found if name]
 
 
+def with_name(pattern: AnyPattern, steps: Steps, name: str) -> AnyPattern:
+    """Pattern with another name of a signal where `signals_of` found one."""
+
+    def within(value: Any, keys: Steps) -> Any:
+        key, *inner = keys
+        return replace(value, **{key: within(getattr(value, key), inner) if inner else name})
+
+    return within(pattern, steps)
+
+
 def with_signals(pattern: AnyPattern, names: Mapping[str, str]) -> AnyPattern:
     """Pattern that uses signals under other names, as does all that stands in it."""
-    changes: dict[str, Any] = {}
-    for (*_, key), name in signals_of(pattern):
-        if isinstance(pattern, Shape) and key == "velocity_by":
-            stroke = pattern.stroke
-            assert stroke is not None
-            assert stroke.along is not None
-            along = replace(stroke.along, velocity_by=names[name])
-            changes["stroke"] = replace(stroke, along=along)
-        else:
-            changes[str(key)] = names[name]
-    pattern = replace(pattern, **changes) if changes else pattern
+    for steps, name in signals_of(pattern):
+        pattern = with_name(pattern, steps, names[name])
     return with_children(pattern, lambda _, part: with_signals(part, names))
 
 

@@ -207,6 +207,7 @@ dottings = st.builds(
     dot=dot_styles(),
     separation_mm=numbers(0, 6),
     vertex_vibration=st.none() | high,
+    velocity_mm_s=velocities,
 )
 # What a shape is drawn with; the last has nothing but a fill.
 drawn = st.one_of(

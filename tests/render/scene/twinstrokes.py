@@ -19,7 +19,7 @@ from tests.render.scene.twinwaves import (
     share_left,
     vibrated,
 )
-from vbraille.scene.dotting import PlacedDot, dots_of
+from vbraille.scene.dotting import PlacedDot, dots_of, rows_of
 from vbraille.scene.joints import (
     Joint,
     joints,
@@ -31,13 +31,22 @@ from vbraille.scene.joints import (
 from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
+    from vbraille.scene.dotting import DotRow
     from vbraille.scene.joints import Cycle
     from vbraille.scene.measures import Point
-    from vbraille.scene.strokes import Across, Along, DotStyle, Stroke, VertexMarkers, Vibration
+    from vbraille.scene.strokes import (
+        Across,
+        Along,
+        DotStyle,
+        Dotting,
+        Stroke,
+        VertexMarkers,
+        Vibration,
+    )
 
 AnyShape = StraightLine | Circle | Polygon | PathShape
 
@@ -321,6 +330,103 @@ def dots_mask(places: Sequence[PlacedDot], dot: DotStyle, at: ActuatorPlaces) ->
     return most
 
 
+# Dots that move: 9.3.3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SeenDot:
+    """A dot as places see it.
+
+    Parameters
+    ----------
+    r : float64[n]
+        Distance from its middle.
+    share : float64[n]
+        What of it is seen there.
+    vertex
+        Whether it is on a vertex.
+    """
+
+    r: Values
+    share: Values
+    vertex: bool
+
+
+def seen_dots(shape: AnyShape, at: ActuatorPlaces) -> list[SeenDot]:
+    """Place each dot of a shape whose dots move, one by one, where it is at the time."""
+    assert shape.dots is not None
+    radius = shape.dots.dot.radius_mm
+    moved = shape.dots.velocity_mm_s * at.moved_s(shape.dots.velocity_by)
+    stay, rows = rows_of(shape)
+    whole = np.ones(at.x_mm.shape)
+    found = [SeenDot(np.hypot(*at.from_point(x, y)), whole, v) for x, y, v in stay]
+    if isinstance(shape, Circle):
+        (x, y), across = shape.center_mm, shape.radius_mm
+        for still in dots_of(shape):
+            turn = math.atan2(still.y_mm - y, still.x_mm - x) + math.fmod(moved / across, math.tau)
+            place = x + across * math.cos(turn), y + across * math.sin(turn)
+            found.append(SeenDot(np.hypot(*at.from_point(*place)), whole, False))
+        return found
+    for row in rows:
+        found += _row_dots(row, radius, math.fmod(moved, row.pitch_mm), at)
+    return found
+
+
+def _row_dots(row: DotRow, radius: float, moved: float, at: ActuatorPlaces) -> Iterator[SeenDot]:
+    """Dots of a row: they come and go over a millimetre, within its window."""
+    places = np.array(row.points_mm)
+    steps = np.diff(places, axis=0)
+    lengths = np.hypot(*steps.T)
+    ways = steps / lengths[:, np.newaxis]
+    ends = np.cumsum(lengths)
+    whole, closes = float(ends[-1]), math.isinf(row.begin_mm)
+    first = 0 if closes else -math.ceil(2 * radius / row.pitch_mm) - 1
+    last = round(whole / row.pitch_mm) - (1 if closes else first)
+    for k in range(first, last + 1):
+        along = k * row.pitch_mm + moved
+        along = along % whole if closes else along
+        n = min(int(np.searchsorted(ends, along, side="right")), len(lengths) - 1)
+        x, y = places[n] + (along - (ends[n] - lengths[n])) * ways[n]
+        dx, dy = at.from_point(x, y)
+        share = np.ones(dx.shape)
+        if not closes:
+            # Along the row's own direction where it begins, and where it ends.
+            begun = along + dx * ways[0, 0] + dy * ways[0, 1] - row.begin_mm
+            left = whole - row.end_mm - along - dx * ways[-1, 0] - dy * ways[-1, 1]
+            share = np.clip(begun, 0, 1) * np.clip(left, 0, 1)
+            for end, way, size, own, is_open in (
+                (places[0], -ways[0], lengths[0], n == 0, row.begin_mm < 0),
+                (places[-1], ways[-1], lengths[-1], n == len(lengths) - 1, row.end_mm < 0),
+            ):
+                if is_open and own and size >= 2 * radius:
+                    ex, ey = at.from_point(*end)
+                    past = ex * way[0] + ey * way[1] > 0
+                    share = np.where(past & (np.hypot(ex, ey) > radius), 0.0, share)
+        yield SeenDot(np.hypot(dx, dy), share, False)
+
+
+def moving_dots(shape: AnyShape, dotting: Dotting, at: ActuatorPlaces) -> Values:
+    """Compute dots of which some move; the largest counts."""
+    dot, most = dotting.dot, np.zeros(at.x_mm.shape)
+    for one in seen_dots(shape, at):
+        up = textured(dot_profile(dot, one.r), one.r, 2 * dot.radius_mm, dot.across)
+        own = one.vertex and dotting.vertex_vibration is not None
+        swing = dotting.vertex_vibration if own else dot.vibration
+        most = np.maximum(most, vibrated(dot.amplitude * up * one.share, at, swing))
+    return most
+
+
+def moving_profile(shape: AnyShape, dot: DotStyle, at: ActuatorPlaces, *, mask: bool) -> Values:
+    """Compute what hides a fill of dots that move, or as a mask what hides all."""
+    most = np.zeros(at.x_mm.shape)
+    for one in seen_dots(shape, at):
+        up = dot_profile(dot, one.r)
+        if mask:
+            up = np.maximum(up, textured(up, one.r, 2 * dot.radius_mm, dot.across))
+        most = np.maximum(most, up * one.share)
+    return most
+
+
 # Shapes
 
 
@@ -328,6 +434,8 @@ def drawn(shape: AnyShape, at: ActuatorPlaces) -> Values:
     """Compute a shape's stroke or its dots, without its fill."""
     if shape.stroke is not None:
         return stroke_deflection(shape, shape.stroke, at)
+    if shape.dots is not None and shape.dots.velocity_mm_s:
+        return moving_dots(shape, shape.dots, at)
     if shape.dots is not None:
         return dots_deflection(dots_of(shape), shape.dots.dot, at, shape.dots.vertex_vibration)
     return np.zeros(at.x_mm.shape)
@@ -337,6 +445,8 @@ def drawn_profile(shape: AnyShape, at: ActuatorPlaces) -> Values:
     """Compute the profile of a shape's stroke or of its dots, at full amplitude."""
     if shape.stroke is not None:
         return stroke_profile(shape.stroke, coordinates(shape, at).across_mm)
+    if shape.dots is not None and shape.dots.velocity_mm_s:
+        return moving_profile(shape, shape.dots.dot, at, mask=False)
     if shape.dots is not None:
         return dots_profile(dots_of(shape), shape.dots.dot, at)
     return np.zeros(at.x_mm.shape)
@@ -352,6 +462,8 @@ def drawn_mask(shape: AnyShape, at: ActuatorPlaces) -> Values:
     if shape.stroke is not None:
         r = coordinates(shape, at).across_mm
         return np.maximum(up, textured(up, r, shape.stroke.width_mm, shape.stroke.across))
+    if shape.dots is not None and shape.dots.velocity_mm_s:
+        return moving_profile(shape, shape.dots.dot, at, mask=True)
     if shape.dots is not None:
         return dots_mask(dots_of(shape), shape.dots.dot, at)
     return up

@@ -327,7 +327,8 @@ def line(node, place, now):
     away, along = distance_to_line(node, place)
     if has_dots(node):
         start, end = point(node, "start_point", (0.0, 0.0)), point(node, "end_point", SURFACE)
-        return dotted(node, place, 0.0, away, segment_dots(node, start, end), now)
+        places = segment_dots(node, start, end)
+        return dotted(node, 0.0, away, places, now, sliding(places, place, node, now))
     return stroked(node, away, along, 0.0, now)
 
 
@@ -349,8 +350,68 @@ def circle(node, place, now):
         places = [
             (center[0] + radius * math.cos(a), center[1] + radius * math.sin(a)) for a in turns
         ]
-        return dotted(node, place, background, away, places, now)
+        seen = turning(center, radius, place, node, now)
+        return dotted(node, background, away, places, now, (seen, 1.0))
     return stroked(node, away, along, background, now)
+
+
+def moves(node):
+    """Speed of the dots of a stroke, which move by an inherent cue."""
+    motion = node.find("stroke/motion")
+    return number(motion, "velocity", 50.0) if word(motion, "cue", "none") == "inherent" else 0.0
+
+
+def turning(center, radius, place, node, now):
+    """Where the dots of a circle are looked at: they turn once in whole microseconds."""
+    speed = moves(node)
+    if not speed:
+        return place
+    length = 2 * math.pi * radius
+    turn = -now.travelled(speed, length) * math.copysign(1e6 * length, speed)
+    turn *= 2 * math.pi / length / (math.floor(1e6 * length / abs(speed)))
+    x, y = place[0] - center[0], place[1] - center[1]
+    cosine, sine = math.cos(turn), math.sin(turn)
+    return center[0] + x * cosine - y * sine, center[1] + y * cosine + x * sine
+
+
+def sliding(places, place, node, now):
+    """Where the dots of a line are looked at, and the share of it that is shown.
+
+    The line is wrapped half a spacing before its first and after its last dot.
+    """
+    speed = moves(node)
+    if not speed:
+        return place, 1.0
+    (ax, ay), (bx, by) = places[0], places[-1]
+    length, spacing = math.dist(places[0], places[-1]), math.dist(places[0], places[1])
+    ux, uy = (bx - ax) / length, (by - ay) / length
+    _, along = to_segment(place, places[0], places[-1])
+    across = abs((place[1] - ay) * ux - (place[0] - ax) * uy)
+    from_begin, whole = along + spacing / 2, length + spacing
+    radius = number(node.find("stroke"), "width", 10.0) / 2
+    if not 0 <= from_begin <= whole or across > radius:
+        return place, 0.0
+    free = spacing / 2 - radius
+    share = min(from_begin - free, whole - free - from_begin)
+    at = (whole + from_begin - speed * now.travelled(speed, whole)) % whole - spacing / 2
+    return (ax + ux * at + uy * across, ay + uy * at - ux * across), min(max(share, 0.0), 1.0)
+
+
+def sliding_edge(start, end, spaces, cuts, radius, speed, place, now):
+    """The same on an edge of a polygon, whose corners' dots stay; None beyond its own dots."""
+    length = math.dist(start, end)
+    spacing = length / spaces
+    ux, uy = (end[0] - start[0]) / length, (end[1] - start[1]) / length
+    _, along = to_segment(place, start, end)
+    across = abs((place[1] - start[1]) * ux - (place[0] - start[0]) * uy)
+    at, whole = along - spacing / 2, length - spacing
+    if not 0 <= at <= whole or across > radius or spaces < 2:
+        return None
+    before, after = (max(0.0, cut - spacing / 2) for cut in cuts)
+    share = min(at - before, whole - after - at)
+    at = (whole + at - speed * now.travelled(speed, whole)) % whole + spacing / 2
+    seen = (start[0] + ux * at + uy * across, start[1] + uy * at - ux * across)
+    return seen, min(max(share, 0.0), 1.0)
 
 
 def apart(node):
@@ -374,18 +435,19 @@ def has_dots(node):
     return switch(None if stroke is None else stroke.find("dots"), "enable", False)
 
 
-def dotted(node, place, background, away, places, now):
+def dotted(node, background, away, places, now, seen):
     stroke = node.find("stroke")
     width = number(stroke, "width", 10.0)
     if away > width / 2:
         return number(stroke, "intensity", 1.0) * background
     row = stroke.find("dots")
     total = 0.0
+    looked_at, share = seen
     for at in places:
-        far = math.dist(place, at)
+        far = math.dist(looked_at, at)
         if far < width / 2:
             total += profile(stroke.find("ridge"), far, width, 1.0)
-    total = min(1.0, total * number(row, "height", 1.0))
+    total = share * min(1.0, total * number(row, "height", 1.0))
     total = vibrated(stroke.find("fill"), total, now)
     return number(stroke, "intensity", 1.0) * (total or background)
 
@@ -432,7 +494,19 @@ def dotted_polygon(node, vertices, place, background, away, now, swaps):
     vibration = stroke.find("fill").find("vibration")
     swings = vibration is not None and switch(vibration, "enable", True)
     angles = [Joint(vertices, i, width).angle for i in range(len(vertices))]
-    total = 0.0
+    total, seen = 0.0, (place, 1.0)
+    for i, start in enumerate(vertices):
+        if not moves(node):
+            break
+        end = vertices[(i + 1) % len(vertices)]
+        both = angles[i], angles[(i + 1) % len(vertices)]
+        least = apart(node) / min([1.0, *(math.sin(a) for a in both if a < math.pi / 2)])
+        spaces = math.floor(math.dist(start, end) / least)
+        cuts = [width / 2 / math.tan(a / 2) for a in both]
+        found = sliding_edge(start, end, spaces, cuts, width / 2, moves(node), place, now)
+        if found is not None:
+            seen = found
+            break
     for i, start in enumerate(vertices):
         end = vertices[(i + 1) % len(vertices)]
         sharp = [a for a in (angles[i], angles[(i + 1) % len(vertices)]) if a < math.pi / 2]
@@ -444,10 +518,10 @@ def dotted_polygon(node, vertices, place, background, away, now, swaps):
                 start[0] + (end[0] - start[0]) * share,
                 start[1] + (end[1] - start[1]) * share,
             )
-            far = math.dist(place, at)
+            far = math.dist(seen[0], at)
             if far < width / 2:
                 shown = swings != (swaps and j == 0)
                 up = profile(stroke.find("ridge"), far, width, 1.0)
                 total += up * (gain(vibration, now) if shown else 1.0)
-    total = min(1.0, total * number(stroke.find("dots"), "height", 1.0))
+    total = seen[1] * min(1.0, total * number(stroke.find("dots"), "height", 1.0))
     return intensity * (background if away > width / 2 else total or background)

@@ -30,6 +30,9 @@ DENT = ("20,20", "70,20", "45,35", "70,60", "20,60")
 CORNER = "<corner><enable>yes</enable>{}</corner>"
 MOTION = "<motion><cue>{}</cue><velocity>{}</velocity></motion>"
 
+DOTS_MOVE = "<dots><enable>yes</enable></dots>" + MOTION.format("inherent", "{}")
+SWINGS = f"<fill>{swings(50)}</fill>"
+
 CASES = {
     # Textures
     "linear grating": grating(),
@@ -275,6 +278,36 @@ def test_a_scene_feels_as_there(name, tmp_path):
         theirs = reference.deflections(text, at, sign, time)
         assert np.ptp(theirs) > 0.1 or name.split(",")[0] in FLAT
         np.testing.assert_allclose(ours, theirs, atol=1e-6, rtol=0, err_msg=name)
+
+
+# What moves is held as OpenLatero shows it: periods have whole microseconds.
+MOVING = {
+    "dotted line whose dots move": line(stroke(5, DOTS_MOVE.format(37), edge=0.8)),
+    "dotted line whose dots move back": line(stroke(4, DOTS_MOVE.format(-61) + SWINGS, edge=0.8)),
+    "dotted circle whose dots move": circle(stroke(5, DOTS_MOVE.format(37), edge=0.8)),
+    "dotted circle whose dots move back": circle(stroke(5, DOTS_MOVE.format(-20), edge=0.8)),
+    "dotted polygon whose dots move": polygon(
+        stroke(3, DOTS_MOVE.format(37) + "<fill/>", edge=0.8), DENT
+    ),
+    "dotted polygon whose dots move and whose corners vibrate": polygon(
+        CORNER.format("") + stroke(3, DOTS_MOVE.format(-45) + SWINGS), SQUARE
+    ),
+}
+
+
+@pytest.mark.parametrize("name", MOVING)
+def test_what_moves_by_itself_feels_as_there(name, tmp_path):
+    text = scene(MOVING[name])
+    path = tmp_path / "old.gen"
+    path.write_text(text)
+    found = read_gen(path, as_shown=True).scene
+    at = places(found.canvas, 200)
+    x, y = zip(*at, strict=True)
+    for parity, sign, time in ((0, 1.0, 0.0137), (1, -1.0, 1.903), (0, 1.0, 3.3)):
+        ours = deflections(found, Assets(), x, y, parity, time)
+        theirs = reference.deflections(text, at, sign, time)
+        assert np.ptp(theirs) > 0.1
+        np.testing.assert_allclose(ours, theirs, atol=2e-4, rtol=0, err_msg=name)
 
 
 MODULATOR = '<Modulator type="{}">{}</Modulator>'

@@ -85,10 +85,6 @@ DIFFERENT = {
         texture("Motion", f"<cue_type>vibration bands</cue_type>{grating()}"),
         'the moving bands of its cue "vibration bands" are 2 mm wide here, 30 apart',
     ),
-    "moving dots": (
-        line(stroke(4, "<dots><enable>yes</enable></dots><motion><cue>inherent</cue></motion>")),
-        "the dots stand still here",
-    ),
     "an inverted texture along a stroke": (
         line(stroke(9, f"<fill>{waves(inside='<invert>yes</invert>')}</fill>")),
         "fill Grating is inverted",

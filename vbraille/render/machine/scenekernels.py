@@ -123,6 +123,12 @@ def evaluate(numbers, table, rows, start, count, gates, time, left, right, top_m
         elif operation == w.DOTS_MASK:
             strokes.dots_mask(numbers, rows, place, block, first, parts, top, count)
             top += 1
+        elif operation == w.MOVING_DOTS:
+            strokes.moving_dots(numbers, rows, place, time, block, first, parts, top, count)
+            top += 1
+        elif operation == w.MOVING_DOTS_MASK:
+            strokes.moving_dots_mask(numbers, rows, place, time, block, first, parts, top, count)
+            top += 1
         elif operation == w.CIRCLE:
             shapes.circle(numbers, rows, place, count)
         elif operation == w.SEGMENTS:

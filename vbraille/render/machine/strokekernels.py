@@ -18,7 +18,7 @@ from vbraille.render.machine.words import (
     X_ROW,
     Y_ROW,
 )
-from vbraille.render.waves import compiled, fall, hump, wave
+from vbraille.render.waves import angle, compiled, fall, hump, wave
 
 NO_VIBRATION, HIGH, LOW = 0.0, 1.0, 2.0
 # Constants after those of the profile, of a stroke and of dots.
@@ -39,6 +39,31 @@ NO_VIBRATION, HIGH, LOW = 0.0, 1.0, 2.0
     _MARKS_SHARE,
     STROKE_NUMBERS,
 ) = range(5, 20)
+# Numbers of a row of dots that moves along a segment, or around a circle, or of a dot that stays.
+(
+    ROW_X,  # start of the segment, or middle of the circle
+    ROW_Y,
+    ROW_RIGHT,
+    ROW_DOWN,
+    ROW_LENGTH,
+    ROW_RADIUS,  # of a circle; 0 for a segment
+    ROW_AT,  # place along the row where the segment begins
+    ROW_PITCH,
+    ROW_MOVES,  # 1 if it does, 0 for a dot that stays
+    ROW_VERTEX,  # 1 for a dot on a vertex
+    ROW_LOW,  # the dots of the row that are on this segment
+    ROW_HIGH,
+    ROW_BEGIN,  # place along the row where its window begins, and the row's direction there, as
+    ROW_BEGIN_ALONG,  # seen from the segment
+    ROW_BEGIN_ACROSS,
+    ROW_END,
+    ROW_END_ALONG,
+    ROW_END_ACROSS,
+    ROW_OPEN_BEGIN,  # 1 if dots are cut off beyond a round end there
+    ROW_OPEN_END,
+    ROW_NUMBERS,
+) = range(21)
+_FADES_PER_MM = 1.0  # of dots that come and go
 
 
 @compiled
@@ -199,6 +224,113 @@ def dots_mask(numbers, rows, at, block, first, parts, top, count):
             if weight != 0.0:
                 more = weight * (0.5 + 0.5 * wave(r * cycles) - value)
                 value += more if more > 0.0 and r < edge else 0.0
+            rows[top, n] = value if value > rows[top, n] else rows[top, n]
+
+
+@compiled
+def _nearest_dot(numbers, rows, part, moved, edge, count):
+    """Find the distance r of the nearest dot of a row, and what its window leaves of it: 9.3.3.
+
+    ``moved`` is how far the row has moved, and ``edge`` how far a dot reaches.
+    """
+    x, y, pitch = numbers[part + ROW_X], numbers[part + ROW_Y], numbers[part + ROW_PITCH]
+    shift = numbers[part + ROW_MOVES] * moved / pitch
+    shift = pitch * (shift - math.floor(shift))
+    radius = numbers[part + ROW_RADIUS]
+    if radius > 0.0:
+        for n in range(count):
+            dx, dy = rows[X_ROW, n] - x, rows[Y_ROW, n] - y
+            along = radius * angle(dx, dy) - shift
+            along -= pitch * math.floor(along / pitch + 0.5)
+            away, half = math.sqrt(dx * dx + dy * dy), math.sin(0.5 * along / radius)
+            across = away - radius
+            r = math.sqrt(across * across + 4.0 * away * radius * half * half)
+            rows[FREE_ROW, n], rows[SPARE_ROW, n] = r, 1.0
+        return
+    right, down = numbers[part + ROW_RIGHT], numbers[part + ROW_DOWN]
+    start, length = numbers[part + ROW_AT], numbers[part + ROW_LENGTH]
+    low, high = numbers[part + ROW_LOW], numbers[part + ROW_HIGH]
+    begin, end = numbers[part + ROW_BEGIN], numbers[part + ROW_END]
+    begin_along, begin_across = numbers[part + ROW_BEGIN_ALONG], numbers[part + ROW_BEGIN_ACROSS]
+    end_along, end_across = numbers[part + ROW_END_ALONG], numbers[part + ROW_END_ACROSS]
+    open_begin = numbers[part + ROW_OPEN_BEGIN] != 0.0
+    open_end = numbers[part + ROW_OPEN_END] != 0.0
+    for n in range(count):
+        dx, dy = rows[X_ROW, n] - x, rows[Y_ROW, n] - y
+        u, across = dx * right + dy * down, dy * right - dx * down
+        along = start + u - shift
+        along -= pitch * math.floor(along / pitch + 0.5)
+        dot = start + u - along
+        share = (dot + along * begin_along + across * begin_across - begin) * _FADES_PER_MM
+        share = share if share > 0.0 else 0.0
+        share = share if share < 1.0 else 1.0
+        rest = (end - dot - along * end_along - across * end_across) * _FADES_PER_MM
+        rest = rest if rest > 0.0 else 0.0
+        rest = rest if rest < 1.0 else 1.0
+        beyond = (-u if open_begin and u < 0.0 else 0.0) + (
+            u - length if open_end and u > length else 0.0
+        )
+        seen = (low <= dot < high) & (
+            (beyond == 0.0) | (beyond * beyond + across * across <= edge * edge)
+        )
+        rows[FREE_ROW, n] = math.sqrt(along * along + across * across)
+        rows[SPARE_ROW, n] = share * rest if seen else 0.0
+
+
+@compiled
+def _moved_mm(numbers, rows, at, time):
+    """Tell how far the dots of a shape have moved."""
+    passed = passed_s(rows, numbers[at + CLOCK], time)
+    return numbers[at + VELOCITY] * passed if passed == passed else 0.0
+
+
+@compiled
+def moving_dots(numbers, rows, at, time, block, first, parts, top, count):
+    """Dots of which some move along a path, of which the highest counts: 9.3.3."""
+    weight, cycles = numbers[at + 3], numbers[at + 4]
+    flat, sharp, edge = numbers[at], numbers[at + 1], numbers[at + 2]
+    amplitude, swing, marks = numbers[at + AMPLITUDE], numbers[at + SWING], numbers[at + MARKS]
+    moved = _moved_mm(numbers, rows, at, time)
+    for n in range(count):
+        rows[top, n] = 0.0
+    for number in range(parts):
+        part = block + int(numbers[first + number])
+        _nearest_dot(numbers, rows, part, moved, edge, count)
+        for n in range(count):
+            r = rows[FREE_ROW, n]
+            value = fall((r - flat) * sharp)
+            if weight != 0.0:
+                texture = 0.5 + 0.5 * wave(r * cycles)
+                value += weight * ((texture if r < edge else 0.0) - value)
+            rows[FREE_ROW, n] = amplitude * value * rows[SPARE_ROW, n]
+        on_vertex = numbers[part + ROW_VERTEX] != 0.0 and marks != 0.0
+        if on_vertex or swing == HIGH:
+            _share_left(numbers, rows, at + (MARKS if on_vertex else SWING), time, count)
+            for n in range(count):
+                rows[FREE_ROW, n] *= rows[SPARE_ROW, n]
+        for n in range(count):
+            value = rows[FREE_ROW, n]
+            rows[top, n] = value if value > rows[top, n] else rows[top, n]
+
+
+@compiled
+def moving_dots_mask(numbers, rows, at, time, block, first, parts, top, count):
+    """Opacity mask of dots of which some move."""
+    weight, cycles = numbers[at + 3], numbers[at + 4]
+    flat, sharp, edge = numbers[at], numbers[at + 1], numbers[at + 2]
+    moved = _moved_mm(numbers, rows, at, time)
+    for n in range(count):
+        rows[top, n] = 0.0
+    for number in range(parts):
+        part = block + int(numbers[first + number])
+        _nearest_dot(numbers, rows, part, moved, edge, count)
+        for n in range(count):
+            r = rows[FREE_ROW, n]
+            value = fall((r - flat) * sharp)
+            if weight != 0.0:
+                more = weight * (0.5 + 0.5 * wave(r * cycles) - value)
+                value += more if more > 0.0 and r < edge else 0.0
+            value *= rows[SPARE_ROW, n]
             rows[top, n] = value if value > rows[top, n] else rows[top, n]
 
 

@@ -76,7 +76,9 @@ OPERATIONS = 64
     BY_SIGNAL,  # change of the uppermost: times a signal
     GATE,  # push 0, once or twice, instead of the words that follow, if these are shut
     SHIFT,  # places are moved, until UNWRAP
-) = range(43)
+    MOVING_DOTS,  # push dots that move along the path of a shape
+    MOVING_DOTS_MASK,
+) = range(45)
 
 # How what a CALL pushes joins what is on the stack: by one of the words from ADD to OVER_ITSELF, or
 # not at all, as one row or as a pair.

@@ -232,8 +232,7 @@ def _frequencies(pattern: AnyPattern) -> Iterator[float]:
     for vibration in (pattern.vibration, *drawn_vibrations(pattern)):
         if vibration is not None and vibration.amplitude > 0.0:
             yield vibration.frequency_hz
-    if pattern.wave is not None and pattern.wave.speed:
-        yield pattern.wave.flow_hz
+    yield from (flow.flow_hz for flow in pattern.flows)
     if isinstance(pattern, Moving) and any(pattern.velocity_mm_s):
         yield _MOVING_HZ
 

@@ -15,13 +15,14 @@ So a filled shape has as parts its segments, the wall without ends, and a wall f
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import TYPE_CHECKING
 
 from vbraille.render.machine import shapekernels as places
 from vbraille.render.scene.grid import AROUND, CAPSULE, EDGE, RING, WALL
-from vbraille.scene.bounds import around, drawn_radius_mm
-from vbraille.scene.dotting import dots_of
+from vbraille.scene.bounds import around, drawn_radius_mm, reach_mm
+from vbraille.scene.dotting import rows_of
 from vbraille.scene.joints import (
     edge_lengths_mm,
     joints,
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from vbraille.render.scene.nodes import Enclosed
+    from vbraille.scene.dotting import DotRow
     from vbraille.scene.joints import Cycle, Joint
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import Fill
@@ -207,18 +209,97 @@ def marker_reach_mm(shape: AnyShape) -> float:
     return reach + _ROUNDING_MM
 
 
-def enclosed_dots(pattern: AnyShape | Dots) -> tuple[Enclosed, ...]:
-    """Tell what each of the dots of a pattern, or of a dotted shape, lies in."""
+def dots_move(pattern: ShapeOrDots) -> bool:
+    """Tell whether the dots of a pattern move along its path."""
+    return not isinstance(pattern, Dots) and bool(pattern.dots and pattern.dots.velocity_mm_s)
+
+
+def moving_dots(shape: AnyShape) -> list[tuple[float, ...]]:
+    """Numbers of the dots of a shape that stay, then of the segments of its rows that move."""
+    stay, rows = rows_of(shape)
+    there = (0.0, -_OPEN, 0.0)  # length, pitch, motion
+    found = [_row_numbers((dot[:2], (1.0, 0.0), *there), vertex=float(dot.vertex)) for dot in stay]
+    for row in rows:
+        if isinstance(shape, Circle):
+            place = (shape.center_mm, (1.0, 0.0), 0.0, row.pitch_mm, 1.0)
+            found.append(_row_numbers(place, radius=shape.radius_mm))
+        else:
+            found += _row_segments(row, drawn_radius_mm(shape))
+    return found
+
+
+def _row_segments(row: DotRow, radius_mm: float) -> Iterator[tuple[float, ...]]:
+    """Numbers of the segments of a row of dots of a radius."""
+    pairs = [_segment(*pair) for pair in itertools.pairwise(row.points_mm)]
+    closes = math.isinf(row.begin_mm)
+    whole = sum(pair[places.LENGTH] for pair in pairs)
+    begin, end = max(row.begin_mm, _OPEN), min(whole - row.end_mm, -_OPEN)
+    first, last = pairs[0], pairs[-1]
+    along = 0.0
+    for number, pair in enumerate(pairs):
+        length = pair[places.LENGTH]
+        is_first, is_last = number == 0, number == len(pairs) - 1
+        low = _OPEN if is_first and not closes else along
+        high = -_OPEN if is_last and not closes else along + length
+        # A dot beyond a bend that is nearer than it reaches might be cut off, too.
+        long = length >= 2 * radius_mm
+        open_begin = is_first and row.begin_mm < 0 and not closes and long
+        open_end = is_last and row.end_mm < 0 and not closes and long
+        yield _row_numbers(
+            (pair[:2], pair[2:4], length, row.pitch_mm, 1.0),
+            start=along,
+            owns=(low, high),
+            begin=(begin, *_turned(first, pair)),
+            end=(end, *_turned(last, pair)),
+            open_ends=(float(open_begin), float(open_end)),
+        )
+        along += length
+
+
+def _turned(seen: Sequence[float], segment: Sequence[float]) -> tuple[float, float]:
+    """Direction of a segment as it is seen from another: along that, and across."""
+    right, down = seen[places.RIGHT], seen[places.DOWN]
+    along, across = segment[places.RIGHT], segment[places.DOWN]
+    return along * right + across * down, along * down - across * right
+
+
+def _row_numbers(
+    place: tuple[Sequence[float], Sequence[float], float, float, float],
+    *,
+    radius: float = 0.0,
+    start: float = 0.0,
+    vertex: float = 0.0,
+    owns: tuple[float, float] = (_OPEN, -_OPEN),
+    begin: tuple[float, float, float] = (_OPEN, 0.0, 0.0),
+    end: tuple[float, float, float] = (-_OPEN, 0.0, 0.0),
+    open_ends: tuple[float, float] = (0.0, 0.0),
+) -> tuple[float, ...]:
+    """Numbers of a part of dots that may move, as `strokekernels` has them."""
+    at, direction, length, pitch, moves = place
+    own = (*at, *direction, length, radius, start, pitch, moves, vertex)
+    return (*own, *owns, *begin, *end, *open_ends)
+
+
+def enclosed_dots(pattern: ShapeOrDots) -> tuple[Enclosed, ...]:
+    """Tell what each of the dots of a pattern, or of a dotted shape, lies in.
+
+    Of a shape whose dots move these are the parts of `moving_dots`.
+    """
     if isinstance(pattern, Dots):
-        radius, places = pattern.dot.radius_mm, pattern.centers_mm
+        dots, rows, radius = pattern.centers_mm, (), pattern.dot.radius_mm
     else:
-        radius, places = drawn_radius_mm(pattern), [dot[:2] for dot in dots_of(pattern)]
-    return tuple((CAPSULE, x, y, x, y, radius) for x, y in places)
+        dots, rows = rows_of(pattern)
+        radius = reach_mm(pattern)
+        if isinstance(pattern, Circle) and rows:
+            return ((RING, *pattern.center_mm, pattern.radius_mm, 0.0, radius),)
+    capsules = [(dot[:2], dot[:2]) for dot in dots]
+    capsules += [pair for row in rows for pair in itertools.pairwise(row.points_mm)]
+    return tuple((CAPSULE, *start, *end, radius) for start, end in capsules)
 
 
 def enclosed_stroke(shape: AnyShape) -> tuple[Enclosed, ...]:
     """Tell what a circle's stroke, or each segment of another shape, lies in."""
-    radius = drawn_radius_mm(shape)
+    radius = reach_mm(shape)
     if isinstance(shape, Circle):
         return ((RING, *shape.center_mm, shape.radius_mm, 0.0, radius),)
     radius = max(radius, marker_reach_mm(shape))
@@ -232,7 +313,7 @@ def enclosed_fill(shape: AnyShape, fill: Fill) -> tuple[Enclosed, ...]:
     reach = drawn_radius_mm(shape)
     if not fill.blended:
         reach += fill.gap_mm + fill.fade_mm
-    reach = max(reach, marker_reach_mm(shape)) + _ROUNDING_MM
+    reach = max(reach, reach_mm(shape), marker_reach_mm(shape)) + _ROUNDING_MM
     edges: list[Enclosed] = []
     walls: list[Enclosed] = []
     places: list[Point] = []

@@ -12,7 +12,6 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, cast
 
-import msgspec
 import numpy as np
 
 from vbraille.render.machine import shapekernels as places
@@ -25,9 +24,11 @@ from vbraille.render.scene.paths import (
     AnyShape,
     ShapeOrDots,
     differ,
+    dots_move,
     enclosed_dots,
     enclosed_fill,
     enclosed_stroke,
+    moving_dots,
     segments,
     walls,
 )
@@ -58,10 +59,10 @@ from vbraille.scene.textures import (
     Uniform,
     UniformVibration,
 )
-from vbraille.scene.traversal import each
+from vbraille.scene.traversal import each, signals_of, with_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from vbraille.render.scene.labels import Assets, PackedLabel
     from vbraille.render.scene.nodes import WordBlock
@@ -410,13 +411,11 @@ def is_apart(pattern: ShapeOrDots) -> bool:
 
 
 def _with_clock(pattern: ShapeOrDots, assets: Assets) -> ShapeOrDots:
-    """Shape in which a signal that moves a texture along it has its number for its name."""
-    stroke = None if isinstance(pattern, Dots) else pattern.stroke
-    along = None if stroke is None else stroke.along
-    if stroke is None or along is None or not along.velocity_by:
-        return pattern
-    along = msgspec.structs.replace(along, velocity_by=str(_clock(along.velocity_by, assets)))
-    return msgspec.structs.replace(pattern, stroke=msgspec.structs.replace(stroke, along=along))
+    """Shape in which signals that move something along it have their numbers for their names."""
+    for steps, name in signals_of(pattern):
+        if steps[-1] == "velocity_by":
+            pattern = cast("ShapeOrDots", with_name(pattern, steps, str(_clock(name, assets))))
+    return pattern
 
 
 def shape_apart(shape: AnyShape, texture: Node | None, assets: Assets) -> Node:
@@ -544,7 +543,7 @@ def say_shape(
         Places of its parts among the block's constants, if it is told.
     """
     if shape.dots is not None:
-        return say_dots(_dotting(shape), dots_of(shape), block, parts, _vertices(shape))
+        return _say_dotted(shape, block, parts)
     if say_fill is None:
         return _say_stroke(shape, block, parts)
     return say_fill_alone(shape, say_fill, block, parts, drawn=True)
@@ -595,8 +594,7 @@ def say_shape_mask(
     That of a dotted shape is without its fill.
     """
     if shape.dots is not None:
-        style = _dotting(shape)
-        return say_dots_mask(style, dots_of(shape), block, parts, style.across, paired)
+        return _say_dotted_mask(shape, block, parts, _dotting(shape).across, paired)
     filled = fill_of(shape) is not None
     kept = [] if paired else _say_places(shape, block, parts, filled)
     if shape.stroke is not None:
@@ -620,9 +618,8 @@ def say_fill_mask(shape: AnyShape, block: WordBlock, parts: bool) -> list[int]:
 def say_stroke_pair(shape: AnyShape, block: WordBlock, parts: bool) -> list[int]:
     """Say what a filled shape is drawn with, and its profile, which blends it into the fill."""
     if shape.dots is not None:
-        style, dots = _dotting(shape), dots_of(shape)
-        kept = say_dots(style, dots, block, parts, _vertices(shape))
-        say_dots_mask(style, dots, block, parts, None, paired=True)
+        kept = _say_dotted(shape, block, parts)
+        _say_dotted_mask(shape, block, parts, None, paired=True)
         return kept
     assert shape.stroke is not None
     kept = _say_stroke(shape, block, parts)
@@ -639,12 +636,27 @@ def say_dots(
 ) -> list[int]:
     """Say dots; see `say_shape`."""
     kept = _keep_dots(dots, block, parts)
-    numbers = [0.0] * strokes.STROKE_NUMBERS
-    numbers[: strokes.AMPLITUDE] = _dot_profile(style, style.across)
-    numbers[strokes.AMPLITUDE] = style.amplitude
-    numbers[strokes.SWING : strokes.SWING + 3] = _swing(style.vibration)
-    numbers[strokes.MARKS : strokes.MARKS + 3] = _swing(vertices)
-    block.say(words.DOTS, *numbers)
+    block.say(words.DOTS, *_dot_numbers(style, vertices))
+    return kept
+
+
+def _say_dotted(shape: AnyShape, block: WordBlock, parts: bool) -> list[int]:
+    """Say the dots along a shape, which may move."""
+    if not dots_move(shape):
+        return say_dots(_dotting(shape), dots_of(shape), block, parts, _vertices(shape))
+    kept = _keep_parts(moving_dots(shape), block, parts)
+    block.say(words.MOVING_DOTS, *_moving_numbers(shape, _dotting(shape).across))
+    return kept
+
+
+def _say_dotted_mask(
+    shape: AnyShape, block: WordBlock, parts: bool, across: Across | None, paired: bool
+) -> list[int]:
+    """Say the opacity mask of the dots along a shape; see `say_dots_mask`."""
+    if not dots_move(shape):
+        return say_dots_mask(_dotting(shape), dots_of(shape), block, parts, across, paired)
+    kept = [] if paired and parts else _keep_parts(moving_dots(shape), block, parts)
+    block.say(words.MOVING_DOTS_MASK, *_moving_numbers(shape, across))
     return kept
 
 
@@ -702,6 +714,25 @@ def _swing(vibration: Vibration | None) -> tuple[float, float, float]:
     return (_SWINGS[vibration.of], vibration.frequency_hz, vibration.amplitude)
 
 
+def _dot_numbers(style: DotStyle, vertices: Vibration | None) -> list[float]:
+    numbers = [0.0] * strokes.STROKE_NUMBERS
+    numbers[: strokes.AMPLITUDE] = _dot_profile(style, style.across)
+    numbers[strokes.AMPLITUDE] = style.amplitude
+    numbers[strokes.SWING : strokes.SWING + 3] = _swing(style.vibration)
+    numbers[strokes.MARKS : strokes.MARKS + 3] = _swing(vertices)
+    return numbers
+
+
+def _moving_numbers(shape: AnyShape, across: Across | None) -> list[float]:
+    """Numbers of dots that move along a shape, with this texture across them."""
+    assert shape.dots is not None
+    numbers = _dot_numbers(shape.dots.dot, shape.dots.vertex_vibration)
+    numbers[: strokes.AMPLITUDE] = _dot_profile(shape.dots.dot, across)
+    numbers[strokes.VELOCITY] = shape.dots.velocity_mm_s
+    numbers[strokes.CLOCK] = float(shape.dots.velocity_by or -1.0)
+    return numbers
+
+
 def _stroke_numbers(shape: AnyShape, stroke: Stroke) -> list[float]:
     numbers = [0.0] * strokes.STROKE_NUMBERS
     numbers[: strokes.AMPLITUDE] = _profile(stroke.width_mm, stroke.edge, stroke.across)
@@ -743,7 +774,11 @@ def _vertices(shape: AnyShape) -> Vibration | None:
 
 
 def _keep_dots(dots: Sequence[PlacedDot], block: WordBlock, parts: bool) -> list[int]:
-    kept = block.keep((dot.x_mm, dot.y_mm, float(dot.vertex)) for dot in dots)
+    return _keep_parts(((dot.x_mm, dot.y_mm, float(dot.vertex)) for dot in dots), block, parts)
+
+
+def _keep_parts(numbers: Iterable[tuple[float, ...]], block: WordBlock, parts: bool) -> list[int]:
+    kept = block.keep(numbers)
     if not parts:
         block.say_parts(kept)
     return kept

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from vbraille.errors import needing_extras
+from vbraille.scene.dotting import rows_of
 from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.joints import joints, rounding_radius_mm
 from vbraille.scene.measures import LEAST_MM, MOST_MM
@@ -134,7 +136,7 @@ def drawn(shape: GenElement, context: GenContext, *, corners_swing: bool = False
         element.say(f"stroke width is {width:g}, so there is no stroke")
         return StrokeLook(intensity, None, None)
     if is_dotted:
-        _speed(element, fill, None, context)
+        speed = _speed(element, fill, None, context)
         if fill is not None:
             fill.skip("Grating", "gutter")
         dot = DotStyle(
@@ -144,7 +146,12 @@ def drawn(shape: GenElement, context: GenContext, *, corners_swing: bool = False
             across=across,
             vibration=swing,
         )
-        dots = Dotting(dot=dot, separation_mm=row["min_spacing"], vertex_vibration=corners)
+        dots = Dotting(
+            dot=dot,
+            separation_mm=row["min_spacing"],
+            vertex_vibration=corners,
+            velocity_mm_s=speed,
+        )
         return StrokeLook(intensity, None, dots)
     row.forget()
     stroke = _stroke(fill, context, Stroke(width_mm=width, edge_mm=edge, across=across), swing)
@@ -254,7 +261,7 @@ def _along(fill: GenElement) -> Along | None:
 def _speed(
     stroke: GenElement, fill: GenElement | None, along: Along | None, context: GenContext
 ) -> float:
-    """Speed of the texture along a stroke, in mm/s, once the cues that are not shown are said."""
+    """Speed of the texture along a stroke, or of the dots in its place, in mm/s."""
     own = 0.0
     if fill is not None and along is not None:
         own = speed_of(fill.part("Grating"), "mm", along.wave.length)
@@ -264,9 +271,7 @@ def _speed(
     cue = motion["cue"] if motion.one("cue") else None
     speed = motion["velocity"]
     motion.forget()
-    if cue == "inherent" and stroke.part("dots", DOTS)["enable"]:
-        motion.say("the dots stand still here, and move along the shape in OpenLatero")
-    elif cue not in (None, "none", "inherent"):
+    if cue not in (None, "none", "inherent"):
         motion.say(f'the motion cue "{cue}" is not shown')
     shown = speed if cue == "inherent" else own if cue is None else 0.0
     return shown if along is None else travelled(shown, along.wave.length, context)
@@ -312,9 +317,11 @@ def _line(element: GenElement, context: GenContext) -> AnyPattern | None:
     look = drawn(element, context)
     if look.stroke is None and look.dots is None:
         return _nothing(element)
-    return StraightLine(
+    made = StraightLine(
         start_mm=start, end_mm=end, amplitude=look.intensity, stroke=look.stroke, dots=look.dots
     )
+    _, rows = rows_of(made)
+    return _paced(made, math.dist(start, end) + rows[0].pitch_mm, context) if rows else made
 
 
 @ROWS.row("Circle", center=ORIGIN, radius=NumberField(100.0))
@@ -324,7 +331,7 @@ def _circle(element: GenElement, context: GenContext) -> AnyPattern | None:
     fill = _fill(element, context, look)
     if look.stroke is None and look.dots is None and fill is None:
         return _nothing(element)
-    return Circle(
+    made = Circle(
         center_mm=center,
         radius_mm=radius,
         amplitude=look.intensity,
@@ -332,6 +339,17 @@ def _circle(element: GenElement, context: GenContext) -> AnyPattern | None:
         dots=look.dots,
         fill=fill,
     )
+    return _paced(made, math.tau * radius, context)
+
+
+def _paced(
+    shape: StraightLine | Circle, length_mm: float, context: GenContext
+) -> StraightLine | Circle:
+    """Shape whose dots, if they move, come round after whole microseconds, as they do there."""
+    if shape.dots is None:
+        return shape
+    speed = travelled(shape.dots.velocity_mm_s, length_mm, context)
+    return replace(shape, dots=replace(shape.dots, velocity_mm_s=speed))
 
 
 @ROWS.row("Polygon")
@@ -364,6 +382,11 @@ def _polygon(element: GenElement, context: GenContext) -> AnyPattern | None:
     )
     if look.stroke is not None and (markers is not None or (look.stroke.along and not straight)):
         _say_tight(element, made)
+    if context.as_shown and look.dots is not None and look.dots.velocity_mm_s:
+        element.say(
+            "its dots come round after whole microseconds there, on each edge by itself; in 10 s "
+            "they are up to 0.001 mm apart from those here"
+        )
     return made
 
 
