@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.display import Display
+    from vbraille.feeling.costs import CostMap
     from vbraille.render.scene.labels import Assets
     from vbraille.scene.scene import Canvas, Scene
 
@@ -378,29 +379,26 @@ def _turned(offsets_mm: NDArray[np.floating], place: ArrayPlace) -> NDArray[np.f
     )
 
 
-_INCHES = 10.0, 4.0
+_INCHES = 13.0, 4.0
 _PALEST = 0.9  # gray of the lowest cost; the highest is black
 _BARS = 20
 _PIXELS_PER_MM = 6.0
 
 
 def draw_costs(
-    mean_us: NDArray[np.float64],
-    step_mm: float,
+    places: CostMap,
+    velocities: CostMap,
     path: Path,
     *,
     title: str,
     frame_us: NDArray[np.float64],
 ) -> None:
-    """Draw a map of what a frame costs at each place, and a histogram, into a file.
+    """Draw maps of what a frame costs at each place and velocity, and a histogram, into a file.
 
     Parameters
     ----------
-    mean_us : float64[rows, columns]
-        Mean time of a frame in each square of the canvas, from its upper left corner; NaN where
-        there was none.
-    step_mm
-        Side of a square.
+    places, velocities
+        Mean time of a frame in each square of the canvas, and of the hand's velocities.
     path
         The file, whose suffix is .png, .svg or .pdf; it is replaced if it is there.
     title
@@ -418,14 +416,14 @@ def draw_costs(
     kind = path.suffix.lower().removeprefix(".")
     if kind not in KINDS:
         raise InputError(f"cannot draw to {path}: end its name in .png, .svg or .pdf")
-    figure = costs_figure(mean_us, step_mm, title, frame_us)
-    words = "; ".join(costs_words(mean_us, step_mm))
+    figure = costs_figure(places, velocities, title, frame_us)
+    words = "; ".join(costs_words(places, velocities))
     content = drawing_bytes(figure, kind, _PIXELS_PER_MM, f"{title}: time of a frame", words)
     write_file(path, content, replace=True)
 
 
 def costs_figure(
-    mean_us: NDArray[np.float64], step_mm: float, title: str, frame_us: NDArray[np.float64]
+    places: CostMap, velocities: CostMap, title: str, frame_us: NDArray[np.float64]
 ) -> Figure:
     """Make the figure of `draw_costs`, whose arguments it has.
 
@@ -434,25 +432,31 @@ def costs_figure(
     InputError
         If no square has a time.
     """
-    if not np.isfinite(mean_us).any():
+    if not np.isfinite(places.mean_us).any():
         raise InputError(
             f"no frame was on the canvas, so that there is nothing to draw; choose another "
             f"{setting('path')}"
         )
-    rows, columns = mean_us.shape
+    rows, columns = (places.step * n for n in places.mean_us.shape)
+    fastest = velocities.step * len(velocities.mean_us) / 2
     with styled():
         figure = Figure(figsize=_INCHES)
         FigureCanvasAgg(figure)
-        place, bars = figure.subplots(1, 2, width_ratios=(3, 2))
+        place, speed, bars = figure.subplots(1, 3, width_ratios=(3, 2, 2))
         grays = LinearSegmentedColormap.from_list("costs", [str(_PALEST), "0"])
-        image = place.imshow(
-            np.ma.masked_invalid(mean_us),
-            cmap=grays,
-            extent=(0, columns * step_mm, rows * step_mm, 0),
-            interpolation="none",
-        )
+        for axes, shown, extent in (
+            (place, places, (0, columns, rows, 0)),
+            (speed, velocities, (-fastest, fastest, fastest, -fastest)),
+        ):
+            image = axes.imshow(
+                np.ma.masked_invalid(shown.mean_us),
+                cmap=grays,
+                extent=extent,
+                interpolation="none",
+            )
+            figure.colorbar(image, ax=axes, label="µs")
         place.set(xlabel="mm", ylabel="mm")
-        figure.colorbar(image, ax=place, label="µs")
+        speed.set(xlabel="hand to the right, mm/s", ylabel="hand down, mm/s")
         bars.hist(
             frame_us, bins=_BARS, color="0.3", weights=np.full(frame_us.size, 100 / frame_us.size)
         )
@@ -462,15 +466,25 @@ def costs_figure(
     return figure
 
 
-def costs_words(mean_us: NDArray[np.float64], step_mm: float) -> list[str]:
-    """Tell what a map of costs shows, a line for each thing; `costs_figure` has the arguments."""
-    known = mean_us[np.isfinite(mean_us)]
-    row, column = np.unravel_index(np.nanargmax(mean_us), mean_us.shape)
-    x, y = (float(at + 0.5) * step_mm for at in (column, row))
-    return [
-        f"squares: {mean_us.shape[1]} × {mean_us.shape[0]} of {step_mm:g} mm, darker where a frame "
-        "takes longer, white where none was",
+def costs_words(places: CostMap, velocities: CostMap) -> list[str]:
+    """Tell what maps of costs show, a line for each thing; `costs_figure` has the arguments."""
+    known = places.mean_us[np.isfinite(places.mean_us)]
+    down, right = np.unravel_index(np.nanargmax(places.mean_us), places.mean_us.shape)
+    x, y = (float(at + 0.5) * places.step for at in (right, down))
+    said = [
+        f"squares: {places.mean_us.shape[1]} × {places.mean_us.shape[0]} of {places.step:g} mm, "
+        "darker where a frame takes longer, white where none was",
         f"least: {known.min():.2f} µs",
         f"median: {np.median(known):.2f} µs",
         f"most: {known.max():.2f} µs, around ({x:g}, {y:g}) mm",
     ]
+    if np.isfinite(velocities.mean_us).any():
+        middle = (np.array(velocities.mean_us.shape) - 1) / 2
+        for name, found in (("cheapest", np.nanargmin), ("dearest", np.nanargmax)):
+            square = np.unravel_index(found(velocities.mean_us), velocities.mean_us.shape)
+            vy, vx = (np.array(square) - middle) * velocities.step
+            said.append(
+                f"{name} velocity: {velocities.mean_us[square]:.2f} µs, around {vx + 0.0:.0f} mm/s "
+                f"to the right and {vy + 0.0:.0f} mm/s down"
+            )
+    return said
