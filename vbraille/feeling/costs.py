@@ -291,7 +291,7 @@ def velocity_map(costs: Costs) -> CostMap:
 def _means(
     down: NDArray[np.float64],
     right: NDArray[np.float64],
-    edges: tuple[NDArray[np.float64], NDArray[np.float64]],
+    edges: tuple[NDArray[np.floating], NDArray[np.floating]],
     values: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     """Means of values in each square of a plane; NaN where there are none."""

@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PathCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
@@ -24,6 +25,7 @@ from vbraille.scene.traversal import vibrations
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from matplotlib.axes import Axes
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.feeling.costs import CostMap
+    from vbraille.pictures.arrows import Arrow
     from vbraille.render.scene.labels import Assets
     from vbraille.scene.scene import Canvas, Scene
 
@@ -45,6 +48,7 @@ _HAIR_MM = 0.15
 # How far a bar is drawn from the middle of its place to either side, as a share of the pitch: as
 # far as bars can go without touching; true deflections would be too small to be seen.
 _SHIFT = 0.3
+_SHAFT_MM, _HEAD_MM, _RIM_MM = 0.8, 2.2, 0.4  # of arrows
 _OUTLINE_PER_MM, _OUTLINE_PIXELS = 8.0, 4_200_000
 _BAND_ROWS = 256
 # Times over a swing of 50 Hz, the fastest that there is: what vibrates is up at one of them.
@@ -163,9 +167,10 @@ def map_figure(
     deflections: NDArray[np.floating],
     array: ArrayOnMap | None = None,
     *,
+    arrows: Sequence[Arrow] = (),
     axes: bool = False,
 ) -> Figure:
-    """Draw a deflection map true to scale, with the array over it and axes if they are wanted.
+    """Draw a deflection map true to scale, with what is wanted over it and around it.
 
     Parameters
     ----------
@@ -175,6 +180,8 @@ def map_figure(
         Deflections of the scene.
     array
         An array over the map.
+    arrows
+        Arrows over the map.
     axes
         Whether there are axes in mm.
     """
@@ -196,10 +203,11 @@ def map_figure(
     )
     if array is not None:
         _draw_array(place, array)
+    _draw_arrows(place, arrows)
     return figure
 
 
-def outline_figure(scene: Scene, assets: Assets) -> Figure:
+def outline_figure(scene: Scene, assets: Assets, arrows: Sequence[Arrow] = ()) -> Figure:
     """Draw what is felt in black on white, for eyes and for paper that swells where it is black.
 
     Black is where a finger feels more than half of the scene's strongest deflection, with all that
@@ -209,6 +217,8 @@ def outline_figure(scene: Scene, assets: Assets) -> Figure:
     ----------
     scene, assets
         A resolved scene, and what it takes from image files and labels.
+    arrows
+        Arrows over the drawing.
     """
     canvas = scene.canvas
     figure, place = _sheet(canvas, (0.0, 0.0, 0.0, 0.0))
@@ -218,6 +228,7 @@ def outline_figure(scene: Scene, assets: Assets) -> Figure:
         whole = Outline.make_compound_path(*(Outline(c, closed=True) for c in contours))
         # Not `add_patch`, which looks for the limits of the axes at each point of it.
         place.add_artist(PathPatch(whole, facecolor="black", edgecolor="none"))
+    _draw_arrows(place, arrows)
     return figure
 
 
@@ -358,6 +369,34 @@ def _draw_array(axes: Axes, shown: ArrayOnMap) -> None:
     axes.add_collection(PathCollection(lines, facecolors="none", edgecolors="0.5", linewidths=hair))
     axes.add_collection(
         PolyCollection([*bars], facecolors="black", edgecolors="white", lw=2 * hair)
+    )
+
+
+def _draw_arrows(axes: Axes, arrows: Sequence[Arrow]) -> None:
+    """Draw arrows, black or hollow, with a white rim so that they are seen on black."""
+    for arrow in arrows:
+        points = arrow.points_mm
+        heads = [_head(points[-2], points[-1])]
+        if arrow.both:
+            heads.append(_head(points[1], points[0]))
+        for color, grown_mm in (("white", 2 * _RIM_MM), ("black", 0.0)):
+            wide = _POINTS_PER_MM * (_SHAFT_MM + grown_mm)
+            axes.add_line(Line2D(*points.T, color=color, lw=wide, solid_capstyle="butt"))
+            fill = "white" if arrow.hollow else color
+            lines = _POINTS_PER_MM * (_HAIR_MM * 2 + grown_mm)
+            axes.add_collection(PolyCollection(heads, facecolors=fill, edgecolors=color, lw=lines))
+        if arrow.hollow:
+            inner = _POINTS_PER_MM * (_SHAFT_MM - 2 * _HAIR_MM)
+            axes.add_line(Line2D(*points.T, color="white", lw=inner, solid_capstyle="butt"))
+
+
+def _head(before: NDArray[np.float64], tip: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Corners of the head of an arrow whose line ends at a tip; float64[3, 2]."""
+    ahead = (tip - before) / math.dist(tip, before)
+    aside = np.array((-ahead[1], ahead[0]))
+    base = tip - 0.4 * _HEAD_MM * ahead
+    return np.array(
+        (base + 0.5 * _HEAD_MM * aside, base + _HEAD_MM * ahead, base - 0.5 * _HEAD_MM * aside)
     )
 
 
