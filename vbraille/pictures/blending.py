@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING, cast
 
 import msgspec
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 from vbraille.errors import InputError
+from vbraille.pictures.figurefiles import MIDDLE, styled
 from vbraille.pictures.scenewords import WAYS, signal_words
 from vbraille.pictures.words import plain
 from vbraille.scene.scene import Canvas
@@ -19,7 +22,6 @@ from vbraille.scene.signals import Direction, Pulse, Speed, Switch, made_of, ord
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from matplotlib.figure import Figure
     from matplotlib.projections.polar import PolarAxes
     from numpy.typing import NDArray
 
@@ -159,11 +161,6 @@ def blending_csv(shown: Blending) -> bytes:
 
 def blending_figure(shown: Blending) -> Figure:
     """Draw a polar plot of velocity, true to the canvas: right at the right, down below."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    from vbraille.pictures.figurefiles import MIDDLE, styled
-
     with styled():
         figure = Figure(figsize=(SHEET.width_mm / _MM_PER_INCH, SHEET.height_mm / _MM_PER_INCH))
         FigureCanvasAgg(figure)
