@@ -174,6 +174,7 @@ class DriversClock(RealClock):
         self._others_busy_ns += super().busy_ns() - busy_ns
 
 
+@pytest.mark.real_time
 @pytest.mark.no_cover  # it times the driver, which coverage makes ten times as slow
 @pytest.mark.parametrize("check", CHECKS)
 def test_it_conforms(made, check, monkeypatch):
