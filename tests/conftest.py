@@ -11,7 +11,7 @@ import pytest
 from hypothesis import is_hypothesis_test, settings
 from hypothesis.internal.conjecture import providers
 
-from tests import forking
+from tests import forking, realtime
 from tests.tiers import TIER, by_tier
 
 SEED = 20090618
@@ -83,8 +83,9 @@ def pytest_collection_finish(session: pytest.Session) -> None:  # noqa: ARG001
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Make known the mark of tests whose programs are no forks."""
+    """Make known the marks of tests, and try those of real time again."""
     config.addinivalue_line("markers", "new_processes: programs are new Pythons (tests/forking.py)")
+    config.pluginmanager.register(realtime)
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:

@@ -254,6 +254,14 @@ def test_a_pdf_has_the_size_of_the_paper(scene, call, tmp_path):
         (("--out", "a.png", "--vibration", "sequence", "--frames", "1"), "--frames is 1; it must"),
         (("--out", "a.png", "--outline", "--sheet", "a4"), "--sheet is gone; print an --outline"),
         (("--out", "a.csv", "--rulers"), "CSV has the map's numbers alone"),
+        (("--out", "a.csv", "--arrows"), "CSV has the map's numbers alone"),
+        (("--out", "a.png", "--signal", "slow"), "no signal 'slow'; its signals are: none"),
+        (("--out", "a.gif", "--signal", "slow", "--vibration", "sequence"), "maps alone; end --"),
+        (("--out", "a.png", "--signal", "slow", "--outline"), "--signal draws no picture"),
+        (
+            ("--out", "a.png", "--signal", "slow", "--vibration", "sequence"),
+            "--signal draws no picture",
+        ),
     ],
 )
 def test_what_cannot_be_drawn_is_refused_in_a_sentence(
@@ -318,6 +326,59 @@ def test_a_map_is_what_a_hand_feels_that_goes_so_with_switches_so(options, level
     path.write_text(ANSWERS)
     assert call("map", path, "--out", out, *options).code == 0
     np.testing.assert_allclose(pixels_of(out), 255 * (1 - level), atol=1)
+
+
+MOVES = """
+canvas = { width_mm = 40, height_mm = 30 }
+[signals.onward]
+kind = "direction"
+[[elements]]
+kind = "moving"
+title = "Rain"
+part = { kind = "linear-grating", ridge_mm = 4 }
+velocity_mm_s = [20, 0]
+[[elements]]
+kind = "uniform"
+factor = "onward"
+"""
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf", "csv"])
+def test_a_signal_is_drawn_against_the_velocity_and_told(suffix, call, tmp_path):
+    """Lévesque 2009, figs. 9.9-9.11."""
+    path, out = tmp_path / "moves.scene", tmp_path / f"signal.{suffix}"
+    path.write_text(MOVES)
+    done = call("map", path, "--signal", "onward", "--out", out)
+    assert (done.code, done.err) == (0, "")
+    assert "at 6.25 mm/s: right 1.00, right and down 0.25, down 0.00" in done.out
+    content = out.read_bytes()
+    if suffix == "png":
+        with Image.open(out) as image:
+            assert "right 1.00" in image.text["Description"]
+    if suffix == "svg":
+        assert b"right 1.00" in content
+        assert ElementTree.fromstring(content) is not None
+    if suffix == "csv":
+        assert content.startswith(b"speed_mm_s,direction_deg,value\n0,0,1\n")
+    assert "million" in call("map", path, "--signal", "onward", "--out", tmp_path / "b.png",
+                             "--resolution", "500").err  # fmt: skip
+
+
+@pytest.mark.parametrize("options", [(), ("--outline",), ("--vibration", "sequence")])
+def test_arrows_are_drawn_where_something_moves_and_told(options, call, tmp_path):
+    path = tmp_path / "moves.scene"
+    path.write_text(MOVES)
+    drawn = []
+    for name, arrows in (("plain.png", ()), ("arrows.png", ("--arrows",))):
+        done = call("map", path, "--out", tmp_path / name, *options, *arrows, "--resolution", 4)
+        assert (done.code, done.err) == (0, "")
+        with Image.open(next(tmp_path.glob(f"{name[:-4]}*.png"))) as image:
+            drawn.append(np.array(image.convert("L"), float)[:120, :160])
+    assert "arrows: 1 for what moves, and 1 hollow for the hand that a signal answers" in done.out
+    assert "element 1: Rain, ridges of 4 mm with gaps of 0 mm, the wave at 0°, moving" in done.out
+    changed = np.abs(drawn[1] - drawn[0]) > 60
+    assert changed[40:90, 50:110].sum() > 100  # in the middle of what moves
+    assert changed[:20].sum() == 0
 
 
 @pytest.mark.parametrize(

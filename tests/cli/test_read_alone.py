@@ -10,6 +10,7 @@ import select
 import time
 
 import numpy as np
+import pytest
 
 from tests.cli import program
 from tests.devices.pagecontroller import Cable, Make, PageController
@@ -130,6 +131,7 @@ def read_off(log):
     return masks.tolist()
 
 
+@pytest.mark.real_time
 @heavy  # the finger goes over the page in real time
 def test_a_page_is_read_on_a_device_built_from_the_protocol_page_alone(tmp_path):
     text, settings = tmp_path / "words.txt", tmp_path / "settings.toml"

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from threading import Event, Thread
 
 import numpy as np
+import pytest
 
 from tests.cli import program
 from vbraille.devices.serial.wire import Encoder
@@ -108,6 +109,7 @@ def said_until(process, enough):
     return lines
 
 
+@pytest.mark.real_time
 def test_a_knob_turns_contrast_while_the_hand_stays_and_is_said_once(tmp_path, text):
     settings = tmp_path / "settings.toml"
     settings.write_text(SETTINGS)

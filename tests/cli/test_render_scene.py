@@ -104,13 +104,15 @@ def test_what_frames_cost_is_said_and_written(call, scene, tmp_path):
     assert "of the 15.6 µs" in done.out
     assert sum(line.startswith("element ") for line in said.lines) == 3
     header, *rows = csv.reader(out.read_text().splitlines())
-    assert header == ["x_mm", "y_mm", "frame_us"]
+    assert header == ["x_mm", "y_mm", "vx_mm_s", "vy_mm_s", "frame_us"]
     assert len(rows) == 12
-    assert (np.array(rows, float)[:, 2] >= 0).all()
+    assert (np.array(rows, float)[:, 4] >= 0).all()
     assert drawn.read_bytes().startswith(b"\x89PNG")
     assert "is there already" in call("scene", "cost", scene, *path, "--out", out).err
     again = call("scene", "cost", scene, *path, "--json", "--out", out, "--force")
-    assert json.loads(again.out)["frames"] == 192
+    told = json.loads(again.out)
+    assert told["frames"] == 192
+    assert {cost["direction"] for cost in told["velocities"]} <= {"right", "down", "left", "up"}
     assert again.err == f"written: {out}\n"
 
 

@@ -190,6 +190,7 @@ def test_a_host_that_dies_is_started_again_and_its_trial_repeated(tmp_path, mini
     assert whole(tmp_path / "s")
 
 
+@pytest.mark.real_time
 def test_fast_and_in_real_time_the_answers_are_the_same(tmp_path, mini):
     if by_tier(False, True, True):
         mini.write_text(mini.read_text().replace('["a", "0"]', '["a", "c", "4", "0"]'))

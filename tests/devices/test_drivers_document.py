@@ -69,6 +69,7 @@ def address(peer):
     return "127.0.0.1:{1}".format(*peer.socket.getsockname())
 
 
+@pytest.mark.real_time
 @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
 def test_it_conforms(driver, address, check):
     check(lambda: driver.open_netbox(address, None))

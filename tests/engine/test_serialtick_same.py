@@ -203,6 +203,7 @@ def test_what_goes_out_is_what_is_recorded_and_what_a_replay_makes(rig):
         np.testing.assert_array_equal(shown, levels[tick])
 
 
+@pytest.mark.real_time
 @pytest.mark.no_cover
 def test_beside_a_controller_of_its_own_pace_frames_are_those_of_the_records(rigs):
     """Over a pseudo-terminal, where a STATE has each tick begin."""

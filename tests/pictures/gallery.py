@@ -42,6 +42,8 @@ GALLERY = [
     Shown("markers", "-outline", ("--outline", *FINE)),
     Shown("dotted", "-outline", ("--outline", *FINE)),
     Shown("labelled", "-outline", ("--outline", "--resolution", "5")),
+    Shown("directions", "-signal", ("--signal", "along", "--resolution", "2.2")),
+    Shown("directions", "-arrows", ("--arrows", "--resolution", "4")),
 ]
 
 if __name__ == "__main__":

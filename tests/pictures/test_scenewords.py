@@ -17,6 +17,7 @@ from vbraille.scene.patterns import (
     Tile,
 )
 from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch
 from vbraille.scene.strokes import Along, Dotting, Stroke, VertexMarkers, Vibration
 from vbraille.scene.textures import (
     AxialGrating,
@@ -43,6 +44,24 @@ CANVAS = Canvas(width_mm=100, height_mm=80)
         (
             LinearGrating(ridge_mm=2, gap_mm=1, ridge_angle_deg=0, title="waves", id="w"),
             "waves, ridges of 2 mm with gaps of 1 mm, the wave at 90°",
+        ),
+        (
+            LinearGrating(ridge_mm=2, velocity_mm_s=-20, velocity_by="slow"),
+            "ridges of 2 mm with gaps of 0 mm, the wave at 0°, moving left at 20 mm/s times signal "
+            "slow",
+        ),
+        (
+            LinearGrating(ridge_mm=2, wave_angle_deg=30, velocity_mm_s=9),
+            "ridges of 2 mm with gaps of 0 mm, the wave at 30°, moving at 30° (right and down) at "
+            "9 mm/s",
+        ),
+        (
+            RadialGrating(center_mm=(1, 2), ridge_mm=2, velocity_mm_s=5),
+            "rings: ridges of 2 mm with gaps of 0 mm around (1, 2) mm, moving outward at 5 mm/s",
+        ),
+        (
+            AxialGrating(center_mm=(1, 2), ridge_deg=20, velocity_deg_s=-9),
+            "spokes of 20° with gaps of 0° around (1, 2) mm, moving against the clock at 9 °/s",
         ),
         (
             RadialGrating(center_mm=(1, 2), ridge_mm=2, inverted=True),
@@ -97,3 +116,33 @@ def test_a_scene_that_stands_still_says_so():
     assert slowest_s(scene) is None
     moving = Scene(canvas=CANVAS, elements=(LinearGrating(ridge_mm=3, velocity_mm_s=-6),))
     assert slowest_s(moving) == pytest.approx(0.5)
+    whole = Moving(part=LinearGrating(ridge_mm=2, gap_mm=1), velocity_mm_s=(0, -6))
+    assert slowest_s(Scene(canvas=CANVAS, elements=(whole,))) == pytest.approx(0.5)
+
+
+def test_signals_say_when_they_are_1_and_what_is_blended_by_them():
+    blend = Group(
+        operation="blend", parts=(Uniform(), Uniform(level=0)), by=SignalLevel(name="slow")
+    )
+    signals = {
+        "slow": Speed(delay_s=0),
+        "late": Speed(),
+        "axis": Direction(angle_deg=45, axis=True, at_rest="low"),
+        "on": Switch(title="Streets", levels=(1, 0), states=("shown", "hidden")),
+        "beat": Pulse(shape="ramp", period_s=2),
+        "both": Product(of=("slow", "on")),
+        "not": Inverse(of="both"),
+    }
+    lines = scene_lines(Scene(canvas=CANVAS, elements=(blend,), signals=signals))
+    assert "blended by signal slow (" in lines[2]
+    assert lines[3:-1] == [
+        "signal slow: 1 under a hand slower than 5 mm/s, 0 from 10 mm/s on",
+        "signal late: 1 under a hand slower than 5 mm/s, 0 from 10 mm/s on; it waits 0.25 s and "
+        "rises as long",
+        "signal axis: 1 under a hand that goes right and down or left and up within 30°, 0 from "
+        "50° on, 0 at rest",
+        "signal on: Streets, key 1: shown 1, hidden 0",
+        "signal beat: ramp, again every 2 s",
+        "signal both: slow × on",
+        "signal not: 1 - both",
+    ]

@@ -23,6 +23,7 @@ from vbraille.testing.conformance import (
 )
 
 
+@pytest.mark.real_time
 @pytest.mark.parametrize("check", CHECKS)
 @pytest.mark.parametrize("opened", [Good, lambda: open_device("sim:", info())])
 def test_the_simulated_device_conforms(opened, check):

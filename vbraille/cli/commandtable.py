@@ -244,7 +244,7 @@ COMMANDS = {
             Argument("file", f"Draw this {_SHAPES}.", "FILE"),
             _of("out", metavar="F.png|F.svg|F.csv|F.pdf|F.gif", required=True),
             *("force", "resolution", "vibration", "frames", "parity", "seed"),
-            *("velocity", "switch", "array"),
+            *("velocity", "switch", "signal", "arrows", "array"),
             _of("model", default="stress2-8x8", usual=""),
             *("rulers", "outline"),
         ),

@@ -503,6 +503,20 @@ OPTIONS = {
             usual="each in its first",
         ),
         Option(
+            "signal",
+            "Draw instead how this signal of the picture answers to the velocity of the hand, as a "
+            "polar plot: a hand at rest in the middle, one that goes to the right at the right.",
+            str,
+            "NAME",
+            usual="the picture",
+        ),
+        Option(
+            "arrows",
+            "Draw arrows for what moves, and hollow ones for the directions of the hand that "
+            "signals answer.",
+            bool,
+        ),
+        Option(
             "array",
             "Draw the array over the picture with its centre at this place, in mm, turned by θ "
             "degrees against the clock: a bar for each contactor, shifted by its deflection.",

@@ -1,7 +1,8 @@
-"""Costs of a picture's frames: time against place, and the share of each element.
+"""Costs of a picture's frames: time against place and velocity, and the share of each element.
 
 Lévesque 2009, 8.5.2: the time of a whole frame as a function of where the display is, on a path
-(fig. 8.30), as a histogram and as a map (fig. 8.31). Budgets are 8.5.3's.
+(fig. 8.30), as a histogram and as a map (fig. 8.31). Budgets are 8.5.3's. Signals have what a frame
+costs depend on the hand's velocity, too (9.6, fig. 9.14).
 """
 
 from __future__ import annotations
@@ -42,6 +43,12 @@ _MAP_MM: Final = 2.0
 _MOST_TILES: Final = 500
 _MOST_ELEMENTS: Final = 200
 _BARS: Final = 12
+_BLOCK_FRAMES: Final = 16_384
+_SPEEDS: Final = 5  # classes in words, and in pictures squares to either side of rest
+_PLANE: Final = 9
+_LEAST_SPEED_MM_S: Final = 1.0  # of the fastest class
+# Directions of the hand, a quarter turn each around the angle from +x towards +y.
+_DIRECTIONS: Final = ("right", "down", "left", "up")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,6 +59,8 @@ class Costs:
     ----------
     x_mm, y_mm : float64[n]
         Middle of the places of each batch of frames.
+    vx_mm_s, vy_mm_s : float64[n]
+        Velocity of the hand there.
     frame_us : float64[n]
         Time of a frame there: the median of repeats, each of which is a batch's time divided by
         its frames.
@@ -63,6 +72,8 @@ class Costs:
 
     x_mm: NDArray[np.float64]
     y_mm: NDArray[np.float64]
+    vx_mm_s: NDArray[np.float64]
+    vy_mm_s: NDArray[np.float64]
     frame_us: NDArray[np.float64]
     actuators: int
     resolution_us: float
@@ -71,6 +82,27 @@ class Costs:
     def actuator_us(self) -> float:
         """Mean time of an actuator."""
         return float(self.frame_us.mean()) / self.actuators
+
+
+@dataclass(frozen=True, slots=True)
+class VelocityCost:
+    """Cost of frames under a hand that goes in a direction, at speeds of a class.
+
+    Parameters
+    ----------
+    from_mm_s, to_mm_s
+        The speeds.
+    direction
+        Direction, within 45° to either side: "right", "down", "left" or "up".
+    mean_us, most_us
+        Mean and greatest time of a frame.
+    """
+
+    from_mm_s: float
+    to_mm_s: float
+    direction: str
+    mean_us: float
+    most_us: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,18 +126,19 @@ class ElementCost:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CostMap:
-    """Mean cost of a frame per place of the canvas.
+    """Mean cost of a frame per place of the canvas, or per velocity of the hand.
 
     Parameters
     ----------
     mean_us : float64[rows, columns]
-        Mean over the frames whose centre was in each square; NaN where none was.
-    step_mm
-        Side of a square; the first begins at the upper left corner of the canvas.
+        Mean over the frames in each square; NaN where there were none.
+    step
+        Side of a square, in mm or mm/s. The first square of places begins at the upper left corner
+        of the canvas; rest is in the middle of those of velocities.
     """
 
     mean_us: NDArray[np.float64]
-    step_mm: float
+    step: float
 
 
 def measure(program: Program, path: PosedPath, repeats: int = REPEATS) -> Costs:
@@ -130,6 +163,7 @@ def measure(program: Program, path: PosedPath, repeats: int = REPEATS) -> Costs:
         If the path has less than one batch of frames.
     """
     at = _batches_of(path)
+    _remember(program, at)
     # A call that makes no frame takes time, too, which is no part of what frames cost.
     empty_ns = np.median(_time_ns(program, at[:1, :0], _CLOCK_LOOKS))
     taken_ns = np.median(_time_ns(program, at, repeats), axis=0)
@@ -137,6 +171,8 @@ def measure(program: Program, path: PosedPath, repeats: int = REPEATS) -> Costs:
     return Costs(
         middle[:, work.X],
         middle[:, work.Y],
+        middle[:, work.VX],
+        middle[:, work.VY],
         np.maximum(taken_ns - empty_ns, 0) / BATCH_FRAMES / 1000,
         program.shape[0] * program.shape[1],
         _resolution_ns() / BATCH_FRAMES / 1000,
@@ -156,10 +192,29 @@ def _batches_of(path: PosedPath) -> NDArray[np.float64]:
         raise ValueError(f"a path of {path.t_s.size} frames is too short to be timed")
     count = batches * BATCH_FRAMES
     at = np.zeros((count, work.AT))
-    at[:, work.MEMORY] = np.nan  # so that each batch begins with what signals are at first
+    at[0, work.MEMORY] = np.nan  # so that the first begins with what signals are at first
     at[:, work.X], at[:, work.Y] = path.x_mm[:count], path.y_mm[:count]
     at[:, work.THETA], at[:, work.TIME] = path.theta_rad[:count], path.t_s[:count]
+    at[:, work.VX : work.VY + 1] = path.velocity_mm_s[:count]
     return at.reshape(batches, BATCH_FRAMES, work.AT)
+
+
+def _remember(program: Program, at: NDArray[np.float64]) -> None:
+    """Fill in the signals at each pose and what they remember, so that a batch can begin anywhere.
+
+    Parameters
+    ----------
+    program
+        The picture.
+    at : float64[batches, frames, AT]
+        Poses, as `_batches_of` has them.
+    """
+    rows = at.reshape(-1, work.AT)
+    scratch = scratch_for(program.shape, program.kind)
+    for start in range(0, len(rows), _BLOCK_FRAMES):
+        block = rows[max(start - 1, 0) : start + _BLOCK_FRAMES]  # after the last one before
+        parts, out = np.zeros(len(block), np.int64), np.empty((len(block), *program.shape), "f4")
+        kernels.poses(program.numbers, program.table, scratch, block, parts, out)
 
 
 def _time_ns(program: Program, at: NDArray[np.float64], repeats: int) -> NDArray[np.int64]:
@@ -221,12 +276,53 @@ def cost_map(costs: Costs, canvas: Canvas, step_mm: float = _MAP_MM) -> CostMap:
     step_mm = max(step_mm, canvas.width_mm / _MOST_TILES, canvas.height_mm / _MOST_TILES)
     columns = int(np.ceil(canvas.width_mm / step_mm))
     rows = int(np.ceil(canvas.height_mm / step_mm))
-    found = costs.y_mm, costs.x_mm
     edges = np.arange(rows + 1) * step_mm, np.arange(columns + 1) * step_mm
-    sums, *_ = np.histogram2d(*found, edges, weights=costs.frame_us)
-    counts, *_ = np.histogram2d(*found, edges)
+    return CostMap(_means(costs.y_mm, costs.x_mm, edges, costs.frame_us), step_mm)
+
+
+def velocity_map(costs: Costs) -> CostMap:
+    """Compute the mean cost of a path in each square of velocities: Lévesque 2009, fig. 9.14b."""
+    step_mm_s = 2 * _fastest(costs) / (_PLANE - 1)
+    edges = (np.arange(_PLANE + 1) - _PLANE / 2) * step_mm_s
+    means = _means(costs.vy_mm_s, costs.vx_mm_s, (edges, edges), costs.frame_us)
+    return CostMap(means, step_mm_s)
+
+
+def _means(
+    down: NDArray[np.float64],
+    right: NDArray[np.float64],
+    edges: tuple[NDArray[np.floating], NDArray[np.floating]],
+    values: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Means of values in each square of a plane; NaN where there are none."""
+    sums, *_ = np.histogram2d(down, right, edges, weights=values)
+    counts, *_ = np.histogram2d(down, right, edges)
     with np.errstate(invalid="ignore"):
-        return CostMap(sums / counts, step_mm)
+        return sums / counts
+
+
+def _fastest(costs: Costs) -> float:
+    """Greatest speed of the hand along an axis, mm/s."""
+    velocities = np.abs((costs.vx_mm_s, costs.vy_mm_s))
+    return max(float(velocities.max()), _LEAST_SPEED_MM_S)
+
+
+def costs_by_velocity(costs: Costs) -> list[VelocityCost]:
+    """Costs by classes of speed, and by direction within each; classes without frames are none."""
+    speeds = np.hypot(costs.vx_mm_s, costs.vy_mm_s)
+    width = max(float(speeds.max()), _LEAST_SPEED_MM_S) / _SPEEDS
+    turns = np.arctan2(costs.vy_mm_s, costs.vx_mm_s) / (np.pi / 2)
+    quarters = np.rint(turns).astype(int) % len(_DIRECTIONS)
+    classes = np.minimum(speeds // width, _SPEEDS - 1)
+    found = []
+    for number in range(_SPEEDS):
+        for quarter, direction in enumerate(_DIRECTIONS):
+            frame_us = costs.frame_us[(classes == number) & (quarters == quarter)]
+            if frame_us.size:
+                mean_us, most_us = float(frame_us.mean()), float(frame_us.max())
+                ends = number * width, (number + 1) * width
+                found.append(VelocityCost(*ends, direction, mean_us, most_us))
+    return found
 
 
 def histogram(costs: Costs) -> list[tuple[float, float, float]]:
@@ -240,10 +336,11 @@ def histogram(costs: Costs) -> list[tuple[float, float, float]]:
 
 
 def to_csv(costs: Costs) -> str:
-    """Write places and costs as CSV: x_mm, y_mm and frame_us."""
+    """Write costs as CSV, with the place and the velocity of each."""
     written = io.StringIO()
-    rows = np.stack((costs.x_mm, costs.y_mm, costs.frame_us), axis=-1)
-    np.savetxt(written, rows, "%.4f", ",", header="x_mm,y_mm,frame_us", comments="")
+    names = "x_mm", "y_mm", "vx_mm_s", "vy_mm_s", "frame_us"
+    rows = np.stack([getattr(costs, name) for name in names], axis=-1)
+    np.savetxt(written, rows, "%.4f", ",", header=",".join(names), comments="")
     return written.getvalue()
 
 

@@ -63,16 +63,19 @@ class PosedPath:
     ----------
     t_s, x_mm, y_mm, theta_rad : float64[n]
         Times from 0 on, and the pose at each; see `vbraille.display`.
+    velocity_mm_s : float64[n, 2]
+        Velocity of the hand along x and y, as ticks measure it.
     """
 
     t_s: NDArray[np.float64]
     x_mm: NDArray[np.float64]
     y_mm: NDArray[np.float64]
     theta_rad: NDArray[np.float64]
+    velocity_mm_s: NDArray[np.float64]
 
     def only(self, chosen: NDArray[np.bool_]) -> PosedPath:
         """Make the path of chosen poses, bool[n]."""
-        arrays = (self.t_s, self.x_mm, self.y_mm, self.theta_rad)
+        arrays = (self.t_s, self.x_mm, self.y_mm, self.theta_rad, self.velocity_mm_s)
         return PosedPath(*(array[chosen] for array in arrays))
 
 
@@ -120,7 +123,8 @@ def path_of(options: PathOptions, canvas: Canvas, span_mm: float, rate_hz: float
             (theta_rad, 0.0),
         )
     )
-    return PosedPath(t_s, x_mm + left_mm, y_mm, theta_rad)
+    velocity_mm_s = _velocities(x_mm, y_mm, rate_hz)
+    return PosedPath(t_s, x_mm + left_mm, y_mm, theta_rad, velocity_mm_s)
 
 
 def _course(options: PathOptions, kind: str, canvas: Canvas) -> ExploringPath:
@@ -158,7 +162,7 @@ def _refuse(options: PathOptions, name: str) -> None:
             raise InputError(f"{other} is not for the hand {name}; leave {other} out")
 
 
-def hand_velocities(
+def _velocities(
     x_mm: NDArray[np.float64], y_mm: NDArray[np.float64], rate_hz: float
 ) -> NDArray[np.float64]:
     """Compute the velocity of a hand on its way, as ticks do: Lévesque 2009, eqs. 9.4 and 9.5.

@@ -3,8 +3,8 @@
 `series` computes a `FigureTable` of numbers for each picture, `draw`
 makes a figure of it. `charts` says what charts of results hold, and
 `drawcharts` draws them. `scenes` makes deflection maps of tactile pictures, `drawings` drawings of
-them. `figurefiles`, `draw`, `drawcharts` and `drawings` import matplotlib, and so are not
-imported here.
+them, `blending` plots of their signals. `figurefiles`, `draw`, `drawcharts`, `drawings` and
+`blending` import matplotlib, and so are not imported here.
 """
 
 from vbraille.caching import keep_fonts

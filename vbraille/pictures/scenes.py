@@ -16,6 +16,7 @@ from PIL.PngImagePlugin import PngInfo
 
 from vbraille.errors import InputError
 from vbraille.pictures.words import plain
+from vbraille.scene.patterns import Moving
 from vbraille.scene.signals import Pulse
 from vbraille.scene.traversal import each, vibrations
 from vbraille.wording import setting
@@ -40,6 +41,7 @@ MOST_PIXELS = {
 MOST_PLACED_PIXELS = 1_300_000  # of a map with axes or an array in a PNG: A4 at 4 a mm
 _FRAME_MS = 100  # how long an animation shows each map: eyes see no 50 Hz
 _MM_PER_INCH = 25.4
+_UNKNOWN_MM = 10.0  # way of what moves without a wave, in a sequence
 # Limits of a small map, which a page loads and a recording keeps.
 _SMALL_PIXELS, _SMALL_BYTES = 300_000, 120_000
 
@@ -116,7 +118,19 @@ def slowest_s(scene: Scene) -> float | None:
     periods = [1.0 / frequency_hz for frequency_hz in swings]
     periods += [one.period_s for one in scene.signals.values() if isinstance(one, Pulse)]
     periods += [1.0 / flow.flow_hz for part in each(*scene.elements) for flow in part.flows]
+    periods += [
+        _passing_s(part)
+        for part in each(*scene.elements)
+        if isinstance(part, Moving) and any(part.velocity_mm_s)
+    ]
     return max(periods, default=None)
+
+
+def _passing_s(moving: Moving) -> float:
+    """Time in which the longest wave of a texture goes by that moves as a whole, s."""
+    waves = [part.wave for part in each(moving.part) if part.wave is not None]
+    lengths = [wave.length for wave in waves if wave.in_mm]
+    return max(lengths, default=_UNKNOWN_MM) / math.hypot(*moving.velocity_mm_s)
 
 
 def map_deflections(

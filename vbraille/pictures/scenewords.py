@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from vbraille.pictures.words import plain
@@ -20,6 +21,7 @@ from vbraille.scene.patterns import (
     Tile,
     Use,
 )
+from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch
 from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
+    from vbraille.scene.signals import AnySignal
     from vbraille.scene.strokes import DotStyle, Stroke, Vibration
 
 # How groups put their parts together, in words that need no formula.
@@ -46,13 +49,19 @@ _TOGETHER = {
     "maximum": "the largest of them",
     "blend": "blended by a third",
 }
+# Directions on the canvas, an eighth of a turn after each other, from +x towards +y.
+WAYS = (
+    *("right", "right and down", "down", "left and down"),
+    *("left", "left and up", "up", "right and up"),
+)
+_AT_REST = {"high": "1 at rest", "low": "0 at rest", "keep": "at rest what it was before"}
 
 
 def scene_lines(scene: Scene) -> list[str]:
     """Tell what a scene holds, a line for each thing: "label: value".
 
     The lines are title and description if it has them, its size, how many elements it has and what
-    each is, and what vibrates.
+    each is, its signals, and what vibrates.
     """
     told = [("title", scene.title), ("description", scene.description)]
     lines = [f"{label}: {plain(text)}" for label, text in told if text.strip()]
@@ -60,6 +69,7 @@ def scene_lines(scene: Scene) -> list[str]:
     lines.append(f"elements: {len(scene.elements)}, {_TOGETHER[scene.operation]}")
     for number, element in enumerate(scene.elements, 1):
         lines.append(f"element {number}: {pattern_words(element)}")
+    lines += [f"signal {plain(name)}: {signal_words(one)}" for name, one in scene.signals.items()]
     shaking = [
         f"{plain(name_of(element)) or number}, {', '.join(dict.fromkeys(swings))}"
         for number, element in enumerate(scene.elements, 1)
@@ -77,6 +87,52 @@ def scene_text(scene: Scene) -> str:
 def name_of(pattern: AnyPattern) -> str:
     """Tell what a pattern is called: by its title, else by its id, else not at all."""
     return pattern.title or pattern.id
+
+
+def signal_words(signal: AnySignal) -> str:
+    """Tell in a line when a signal is 1 and when it is 0."""
+    match signal:
+        case Speed():
+            end = signal.below_mm_s + signal.transition_mm_s
+            words = f"1 under a hand slower than {signal.below_mm_s:g} mm/s, 0 from {end:g} mm/s on"
+            if not signal.delay_s:
+                return words
+            return f"{words}; it waits {signal.delay_s:g} s and rises as long"
+        case Direction():
+            end = signal.tolerance_deg + signal.transition_deg
+            way = _way(signal.angle_deg)
+            back = _way(signal.angle_deg + 180.0)
+            return (
+                f"1 under a hand that goes {f'{way} or {back}' if signal.axis else way} within "
+                f"{signal.tolerance_deg:g}°, 0 from {end:g}° on, {_AT_REST[signal.at_rest]}"
+            )
+        case Switch():
+            levels = zip(signal.states or map(str, range(1, 9)), signal.levels, strict=False)
+            states = ", ".join(f"{plain(state)} {level:g}" for state, level in levels)
+            title = f"{plain(signal.title)}, " if signal.title else ""
+            return f"{title}key {signal.key}: {states}"
+        case Pulse():
+            return f"{signal.shape}, again every {signal.period_s:g} s"
+        case Product():
+            return " × ".join(map(plain, signal.of))
+        case Inverse():
+            return f"1 - {plain(signal.of)}"
+
+
+def _way(angle_deg: float) -> str:
+    """Tell a direction by the nearest eighth of a turn, and by its angle if it is between two."""
+    turned = angle_deg % 360.0
+    eighth, beside = divmod(turned + 22.5, 45.0)
+    way = WAYS[int(eighth) % len(WAYS)]
+    return way if math.isclose(beside, 22.5) else f"at {turned:g}° ({way})"
+
+
+def _moving_by(speed: float, way: str, by: str, unit: str = "mm/s") -> str:
+    """Tell that something moves, and by which signal; nothing if it does not."""
+    if not speed:
+        return ""
+    by = f" times signal {plain(by)}" if by else ""
+    return f", moving {way} at {abs(speed):g} {unit}{by}"
 
 
 def pattern_words(pattern: AnyPattern) -> str:
@@ -122,7 +178,10 @@ def _kind_words(pattern: AnyPattern) -> str:
             return f'braille "{plain(pattern.text)}" at {_place(pattern.place_mm)}'
         case Group():
             parts = "; ".join(map(pattern_words, pattern.parts))
-            return f"{len(pattern.parts)} parts, {_TOGETHER[pattern.operation]} ({parts})"
+            together = _TOGETHER[pattern.operation]
+            if pattern.by is not None:
+                together = f"blended by {pattern_words(pattern.by)}"
+            return f"{len(pattern.parts)} parts, {together} ({parts})"
         case Use():
             return f"{plain(pattern.name)} again"
         case StraightLine() | Circle() | Polygon() | PathShape():
@@ -133,6 +192,8 @@ def _moving_words(moving: Moving) -> str:
     """Tell how a texture moves, and what it is."""
     right, down = moving.velocity_mm_s
     moves = f"moving by ({right:g}, {down:g}) mm/s"
+    if moving.velocity_by:
+        moves += f" times signal {plain(moving.velocity_by)}"
     if moving.array_at_mm is not None:
         moves += ", not by the hand"
     return f"{pattern_words(moving.part)}, {moves}"
@@ -141,12 +202,17 @@ def _moving_words(moving: Moving) -> str:
 def _grating_words(grating: LinearGrating | RadialGrating | AxialGrating) -> str:
     if isinstance(grating, AxialGrating):
         words = f"spokes of {grating.ridge_deg:g}° with gaps of {grating.gap_deg:g}° around"
-        return f"{words} {_place(grating.center_mm)}"
+        way = "against the clock" if grating.velocity_deg_s < 0 else "with the clock"
+        turns = _moving_by(grating.velocity_deg_s, way, grating.velocity_by, "°/s")
+        return f"{words} {_place(grating.center_mm)}{turns}"
     lengths = f"ridges of {grating.ridge_mm:g} mm with gaps of {grating.gap_mm:g} mm"
     if isinstance(grating, RadialGrating):
         words = f"rings: {lengths} around {_place(grating.center_mm)}"
+        way = "inward" if grating.velocity_mm_s < 0 else "outward"
     else:
         words = f"{lengths}, the wave at {wave_angle_deg(grating):g}°"
+        way = _way(wave_angle_deg(grating) + 180.0 * (grating.velocity_mm_s < 0))
+    words += _moving_by(grating.velocity_mm_s, way, grating.velocity_by)
     return words if grating.distortion is None else f"{words}, frequency changed"
 
 
@@ -186,7 +252,10 @@ def _stroke_words(stroke: Stroke) -> str:
     if stroke.outlined:
         words.append("outlined")
     if stroke.along is not None:
-        words.append(f"cut every {stroke.along.wave.length:g} mm")
+        along = stroke.along
+        way = "from its end to its beginning" if along.velocity_mm_s < 0 else "along it"
+        moves = _moving_by(along.velocity_mm_s, way, along.velocity_by)
+        words.append(f"cut every {along.wave.length:g} mm{moves}")
     if stroke.across is not None:
         words.append(f"with {stroke.across.cycles} cycles across")
     if stroke.vibration is not None:

@@ -48,6 +48,7 @@ def ticks(device, frame=FELT, seconds=0.1, found=None):
     return poses, events
 
 
+@pytest.mark.real_time
 @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
 def test_it_conforms(latero, check):
     check(lambda: open_device(latero.spec, None))

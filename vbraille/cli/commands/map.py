@@ -13,7 +13,7 @@ from vbraille.pictures import scenes
 from vbraille.pictures.scenewords import scene_lines, scene_text
 from vbraille.render import MODELS
 from vbraille.scene.signals import Switch, packed
-from vbraille.wording import count, spelled
+from vbraille.wording import count, setting, spelled
 
 if TYPE_CHECKING:
     import argparse
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from vbraille.feeling.loading import LoadedScene
     from vbraille.files import Content
+    from vbraille.pictures.arrows import Arrow
     from vbraille.pictures.drawings import ArrayOnMap, Figure
     from vbraille.scene.scene import Scene
 
@@ -33,6 +34,8 @@ _LEAST_RULERS_PER_MM = 1.0
 _FINE_PIXELS_PER_MM = 12.0  # of outlines, of which a PNG has edges
 # When vibrations of 50 Hz are at their ends: an array that is drawn shows them best then.
 _ARRAY_TIME_S = 0.005
+# What --signal cannot be drawn with.
+_OF_PICTURES = "velocity", "arrows", "array", "rulers", "outline"
 _SHOWN = "shown: a deflection map, rest white and full swing black"
 _SHOWN_CSV = "shown: a deflection map, a row for each pixel with x, y and its deflection"
 
@@ -51,6 +54,8 @@ def run(arguments: argparse.Namespace) -> int:
     loaded = load_scene(arguments.file, style)
     for note in loaded.notes:
         say_line(spelled(note), aside=True)
+    if arguments.signal:
+        return _draw_signal(arguments, kind, loaded)
     drawing = _Drawing(arguments, kind, loaded)
     try:
         if numbered:
@@ -62,6 +67,29 @@ def run(arguments: argparse.Namespace) -> int:
     except ValueError as error:  # patterns stand too deep in each other
         raise InputError(f"{arguments.file}: {error}") from None
     for line in (*said, *scene_lines(loaded.scene)):
+        say_line(line)
+    return 0
+
+
+def _draw_signal(arguments: argparse.Namespace, kind: str, loaded: LoadedScene) -> int:
+    """Draw a signal against the velocity of the hand, and say what is shown."""
+    from vbraille.pictures import blending
+
+    scene = loaded.scene
+    drawn = blending.blending(scene, arguments.signal, _switches(arguments, scene))
+    said = blending.blending_words(drawn)
+    if kind == "csv":
+        content = blending.blending_csv(drawn)
+    else:
+        from vbraille.pictures.drawings import drawing_bytes
+
+        figure = blending.blending_figure(drawn)
+        per_mm = arguments.resolution
+        per_mm = scenes.PIXELS_PER_MM if per_mm is None else per_mm
+        scenes.check_pixels(blending.SHEET, per_mm, most=scenes.MOST_PLACED_PIXELS)
+        content = drawing_bytes(figure, kind, per_mm, loaded.title, "; ".join(said))
+    write_file(Path(arguments.out), content, replace=arguments.force)
+    for line in (f"drawn: {arguments.out}", *said):
         say_line(line)
     return 0
 
@@ -115,8 +143,18 @@ def _check(arguments: argparse.Namespace, kind: str) -> None:
         ),
         (kind == "gif" and not sequence, "GIF is for --vibration sequence; end --out in .png"),
         (
-            kind == "csv" and (arguments.array or arguments.rulers),
-            "CSV has the map's numbers alone; leave out --array and --rulers",
+            kind == "csv" and (arguments.array or arguments.rulers or arguments.arrows),
+            "CSV has the map's numbers alone; leave out --array, --arrows and --rulers",
+        ),
+        (
+            kind == "gif" and (arguments.arrows or arguments.signal),
+            "an animation has maps alone; end --out in .png, or leave out --arrows and --signal",
+        ),
+        (
+            arguments.signal
+            and (sequence or any(getattr(arguments, name) for name in _OF_PICTURES)),
+            "--signal draws no picture, and all velocities; leave out "
+            f"{', '.join(map(setting, _OF_PICTURES))} and {setting('vibration')}",
         ),
     ):
         if wrong:
@@ -125,9 +163,9 @@ def _check(arguments: argparse.Namespace, kind: str) -> None:
         raise InputError(f"--frames is {arguments.frames}; it must be 2 to {_MOST_FRAMES}")
 
 
-def _scene_of(arguments: argparse.Namespace, loaded: LoadedScene) -> Scene:
-    """Scene as it is under the hand, and in the states, that the options say."""
-    scene, states = loaded.scene, arguments.switch or {}
+def _switches(arguments: argparse.Namespace, scene: Scene) -> int:
+    """States of the scene's switches that the options say, packed."""
+    states = arguments.switch or {}
     switches = {
         one.key: len(one.levels) for one in scene.signals.values() if isinstance(one, Switch)
     }
@@ -135,11 +173,17 @@ def _scene_of(arguments: argparse.Namespace, loaded: LoadedScene) -> Scene:
         if state >= switches.get(key, 0):
             there = f"has {switches[key]} states" if key in switches else "is none of this picture"
             raise InputError(f"--switch has {key}={state + 1}, and key {key} {there}")
+    return packed(states, scene.signals)
+
+
+def _scene_of(arguments: argparse.Namespace, scene: Scene) -> Scene:
+    """Scene as it is under the hand, and in the states, that the options say."""
+    switches = _switches(arguments, scene)
     if not scene.signals:
         return scene
     from vbraille.render.scene.compiling import settled  # loads the kernels
 
-    return settled(scene, arguments.velocity or (0.0, 0.0), packed(states, scene.signals))
+    return settled(scene, arguments.velocity or (0.0, 0.0), switches)
 
 
 class _Drawing:
@@ -157,8 +201,13 @@ class _Drawing:
 
     def __init__(self, arguments: argparse.Namespace, kind: str, loaded: LoadedScene) -> None:
         self._arguments, self._kind = arguments, kind
-        self._scene = _scene_of(arguments, loaded)
+        self._scene = _scene_of(arguments, loaded.scene)
         self._assets, self._title = loaded.assets, loaded.title
+        self._arrows: list[Arrow] = []
+        if arguments.arrows:
+            from vbraille.pictures.arrows import arrows
+
+            self._arrows = arrows(loaded.scene, loaded.boxes())
         self._frames, self._parity = arguments.frames or _FRAMES, arguments.parity or 0
         self._per_mm = arguments.resolution
         if arguments.outline:
@@ -182,6 +231,7 @@ class _Drawing:
             self._pixels,
             f"vibration: as noise, seed {self._arguments.seed}",
             *array_said,
+            *self._arrows_said,
         ]
         return self._content(deflections, over, said), said
 
@@ -200,6 +250,7 @@ class _Drawing:
                     f"time: {1000 * time_s:.4g} ms after the beginning",
                     f"actuators: those of parity {self._parity}",
                     *array_said,
+                    *self._arrows_said,
                 ]
                 yield _file(out, number), self._content(deflections, over, said)
 
@@ -210,6 +261,7 @@ class _Drawing:
             self._shown,
             *self._sequence_said(period_s),
             *array_said[:2],
+            *self._arrows_said,
             *(f"left as it was: {path}, which is not of this sequence" for path in others),
         ]
 
@@ -233,8 +285,10 @@ class _Drawing:
             "felt",
             f"paper: {canvas.width_mm:g} × {canvas.height_mm:g} mm, true to scale; print without "
             "scaling",
+            *self._arrows_said,
         ]
-        return self._file_of(outline_figure(self._scene, self._assets), said), said
+        figure = outline_figure(self._scene, self._assets, self._arrows)
+        return self._file_of(figure, said), said
 
     def _maps(self, period_s: float) -> Iterator[tuple[float, NDArray[np.float32]]]:
         """Times of a sequence, evenly over its period, with the map at each."""
@@ -272,7 +326,8 @@ class _Drawing:
     def _check_room(self, maps: int = 1) -> None:
         """Refuse maps of too many pixels before the first is made."""
         most = scenes.MOST_PIXELS[self._kind]
-        if self._kind == "png" and (self._arguments.rulers or self._arguments.array):
+        given = self._arguments
+        if self._kind == "png" and (given.rulers or given.array or given.arrows):
             most = scenes.MOST_PLACED_PIXELS
         if self._kind == "png" and self._arguments.rulers and self._per_mm < _LEAST_RULERS_PER_MM:
             raise InputError(
@@ -284,6 +339,17 @@ class _Drawing:
     @property
     def _shown(self) -> str:
         return _SHOWN_CSV if self._kind == "csv" else _SHOWN
+
+    @property
+    def _arrows_said(self) -> list[str]:
+        """Sentence on the arrows, if they are wanted."""
+        if not self._arguments.arrows:
+            return []
+        hollow = sum(arrow.hollow for arrow in self._arrows)
+        return [
+            f"arrows: {len(self._arrows) - hollow} for what moves, and {hollow} hollow for the "
+            "hand that a signal answers"
+        ]
 
     @property
     def _pixels(self) -> str:
@@ -325,12 +391,14 @@ class _Drawing:
         axes = self._arguments.rulers
         if self._kind == "csv":
             return scenes.map_csv(deflections, self._per_mm)
-        if self._kind == "png" and over is None and not axes:
+        if self._kind == "png" and over is None and not (axes or self._arrows):
             told = {"Title": self._title, "Description": self._told(said)}
             return scenes.png(scenes.grays(deflections), self._per_mm, told)
         from vbraille.pictures.drawings import map_figure
 
-        return self._file_of(map_figure(self._scene.canvas, deflections, over, axes=axes), said)
+        canvas = self._scene.canvas
+        figure = map_figure(canvas, deflections, over, arrows=self._arrows, axes=axes)
+        return self._file_of(figure, said)
 
     def _file_of(self, figure: Figure, said: list[str]) -> bytes:
         """Make the file of a figure of matplotlib."""

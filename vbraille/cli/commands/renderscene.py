@@ -13,7 +13,7 @@ from vbraille.display import check_rate
 from vbraille.errors import InputError
 from vbraille.feeling.composing import compose
 from vbraille.feeling.loading import load_scene
-from vbraille.feeling.paths import PathOptions, hand_velocities, path_of
+from vbraille.feeling.paths import PathOptions, path_of
 from vbraille.newfile import new_file
 from vbraille.pictures.scenes import small_png
 from vbraille.recording import Recorder, SceneRecorded
@@ -51,7 +51,6 @@ def run(arguments: argparse.Namespace) -> int:
     for note in loaded.notes:
         say_line(f"note: {note}", aside=True)
     frames = path.t_s.size
-    velocities = hand_velocities(path.x_mm, path.y_mm, rate_hz)
     progress = WorkProgress(verbose=arguments.verbose)
     with (
         EAR.deferred(),
@@ -77,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
             span = slice(start, start + _BLOCK_FRAMES)
             t_s, x_mm, y_mm = path.t_s[span], path.x_mm[span], path.y_mm[span]
             theta_rad = path.theta_rad[span]
-            velocity = velocities[span]
+            velocity = path.velocity_mm_s[span]
             _, made = program.poses(x_mm, y_mm, theta_rad, t_s, velocity, going_on=start > 0)
             recorder.add_frames(t_s, x_mm, 0, made, y_mm=y_mm, theta_rad=theta_rad)
             EAR.heed()

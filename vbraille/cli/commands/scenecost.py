@@ -17,10 +17,12 @@ from vbraille.feeling.costs import (
     BATCH_FRAMES,
     REPEATS,
     cost_map,
+    costs_by_velocity,
     costs_of_elements,
     histogram,
     measure,
     to_csv,
+    velocity_map,
 )
 from vbraille.feeling.loading import load_scene
 from vbraille.feeling.paths import path_of
@@ -60,11 +62,14 @@ def run(arguments: argparse.Namespace) -> int:
                 "most_us": float(costs.frame_us.max()),
                 "actuator_us": costs.actuator_us,
                 "program_bytes": program.nbytes,
+                "velocities": [asdict(each) for each in costs_by_velocity(costs)],
                 "elements": [asdict(each) for each in found],
             }
         )
     else:
         _say(costs)
+        if loaded.scene.signals:
+            _say_velocities(costs)
         say_line(f"program: {program.nbytes / 1000:.1f} kB, {len(loaded.scene.elements)} elements")
         for cost in found:
             say_line(
@@ -78,10 +83,9 @@ def run(arguments: argparse.Namespace) -> int:
         # Only who wants a picture waits for what draws it.
         from vbraille.pictures.drawings import draw_costs
 
-        drawn = cost_map(costs, loaded.scene.canvas)
         draw_costs(
-            drawn.mean_us,
-            drawn.step_mm,
+            cost_map(costs, loaded.scene.canvas),
+            velocity_map(costs),
             Path(arguments.map),
             title=loaded.title,
             frame_us=costs.frame_us,
@@ -121,3 +125,12 @@ def _say(costs: Costs) -> None:
     for low, high, share in histogram(costs):
         if share:
             say_line(f"histogram: {low:.2f} to {high:.2f} µs: {share:.1%}")
+
+
+def _say_velocities(costs: Costs) -> None:
+    """Say what frames cost under a hand of each speed and direction."""
+    for cost in costs_by_velocity(costs):
+        say_line(
+            f"hand at {cost.from_mm_s:.0f} to {cost.to_mm_s:.0f} mm/s, {cost.direction}: mean "
+            f"{cost.mean_us:.2f} µs, {cost.most_us:.2f} µs at most"
+        )
