@@ -18,7 +18,7 @@ TSC        := .venv/typescript/node_modules/.bin/tsc
 unexport PYTHONDONTWRITEBYTECODE
 
 .DELETE_ON_ERROR:
-.PHONY: read test test-all soak lint tests all-tests bench format setup clean sound speech site man
+.PHONY: deb read test test-all soak lint tests all-tests bench format setup clean sound speech site man
 
 read: .venv/compiled
 	$(BIN)/vbraille read texts/english.txt --model stress2 --device sim --hand sweep:60 \
@@ -36,13 +36,14 @@ tests: .venv/tests .venv/compiled
 	@$(BIN)/vbraille setup  # in a second, where a copy of the checkout has other times of its files
 	$(PYTEST)
 
-# What is heavier than a change's every trial should be: more of each law, coverage by branch, and
-# the kernels as plain Python.
+# What is heavier than a change's every trial should be: more of each law, coverage by branch, the
+# kernels as plain Python, the package for Debian and the documents' site.
 test-all: .venv/tests
 	@rm -f .venv/typed
 	@$(MAKE) --no-print-directory -j2 lint all-tests
+	@$(MAKE) --no-print-directory site
 
-all-tests: .venv/tests .venv/compiled
+all-tests: .venv/tests .venv/compiled .venv/debian
 	TESTS=all $(PYTEST) --cov --cov-branch --cov-report=term
 	TESTS=all NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/test_framekernels.py tests/devices/wire/test_wirekernels.py tests/devices/serial/test_steady.py
 
@@ -90,6 +91,21 @@ site: .venv/pip
 # Man pages, in man/, made from the command line.
 man: .venv/compiled
 	$(BIN)/python packaging/manual.py man
+
+# The package for Debian, in dist/debian/.
+DEBUILD := debhelper dh-python lintian pybuild-plugin-pyproject python3-all
+
+deb: .venv/tests .venv/debian
+	rm -rf dist/debian
+	packaging/build-deb dist/debian $(BIN)/python
+
+.venv/debian:
+	@{ command -v dh_python3 && command -v lintian; } >/dev/null || { \
+	  echo 'Installing from Debian: $(DEBUILD) (with which packages are built)'; \
+	  $(SUDO) apt-get update -qq; \
+	  $(SUDO) apt-get install -y -qq --no-install-recommends $(DEBUILD) \
+	  || echo 'they are not installed: the test of the package is left out'; }
+	@touch $@
 
 # PortAudio, for the participant's signals in sessions and the cues of a reading; without it the
 # terminal's bell rings.

@@ -69,11 +69,18 @@ def test_bash_completes(line, found):
     assert shell("bash", script) == found
 
 
-def test_zsh_completes():
-    script = """
-        compdef() { : }
-        compadd() { print -l -- "${@[2,-1]}" }
-        eval "$(vbraille completion zsh)"
+@pytest.mark.parametrize(
+    "loaded",
+    [
+        'eval "$(vbraille completion zsh)"',
+        "vbraille completion zsh > {}/_vbraille; fpath=({}); autoload -Uz _vbraille",
+    ],
+)
+def test_zsh_completes_at_the_first_tab(tmp_path, loaded):
+    script = f"""
+        compdef() {{ : }}
+        compadd() {{ print -l -- "${{@[2,-1]}}" }}
+        {loaded.format(tmp_path, tmp_path)}
         words=(vbraille session r) CURRENT=3
         _vbraille
     """

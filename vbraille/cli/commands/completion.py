@@ -37,7 +37,8 @@ _vbraille() {
     found=(${(f)"$(vbraille completion words "${(@)words[2,CURRENT]}" 2>/dev/null)"})
     if (( $#found )); then compadd -- $found; else _files; fi
 }
-compdef _vbraille vbraille
+# As a file of $fpath it is loaded at the first Tab, and completes it at once.
+if [[ $funcstack[1] == _vbraille ]]; then _vbraille "$@"; else compdef _vbraille vbraille; fi
 """,
     "fish": """\
 function __vbraille
