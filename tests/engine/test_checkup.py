@@ -10,6 +10,7 @@ from tests.devices.bench import Bench
 from tests.engine.test_loop import info
 from tests.tiers import heavy
 from vbraille.devices.serial.wire import Encoder
+from vbraille.engine import checkup
 from vbraille.engine.checkup import check
 from vbraille.engine.clock import ManualClock
 
@@ -30,6 +31,13 @@ class BenchClock:
     def sleep_until_ns(self, deadline_ns):
         while self.now_ns() < deadline_ns:
             self._bench.pause(0.001)
+
+
+@pytest.fixture(autouse=True)
+def shorter(monkeypatch):
+    """Measure for a second, and fewer round trips: what is measured is as steady as the bench."""
+    monkeypatch.setattr(checkup, "_RATE_S", 1.0)
+    monkeypatch.setattr(checkup, "_ROUND_TRIPS", 100)
 
 
 @pytest.fixture
