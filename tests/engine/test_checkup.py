@@ -10,10 +10,10 @@ from tests.devices.bench import Bench
 from tests.engine.test_loop import info
 from tests.tiers import heavy
 from vbraille.devices.serial.wire import Encoder
-from vbraille.engine import checkup
 from vbraille.engine.checkup import check
 from vbraille.engine.clock import ManualClock
 
+RATE_S = 1.0  # what a bench does in it, it always does
 SMALL = {"rows": 1, "columns": 2, "inverted": b"\0\1", "gain": b"\xff\xff", "enabled": b"\1\1"}
 
 
@@ -33,13 +33,6 @@ class BenchClock:
             self._bench.pause(0.001)
 
 
-@pytest.fixture(autouse=True)
-def shorter(monkeypatch):
-    """Measure for a second, and fewer round trips: what is measured is as steady as the bench."""
-    monkeypatch.setattr(checkup, "_RATE_S", 1.0)
-    monkeypatch.setattr(checkup, "_ROUND_TRIPS", 100)
-
-
 @pytest.fixture
 def checked():
     """Check a device of two actuators whose controller is made as it should not be."""
@@ -49,7 +42,7 @@ def checked():
         spoil(bench)
         said = []
         with bench.begin(None) as device:
-            code = check(device, BenchClock(bench), said.append)
+            code = check(device, BenchClock(bench), said.append, rate_s=RATE_S)
         return code, said
 
     return run
