@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from vbraille.sessions.planning.stimuli import Trial
 
-SITTINGS = 5
+SITTINGS, PEOPLE = 5, 12
 TRIAL_S, GAP_S = 12.0, 0.5
 TICKS_A_S = 1000
 ROUNDS = 5
@@ -52,6 +52,12 @@ def run() -> Iterator[Result]:
         yield _program(f"{whole}, all numbers as JSON", "≤ 5 s", 5, None, [*folders, "--json"])
         report = Path(name, "report-{number}")
         yield _program(f"{whole}, with the report", "≤ 20 s", 20, None, [*folders, "--out", report])
+        folders = make_sittings(Path(name, "legibility"), PEOPLE, "legibility")
+        report = Path(name, "report-of-people-{number}")
+        yield _program(
+            f"report of {PEOPLE} people, 160 trials of 12 s each at 1 kHz, from their sessions",
+            "≤ 6 s", 6, None, [*folders, "--out", report],
+        )  # fmt: skip
         table = Path(name, "trials.csv")
         make_table(table)
         yield _program(
@@ -65,12 +71,12 @@ def run() -> Iterator[Result]:
         )  # fmt: skip
 
 
-def make_sittings(folder: Path, sittings: int = SITTINGS) -> list[Path]:
-    """Sessions of `letters` by a slow hand, as big as real ones; their directories."""
+def make_sittings(folder: Path, sittings: int = SITTINGS, protocol: str = "letters") -> list[Path]:
+    """Sessions of a protocol by a slow hand, as big as real ones; their directories."""
     folders = []
     for number in range(1, sittings + 1):
         session = Session(
-            folder / f"P{number:02}", builtin_text("letters"), f"P{number:02}", seed=number,
+            folder / f"P{number:02}", builtin_text(protocol), f"P{number:02}", seed=number,
             hand="device",
         )  # fmt: skip
         _sit(session, np.random.default_rng((SEED, number)))
@@ -101,19 +107,23 @@ def make_table(path: Path, trials: int = TABLE_TRIALS) -> None:
 
 def _program(what: str, bar: str, most_s: float, most_mb: int | None, arguments: list) -> Result:
     """Run the program as a user does: start, imports and all."""
-    taken_s, peak_mb = [], 0.0
+    taken_s, worked_s, peak_mb = [], [], 0.0
     for number in range(ROUNDS):
         call = [str(argument).format(number=number) for argument in arguments]
         began_s = time.perf_counter()
         process = subprocess.Popen(vbraille("analyse", *call), stdout=subprocess.DEVNULL)
         _, status, usage = os.wait4(process.pid, 0)
         taken_s.append(time.perf_counter() - began_s)
+        worked_s.append(usage.ru_utime + usage.ru_stime)
         process.returncode = os.waitstatus_to_exitcode(status)
         assert process.returncode == 0
         peak_mb = max(peak_mb, usage.ru_maxrss / 1024)
     best_s = min(taken_s)
     good = best_s <= most_s and (most_mb is None or peak_mb <= most_mb)
-    got = f"{np.median(taken_s):.1f} s (best {best_s:.1f} s), {peak_mb:.0f} MB"
+    got = (
+        f"{np.median(taken_s):.1f} s (best {best_s:.1f} s), {min(worked_s):.1f} s of processor "
+        f"time, {peak_mb:.0f} MB"
+    )
     return Result(what, bar, got, good)
 
 

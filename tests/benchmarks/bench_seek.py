@@ -14,7 +14,8 @@ import msgspec
 
 from tests.benchmarks.big_texts import big_text
 from tests.benchmarks.timing import Result
-from vbraille.reading.library import KeptPlace, KeptPlaces
+from vbraille.reading.keptplace import KeptPlace
+from vbraille.reading.library import KeptPlaces
 from vbraille.reading.search.questions import BookOpening, FindShare, FindText, NotFound, Searched
 from vbraille.reading.search.seeker import Answering, Seeker
 from vbraille.translate import Book, Document

@@ -8,7 +8,9 @@ import pytest
 
 from tests.cli import program
 from vbraille.cli.commands.books import describe
-from vbraille.reading.library import ENVIRONMENT, KeptPlace, KeptPlaces, ListedBook
+from vbraille.reading.keptplace import KeptPlace
+from vbraille.reading.library import KeptPlaces, ListedBook
+from vbraille.reading.store import ENVIRONMENT
 
 
 @pytest.fixture

@@ -1,11 +1,14 @@
 """Reading with a conventional display beside, by the program as its users have it."""
 
+import pytest
+
 from tests.cli.program import Terminal
 from tests.conventional.handytech import FWINRT, LNDN, ROUTE_0, Brltty, needs_brltty, until
 
 pytestmark = needs_brltty
 
 
+@pytest.mark.real_time  # BRLTTY shows its own cells again in its own time, if it has any
 def test_each_line_stands_there_its_keys_are_obeyed_and_the_end_leaves_it_blank(text, tmp_path):
     with Brltty(tmp_path) as brltty:
         how = ("--also", f"brlapi:{brltty.host}", "--hand", "sweep:5", "--cues", "none")

@@ -14,6 +14,7 @@ from vbraille.devices.serial.wire import Encoder
 from vbraille.engine.checkup import check
 from vbraille.engine.clock import ManualClock
 
+RATE_S = 1.0  # what a bench does in it, it always does
 SMALL = {"rows": 1, "columns": 2, "inverted": b"\0\1", "gain": b"\xff\xff", "enabled": b"\1\1"}
 
 
@@ -42,7 +43,7 @@ def checked():
         spoil(bench)
         said = []
         with bench.begin(None) as device:
-            found = check(device, BenchClock(bench), said.append)
+            found = check(device, BenchClock(bench), said.append, rate_s=RATE_S)
         # As --json prints it: without NaN, which JSON has not.
         assert json.loads(json.dumps(found.to_json(), allow_nan=False))["wrong"] == found.wrong
         return found.fit, said

@@ -21,6 +21,7 @@ from vbraille.errors import InputError
 from vbraille.live.framing import FrameHeader, frame_bytes
 from vbraille.live.messages import (
     ArrayShown,
+    CommandShown,
     KnobShown,
     LineShown,
     Map,
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from vbraille.live.sources import Steering
 
 ROWS, COLUMNS = 6, 10
+SIGNALS = (0.25, 1.0, 0.0)  # values of the first signals that a state has
 COUNT = 240  # frames, after which they begin anew
 LENGTH_S = COUNT / 60
 ARRAY = ArrayShown(
@@ -67,6 +69,14 @@ KNOBS = [
     KnobShown("contrast", "contrast", "", 1.0, 0.05, 0.0, 1.0),
     KnobShown("texture", "texture", "", 0.1, 0.05, 0.0, 1.0, fixed="the protocol says so"),
 ]
+COMMANDS = [
+    CommandShown(name, words)
+    for name, words in (
+        ("LNUP", "previous line"),
+        ("LNDN", "next line"),
+        ("PAUSE", "rest the array at once, or go on"),
+    )
+]
 MOMENTS = [
     PlayedEvent(0.5, "line", "line 1"),
     PlayedEvent(1.0, "trial", "trial 1"),
@@ -92,11 +102,18 @@ def canned_state(number: int = 1, **changes) -> ViewState:
         device="reading",
         said=["line 2", "dot width: 2 mm"],
         facts=[("rate", "1000 Hz"), ("late ticks", "0")],
+        commands=COMMANDS,
     )
     return msgspec.structs.replace(state, **changes)
 
 
-def canned_frame(n: int, state: int = 1, age_ms: float = 0.0, time_s: float | None = None) -> bytes:
+def canned_frame(
+    n: int,
+    state: int = 1,
+    age_ms: float = 0.0,
+    time_s: float | None = None,
+    signals: tuple[float, ...] = (),
+) -> bytes:
     """Frame n, from 0: the hand goes along the line and comes back."""
     at = n % COUNT
     x_mm = 100.0 - 90.0 * math.cos(2 * math.pi * at / COUNT)
@@ -118,7 +135,8 @@ def canned_frame(n: int, state: int = 1, age_ms: float = 0.0, time_s: float | No
         work_us=55.0,
         age_ms=age_ms,
     )
-    return frame_bytes(header, swing.astype(np.float32), samples.astype(np.float32))
+    values = np.array(signals, np.float32)
+    return frame_bytes(header, swing.astype(np.float32), samples.astype(np.float32), values)
 
 
 class CannedViewer:
@@ -165,7 +183,10 @@ class CannedSource:
         """Have pages be told another state."""
         self.now = state
         self.told = state.number, msgspec.json.encode(state)
-        self.frames = [canned_frame(n, state.number) for n in range(COUNT)]
+        self.frames = [
+            canned_frame(n, state.number, signals=SIGNALS[: len(state.signals)])
+            for n in range(COUNT)
+        ]
 
     def viewer(self) -> CannedViewer:
         return CannedViewer(self)

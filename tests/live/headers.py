@@ -27,7 +27,7 @@ FRAME = np.dtype(
         ("age_ms", "<f4"),  # from the tick until the frame was sent; 0 in a recording
         ("rows", "<u2"),  # shape of the deflections; 0 × 0 where they are not shown
         ("columns", "<u2"),
-        ("reserved", "<u4"),
+        ("signals", "<u4"),  # number of the picture's signals
     ]
 )
 # The header of a map; after it come the bytes of a file.

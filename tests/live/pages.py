@@ -30,6 +30,7 @@ class FrameRead(NamedTuple):
     header: np.void
     deflections: NDArray[np.float32]
     samples: NDArray[np.float32]
+    signals: NDArray[np.float32]
 
 
 def read_frame(frame: bytes) -> FrameRead:
@@ -37,9 +38,13 @@ def read_frame(frame: bytes) -> FrameRead:
     header = np.frombuffer(frame, FRAME, 1)[0]
     rows, columns, samples = int(header["rows"]), int(header["columns"]), int(header["samples"])
     numbers = np.frombuffer(frame, "<f4", offset=FRAME.itemsize)
-    assert numbers.size == rows * columns + 3 * samples
-    deflections = numbers[: rows * columns].reshape(rows, columns)
-    return FrameRead(header, deflections, numbers[rows * columns :].reshape(samples, 3))
+    assert numbers.size == rows * columns + 3 * samples + header["signals"]
+    deflections, of_samples, signals = np.split(
+        numbers, [rows * columns, rows * columns + 3 * samples]
+    )
+    return FrameRead(
+        header, deflections.reshape(rows, columns), of_samples.reshape(samples, 3), signals
+    )
 
 
 class TestPage:

@@ -10,6 +10,7 @@ import asyncio
 import math
 import os
 import sys
+import threading
 import time
 from dataclasses import dataclass
 from itertools import islice
@@ -19,6 +20,7 @@ from typing import TYPE_CHECKING
 import msgspec
 import numpy as np
 
+from tests.live.canned import COMMANDS
 from vbraille.config.settings import KNOBS, say_mapping
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
@@ -126,6 +128,7 @@ class Scene:
         self.length_s = LENGTH_S if self.playback else 0.0
         self.moments = MOMENTS if self.playback else []
         self.asked: list[Steering] = []
+        self.asking = threading.Lock()
         self.two = kind == "page"
         self.style = self.model.style
         self.display = self.model.on(self.style.geometry)
@@ -210,6 +213,7 @@ class Scene:
             said=[] if blind else self.said,
             facts=[("trial", "12 of 78"), ("condition", "hidden")] if blind else [],
             blind=blind,
+            commands=[] if blind else COMMANDS,
         )
 
     def x_mm(self, t: float | NDArray[np.float64]) -> NDArray[np.float64]:
@@ -248,7 +252,12 @@ class Scene:
         return (TEXT.parents[1] / "docs/wave.png").read_bytes()
 
     def ask(self, request: Steering) -> None:
+        """Take what a page asks for, or a test as the reader beside it."""
         self.asked.append(request)
+        with self.asking:
+            self.obey(request)
+
+    def obey(self, request: Steering) -> None:
         match request:
             case Point():
                 was, self.held = self.held, request

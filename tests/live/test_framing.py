@@ -25,7 +25,7 @@ def test_each_number_stands_where_the_header_has_it(rng):
     np.testing.assert_array_equal(read.deflections, deflections)
     np.testing.assert_array_equal(read.samples, samples)
     assert set(FRAME.names or ()) - set(FrameHeader._fields) == {
-        "kind", "version", "samples", "rows", "columns", "reserved",
+        "kind", "version", "samples", "rows", "columns", "signals",
     }  # fmt: skip
 
 

@@ -23,6 +23,9 @@ PARTS = (
     messages.ArrayShown,
     messages.LineShown,
     messages.SceneShown,
+    messages.SignalShown,
+    messages.CommandShown,
+    messages.CardShown,
     messages.KnobShown,
     messages.PlayedEvent,
 )

@@ -3,6 +3,7 @@
 import time
 
 from tests.engine.planar import Bench
+from vbraille.devices.base import Placing
 from vbraille.display import Pose
 from vbraille.feeling.composing import compose
 from vbraille.feeling.loading import load_scene
@@ -44,7 +45,8 @@ class Felt:
         self.at = (10.0, 10.0)
         self.bench = Bench(lambda _: (*self.at, 0.0), display)
         self.said = []
-        self.held, self.attended = False, True
+        self.held, self.attended, self.paused, self.pointer = False, True, False, None
+        self.placing, self.display = Placing.DONE, display
         self.engine, self.steering = self.bench.engine, steering
         self.style = MODELS["stress2-8x8"].style
         self.loaded = load_scene(path, self.style)

@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 
 from tests.engine.planar import Bench
+from vbraille.devices.base import Placing
 from vbraille.errors import InputError
 from vbraille.feeling.loading import load_scene
+from vbraille.live.messages import PagePress
 from vbraille.reading.commands.game import BOUND
 from vbraille.reading.game import DECK, GameView, MemoryGame, Side, load_deck, programs_of
+from vbraille.reading.liveview import LastSentences, PlayedState
 from vbraille.render import MODELS
 from vbraille.simulation.steering import ReadPage, Steering
 
@@ -26,6 +29,7 @@ class Played:
         self.bench = Bench(lambda _: (10.0, 10.0, 0.0), DISPLAY)
         self.said, self.attended, self.steering = [], True, steering
         self.engine, self.display = self.bench.engine, DISPLAY
+        self.placing, self.paused, self.held, self.pointer = Placing.DONE, False, False, None
         self.deck = load_deck(DECK, STYLE, DISPLAY) if deck is None else deck
         programs = programs_of(self.deck, DISPLAY, 1000.0)
         self.view = GameView(
@@ -160,3 +164,35 @@ def test_a_folder_that_is_no_deck_is_refused(tmp_path):
         (tmp_path / f"{name}.scene").write_text("canvas = { width_mm = 900, height_mm = 20 }\n")
     with pytest.raises(InputError, match="canvas is 900"):
         load_deck(tmp_path, STYLE, DISPLAY)
+
+
+def test_a_page_turns_cards_by_the_same_table_and_is_not_told_what_they_are():
+    played = Played()
+    told = PlayedState(played, played.view, LastSentences())
+    state = told.changed()
+    assert [len(row) for row in state.cards] == [6, 6, 6, 6]
+    assert {card.side for row in state.cards for card in row} == {"face down"}
+    assert (state.blind, state.scene, state.title) == (True, None, "memory game")
+    assert [command.name for command in state.commands][:2] == ["TURN", "OTHER"]
+    assert told.changed() is None
+
+    def press(*request):
+        played.said.clear()
+        told.obey(PagePress(*request))
+        return list(played.said)
+
+    assert press("POINT", 7) == ["card: row 2, card 2; feel it"]
+    card = told.changed().cards[1][1]
+    assert (card.side, card.felt) == ("turned up", True)
+    cards = played.view.game.cards
+    other = next(n for n, one in enumerate(cards) if n != 7 and one == cards[7])
+    assert press("POINT", other)[0].startswith("card: row")
+    assert press("POINT", 7) == ["card: row 2, card 2; feel it"]  # which is up: it is felt again
+    assert press("POINT", 7)[0].startswith("match: ")
+    state = told.changed()
+    assert state.cards[1][1].side == "empty"
+    assert ("points", "1") in state.facts
+    assert press("POINT", 24) == ["place: there is none with number 25"]
+    assert press("POINT") == ["live view: POINT is for a place"]
+    assert press("TURN", 3) == ["live view: TURN is not for a place"]
+    assert press("QUIT") == ["live view: QUIT is no command that a page may call"]

@@ -8,7 +8,7 @@ import pytest
 
 from tests.reading.test_reader import Bench
 from tests.translate.documents.epubs import CONTAINER, opf, xhtml
-from vbraille.reading.library import place_in
+from vbraille.reading.keptplace import place_in
 from vbraille.reading.search.questions import FindShare
 from vbraille.reading.search.seeker import steps
 from vbraille.translate import Book, BrailleTable

@@ -1,6 +1,7 @@
 """What is said to whoever feels a picture, and what keys do to it."""
 
 import re
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,6 +10,8 @@ import pytest
 
 from tests.reading.felt import DISPLAY, SCENE, Felt
 from vbraille.engine.record import tick_dtype
+from vbraille.live.messages import PagePress, Turn
+from vbraille.reading.liveview import FeltState, LastSentences
 from vbraille.simulation.steering import GlideTo, Steering
 
 
@@ -289,3 +292,73 @@ def test_one_axis_begins_at_a_height_where_something_is_felt(scene):
     )
     felt = Felt(scene, display=replace(DISPLAY, height_mm=0.0))
     assert 9 <= felt.feeler._at_mm <= 31  # of the sun, and not the empty middle
+
+
+ANSWERS = """
+title = "Streets"
+canvas = { width_mm = 120, height_mm = 90 }
+[signals.streets]
+kind = "switch"
+title = "Streets"
+levels = [1, 0]
+states = ["shown", "hidden"]
+[signals.slow]
+kind = "speed"
+[[elements]]
+kind = "line"
+title = "Mill Street"
+start_mm = [10, 20]
+end_mm = [110, 20]
+stroke = { width_mm = 4 }
+factor = "streets"
+[[elements]]
+kind = "circle"
+title = "Pond"
+center_mm = [60, 60]
+radius_mm = 10
+stroke = { width_mm = 3 }
+factor = "slow"
+"""
+
+
+def test_pages_see_signals_and_layers_and_call_the_commands_of_keys(tmp_path):
+    path = tmp_path / "streets.scene"
+    path.write_text(ANSWERS)
+    felt = Felt(path)
+    told = FeltState(felt, felt.feeler, LastSentences())
+    state = told.changed()
+    assert state.scene.image.startswith("data:image/png")
+    assert (state.scene.off, state.scene.off_image) == ([], "")
+    assert [(signal.name, signal.words) for signal in state.signals] == [
+        ("streets", "Streets, key 1: shown 1, hidden 0"),
+        (
+            "slow",
+            "1 under a hand slower than 5 mm/s, 0 from 10 mm/s on; it waits 0.25 s and rises as "
+            "long",
+        ),
+    ]
+    names = [command.name for command in state.commands]
+    assert names[0] == "PAUSE"
+    assert {"ZOOM_IN", "PAN_LEFT", "WHOLE"} <= set(names)
+    assert names[-1] == "SWITCH_1"
+    assert told.changed() is None
+
+    told.obey(PagePress("SWITCH_1"))
+    assert felt.press() == ["Streets: hidden"]
+    before, end_s = state, time.monotonic() + 60
+    while state is None or not state.scene.off:  # it is drawn meanwhile
+        assert time.monotonic() < end_s
+        state = told.changed() or state
+    assert state.scene.off == ["Mill Street (signal streets)"]
+    assert state.scene.off_image.startswith("data:image/png")
+    assert state.scene.image != before.scene.image
+
+    told.obey(PagePress("ZOOM_IN"))
+    assert any(said.startswith("zoom: ") for said in felt.wait())
+    assert told.changed().scene.width_mm > 120
+    told.obey(PagePress("PAN_RIGHT"))
+    assert felt.press()[-1].startswith("zoom: ")
+    told.obey(PagePress("GOTO"))  # which is typed where the reader is
+    assert felt.press() == ["live view: GOTO is no command that a page may call"]
+    told.obey(Turn("texture", 0.5))
+    assert felt.press() == ["live view: knobs turn while a text is under the hand"]

@@ -36,7 +36,8 @@ if TYPE_CHECKING:
 
     from vbraille.config.settings import Settings
     from vbraille.layout.pages import Line
-    from vbraille.reading.library import BookOptions, KeptBook, KeptPlace, KeptPlaces
+    from vbraille.reading.keptplace import KeptPlace
+    from vbraille.reading.library import BookOptions, KeptBook, KeptPlaces
     from vbraille.reading.reader import Reader
     from vbraille.render import BrailleStyle, Model
     from vbraille.translate import Source

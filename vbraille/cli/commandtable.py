@@ -130,14 +130,9 @@ COMMANDS = {
         "Play memory with cards that only the finger tells apart.",
         (
             *("deck", "players", "device", _of("model", usual=_DEVICES), *_unset("hand"), "rate"),
-            *(_of("seed", default=None, usual=_DRAWN), *HEARD, "also"),
+            *(_of("seed", default=None, usual=_DRAWN), *HEARD, "also", *LIVE),
         ),
         "vbraille play --players 2 --device latero:192.168.1.10",
-        monitor=False,
-        pointer=None,
-        begun=None,
-        host=None,
-        port=None,
     ),
     "books": CommandRow(
         "List the books that were read, or read on in one of them.",

@@ -150,11 +150,13 @@ def _call(argv: Sequence[str] | None) -> int:
         if arguments.verbose:
             want_tracebacks()
     with ExitStack() as begun:
-        if arguments.command in ("read", "feel", "tune"):
+        if arguments.command in ("read", "feel", "play", "tune"):
             # A hand on a picture may stand still, and waits for a person.
             pointed = arguments.monitor or arguments.command == "feel"
             arguments.pointer = _pointer() if pointed else None
-            arguments.begun = _begin_host(arguments.pointer) if _may_begin(arguments) else None
+            # A game compiles all its cards first.
+            begins = arguments.command != "play" and _may_begin(arguments)
+            arguments.begun = _begin_host(arguments.pointer) if begins else None
         elif arguments.command == "session" and arguments.action in ("run", "resume"):
             arguments.begun = _begin_host() if _session_may_begin(arguments) else None
         if (host := getattr(arguments, "begun", None)) is not None:

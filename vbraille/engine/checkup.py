@@ -515,8 +515,19 @@ class ActuatorSwings:
             self._at = None
 
 
-def check(device: Device, clock: Clock, say: Callable[[str], None]) -> Checkup:
+def check(
+    device: Device, clock: Clock, say: Callable[[str], None], *, rate_s: float = _RATE_S
+) -> Checkup:
     """Measure a device; say what was measured, one thing a line, and last the verdict.
+
+    Parameters
+    ----------
+    device, clock
+        The device, opened, and the clock that its time is measured by.
+    say
+        Takes a line.
+    rate_s
+        For how long the device is held to its rate, in seconds.
 
     Raises
     ------
@@ -524,19 +535,25 @@ def check(device: Device, clock: Clock, say: Callable[[str], None]) -> Checkup:
         If the device is gone, or gives no place within a minute.
     """
     with Watch(device, clock) as watch:
-        return _Check(device, clock, say, watch).run()
+        return _Check(device, clock, say, watch, rate_s).run()
 
 
 class _Check:
     """One check; each of its parts says what it measured and gives what is wrong."""
 
     def __init__(
-        self, device: Device, clock: Clock, say: Callable[[str], None], watch: Watch
+        self,
+        device: Device,
+        clock: Clock,
+        say: Callable[[str], None],
+        watch: Watch,
+        rate_s: float,
     ) -> None:
         self._device = device
         self._clock = clock
         self._say = say
         self._watch = watch
+        self._rate_s = rate_s
         self._shown = False  # whether its place was chosen here, and says nothing
         self._found = Checkup()
 
@@ -545,7 +562,7 @@ class _Check:
         self._wait_for_place()
         self._swing_each()
         missed = device.counts().get("states missed", 0)
-        rate = self._found.rate = hold_rate(device, self._clock, _RATE_S)
+        rate = self._found.rate = hold_rate(device, self._clock, self._rate_s)
         missed = device.counts().get("states missed", 0) - missed
         wrong = self._found.wrong
         wrong += [

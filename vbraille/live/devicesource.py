@@ -18,7 +18,7 @@ import msgspec
 import numpy as np
 
 from vbraille.engine.mailbox import Extent, watch
-from vbraille.engine.record import FLOATS, INTS, Ring, tick_dtype
+from vbraille.engine.record import FLOATS, INTS, SIGNAL, Ring, tick_dtype
 from vbraille.errors import InputError
 from vbraille.live.framing import FrameHeader, frame_bytes, joined, thinned
 from vbraille.live.messages import MOST_SAMPLES, LetGo, PagePress, Point, Turn, ViewState
@@ -40,6 +40,7 @@ _TAKE_S: Final = 0.005
 # The numbers that a record begins with, taken at once: field by field takes twenty times as long.
 _NUMBERS: Final = struct.Struct(f"<{len(INTS)}q{len(FLOATS)}d")
 _COUNT_BYTES: Final = 8
+_SIGNAL: Final = len(INTS) + SIGNAL  # place of the first signal in a record
 
 
 class TickViews:
@@ -170,6 +171,8 @@ class DeviceSource:
         Memory of the host that runs; None before the first.
     blind : bool
         Whether stimuli are hidden.
+    signals : int
+        Number of signals of the newest state.
     """
 
     playback = False
@@ -194,8 +197,11 @@ class DeviceSource:
         """Have pages be told another state, without the stimuli if those are hidden."""
         self.blind = self.blind or state.blind
         if self.blind:
-            state = msgspec.structs.replace(state, lines=[], rows_shown=[], scene=None, blind=True)
+            state = msgspec.structs.replace(
+                state, lines=[], rows_shown=[], scene=None, figures=[], signals=[], blind=True
+            )
         self._title = state.title
+        self.signals = len(state.signals)
         self.told = state.number, msgspec.json.encode(state)
 
     def watch(self, watched: TickViews) -> None:
@@ -293,10 +299,12 @@ class DeviceViewer:
         row = -1 if self._source.blind else request.row
         samples = watched.samples(self._cursor, end, row, request.column)
         self._cursor = end
-        shape = watched.shape
+        shape, signals = watched.shape, b""
         if self._source.blind:
             shape, deflections = (0, 0), b""
-        return joined(_header(numbers, state), shape, deflections, samples)
+        elif count := self._source.signals:
+            signals = struct.pack(f"<{count}f", *numbers[_SIGNAL : _SIGNAL + count])
+        return joined(_header(numbers, state), shape, deflections, samples, signals)
 
 
 def _header(numbers: Sequence[float], state: int) -> FrameHeader:

@@ -1,6 +1,7 @@
 """Frames and maps as bytes; `docs/live-view.md` has their headers as tables.
 
-A frame is its header, the deflections, and samples of the ticks since the frame before.
+A frame is its header, the deflections, samples of the ticks since the frame before, and the values
+of a picture's signals.
 """
 
 from __future__ import annotations
@@ -21,12 +22,13 @@ from vbraille.live.messages import (
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-# Kind, version, number of samples, `FrameHeader`, rows, columns; and kind, form, size of the file.
+# Kind, version, number of samples, `FrameHeader`, rows, columns, number of signals; and kind, form,
+# size of the file.
 # Packing so takes a tenth of the time that numpy needs.
 _FRAME: Final = struct.Struct("<BBHIIIIIdd8fHHI")
 _MAP: Final = struct.Struct("<BBHI")
 _U32: Final = 0xFFFFFFFF
-_SAMPLE_BYTES: Final = 12
+_SAMPLE_BYTES, _FLOAT_BYTES = 12, 4
 
 
 class FrameHeader(NamedTuple):
@@ -79,6 +81,7 @@ def frame_bytes(
     header: FrameHeader,
     deflections: NDArray[np.float32] = NO_DEFLECTIONS,
     samples: NDArray[np.float32] = NO_DEFLECTIONS,
+    signals: NDArray[np.float32] = NO_DEFLECTIONS,
 ) -> bytes:
     """Bytes of a frame.
 
@@ -91,18 +94,26 @@ def frame_bytes(
     samples
         Samples, float32[samples, 3], oldest first: seconds before this tick, place of the array's
         centre in mm, deflection of the actuator that the page follows.
+    signals
+        Values of the signals of the state, float32[signals].
     """
-    return joined(header, deflections.shape, deflections.tobytes(), samples.tobytes())
+    parts = deflections.tobytes(), samples.tobytes(), signals.tobytes()
+    return joined(header, deflections.shape, *parts)
 
 
 def joined(
-    header: FrameHeader, shape: tuple[int, ...], deflections: bytes, samples: bytes
+    header: FrameHeader,
+    shape: tuple[int, ...],
+    deflections: bytes,
+    samples: bytes,
+    signals: bytes = b"",
 ) -> bytes:
     """Bytes of a frame of which all but the header is bytes already, as `frame_bytes` takes it."""
     flags, state, line, part, late, *numbers = header
     count = len(samples) // _SAMPLE_BYTES
     sizes = FRAME_KIND, VERSION, count, flags, state & _U32, line & _U32, part & _U32, late & _U32
-    return b"".join((_FRAME.pack(*sizes, *numbers, *shape, 0), deflections, samples))
+    packed = _FRAME.pack(*sizes, *numbers, *shape, len(signals) // _FLOAT_BYTES)
+    return b"".join((packed, deflections, samples, signals))
 
 
 def map_bytes(file: bytes, form: str) -> bytes:

@@ -56,9 +56,18 @@ class Next(Request, frozen=True, tag="next"):
 
 
 class PagePress(Request, frozen=True, tag="press"):
-    """A command of the reader by its name, as in `docs/keys.md`; it needs the right to steer."""
+    """A command by its name, as in `docs/keys.md`; it needs the right to steer.
+
+    Parameters
+    ----------
+    command
+        The command.
+    place
+        Number of the place that a command is for which is pointed at, from 0, such as a card's.
+    """
 
     command: str
+    place: int | None = None
 
 
 class Turn(Request, frozen=True, tag="turn"):
@@ -210,6 +219,10 @@ class SceneShown(msgspec.Struct, frozen=True):
         black is full deflection. Empty where there is none.
     left_mm, top_mm
         Place of the canvas where the carriage is at 0, 0.
+    off
+        Names of the layers that its switches hide, each with what hides it.
+    off_image
+        Address of a map of these layers alone; empty where none is hidden.
     """
 
     title: str
@@ -219,6 +232,54 @@ class SceneShown(msgspec.Struct, frozen=True):
     image: str = ""
     left_mm: float = 0.0
     top_mm: float = 0.0
+    off: list[str] = []
+    off_image: str = ""
+
+
+class SignalShown(msgspec.Struct, frozen=True):
+    """A signal of a picture; frames have its value at its place in the list.
+
+    Parameters
+    ----------
+    name
+        Name of the signal.
+    words
+        Words for when it is 1 and when it is 0.
+    """
+
+    name: str
+    words: str
+
+
+class CommandShown(msgspec.Struct, frozen=True):
+    """A command that a page offers, as `PagePress` calls it.
+
+    Parameters
+    ----------
+    name, words
+        Name of the command, and what it does.
+    """
+
+    name: str
+    words: str
+
+
+class CardShown(msgspec.Struct, frozen=True):
+    """A place on the table of a memory game.
+
+    Parameters
+    ----------
+    place
+        Words for the place, such as "row 1, card 2".
+    side
+        How its card lies: "face down", "turned up" or "empty".
+    felt
+        Whether its card is under the hand.
+    """
+
+    place: str
+    side: str
+    felt: bool = False
 
 
 class PlayedEvent(msgspec.Struct, frozen=True):
@@ -314,6 +375,14 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
         Whether reading is over.
     scene
         Tactile picture that is felt; None where lines are read, and in a blind session.
+    figures
+        Tactile pictures that stand on the page of a text, at their places.
+    signals
+        Signals of the picture that is felt.
+    commands
+        Commands that a page with the right to steer offers.
+    cards
+        Rows of the table of a memory game; a card is turned by the command "POINT" and its place.
     """
 
     number: int
@@ -335,6 +404,10 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
     blind: bool = False
     done: bool = False
     scene: SceneShown | None = None
+    figures: list[SceneShown] = []
+    signals: list[SignalShown] = []
+    commands: list[CommandShown] = []
+    cards: list[list[CardShown]] = []
 
 
 class Refused(msgspec.Struct, frozen=True, tag_field="tell", tag="refused"):

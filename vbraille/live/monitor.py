@@ -218,7 +218,9 @@ def _fewer(state: ViewState) -> Iterator[ViewState]:
     yield state
     under = [line for line in state.lines if line.under]
     yield msgspec.structs.replace(state, lines=under)
+    pale = [msgspec.structs.replace(one, image="") for one in state.figures]
+    yield msgspec.structs.replace(state, lines=under, figures=pale)
     if state.scene is not None:
-        pale = msgspec.structs.replace(state.scene, image="")
-        yield msgspec.structs.replace(state, lines=under, scene=pale)
+        scene = msgspec.structs.replace(state.scene, image="", off_image="")
+        yield msgspec.structs.replace(state, lines=under, figures=pale, scene=scene)
     yield ViewState(state.number, place=state.place, device=_TOO_LARGE, blind=state.blind)

@@ -36,7 +36,7 @@ class Arrow(NamedTuple):
     Parameters
     ----------
     points_mm : float64[n, 2]
-        Its line, of two points or more; the head is at the last.
+        Points of the line, two or more; the head is at the last.
     hollow
         Whether it stands for a direction of the hand, not for a motion.
     both

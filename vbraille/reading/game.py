@@ -156,6 +156,8 @@ class GameView(View):
         Cards and points.
     place : int
         Place on the table that keys have chosen.
+    felt : int or None
+        Place of the card under the hand.
     """
 
     does, doing = "play", "playing"
@@ -175,23 +177,23 @@ class GameView(View):
         super().__init__(device.engine, say, bound, cue)
         self._deck, self._device, self._seed = deck, device, seed
         self._programs = programs
-        self._felt: int | None = None  # place of the card under the hand
+        self.felt: int | None = None
         self._shown = 0
         self._deal(players)
 
     def start(self) -> None:
         """Put no card under the hand, and say how the cards lie."""
         self._feel(None)
-        cards, rows = len(self.game.cards), -(-len(self.game.cards) // _COLUMNS)
+        cards, rows = len(self.game.cards), len(self.rows())
         self.say(f"table: {count(cards, 'card')} face down, {count(rows, 'row')} of {_COLUMNS}")
         self._say_turn()
         self.say_place()
 
     def steer(self) -> None:
         """Have a simulated hand go over the card that it feels."""
-        if self._device.steering is None or self._felt is None:
+        if self._device.steering is None or self.felt is None:
             return
-        canvas = self._deck[self.game.cards[self._felt]].scene.canvas
+        canvas = self._deck[self.game.cards[self.felt]].scene.canvas
         lines = max(1, round(canvas.height_mm / _LINE_MM))
         self._device.steering.give(ReadPage(lines, canvas.height_mm / lines, canvas.width_mm))
 
@@ -202,14 +204,13 @@ class GameView(View):
 
     def say_place(self) -> None:
         """Say the chosen place, and how its card lies."""
-        self.say(f"place: {self._name(self.place)}, {self.game.side(self.place).value}")
+        self.say(f"place: {self.name(self.place)}, {self.game.side(self.place).value}")
 
     def say_table(self) -> None:
         """Say how all cards lie, a row in each sentence."""
-        for begin in range(0, len(self.game.cards), _COLUMNS):
-            places = range(begin, min(begin + _COLUMNS, len(self.game.cards)))
+        for number, places in enumerate(self.rows(), 1):
             sides = ", ".join(self.game.side(place).value for place in places)
-            self.say(f"row {begin // _COLUMNS + 1}: {sides}")
+            self.say(f"row {number}: {sides}")
 
     def say_points(self) -> None:
         """Say the points, and how many cards are left."""
@@ -251,18 +252,29 @@ class GameView(View):
         else:
             self.game = self.game.turned(self.place)
             self._feel(self.place)
-            self.say(f"card: {self._name(self.place)}; feel it")
+            self.say(f"card: {self.name(self.place)}; feel it")
             if len(self.game.up) == 2:
                 self.say(f"two cards: {self.key('OTHER', 'o')} feels the other, {self._again()}")
 
+    def turn_at(self, place: int) -> None:
+        """Choose a place by its number, and do with its card what `turn` does, or feel it again."""
+        if not 0 <= place < len(self.game.cards):
+            self.say_not_found(f"place: there is none with number {place + 1}")
+            return
+        self.place = place
+        if self.game.side(place) is Side.UP and place != self.felt:
+            self.feel_other()
+        else:
+            self.turn()
+
     def feel_other(self) -> None:
         """Put the other of two cards that are turned up under the hand."""
-        others = [place for place in self.game.up if place != self._felt]
+        others = [place for place in self.game.up if place != self.felt]
         if not others:
             self.say(f"card: none other is turned up; {self.key('TURN', 'enter')} turns one")
             return
         self._feel(others[0])
-        self.say(f"card: {self._name(others[0])}; feel it")
+        self.say(f"card: {self.name(others[0])}; feel it")
 
     def begin(self, players: int) -> None:
         """Deal the cards for so many players, unless a game is going on."""
@@ -302,7 +314,7 @@ class GameView(View):
 
     def _feel(self, place: int | None) -> None:
         """Put the card of a place under the hand, or nothing."""
-        self._felt = place
+        self.felt = place
         self._shown += 1
         number = -1 if place is None else self.game.cards[place]
         self.engine.show(self._programs[number], self._shown)
@@ -318,7 +330,15 @@ class GameView(View):
     def _player(self, number: int) -> str:
         return f"player {number + 1}"
 
-    def _name(self, place: int) -> str:
+    def rows(self) -> list[list[int]]:
+        """Give the places of the table, row by row."""
+        count = len(self.game.cards)
+        return [
+            [*range(begin, min(begin + _COLUMNS, count))] for begin in range(0, count, _COLUMNS)
+        ]
+
+    def name(self, place: int) -> str:
+        """Words for a place of the table."""
         row, column = divmod(place, _COLUMNS)
         return f"row {row + 1}, card {column + 1}"
 

@@ -336,15 +336,18 @@ class Command:
         Contexts in which the command can be called.
     paged
         Whether a page of the live view may call it, too.
+    placed
+        Whether the handler is given the number of a place, which a page points at.
     """
 
     name: str
     keys: tuple[str, ...]
     help: str
     # A reader knows its bindings, so that naming its type here would be a circle.
-    handler: Callable[[Any], None]
+    handler: Callable[..., None]
     contexts: tuple[Context, ...] = (Context.READING,)
     paged: bool = False
+    placed: bool = False
 
     @property
     def spoken_keys(self) -> str:

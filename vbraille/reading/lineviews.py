@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.engine.engine import Engine
+    from vbraille.feeling.loading import LoadedScene
     from vbraille.layout.pages import Line
     from vbraille.reading.view import Cue, View
     from vbraille.reading.viewport import Surface, Window
@@ -354,11 +355,14 @@ class Figure(Protocol):
         Title of the picture.
     width_mm, height_mm : float
         Size of its canvas.
+    loaded : LoadedScene
+        The picture itself.
     """
 
     title: str
     width_mm: float
     height_mm: float
+    loaded: LoadedScene
 
     def name_at(self, x_mm: float, y_mm: float) -> str:
         """Name of the element at a place of its canvas, in mm; empty if none has one there."""

@@ -6,7 +6,8 @@ import base64
 import math
 from abc import ABC, abstractmethod
 from collections import deque
-from typing import TYPE_CHECKING, Any, Final, Self
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any, Final, Self, cast
 
 from msgspec.structs import replace
 
@@ -14,7 +15,16 @@ from vbraille.config.settings import KNOBS, say_mapping
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Changed, Silent, Stalled, Stranger, Unplugged
 from vbraille.errors import InputError
-from vbraille.live.messages import LineShown, PagePress, SceneShown, Turn, ViewState
+from vbraille.live.messages import (
+    CardShown,
+    CommandShown,
+    LineShown,
+    PagePress,
+    SceneShown,
+    SignalShown,
+    Turn,
+    ViewState,
+)
 from vbraille.live.monitor import Monitor
 from vbraille.live.states import (
     array_shown,
@@ -23,28 +33,33 @@ from vbraille.live.states import (
     line_shown,
     rows_shown,
 )
-from vbraille.reading.commands.table import COMMANDS
 from vbraille.reading.commands.turning import turn_to
 from vbraille.reading.keys import Context
 from vbraille.reading.outputs import Output
 from vbraille.reading.position import line_name, percent
+from vbraille.reading.reader import Reader
+from vbraille.scene.checking import kind_of
+from vbraille.scene.signals import Switch, ordered
 from vbraille.wording import printable, spelled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
+    from concurrent.futures import Future
 
     from vbraille.devices.events import Event
     from vbraille.feeling.loading import LoadedScene
     from vbraille.layout.pages import Line
     from vbraille.live.messages import Turn
     from vbraille.reading.device import OpenDevice
-    from vbraille.reading.reader import Reader
+    from vbraille.reading.game import GameView
     from vbraille.reading.sceneview import SceneView
     from vbraille.reading.view import View
     from vbraille.reading.viewport import Window
+    from vbraille.scene.scene import Scene
     from vbraille.simulation.steering import Pointer
 
 MOST_SAID: Final = 20
+_MOST_DRAWN: Final = 8  # pictures that stay drawn
 BEFORE, AFTER = 2, 3  # lines around the one under the hand
 _NUMBER: Final = 0xFFFF_FFFF  # as much of a line's number as a frame has room for
 _PLACES: Final = {
@@ -123,9 +138,9 @@ class ExploredState(ABC):
     def _parts(self) -> dict[str, Any]:
         """Parts of the state that are of one activity alone."""
 
-    @abstractmethod
     def obey(self, asked: PagePress | Turn) -> None:
         """Do what a page has asked for."""
+        obey_page(self._activity, asked)
 
     def see(self, events: Iterable[Event]) -> None:
         """Take note of events of the device."""
@@ -162,9 +177,8 @@ class ExploredState(ABC):
             device=self._standing(),
             said=said,
             said_before=self._said.count - len(said),
-            facts=self._facts,
             done=done,
-            **self._parts(),
+            **{"facts": self._facts, **self._parts()},
         )
 
     def _standing(self) -> str:
@@ -206,17 +220,36 @@ class ReadState(ExploredState):
     ) -> None:
         super().__init__(device, device.reader, said, facts)
         self._title = title
-
-    def obey(self, asked: PagePress | Turn) -> None:
-        """Do what a page has asked for."""
-        obey_page(self._device.reader, asked)
+        self._pictures = ScenePictures()
+        self._placed: list[SceneShown] = []
+        self._felt: FeltScene | None = None
 
     def _compared(self) -> tuple[object, ...]:
         reader = self._device.reader
         under, layout = reader.under, reader.layout
-        return reader.window, under.style, layout, under.shown, under.reached, layout.counted
+        alone = self._alone
+        felt = () if alone is None else alone.compared()
+        pictures = [self._pictures.of(one.figure.loaded) for one in under.figured.placed]
+        self._placed = [
+            replace(picture, top_mm=-one.top_mm)
+            for one, picture in zip(under.figured.placed, pictures, strict=True)
+        ]
+        seen = reader.window, under.style, layout, under.shown, under.reached, layout.counted
+        return (*seen, under.alone, *felt, *pictures)
+
+    @property
+    def _alone(self) -> FeltScene | None:
+        """Figure that is felt in place of the text."""
+        view = self._device.reader.under.alone
+        if self._felt is None or self._felt.view is not view:
+            felt = cast("SceneView | None", view)  # which a figure alone is
+            self._felt = None if felt is None else FeltScene(felt, self._pictures)
+        return self._felt
 
     def _parts(self) -> dict[str, Any]:
+        alone = self._alone
+        if alone is not None:
+            return alone.parts()
         reader = self._device.reader
         style, layout, line = reader.style, reader.layout, reader.line
         counted = f"{line_name(layout, line)}, " if layout.counted else ""
@@ -228,6 +261,8 @@ class ReadState(ExploredState):
             "place": f"{counted}{percent(layout, line)} %",
             "knobs": knobs_shown(style),
             "mapping": say_mapping(style.mapping),
+            "figures": self._placed,
+            "commands": commands_shown(reader, _READING),
         }
 
     def _lines(self, line: Line) -> Iterable[LineShown]:
@@ -288,36 +323,174 @@ class FeltState(ExploredState):
         facts: Iterable[tuple[str, str]] = (),
     ) -> None:
         super().__init__(device, feeler, said, facts)
-        self._feeler = feeler
-        self._drawn: tuple[LoadedScene, SceneShown] | None = None
-
-    def obey(self, asked: PagePress | Turn) -> None:
-        """Pass over what a page asks for: it can be the hand, but nothing can be turned."""
+        self._felt = FeltScene(feeler, ScenePictures())
 
     def see(self, events: Iterable[Event]) -> None:
         """Take note of events of the device, all of which are said."""
 
     def _compared(self) -> tuple[object, ...]:
-        return self._feeler.shown, self._feeler.aperture, self._feeler.under
+        return self._felt.compared()
 
     def _parts(self) -> dict[str, Any]:
-        under, shown, aperture = self._feeler.under, self._feeler.shown, self._feeler.aperture
-        scene = self._scene(shown)
+        return self._felt.parts()
+
+
+class FeltScene:
+    """Parts of a state for a picture that is felt: by itself, or as a figure of a text.
+
+    Parameters
+    ----------
+    view
+        Who feels it.
+    pictures
+        Pictures of scenes from above.
+    """
+
+    def __init__(self, view: SceneView, pictures: ScenePictures) -> None:
+        self.view = view
+        self._pictures = pictures
+        self._shown = pictures.of(view.shown, view.engine.switches, wait=True)
+
+    def compared(self) -> tuple[object, ...]:
+        """Give whatever may change; see `ExploredState`."""
+        view = self.view
+        drawn = self._pictures.of(view.shown, view.engine.switches)
+        if drawn.image:  # until then the one before stays
+            self._shown = drawn
+        return view.shown, view.aperture, view.under, view.engine.switches, self._shown
+
+    def parts(self) -> dict[str, Any]:
+        """Make the parts of the state."""
+        # Only a live view waits for what draws pictures and has words for them.
+        from vbraille.pictures.scenewords import signal_words
+
+        view, aperture = self.view, self.view.aperture
+        scene, under = view.shown.scene, view.under
+        canvas = scene.canvas
+        signals = {one.name: one.signal for one in ordered(scene.signals)}
         return {
-            "title": shown.title,
+            "title": view.shown.title,
             "place": "" if under is None else f"here: {under.name}",
-            "scene": replace(scene, left_mm=aperture.left_mm, top_mm=aperture.top_mm),
+            "scene": replace(
+                self._shown,
+                width_mm=canvas.width_mm,
+                height_mm=canvas.height_mm,
+                left_mm=aperture.left_mm,
+                top_mm=aperture.top_mm,
+            ),
+            "signals": [
+                SignalShown(name, signal_words(one)) for name, one in signals.items() if one
+            ],
+            "commands": [
+                *commands_shown(view, _FEELING),
+                *(
+                    CommandShown(f"SWITCH_{one.key}", one.title or f"switch {one.key}")
+                    for one in {
+                        one.key: one for one in signals.values() if isinstance(one, Switch)
+                    }.values()
+                ),
+            ],
         }
 
-    def _scene(self, loaded: LoadedScene) -> SceneShown:
-        """Picture from above, which is drawn once."""
-        if self._drawn is None or self._drawn[0] is not loaded:
-            # Only a live view waits for what draws it.
-            from vbraille.pictures.scenes import small_png
 
-            drawn = base64.b64encode(small_png(loaded.scene, loaded.assets)).decode()
-            self._drawn = loaded, scene_shown(loaded, f"data:image/png;base64,{drawn}")
-        return self._drawn[1]
+class ScenePictures:
+    """Pictures of scenes from above, as their switches stand, drawn in a thread of their own."""
+
+    def __init__(self) -> None:
+        self._drawer = ThreadPoolExecutor(1)
+        # With each scene, which has its number for itself while it is here.
+        self._found: dict[tuple[int, int], tuple[LoadedScene, SceneShown, Future[SceneShown]]] = {}
+
+    def of(self, loaded: LoadedScene, switches: int = 0, *, wait: bool = False) -> SceneShown:
+        """Give the picture of a scene, the same until something changes.
+
+        Parameters
+        ----------
+        loaded
+            The scene.
+        switches
+            States of its switches, as `vbraille.scene.signals.packed` has them.
+        wait
+            Whether to wait until it is drawn; else it has no image till then.
+        """
+        key = id(loaded), switches
+        if key not in self._found:
+            while len(self._found) >= _MOST_DRAWN:
+                del self._found[next(iter(self._found))]
+            drawing = self._drawer.submit(_drawn, loaded, switches)
+            self._found[key] = loaded, scene_shown(loaded, ""), drawing
+        _, blank, drawing = self._found[key]
+        return drawing.result() if wait or drawing.done() else blank
+
+
+def _drawn(loaded: LoadedScene, switches: int) -> SceneShown:
+    """Draw a scene as its switches have it, and the layers that they hide."""
+    # Only a live view waits for what draws it.
+    from vbraille.feeling.index import label_of
+    from vbraille.pictures.scenes import hidden_layers, small_png
+    from vbraille.render.scene.compiling import settled
+
+    def address(scene: Scene, beyond: Scene | None = None) -> str:
+        drawn = base64.b64encode(small_png(scene, loaded.assets, beyond)).decode()
+        return f"data:image/png;base64,{drawn}"
+
+    scene = loaded.scene
+    shown = settled(scene, switches=switches) if scene.signals else scene
+    picture = scene_shown(loaded, address(shown))
+    hidden = hidden_layers(scene, switches)
+    if hidden is None:
+        return picture
+    off = [
+        f"{'' if whole else 'part of '}{label_of(element) or kind_of(element).replace('-', ' ')} "
+        f"(signal {name})"
+        for element, whole, name in hidden.elements
+    ]
+    return replace(picture, off=off, off_image=address(hidden.shown, shown))
+
+
+class PlayedState(ExploredState):
+    """A memory game that is played on a device: how the cards lie, and not what they are.
+
+    Parameters
+    ----------
+    device
+        Device that the cards are felt on.
+    view
+        The game.
+    said, facts
+        As for a `ExploredState`.
+    """
+
+    def __init__(
+        self,
+        device: OpenDevice,
+        view: GameView,
+        said: LastSentences,
+        facts: Iterable[tuple[str, str]] = (),
+    ) -> None:
+        super().__init__(device, view, said, facts)
+        self._view = view
+
+    def _compared(self) -> tuple[object, ...]:
+        return self._view.game, self._view.place, self._view.felt
+
+    def _parts(self) -> dict[str, Any]:
+        view, game = self._view, self._view.game
+        points = [("points", " : ".join(map(str, game.points))), ("turns", str(game.turns))]
+        return {
+            "title": "memory game",
+            "place": f"place: {view.name(view.place)}, {game.side(view.place).value}",
+            "facts": [*self._facts, *points],
+            "blind": True,
+            "cards": [
+                [
+                    CardShown(view.name(place), game.side(place).value, place == view.felt)
+                    for place in row
+                ]
+                for row in view.rows()
+            ],
+            "commands": commands_shown(view, _PLAYING),
+        }
 
 
 def scene_shown(loaded: LoadedScene, image: str) -> SceneShown:
@@ -328,37 +501,58 @@ def scene_shown(loaded: LoadedScene, image: str) -> SceneShown:
     )
 
 
-_COMMANDS: Final = {command.name: command for command in COMMANDS if command.paged}
+# Commands that pages offer as buttons, in this order.
+_READING: Final = ("LNUP", "LNDN", "PAUSE", "MAPPING", "UNDO")
+_FEELING: Final = (
+    *("BACK", "PAUSE", "ZOOM_IN", "ZOOM_OUT", "WHOLE"),
+    *("PAN_LEFT", "PAN_RIGHT", "PAN_UP", "PAN_DOWN", "HERE", "ENTERING"),
+)
+_PLAYING: Final = ("TURN", "OTHER", "TABLE", "POINTS", "ONE", "TWO", "PAUSE")
 _MOST_NAMED = 40  # characters of an unknown name
 
 
-def obey_page(reader: Reader, asked: PagePress | Turn) -> None:
-    """Do what a page asks, as if the reader had pressed a key, or say why it cannot be done."""
-    if reader.context is not Context.READING:
-        reader.say("live view: not now; what the keys have begun comes first")
+def commands_shown(view: View, names: Iterable[str]) -> list[CommandShown]:
+    """Commands of a view with these names, as pages offer them."""
+    found = {command.name: command for command in view.bound.commands}
+    return [CommandShown(name, found[name].help) for name in names if name in found]
+
+
+def obey_page(view: View, asked: PagePress | Turn) -> None:
+    """Do what a page asks, as if a key had been pressed, or say why it cannot be done."""
+    view = view.listener()
+    if view.context is not Context.READING:
+        view.say("live view: not now; what the keys have begun comes first")
         return
     try:
         if isinstance(asked, PagePress):
-            _press(reader, asked.command)
+            _press(view, asked)
         else:
-            _turn(reader, asked.knob, asked.value)
-    except InputError as error:  # reading goes on
-        reader.say(f"live view: {spelled(str(error))}")
+            _turn(view, asked.knob, asked.value)
+    except InputError as error:  # the exploration goes on
+        view.say(f"live view: {spelled(str(error))}")
 
 
-def _press(reader: Reader, name: str) -> None:
-    command = _COMMANDS.get(name)
+def _press(view: View, asked: PagePress) -> None:
+    name = asked.command
+    command = next((one for one in view.bound.commands if one.name == name and one.paged), None)
     if command is None:
         raise InputError(f"{printable(name[:_MOST_NAMED])} is no command that a page may call")
-    command.handler(reader)
+    if command.placed is not (asked.place is not None):
+        raise InputError(f"{name} is {'' if command.placed else 'not '}for a place")
+    if asked.place is None:
+        command.handler(view)
+    else:
+        command.handler(view, asked.place)
 
 
-def _turn(reader: Reader, name: str, value: float) -> None:
+def _turn(view: View, name: str, value: float) -> None:
+    if not isinstance(view, Reader):
+        raise InputError("knobs turn while a text is under the hand")
     if name not in KNOBS:
         raise InputError(f"{printable(name[:_MOST_NAMED])} is no knob")
     if not math.isfinite(value):
         raise InputError(f"{KNOBS[name].label} cannot be {value}; it must be a number")
-    turn_to(reader, name, value)
+    turn_to(view, name, value)
 
 
 class LiveView(Output):

@@ -33,8 +33,9 @@ if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
     from vbraille.engine.engine import Engine
     from vbraille.layout.pages import Layout, Line
+    from vbraille.reading.keptplace import Bookmark
     from vbraille.reading.keys import Bound
-    from vbraille.reading.library import Bookmark, KeptBook
+    from vbraille.reading.library import KeptBook
     from vbraille.reading.lineviews import Figures
     from vbraille.reading.search.questions import Counted, Query
     from vbraille.reading.search.seeker import Seeker

@@ -164,7 +164,7 @@ class _Run(NamedTuple):
 
     @property
     def length_mm(self) -> float:
-        """How long it is."""
+        """Length along the path, in mm."""
         return sum(edge_lengths_mm(self.points_mm, closed=False))
 
 

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from vbraille.engine.clock import Clock
+
     Open = Callable[[], Device]
 
 # How far a carriage goes before it has turned, and how long and often it is asked where it is.
@@ -65,13 +67,14 @@ def check_members(open_device: Open) -> None:
             raise AssertionError(wrong)
 
 
-def check_samples(open_device: Open) -> None:
+def check_samples(open_device: Open, clock: Clock | None = None) -> None:
     """For a second at its rate, `read` and `write` wait for nothing, and samples can be true.
 
     Their places are finite, within the travel and no jump away from one another, their times never
-    go back, and an angle is only told where the display turns.
+    go back, and an angle is only told where the display turns. Give a clock that stands still
+    while a simulated controller works within the driver's calls.
     """
-    clock = RealClock()
+    clock = clock or RealClock()
     with ExitStack() as entered:
         device = entered.enter_context(_opened(open_device))
         info, frame = device.display, _frame(device, 0.0)

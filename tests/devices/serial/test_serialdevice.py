@@ -21,8 +21,7 @@ from vbraille.display import Pose
 from vbraille.engine.clock import RealClock
 from vbraille.errors import DeviceError
 from vbraille.simulation.firmware import Controller
-from vbraille.testing import conformance
-from vbraille.testing.conformance import CHECKS
+from vbraille.testing.conformance import CHECKS, check_samples
 
 
 class PtyBench(Bench):
@@ -177,12 +176,11 @@ class DriversClock(RealClock):
 @pytest.mark.real_time
 @pytest.mark.no_cover  # it times the driver, which coverage makes ten times as slow
 @pytest.mark.parametrize("check", CHECKS)
-def test_it_conforms(made, check, monkeypatch):
+def test_it_conforms(made, check):
     samples = []
     # The controller works while the driver asks for the time, and waits for the kernel to carry
     # bytes over, which may take a busy machine a tenth of a second: that is not the driver's time.
     clock = DriversClock()
-    monkeypatch.setattr(conformance, "RealClock", lambda: clock)
     made.controller = Controller(shown(rate_hz=200))
 
     def now_ns() -> int:  # asking for the time lets it go on
@@ -195,7 +193,7 @@ def test_it_conforms(made, check, monkeypatch):
         samples.append(device.read())
         return device
 
-    check(opened)
+    check(opened, *[clock] * (check is check_samples))
     assert isinstance(samples[0], Pose)
 
 

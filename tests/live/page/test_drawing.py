@@ -197,7 +197,7 @@ def test_a_blind_session_shows_where_the_hand_is_and_nothing_else(opens):
     assert page.locator("#map").is_hidden()
     assert page.evaluate("vbraille.last.deflections") == []
     assert page.locator(".raised").count() == 0
-    assert "blind session" in page.locator("#device").inner_text()
+    assert "stays hidden" in page.locator("#device").inner_text()
     assert "12 of 78" in page.locator("#facts").inner_text()
     assert "mm" in page.locator("#readout").inner_text()
 

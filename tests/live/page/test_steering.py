@@ -99,7 +99,7 @@ def test_knobs_and_commands(opens):
     until(page, "document.querySelector('.line.under').dataset.line === '3'")
     until(page, "[...document.querySelectorAll('#said p')].pop().textContent === 'line 3'")
     page.get_by_role("button", name="Rest the array").click()
-    page.get_by_role("button", name="Go on reading").wait_for()
+    page.get_by_role("button", name="Go on", exact=True).wait_for()
 
 
 def test_who_watches_is_told_why_nothing_turns(opens):

@@ -2,7 +2,7 @@
 
 from tests.reading.commands.test_moving import finger_at
 from tests.reading.test_reader import Bench
-from vbraille.reading.library import Bookmark
+from vbraille.reading.keptplace import Bookmark
 
 TEXT = "\n\n".join(f"paragraph {n} says something of its own" for n in range(1, 9))
 

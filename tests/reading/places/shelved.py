@@ -2,7 +2,8 @@
 
 from itertools import count
 
-from vbraille.reading.library import KeptPlace, KeptPlaces
+from vbraille.reading.keptplace import KeptPlace
+from vbraille.reading.library import KeptPlaces
 
 TEXT = "\n\n".join(f"Paragraph number {n} says {n * n} and no more." for n in range(200))
 

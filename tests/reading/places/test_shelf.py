@@ -8,14 +8,8 @@ import pytest
 from tests.reading.places.resumed import open_kept
 from tests.reading.places.shelved import TEXT, keep, kept_place, opened
 from vbraille.errors import InputError
-from vbraille.reading.library import (
-    Bookmark,
-    KeptPlace,
-    KeptPlaces,
-    book_options,
-    last_book,
-    place_in,
-)
+from vbraille.reading.keptplace import Bookmark, KeptPlace, place_in
+from vbraille.reading.library import KeptPlaces, book_options, last_book
 from vbraille.translate import Document
 
 

@@ -11,12 +11,8 @@ import pytest
 from tests.conftest import SEED
 from tests.reading.places.shelved import keep, kept_place, opened
 from tests.tiers import by_tier
-from vbraille.reading.library import (
-    Bookmark,
-    KeptPlace,
-    KeptPlaces,
-    place_in,
-)
+from vbraille.reading.keptplace import Bookmark, KeptPlace, place_in
+from vbraille.reading.library import KeptPlaces
 from vbraille.translate import Document
 
 
@@ -119,7 +115,8 @@ class TestWriting:
 _KEEPING = """
 import sys
 from itertools import count
-from vbraille.reading.library import KeptPlace, KeptPlaces
+from vbraille.reading.keptplace import KeptPlace
+from vbraille.reading.library import KeptPlaces
 clock = count()
 places = KeptPlaces.open(sys.argv[1], now=lambda: float(next(clock)))
 kept = places.book(sys.argv[2])
@@ -154,7 +151,8 @@ def test_a_kill_at_any_moment_loses_nothing_that_was_kept(folder):
 _FULL = """
 import resource, sys
 from itertools import count
-from vbraille.reading.library import Bookmark, KeptPlace, KeptPlaces
+from vbraille.reading.keptplace import Bookmark, KeptPlace
+from vbraille.reading.library import KeptPlaces
 clock = count()
 places = KeptPlaces.open(sys.argv[1], now=lambda: float(next(clock)))
 kept = places.book(sys.argv[2])
@@ -192,7 +190,8 @@ def test_a_full_disk_is_one_sentence_and_the_file_stays_good(folder, room):
 _FULL_AT_OPENING = """
 import resource, sqlite3, sys
 from itertools import count
-from vbraille.reading.library import Bookmark, KeptPlace, KeptPlaces
+from vbraille.reading.keptplace import Bookmark, KeptPlace
+from vbraille.reading.library import KeptPlaces
 clock = count()
 unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
 resource.setrlimit(resource.RLIMIT_FSIZE, (100, resource.RLIM_INFINITY))

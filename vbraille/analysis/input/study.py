@@ -17,6 +17,7 @@ from vbraille.analysis.input.scoretable import of_sheet
 from vbraille.analysis.input.sessions import read_session
 from vbraille.analysis.input.sheets import Sheet, read_csv
 from vbraille.analysis.input.trials import LeftOut, chosen, natural
+from vbraille.analysis.sharing import shared
 from vbraille.errors import InputError
 from vbraille.sessions.record.export import frame_of
 from vbraille.version import __version__
@@ -262,9 +263,10 @@ def _read(
     names = dict(zip(paths, distinct_names([path.resolve() for path in paths]), strict=True))
     sessions: list[SessionTrials] = []
     files: dict[Path, Sheet] = {}
+    read = shared(read_session, [path for path in names if path.is_dir()])
     for number, (path, name) in enumerate(names.items(), 1):
         if path.is_dir():
-            session = read_session(path)
+            session = next(read)
             rows = [row | {"session": name} for row in session.rows]
             sessions.append(replace(session, name=name, rows=rows))
         else:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from scipy import stats
+from scipy.special import gammaincinv, ndtri
 
 from vbraille.analysis.input.parsing import LEVELS
 from vbraille.analysis.input.trials import groups
@@ -29,9 +29,9 @@ from vbraille.analysis.results import (
 )
 from vbraille.analysis.statistics.intervals import (
     TAIL,
-    Interval,
     Unanswerable,
     mean_interval,
+    slope_interval,
     wilson,
 )
 from vbraille.analysis.statistics.psychometric import fit_psychometric
@@ -39,11 +39,9 @@ from vbraille.analysis.statistics.psychometric import fit_psychometric
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
     from vbraille.analysis.results import ResultTable, Row
 
-QUARTILE = float(stats.norm.ppf(0.75))  # from the median of a normal distribution, in its SD
+QUARTILE = float(ndtri(0.75))  # from the median of a normal distribution, in its SD
 _WHOSE = (
     PROTOCOL,
     PARTICIPANT,
@@ -222,7 +220,7 @@ def _adjusted(part: pd.DataFrame) -> Row:
     settings = part["number"].to_numpy(np.float64)
     around, free = mean_interval(settings), settings.size - 1
     scatter = QUARTILE * float(settings.std(ddof=1))
-    low, high = (math.sqrt(free / stats.chi2.ppf(share, free)) for share in (1 - TAIL, TAIL))
+    low, high = (math.sqrt(free / (2 * gammaincinv(free / 2, share))) for share in (1 - TAIL, TAIL))
     return {
         "equal": float(settings.mean()),
         "low": around.low,
@@ -307,7 +305,8 @@ def exponents(judgements: pd.DataFrame) -> ResultTable:
                 known = each[each["x"].notna()]
                 row = about | {"participant": participant, "estimates": len(known)}
                 try:
-                    slope, interval = _slope(known["x"].to_numpy(), known["y"].to_numpy())
+                    x, y = (known[name].to_numpy(np.float64) for name in ("x", "y"))
+                    slope, interval, _ = slope_interval(x, y)
                 except Unanswerable as reason:
                     rows.append(row | {"note": f"no exponent: {reason}"})
                     continue
@@ -335,21 +334,3 @@ def _varied(own: pd.DataFrame) -> tuple[str, pd.Series]:
         if own[level].nunique() > 1:
             return level, own[level]
     return "", own["value"]
-
-
-def _slope(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, Interval]:
-    """Slope of a straight line by least squares, with Student's interval.
-
-    Raises
-    ------
-    Unanswerable
-        If there are fewer than three points, or all are at one value.
-    """
-    if x.size < 3 or np.ptp(x) == 0:
-        raise Unanswerable("there are fewer than three estimates, or one value")
-    apart = x - x.mean()
-    slope = float((apart * y).sum() / (apart**2).sum())
-    off = y - y.mean() - slope * apart
-    error = math.sqrt(float((off**2).sum()) / (x.size - 2) / float((apart**2).sum()))
-    half = float(stats.t.ppf(1 - TAIL, x.size - 2)) * error
-    return slope, Interval(slope - half, slope + half)

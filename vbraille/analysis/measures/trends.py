@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from scipy import stats
 
 from vbraille.analysis.input.trials import groups
 from vbraille.analysis.results import (
@@ -20,7 +19,7 @@ from vbraille.analysis.results import (
     Schema,
     ends,
 )
-from vbraille.analysis.statistics.intervals import LEVEL
+from vbraille.analysis.statistics.intervals import slope_interval
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -99,8 +98,6 @@ def slope(correct: NDArray[np.bool_]) -> Row:
     if correct.all() or not correct.any():
         what = "right" if correct[0] else "wrong"
         return row | {"slope": 0.0, "note": f"no interval and no p: every trial is {what}"}
-    fit: Any = stats.linregress(np.arange(correct.size), correct.astype(np.float64))
-    half = stats.t.ppf((1 + LEVEL) / 2, correct.size - 2) * fit.stderr
-    scaled = (10 * value for value in (fit.slope, fit.slope - half, fit.slope + half))
-    row |= dict(zip(("slope", "low", "high"), map(float, scaled), strict=True))
-    return row | {"p": float(fit.pvalue)}
+    numbers = np.arange(correct.size, dtype=np.float64)
+    found, around, p = slope_interval(numbers, correct.astype(np.float64))
+    return row | {"slope": 10 * found, "low": 10 * around.low, "high": 10 * around.high, "p": p}

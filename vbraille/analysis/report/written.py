@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from vbraille.analysis.report.tohtml import KINDS, csv_name, figure_name, to_html
 from vbraille.analysis.report.totext import to_json
 from vbraille.analysis.results import Kind, to_csv
+from vbraille.analysis.sharing import shared
 from vbraille.files import check_free, write_folder
 from vbraille.sessions.record.codebook import CodebookEntry, entry_of, to_codebook, unit_of
 from vbraille.sessions.record.export import encode
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from vbraille.analysis.results import Column, Results, ResultTable
+    from vbraille.analysis.results import Column, ReportFigure, Results, ResultTable
 
 PAGE, NUMBERS = "report.html", "results.json"
 TRIALS = "trials.csv"
@@ -58,19 +59,18 @@ def write_report(
 
 def _files(results: Results) -> dict[str, bytes]:
     """Contents of all files, by their paths in the directory."""
-    # Imported here, as matplotlib takes longer to import than all else takes to be written.
-    from vbraille.pictures.drawcharts import draw_chart
-    from vbraille.pictures.figurefiles import to_bytes
+    # Imported before processes share it: matplotlib takes longer to load than a figure to draw.
+    import vbraille.pictures.drawcharts
+    import vbraille.pictures.figurefiles  # noqa: F401
 
     trials = {} if results.trials is None else {TRIALS: encode(to_csv(results.trials))}
     drawn: dict[str, bytes] = {}
     svgs: dict[str, bytes] = {}
-    for figure in results.figures():
-        drawing = draw_chart(figure.chart)
-        # That of the result is for a paper; the others are to be looked at.
-        for kind in KINDS if figure.name == results.main else KINDS[:1]:
-            drawn[figure_name(figure, kind)] = to_bytes(drawing, kind, _DPI)
-        if figure.name == results.main:
+    # That of the result is for a paper; the others are to be looked at.
+    figures = [(figure, figure.name == results.main) for figure in results.figures()]
+    for (figure, main), files in zip(figures, shared(_drawn, figures), strict=True):
+        drawn |= files
+        if main:
             svgs[figure.name] = drawn[figure_name(figure, "svg")]
     return {
         PAGE: encode(to_html(results, svgs, (NUMBERS, *trials, CODEBOOK))),
@@ -79,6 +79,19 @@ def _files(results: Results) -> dict[str, bytes]:
         CODEBOOK: encode(codebook(results, TRIALS)),
         **{csv_name(table): encode(to_csv(table.frame)) for table in results.result_tables()},
         **drawn,
+    }
+
+
+def _drawn(drawing: tuple[ReportFigure, bool]) -> dict[str, bytes]:
+    """Files of a figure, by their paths; of a main one in all kinds."""
+    from vbraille.pictures.drawcharts import draw_chart
+    from vbraille.pictures.figurefiles import to_bytes
+
+    figure, main = drawing
+    drawn = draw_chart(figure.chart)
+    return {
+        figure_name(figure, kind): to_bytes(drawn, kind, _DPI)
+        for kind in (KINDS if main else KINDS[:1])
     }
 
 

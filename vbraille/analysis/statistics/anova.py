@@ -19,7 +19,7 @@ from itertools import combinations, product
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-from scipy.stats import f as fisher
+from scipy.special import fdtrc
 
 from vbraille.analysis.statistics.intervals import Unanswerable
 
@@ -260,7 +260,8 @@ def _effects(
         spread = np.linalg.svd(left, compute_uv=False) ** 2  # eigenvalues of S, but for a factor
         ratio = (effect / df1) / (error / df2)
         epsilon = min(1.0, 1 / (d * float(((spread / spread.sum()) ** 2).sum())))
-        p, p_corrected = (float(fisher.sf(ratio, by * df1, by * df2)) for by in (1.0, epsilon))
+        shrunk = np.array([1.0, epsilon])
+        p, p_corrected = fdtrc(shrunk * df1, shrunk * df2, np.maximum(ratio, 0.0)).tolist()
         yield Effect(name, df1, df2, "", ratio, p, epsilon, p_corrected)
 
 
@@ -295,7 +296,7 @@ def added_by(own: Floats, others: Floats, y: Floats) -> tuple[float, int, int, f
     if left <= ROUNDING * float((y**2).sum()):
         raise Unanswerable("nothing is left over of the effects; F has no value")
     f = max(0.0, without - left) / df1 / (left / df2)
-    return f, df1, df2, float(fisher.sf(f, df1, df2))
+    return f, df1, df2, float(fdtrc(df1, df2, np.maximum(f, 0.0)))
 
 
 def _left_over(z: Floats, columns: Floats) -> Floats:

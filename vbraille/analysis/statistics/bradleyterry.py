@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+import math
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.special import expit
-from scipy.stats import binomtest, ttest_1samp
+from scipy.special import bdtr, expit, stdtr
 
 from vbraille.analysis.statistics.intervals import (
     FEWEST_PARTICIPANTS,
@@ -217,14 +217,15 @@ def position_bias(chosen: ArrayLike, groups: ArrayLike) -> PositionBias:
     own = np.bincount(index, choice == 0) / trials
     if own.size == 1:
         firsts, n = int((choice == 0).sum()), choice.size
-        return PositionBias(firsts / n, wilson(firsts, n), float(binomtest(firsts, n).pvalue))
+        p = min(1.0, 2 * float(bdtr(min(firsts, n - firsts), n, 0.5)))
+        return PositionBias(firsts / n, wilson(firsts, n), p)
     if own.size < FEWEST_PARTICIPANTS:
         return PositionBias(float(own.mean()), None, None)
     interval = mean_share(own, trials)
     if np.ptp(own) <= ROUNDING:
         return PositionBias(float(own.mean()), interval, None)
-    test: Any = ttest_1samp(own, 0.5)
-    return PositionBias(float(own.mean()), interval, float(test.pvalue))
+    t = (float(own.mean()) - 0.5) * math.sqrt(own.size) / float(own.std(ddof=1))
+    return PositionBias(float(own.mean()), interval, 2 * float(stdtr(own.size - 1, -abs(t))))
 
 
 def _wins_of_each(

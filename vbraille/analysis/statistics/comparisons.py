@@ -18,8 +18,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.special import expit, gammaln
-from scipy.stats import t as student
+from scipy.special import expit, gammaln, stdtr, stdtrit
 
 from vbraille.analysis.statistics.anova import Anova, anova, orthonormal_contrasts
 from vbraille.analysis.statistics.intervals import (
@@ -356,7 +355,7 @@ class CellScores:
         error = math.sqrt(parts.sum())
         df = float(parts.sum() ** 2 / (parts**2 / error_df).sum())
         pooled = float((variances / np.square(sizes) * error_df).sum() / error_df.sum())
-        half = float(student.ppf(1 - TAIL, df)) * error
+        half = float(stdtrit(df, 1 - TAIL)) * error
         most = self.scale.high - self.scale.low
         return made._replace(
             low=max(value - half, -most),
@@ -364,7 +363,7 @@ class CellScores:
             size=value / math.sqrt(pooled) * hedges_correction(int(error_df.sum())),
             t=value / error,
             df=df,
-            p=float(2 * student.sf(abs(value) / error, df)),
+            p=float(2 * stdtr(df, -abs(value) / error)),
         )
 
     def joint(self, own: tuple[int, ...]) -> JointEffect:

@@ -10,9 +10,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-from scipy.optimize import root_scalar
 from scipy.special import ndtr, ndtri
-from scipy.stats import norm
 
 from vbraille.analysis.statistics.intervals import TAIL, Interval, Unanswerable
 
@@ -61,7 +59,7 @@ def yes_no(hits: int, signals: int, false_alarms: int, noises: int) -> Detection
     """
     z_hit, hit_variance = _z(hits, signals, "with something")
     z_false, false_variance = _z(false_alarms, noises, "with nothing")
-    half = float(norm.ppf(1 - TAIL)) * math.sqrt(hit_variance + false_variance)
+    half = float(ndtri(1 - TAIL)) * math.sqrt(hit_variance + false_variance)
     d, c = z_hit - z_false, -(z_hit + z_false) / 2
     return Detection(
         d,
@@ -147,6 +145,8 @@ def _differenced(hits: float, false_alarms: float) -> float:
 
     if excess(4 * LARGEST_D) <= 0:
         return 4 * LARGEST_D
+    from scipy.optimize import root_scalar  # takes a while to load
+
     return float(root_scalar(excess, bracket=(0.0, 4 * LARGEST_D)).root)
 
 
@@ -158,4 +158,4 @@ def _z(yes: int, trials: int, what: str) -> tuple[float, float]:
         raise Unanswerable(f"no trials {what}")
     share = (yes + 0.5) / (trials + 1)
     z = float(ndtri(share))
-    return z, share * (1 - share) / trials / float(norm.pdf(z)) ** 2
+    return z, share * (1 - share) / trials / (math.exp(-(z**2)) / (2 * math.pi))

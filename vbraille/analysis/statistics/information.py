@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.special import betaln, gammaln
-from scipy.stats import random_table
 
 from vbraille.analysis.statistics.intervals import TAIL, Interval, Unanswerable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -231,16 +230,31 @@ def _choose(likely: NDArray[np.float64], draws: int, rng: np.random.Generator) -
 def _chance_alone(table: NDArray[np.int64], rng: np.random.Generator) -> float:
     """Share of shuffles of the answers that seem to transmit as much information."""
     tables = int(np.clip(_MOST_CELLS // table.size, _FEWEST_DRAWS, _TABLES))
-    columns = table.sum(axis=0)
-    kept = table[:, columns > 0]
-    made = random_table(kept.sum(axis=1), kept.sum(axis=0))
+    kept = table[:, table.sum(axis=0) > 0]
+    draw = _shuffles(kept, rng)
     # With the same row and column sums, more information means a lower joint entropy.
     most = float(_entropies(kept.ravel() / kept.sum())) + _ROUNDING
-    as_much = sum(
-        float(_entropies(made.rvs(random_state=rng).ravel() / kept.sum())) <= most
-        for _ in range(tables)
-    )
+    as_much = sum(float(_entropies(draw().ravel() / kept.sum())) <= most for _ in range(tables))
     return (1 + as_much) / (1 + tables)
+
+
+def _shuffles(table: NDArray[np.int64], rng: np.random.Generator) -> Callable[[], NDArray]:
+    """Function that draws tables with the same row and column sums, all pairings as likely."""
+    rows, columns, answers = table.sum(axis=1), table.sum(axis=0), int(table.sum())
+    if answers > table.size * math.log(answers + 1):
+        from scipy.stats import random_table  # takes longer to load than small tables to draw
+
+        made = random_table(rows, columns)
+        return lambda: made.rvs(random_state=rng)
+    of_row = np.repeat(np.arange(rows.size) * columns.size, rows)
+    column = np.repeat(np.arange(columns.size), columns)
+
+    def drawn() -> NDArray[np.int64]:
+        given = column.copy()
+        rng.shuffle(given)
+        return np.bincount(of_row + given, minlength=table.size)
+
+    return drawn
 
 
 def _entropies(shares: NDArray[np.float64]) -> NDArray[np.float64]:

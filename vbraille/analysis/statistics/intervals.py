@@ -11,8 +11,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy import stats
-from scipy.special import expit
+from scipy.special import expit, ndtri, stdtr, stdtrit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -90,8 +89,12 @@ def wilson(correct: int, trials: int) -> Interval:
         raise ValueError(f"{correct} correct of {trials} trials")
     if trials == 0:
         raise Unanswerable("no trials")
-    ends = stats.binomtest(correct, trials).proportion_ci(LEVEL, "wilson")
-    return Interval(float(ends.low), float(ends.high))
+    square = float(ndtri(1 - TAIL)) ** 2
+    middle = (correct + square / 2) / (trials + square)
+    spread = square * (correct * (trials - correct) / trials + square / 4)
+    half = math.sqrt(spread) / (trials + square)
+    low = 0.0 if correct == 0 else middle - half
+    return Interval(low, 1.0 if correct == trials else middle + half)
 
 
 def mean_interval(values: ArrayLike) -> Interval:
@@ -110,7 +113,7 @@ def mean_interval(values: ArrayLike) -> Interval:
     """
     row = _differing(finite_scores("values", values))
     error = float(row.std(ddof=1)) / math.sqrt(row.size)
-    half = float(stats.t.ppf(1 - TAIL, row.size - 1)) * error
+    half = float(stdtrit(row.size - 1, 1 - TAIL)) * error
     mean = float(row.mean())
     return Interval(mean - half, mean + half)
 
@@ -139,7 +142,7 @@ def mean_duration(values: ArrayLike) -> Interval:
     variance = float(y.var(ddof=1))
     middle = float(y.mean()) + variance / 2
     error = math.sqrt(variance / row.size + variance**2 / (2 * (row.size - 1)))
-    half = float(stats.t.ppf(1 - TAIL, row.size - 1)) * error
+    half = float(stdtrit(row.size - 1, 1 - TAIL)) * error
     try:
         return Interval(math.exp(middle - half), math.exp(middle + half))
     except OverflowError:
@@ -177,8 +180,33 @@ def correlation_interval(first: ArrayLike, second: ArrayLike) -> Interval:
         raise Unanswerable("all values lie on a line")
     own = float(np.std(x * y - r / 2 * (x**2 + y**2), ddof=1)) / (1 - r**2)
     error = max(1 / math.sqrt(n - 3), own / math.sqrt(n))
-    half = float(stats.norm.ppf(1 - TAIL)) * error
+    half = float(ndtri(1 - TAIL)) * error
     return Interval(math.tanh(math.atanh(r) - half), math.tanh(math.atanh(r) + half))
+
+
+def slope_interval(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, Interval, float]:
+    """Slope of a straight line by least squares, with Student's interval and p.
+
+    Parameters
+    ----------
+    x, y : float64[n]
+        Places, and the values there.
+
+    Raises
+    ------
+    Unanswerable
+        If there are fewer than three points, or all are at one place.
+    """
+    if x.size < 3 or np.ptp(x) == 0:
+        raise Unanswerable("there are fewer than three estimates, or one value")
+    apart = x - x.mean()
+    slope = float((apart * y).sum() / (apart**2).sum())
+    off = y - y.mean() - slope * apart
+    error = math.sqrt(float((off**2).sum()) / (x.size - 2) / float((apart**2).sum()))
+    half = float(stdtrit(x.size - 2, 1 - TAIL)) * error
+    t = slope / error if error else math.inf
+    p = 2 * float(stdtr(x.size - 2, -abs(t)))
+    return slope, Interval(slope - half, slope + half), p
 
 
 def adjust(p_values: ArrayLike, method: str) -> NDArray[np.float64]:
@@ -207,13 +235,15 @@ def adjust(p_values: ArrayLike, method: str) -> NDArray[np.float64]:
         return p.copy()
     if method == "bonferroni":
         return np.minimum(p * p.shape[-1], 1.0)
-    if method == "fdr":
-        return stats.false_discovery_control(p, axis=-1)
     order = np.argsort(p, axis=-1)
-    steps = np.take_along_axis(p, order, axis=-1) * np.arange(p.shape[-1], 0, -1)
+    steps, n = np.take_along_axis(p, order, axis=-1), p.shape[-1]
+    if method == "fdr":
+        steps *= n / np.arange(1, n + 1)
+        steps = np.minimum.accumulate(steps[..., ::-1], axis=-1)[..., ::-1]
+    else:
+        steps = np.maximum.accumulate(steps * np.arange(n, 0, -1), axis=-1)
     adjusted = np.empty_like(p)
-    steps = np.minimum(np.maximum.accumulate(steps, axis=-1), 1.0)
-    np.put_along_axis(adjusted, order, steps, axis=-1)
+    np.put_along_axis(adjusted, order, np.minimum(steps, 1.0), axis=-1)
     return adjusted
 
 

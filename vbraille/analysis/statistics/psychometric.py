@@ -18,7 +18,6 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize
 from scipy.special import expit, ndtr, xlog1py, xlogy
 
 from vbraille.analysis.statistics.intervals import TAIL, Interval, Unanswerable
@@ -271,6 +270,8 @@ def _best(asked: LevelCounts, start: list[float], within: list[tuple[float, floa
         share, no = _shares(asked, found), asked.trials - asked.positive
         likely = float((xlogy(asked.positive, share) + xlog1py(no, -share)).sum())
         return -likely - prior - _of_blanks(asked, guess)
+
+    from scipy.optimize import minimize  # takes a while to load
 
     found = minimize(
         lost, start, method="L-BFGS-B", bounds=within, options={"ftol": 1e-14, "gtol": 1e-8}

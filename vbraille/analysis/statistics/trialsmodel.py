@@ -23,9 +23,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.special import expit
-from scipy.stats import f as fisher
-from scipy.stats import t as student
+from scipy.special import expit, fdtrc, stdtr, stdtrit
 
 from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, LEVEL, TAIL, Unanswerable
 
@@ -88,11 +86,11 @@ class Contrasts:
     def p_values(self) -> NDArray[np.float64]:
         """Two-sided p that the combination is 0, float64[studies]; NaN where there is no error."""
         with np.errstate(invalid="ignore"):
-            return 2 * student.sf(np.abs(self.estimates) / self.errors, self.degrees)
+            return 2 * stdtr(self.degrees, -np.abs(self.estimates) / self.errors)
 
     def ends(self, level: float = LEVEL) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Lower and upper ends of the intervals, float64[studies] each; NaN where there is none."""
-        half = student.ppf((1 + level) / 2, self.degrees) * self.errors
+        half = stdtrit(self.degrees, (1 + level) / 2) * self.errors
         return self.estimates - half, self.estimates + half
 
 
@@ -357,7 +355,7 @@ def difference(
     share = expit(fit.coefficients)
     value = share @ row
     apart = combine(fit, share * (1 - share) * row)
-    half = student.ppf(1 - TAIL, apart.degrees) * apart.errors / (1 - value**2)
+    half = stdtrit(apart.degrees, 1 - TAIL) * apart.errors / (1 - value**2)
     middle = np.arctanh(value)
     return np.tanh(middle - half), np.tanh(middle + half)
 
@@ -480,7 +478,7 @@ def _try_jointly(fit: TrialsFit, rows: NDArray[np.float64], d: NDArray[np.float6
     known &= df2 >= FEWEST_DEGREES
     df2 = np.where(known, df2, np.nan)
     f = df2 * size / (eta * q)
-    return JointTest(f, q, df2, fisher.sf(f, q, df2))
+    return JointTest(f, q, df2, fdtrc(q, df2, np.maximum(f, 0.0)))
 
 
 def _variation(fit: TrialsFit, adjusted: NDArray[np.float64]) -> NDArray[np.float64]:

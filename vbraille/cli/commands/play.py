@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     import argparse
 
     from vbraille.cli.exploring import Around
+    from vbraille.reading.device import OpenDevice
+    from vbraille.reading.liveview import LiveView
 
 _MODEL = "stress2-8x8"
 _SEEDS = 1_000_000
@@ -39,8 +41,11 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = replace(MODELS[arguments.model or _MODEL].display, rate_hz=rate_hz)
     find_driver(arguments.device)
     with Keyboard() as keyboard:
-        if not keyboard.attached:
-            raise InputError("vbraille play is led by keys; start it at a terminal")
+        if not (keyboard.attached or arguments.monitor):
+            raise InputError(
+                "vbraille play is led by keys or by a page; start it at a terminal, or with "
+                "--monitor"
+            )
         with around_device(arguments, keyboard, wanted, hand, "en") as around:
             device, outputs = around.device, around.outputs
             display = device.find()
@@ -69,11 +74,21 @@ def run(arguments: argparse.Namespace) -> int:
             )
             _show_also(arguments, around, view)
             device.explore(view)
+            if around.live is not None:
+                _show_live(around.live, device, view)
             outputs.say(f"seed: {seed}")
             view.start()
             Exploration(view, device, keys, outputs).run()
     say_summary(device, rate_hz=rate_hz)
     return 0
+
+
+def _show_live(live: LiveView, device: OpenDevice, view: GameView) -> None:
+    """Show how the cards lie on the pages of the live view, which turn them, too."""
+    # Only a game that has a live view waits for what it needs.
+    from vbraille.reading.liveview import PlayedState
+
+    live.show(PlayedState(device, view, live.said))
 
 
 def _show_also(arguments: argparse.Namespace, around: Around, view: GameView) -> None:

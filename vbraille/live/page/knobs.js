@@ -5,13 +5,6 @@ import { button, byId, html, short, write } from "./drawing.js";
 /** @typedef {import("./messages.js").State} State */
 /** @typedef {import("./messages.js").KnobShown} KnobShown */
 
-const COMMANDS = [
-  ["LNUP", "Previous line"],
-  ["LNDN", "Next line"],
-  ["PAUSE", "Rest the array"],
-  ["MAPPING", "Other mapping"],
-  ["UNDO", "Undo the last turn"],
-];
 /** A length whose bounds are further apart than this is turned by equal factors, not equal steps. */
 const WIDE = 100;
 
@@ -149,9 +142,8 @@ export class Knobs {
     this.ask = ask;
     /** @type {() => void} */
     this.wake = () => {};
-    this.buttons = COMMANDS.map(([command, words]) =>
-      button(words, () => ask({ ask: "press", command }), { "data-command": command }));
-    byId("commands").append(...this.buttons);
+    /** @type {Map<string, HTMLButtonElement>} */
+    this.buttons = new Map();
   }
 
   /**
@@ -174,11 +166,25 @@ export class Knobs {
       // What was asked for here and is not yet sent stays.
       if (!this.#turned.has(knob.name)) this.#knobs.get(knob.name)?.show(knob, steers);
     }
-    byId("commands").hidden = !steers || state.knobs.length === 0;
-    const pause = this.buttons[2];
-    write(pause, state.paused ? "Go on reading" : "Rest the array");
+    this.#offer(state.commands);
+    byId("commands").hidden = !steers || state.commands.length === 0;
+    const pause = this.buttons.get("PAUSE");
+    if (pause) write(pause, state.paused ? "Go on" : "Rest the array");
     write(byId("knobs-note"), why);
     byId("knobs-note").hidden = !why;
+  }
+
+  /** @param {{name: string, words: string}[]} commands */
+  #offer(commands) {
+    if (commands.map(({ name }) => name).join() !== [...this.buttons.keys()].join()) {
+      const press = (/** @type {string} */ command) => button("", () => this.ask({ ask: "press", command }));
+      this.buttons = new Map(commands.map(({ name }) => [name, press(name)]));
+      byId("commands").replaceChildren(...this.buttons.values());
+    }
+    for (const { name, words } of commands) {
+      const made = /** @type {HTMLButtonElement} */ (this.buttons.get(name));
+      if (name !== "PAUSE") write(made, words.charAt(0).toUpperCase() + words.slice(1));
+    }
   }
 
   /** Sends the newest turn of each knob; called once for each drawn frame. */

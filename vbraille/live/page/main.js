@@ -3,6 +3,7 @@
  * and what is asked of the knobs goes out at the same time: once for each frame.
  */
 
+import { Cards, Signals } from "./answers.js";
 import { sayWhere } from "./braille.js";
 import { Connection } from "./connection.js";
 import { byId, write } from "./drawing.js";
@@ -95,6 +96,8 @@ saving.now = () => /** @type {[State | null, Frame | null]} */ ([state, frame]);
 const traces = new Traces(byId("scopes"));
 const telling = new Telling();
 const knobs = new Knobs(ask);
+const signals = new Signals();
+const cards = new Cards(ask);
 const hand = new Hand(sheet, ask, wake);
 const playback = new Playback(wake);
 const map = new DeflectionMap(ask);
@@ -170,6 +173,8 @@ function show() {
   traces.show(state, skin.chosen);
   knobs.show(state, steers, whyNot(state, open));
   hand.show(state, steers);
+  signals.show(state);
+  cards.show(state, steers);
   map.show(state.blind);
   map.title = state.title;
   if (state.array) playback.tick(state.array.rate_hz);
@@ -188,12 +193,12 @@ function whyNot(now, open) {
   if (playback.on) return "A recording is shown: nothing can be turned in it.";
   if (now.done) return "Reading is over.";
   if (!welcome?.steers) return "This page watches. To steer, open the address with a token that vbraille says when it begins.";
-  return now.knobs.length ? "" : "Nothing may be turned here.";
+  return now.knobs.length || now.commands.length ? "" : "Nothing may be turned here.";
 }
 
 /** @param {State} now */
 function pageNote(now) {
-  if (now.blind) return "Blind session: where the hand is, and nothing of what it feels.";
+  if (now.blind) return "Hidden: where the hand is, and nothing of what it feels.";
   if (!hand.can) return "To scale; the rulers are in mm.";
   const two = (now.array?.height_mm ?? 0) > 0;
   return `To scale, in mm. Drag the array${two ? "" : " along the line"}, or press where it is to go; arrow keys move it by 0.5 mm, with Shift by 5 mm; Escape lets it go.`;
@@ -225,6 +230,7 @@ function read() {
   readAt = performance.now();
   told = drawn;
   telling.read(state, frame);
+  signals.read(frame);
   traces.draw();
   if (!state.blind) skin.tell();
 }

@@ -40,6 +40,13 @@ const MAP_BYTES = 8;
  * @property {string} image
  * @property {number} left_mm
  * @property {number} top_mm
+ * @property {string[]} off
+ * @property {string} off_image
+ *
+ * @typedef {object} CardShown
+ * @property {string} place
+ * @property {string} side
+ * @property {boolean} felt
  *
  * @typedef {object} KnobShown
  * @property {string} name
@@ -87,6 +94,10 @@ const MAP_BYTES = 8;
  * @property {boolean} blind
  * @property {boolean} done
  * @property {SceneShown | null} [scene]
+ * @property {SceneShown[]} figures
+ * @property {{name: string, words: string}[]} signals
+ * @property {{name: string, words: string}[]} commands
+ * @property {CardShown[][]} cards
  *
  * @typedef {object} Refused
  * @property {"refused"} tell
@@ -112,6 +123,7 @@ const MAP_BYTES = 8;
  * @property {number} columns
  * @property {Float32Array} deflections
  * @property {Float32Array} samples
+ * @property {Float32Array} signals
  */
 
 /**
@@ -127,7 +139,9 @@ export function readFrame(bytes) {
   const rows = view.getUint16(72, true);
   const columns = view.getUint16(74, true);
   const size = rows * columns;
-  if (bytes.byteLength < HEADER_BYTES + 4 * size + 12 * samples) return null;
+  const signals = view.getUint32(76, true);
+  const end = HEADER_BYTES + 4 * size + 12 * samples;
+  if (bytes.byteLength < end + 4 * signals) return null;
   const u4 = (/** @type {number} */ at) => view.getUint32(at, true);
   const f4 = (/** @type {number} */ at) => view.getFloat32(at, true);
   return {
@@ -150,6 +164,7 @@ export function readFrame(bytes) {
     columns,
     deflections: new Float32Array(bytes, HEADER_BYTES, size),
     samples: new Float32Array(bytes, HEADER_BYTES + 4 * size, 3 * samples),
+    signals: new Float32Array(bytes, end, signals),
   };
 }
 

@@ -23,17 +23,25 @@ const RIGHT_PX = 14;
 const LEAST_FINGER_PX = 32; // to be hit by a real finger
 
 /**
- * A tactile picture from above, on its canvas; of one that is larger, what the carriage reaches.
+ * A tactile picture from above, on its canvas, with the layers that are off drawn faintly.
+ * @param {import("./messages.js").SceneShown} scene
+ */
+function picture(scene) {
+  const { width_mm: width, height_mm: height, image, off_image: off } = scene;
+  const at = { x: -scene.left_mm, y: -scene.top_mm, width, height, preserveAspectRatio: "none" };
+  return svg("g", { class: "scene" }, svg("rect", { class: "canvas", x: at.x, y: at.y, width, height }),
+    ...(image ? [svg("image", { ...at, href: image })] : []),
+    ...(off ? [svg("image", { ...at, href: off, class: "off" })] : []));
+}
+
+/**
+ * A picture that is larger than the carriage goes: what that reaches.
  * @param {import("./messages.js").SceneShown} scene
  * @param {import("./messages.js").ArrayShown} array
  */
-function picture(scene, array) {
-  const { width_mm: width, height_mm: height, image: href } = scene;
-  const at = { x: -scene.left_mm, y: -scene.top_mm, width, height };
-  const drawn = svg("g", { class: "scene" }, svg("rect", { class: "canvas", ...at }),
-    ...(href ? [svg("image", { ...at, href, preserveAspectRatio: "none" })] : []));
-  const reach = { width: Math.max(array.travel_mm, 1), height: array.height_mm || height };
-  return svg("svg", { ...reach, overflow: "hidden" }, drawn);
+function within(scene, array) {
+  const reach = { width: Math.max(array.travel_mm, 1), height: array.height_mm || scene.height_mm };
+  return svg("svg", { ...reach, overflow: "hidden" }, picture(scene));
 }
 
 export class Sheet {
@@ -94,6 +102,7 @@ export class Sheet {
     const d = distances(state);
     const half = (array.columns * array.column_pitch_mm) / 2;
     const ends = d ? state.lines.map((line) => endOf(d, line)) : [];
+    if (ends.length) ends.push(...state.figures.map((figure) => figure.width_mm - figure.left_mm));
     const right = Math.max(...ends, ends.length ? 0 : array.travel_mm) + half * 0.6;
     const pad = width < 560 ? LEFT_NARROW_PX : LEFT_PX;
     const from = Math.min(0, ...state.lines.map((line) => line.start_mm)) - half;
@@ -103,7 +112,8 @@ export class Sheet {
     const px = 1 / this.#px_mm;
     this.span = { from, right, pad: pad * px };
     const top = Math.min(...state.lines.map((line) => line.top_mm), Infinity);
-    const bottom = Math.max(...state.lines.map((line) => line.top_mm + (d ? d.line + this.#below(d) : 0)), -Infinity);
+    const bottoms = state.figures.map((figure) => figure.height_mm - figure.top_mm);
+    const bottom = Math.max(...state.lines.map((line) => line.top_mm + (d ? d.line + this.#below(d) : 0)), ...bottoms, -Infinity);
     const first = Number.isFinite(top) ? top : 0;
     const tall = Math.max(Number.isFinite(bottom) ? bottom - first : 0, this.#tallOf(state, d));
     this.#most = state.lines.length ? Math.max(this.#most, tall) : tall;
@@ -139,7 +149,8 @@ export class Sheet {
     const { right } = this.span ?? { right: 0 };
     const from = Math.min(0, ...state.lines.map((line) => line.start_mm));
     const group = svg("g", { "font-size": 12 * px });
-    if (state.scene && state.array) group.append(picture(state.scene, state.array));
+    if (state.scene && state.array) group.append(within(state.scene, state.array));
+    group.append(...state.figures.map(picture));
     const end = Math.max(right, state.array?.travel_mm && !state.lines.length ? state.array.travel_mm : 0);
     for (const line of d ? state.lines : []) group.append(this.#line(/** @type {Distances} */ (d), line));
     group.append(ruler(Math.floor(from / 10) * 10, end, first - 6 * px, false, this.#px_mm));

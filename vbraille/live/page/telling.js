@@ -52,7 +52,7 @@ export class Telling {
     write(byId("title"), state.title || "vbraille");
     document.title = state.title ? `${state.title} – vbraille live view` : "vbraille live view";
     write(byId("place"), state.place);
-    const device = [state.blind ? "blind session: what is shown stays hidden" : "", state.device,
+    const device = [state.blind ? "what is felt stays hidden" : "", state.device,
       state.paused ? "paused" : "", state.done ? "reading is over" : "", state.held ? "the hand is held by a page" : ""];
     write(byId("device"), device.filter(Boolean).join(" · "));
     byId("print").hidden = state.blind;
@@ -173,7 +173,7 @@ export class Telling {
  */
 export function tables(state, frame) {
   const array = state.array;
-  if (state.blind) return [html("p", {}, "A blind session shows no dots and no deflections.")];
+  if (state.blind) return [html("p", {}, "What is felt stays hidden: no dots and no deflections.")];
   if (!array || !frame) return [html("p", {}, "There is no frame yet.")];
   const columns = Array.from({ length: array.columns }, (_, n) => n + 1);
   const cell = (/** @type {number} */ n, /** @type {ArrayLike<number>} */ values, places = 2) => fixed(values[n], places);

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.reading.library import Bookmark, place_in
+from vbraille.reading.keptplace import Bookmark, place_in
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:

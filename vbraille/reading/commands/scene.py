@@ -6,94 +6,107 @@ from dataclasses import replace
 from operator import methodcaller
 
 from vbraille.reading.commands import control
-from vbraille.reading.commands.table import PAUSE, TYPING, ending
+from vbraille.reading.commands.table import PAUSE, TYPING, ending, shared
 from vbraille.reading.keys import Bindings, Command, bind
 from vbraille.scene.signals import MOST_KEYS
 
 STEP_MM, FAR_MM = 1.0, 10.0
 PAN = 0.5  # of what is within reach
 # Buttons of the device, by their numbers.
-BUTTONS = {"1": "HERE", "2": "DESCRIBE", "3": "PAUSE", "4": "SWITCH_1", "5": "SWITCH_2"}
+BUTTONS = {
+    "1": "HERE",
+    "2": "DESCRIBE",
+    "3": "PAUSE",
+    "4": "SWITCH_1",
+    "5": "SWITCH_2",
+    "6": "ZOOM_IN",
+    "7": "ZOOM_OUT",
+    "8": "WHOLE",
+    "9": "PAN_LEFT",
+    "10": "PAN_RIGHT",
+    "11": "PAN_UP",
+    "12": "PAN_DOWN",
+}
 
 
 # A command calls a method of the feeler, by its name: what feels loads the kernels.
 # Keys mean what they mean to a reader, as far as a picture has it: elements are like headings.
 COMMANDS = (
-    Command(
+    shared(
         "HERE",
         ("i", "u"),
         "say what is under the finger, and where",
         methodcaller("say_here"),
     ),
-    Command(
+    shared(
         "DESCRIBE", ("w",), "say more of what is under the finger", methodcaller("describe_here")
     ),
-    Command("SCENE", ("V", "f5"), "say what the picture is", methodcaller("say_scene")),
-    Command("ELEMENTS", ("O",), "list the elements that have a name", methodcaller("say_elements")),
+    shared("SCENE", ("V", "f5"), "say what the picture is", methodcaller("say_scene")),
+    shared("ELEMENTS", ("O",), "list the elements that have a name", methodcaller("say_elements")),
     Command("GOTO", ("g", "/"), "go to an element by its name", methodcaller("ask_element")),
-    Command("NEXT", ("n", "e"), "go to the next element", methodcaller("step_element", 1)),
-    Command("PREVIOUS", ("p", "E"), "go to the element before", methodcaller("step_element", -1)),
-    Command("CANCEL", ("escape",), "say the way to an element no more", methodcaller("cancel")),
-    Command(
+    shared("NEXT", ("n", "e"), "go to the next element", methodcaller("step_element", 1)),
+    shared("PREVIOUS", ("p", "E"), "go to the element before", methodcaller("step_element", -1)),
+    shared("CANCEL", ("escape",), "say the way to an element no more", methodcaller("cancel")),
+    shared(
         "ENTERING",
         ("v", "f6"),
         "say each element when the finger comes to it, with its sound, or no longer",
         methodcaller("toggle_entering"),
     ),
-    Command(
+    shared(
         "RIGHT",
         ("right",),
         "simulated hand: 1 mm right; a person's: next element",
         methodcaller("move", STEP_MM, 0),
     ),
-    Command(
+    shared(
         "LEFT",
         ("left",),
         "simulated hand: 1 mm left; a person's: the element before",
         methodcaller("move", -STEP_MM, 0),
     ),
-    Command(
+    shared(
         "DOWN",
         ("down",),
         "simulated hand: 1 mm down; one axis: 1 mm lower; a person's: next element",
         methodcaller("move", 0, STEP_MM),
     ),
-    Command(
+    shared(
         "UP",
         ("up",),
         "simulated hand: 1 mm up; one axis: higher; a person's: the element before",
         methodcaller("move", 0, -STEP_MM),
     ),
-    Command(
+    shared(
         "FAR_RIGHT",
         ("shift-right",),
         "simulated hand: 10 mm right",
         methodcaller("move", FAR_MM, 0),
     ),
-    Command(
+    shared(
         "FAR_LEFT",
         ("shift-left",),
         "simulated hand: 10 mm left",
         methodcaller("move", -FAR_MM, 0),
     ),
-    Command(
+    shared(
         "FAR_DOWN",
         ("shift-down",),
         "simulated hand: 10 mm down; one axis: lower",
         methodcaller("move", 0, FAR_MM),
     ),
-    Command(
+    shared(
         "FAR_UP",
         ("shift-up",),
         "simulated hand: 10 mm up; one axis: higher",
         methodcaller("move", 0, -FAR_MM),
     ),
-    Command("MIDDLE", ("home",), "go to the middle of the picture", methodcaller("go_to_middle")),
-    Command("ZOOM_IN", ("+", "="), "nearer, about the finger", methodcaller("zoom", 1)),
-    Command("ZOOM_OUT", ("-",), "farther, about the finger", methodcaller("zoom", -1)),
-    Command("WHOLE", ("0",), "the whole picture again, as written", methodcaller("show_whole")),
+    shared("MIDDLE", ("home",), "go to the middle of the picture", methodcaller("go_to_middle")),
+    shared("ZOOM_IN", ("+", "="), "nearer, about the finger", methodcaller("zoom", 1)),
+    shared("ZOOM_OUT", ("-",), "farther, about the finger", methodcaller("zoom", -1)),
+    shared("WHOLE", ("0",), "the whole picture again, as written", methodcaller("show_whole")),
     *(
-        Command(f"PAN_{way.upper()}", keys, f"the part that is {said}", methodcaller("pan", *by))
+        shared(f"PAN_{way.upper()}", keys, f"the part that is {said}", methodcaller("pan", *by))
         for way, keys, said, by in (
             ("right", ("ctrl-right", "]"), "farther right", (PAN, 0.0)),
             ("left", ("ctrl-left", "["), "farther left", (-PAN, 0.0)),
@@ -101,13 +114,13 @@ COMMANDS = (
             ("up", ("ctrl-up", "{"), "farther up; one axis: 10 mm higher", (0.0, -PAN)),
         )
     ),
-    Command(
+    shared(
         "APERTURE", ("z",), "say the zoom, and what is within reach", methodcaller("say_aperture")
     ),
-    Command("CONTRAST_UP", ("c",), "more contrast", methodcaller("turn_contrast", 1)),
-    Command("CONTRAST_DOWN", ("C",), "less contrast", methodcaller("turn_contrast", -1)),
+    shared("CONTRAST_UP", ("c",), "more contrast", methodcaller("turn_contrast", 1)),
+    shared("CONTRAST_DOWN", ("C",), "less contrast", methodcaller("turn_contrast", -1)),
     *(
-        Command(
+        shared(
             f"SWITCH_{number}",
             (str(number),),
             f"picture: its switch {number}, such as another view",
@@ -126,5 +139,5 @@ BOUND = bind(COMMANDS, Bindings(buttons=BUTTONS))
 _OTHERS = tuple(
     replace(command, keys=()) if command.name == "CANCEL" else command for command in COMMANDS
 )
-FROM_TEXT = (Command("BACK", ("G", "escape"), "back to the text", control.stop), *_OTHERS)
+FROM_TEXT = (shared("BACK", ("G", "escape"), "back to the text", control.stop), *_OTHERS)
 BOUND_FROM_TEXT = bind(FROM_TEXT, Bindings(buttons=BUTTONS))

@@ -19,10 +19,10 @@ from vbraille.sessions.planning.design import StringList
 from vbraille.sessions.planning.style import TUNED
 from vbraille.sessions.record.codebook import ASKED, COLUMNS, CORRECT, designed
 from vbraille.sessions.record.events import AnyTime, JournalEvent, Note, Presented
-from vbraille.sessions.record.folder import Record, read_told_trace
+from vbraille.sessions.record.folder import Record, open_told_trace
 from vbraille.sessions.record.passages import COLUMNS as PASSAGE
 from vbraille.sessions.record.passages import read_so, spans_of
-from vbraille.sessions.record.traces import LAST_FIELD
+from vbraille.sessions.record.traces import LAST_FIELD, NO_TRACE, TraceLines
 from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.progress import Progress, TrialRecord
-    from vbraille.sessions.record.traces import Trace
+    from vbraille.sessions.record.traces import TickColumns, Trace
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +106,7 @@ NEVER_CAME = "the hand never came to the first dot"
 
 
 class Traces:
-    """The traces of a session, each of which is read once, as far as it is whole.
+    """The traces of a session, as far as they are whole.
 
     Parameters
     ----------
@@ -128,44 +128,60 @@ class Traces:
         self._upto = upto
         self._salvaged = salvaged
         self._record = record
-        self._traces: dict[str, Trace] = {}
+        self._traces: dict[str, TraceLines | Trace] = {}
 
     def read(self, name: str) -> Trace:
-        """Read the trace of a name, or return it if it was read before."""
-        if name not in self._traces:
-            trace = read_told_trace(self._record.folder, name, self._record.journal, self._upto)
-            self._traces[name] = trace
-            if trace.damage is not None:
-                self.faults.append(f"{name} is damaged, {trace.damage}")
-        return self._traces[name]
+        """Read the trace of a name, as far as it is whole."""
+        found = self._opened(name)
+        return found.whole() if isinstance(found, TraceLines) else found
 
-    def of(self, name: str, lines: list[int]) -> NDArray[np.void] | None:
+    def of(self, name: str, lines: list[int]) -> TickColumns | None:
         """Ticks of a trace that have some line numbers; None if some of the ticks may be lost."""
-        trace = self.read(name)
-        if trace.damage is None:
-            return _of(trace.ticks, lines)
+        found = self._opened(name)
+        if isinstance(found, TraceLines):
+            return _some(found.between(min(lines), max(lines)), lines)
+        if found.damage is None:
+            return _of(found.ticks, lines)
         # Line numbers grow along a trace. So damage may take ticks from the last number before it
         # and from the first number after it, and these two are not used.
-        known = trace.ticks["line"]
+        known = found.ticks["line"]
         if known.size and known[-1] > max(lines):
-            return _of(trace.ticks, lines)
-        for stretch in trace.later if self._salvaged else ():
+            return _of(found.ticks, lines)
+        for stretch in found.later if self._salvaged else ():
             known = stretch["line"]
-            last = stretch is trace.later[-1] or known[-1] > max(lines)
+            last = stretch is found.later[-1] or known[-1] > max(lines)
             if known[0] < min(lines) and last:
                 return _of(stretch, lines)
         return None
 
+    def _opened(self, name: str) -> TraceLines | Trace:
+        """A whole trace, whose ticks are read as they are wanted, or what is left of another."""
+        if name not in self._traces:
+            chunks, damage = open_told_trace(self._record.folder, name, self._record.journal)
+            if damage is not None:
+                self.faults.append(f"{name} is damaged, {damage}")
+            if chunks is None or damage is not None:
+                trace = NO_TRACE if chunks is None else chunks.whole(self._upto)
+                self._traces[name] = replace(trace, damage=damage)
+            else:
+                self._traces[name] = TraceLines(chunks, self._upto)
+        return self._traces[name]
 
-def _of(ticks: NDArray[np.void], lines: list[int]) -> NDArray[np.void]:
+
+def _of(ticks: NDArray[np.void], lines: list[int]) -> TickColumns:
     """Ticks that have some line numbers, out of ticks whose line numbers grow."""
     known = ticks["line"]
     # Bisection in Python is faster here: numpy would copy the whole column for each trial.
-    first, stop = bisect_left(known, min(lines)), bisect_right(known, max(lines))
-    part = ticks[first:stop]
+    part = ticks[bisect_left(known, min(lines)) : bisect_right(known, max(lines))]
+    return _some({name: part[name] for name in part.dtype.names or ()}, lines)
+
+
+def _some(ticks: TickColumns, lines: list[int]) -> TickColumns:
+    """Ticks that have some line numbers, out of those between the first and the last of these."""
     if max(lines) - min(lines) < len(set(lines)):  # no other line numbers lie between them
-        return part
-    return part[np.isin(part["line"], lines)]
+        return ticks
+    wanted = np.isin(ticks["line"], lines)
+    return {name: column[wanted] for name, column in ticks.items()}
 
 
 def rows(record: Record, traces: Traces | None = None) -> list[dict[str, Any]]:
@@ -399,19 +415,20 @@ def _trajectory(
     ticks = traces.of(trace, [showing.line for showing in told.last_attempt])
     if ticks is None:
         return f"{trace} is damaged before the end of it"
-    if not ticks.size:
+    if not ticks["line"].size:
         return f"{trace} has no tick of it"
     if not edges:
         return "no dot of it is shown"
     felt = np.flatnonzero(ticks["flags"] & _PAUSED == 0)
-    ticks = ticks[: felt[-1] + 1] if felt.size else ticks  # the answer ended the trial
-    span_mm, time_ns = protocol.model.display.span_mm, ticks["time_ns"].copy()
-    left_mm = ticks["x_mm"] - span_mm / 2
+    until = int(felt[-1]) + 1 if felt.size else None  # the answer ended the trial
+    span_mm, time_ns = protocol.model.display.span_mm, ticks["time_ns"][:until]
+    x_mm = ticks["x_mm"][:until]
+    left_mm = x_mm - span_mm / 2
 
     def moved() -> NDArray[np.bool_]:
         tuning = replace(stimulus.tuning, **told.tuning)
         program = protocol.program(stimulus, tuning)
-        frames = program.path(ticks["x_mm"])
+        frames = program.path(x_mm)
         idle = program.path(np.full(1, np.nan))
         return (frames != idle).any(axis=(1, 2))
 

@@ -37,7 +37,7 @@ from vbraille.sessions.record.journal import (
     sum_of_torn,
 )
 from vbraille.sessions.record.progress import Progress, stimulus_of
-from vbraille.sessions.record.traces import LAST_FIELD, TRACE, Trace, read_last_tie, read_trace
+from vbraille.sessions.record.traces import LAST_FIELD, NO_TRACE, ChunkedTrace, Trace, read_last_tie
 from vbraille.version import __version__
 from vbraille.wording import setting
 
@@ -203,28 +203,36 @@ def load(folder: Path, *, salvaged: bool = False) -> Record:
     return Record(folder, head, protocol, plan, contents, procedure_of(protocol, plan))
 
 
-def read_told_trace(
-    folder: Path, name: str, contents: JournalContents, upto: str = LAST_FIELD
-) -> Trace:
-    """Read a trace of a session, up to its last whole chunk and to a field of `TRACE`.
+def open_told_trace(
+    folder: Path, name: str, contents: JournalContents
+) -> tuple[ChunkedTrace | None, str | None]:
+    """Open a trace of a session; give it, if it can be read, and what is damaged of it, if any is.
 
     A trace also counts as damaged if it is missing, or does not have the length that the journal
     tells.
     """
     path = folder / name
     try:
-        trace = read_trace(path, upto)
-        size = path.stat().st_size
-    except (VbrailleError, OSError):
-        return Trace(np.zeros(0, TRACE), 0, "it cannot be read" if path.exists() else "it is gone")
+        chunks = ChunkedTrace(path, checked=True)
+    except VbrailleError:
+        return None, "it cannot be read" if path.exists() else "it is gone"
     closed = {
         event.trace: event.trace_bytes for event in contents.events if isinstance(event, Closed)
     }
-    damage = trace.damage
-    if damage is None and name in closed and size != closed[name]:
-        damage = f"it has {size} bytes, and had {closed[name]} when it was closed"
-    elif damage is None and trace.torn_bytes and (name in closed or _is_member(path, trace)):
+    damage = chunks.fault()
+    if damage is None and name in closed and chunks.size_bytes != closed[name]:
+        damage = f"it has {chunks.size_bytes} bytes, and had {closed[name]} when it was closed"
+    elif damage is None and chunks.torn_bytes and (name in closed or _is_member(path, chunks)):
         damage = "its last chunk has a wrong length"
+    return chunks, damage
+
+
+def read_told_trace(
+    folder: Path, name: str, contents: JournalContents, upto: str = LAST_FIELD
+) -> Trace:
+    """Read a trace of a session, up to its last whole chunk and to a field of `TRACE`."""
+    chunks, damage = open_told_trace(folder, name, contents)
+    trace = NO_TRACE if chunks is None else chunks.whole(upto)
     return replace(trace, damage=damage)
 
 
@@ -293,7 +301,7 @@ def _no_journal(folder: Path, error: OSError) -> VbrailleError:
     return InputError(f"{folder} is not the directory of a session: it has no {JOURNAL}")
 
 
-def _is_member(path: Path, trace: Trace) -> bool:
+def _is_member(path: Path, trace: ChunkedTrace) -> bool:
     """True if the torn end of a trace is a whole chunk, which only states a wrong length."""
     try:
         gzip.decompress(path.read_bytes()[-trace.torn_bytes :])

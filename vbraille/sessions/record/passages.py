@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.record.progress import TrialRecord
+    from vbraille.sessions.record.traces import TickColumns
 
 STILL_MM_S, STILL_S = 5.0, 0.3
 COLUMNS = {
@@ -52,7 +53,7 @@ def spans_of(events: Iterable[JournalEvent], told: TrialRecord) -> dict[int, lis
 
 
 def read_so(
-    trial: Trial, told: TrialRecord, spans: dict[int, list[int]], lines: list[NDArray[np.void]]
+    trial: Trial, told: TrialRecord, spans: dict[int, list[int]], lines: list[TickColumns]
 ) -> dict[str, Any]:
     """Cells of a row for how a passage was read; those that are not known are left out.
 
@@ -78,13 +79,16 @@ def read_so(
     pauses, paused_s, back = 0, 0.0, 0
     for stimulus, span, ticks in zip(trial.stimuli, known, lines, strict=True):
         time_ns = ticks["time_ns"]
-        within = ticks[(time_ns >= span[0]) & (time_ns <= span[1]) & ~np.isnan(ticks["x_mm"])]
+        within = np.flatnonzero(
+            (time_ns >= span[0]) & (time_ns <= span[1]) & ~np.isnan(ticks["x_mm"])
+        )
         # From its furthest place the hand is on its way to the next line.
-        within = within[: int(np.argmax(within["x_mm"])) + 1] if within.size else within
-        still = stretches(np.abs(within["vx_mm_s"]) < STILL_MM_S, within["time_ns"])
+        if within.size:
+            within = within[: int(np.argmax(ticks["x_mm"][within])) + 1]
+        still = stretches(np.abs(ticks["vx_mm_s"][within]) < STILL_MM_S, time_ns[within])
         long = still[still >= STILL_S]
         pauses, paused_s = pauses + long.size, paused_s + float(long.sum())
-        back += went_back(within["x_mm"], stimulus.geometry.cell_pitch_mm / 2)
+        back += went_back(ticks["x_mm"][within], stimulus.geometry.cell_pitch_mm / 2)
     return row | {
         "hand_pauses": pauses, "hand_paused_s": round(paused_s, 3), "regressions": back,
     }  # fmt: skip

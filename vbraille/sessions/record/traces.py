@@ -20,7 +20,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from hashlib import sha256
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -53,6 +53,8 @@ TRACE = np.dtype(
     ]
 )
 LAST_FIELD = "share"
+TickColumns: TypeAlias = "dict[str, NDArray[Any]]"
+"""Fields of `TRACE` by their names, each of all ticks."""
 CHUNK_TICKS = 1000
 _LEVEL = 1  # level of gzip: the fastest, since higher ones hardly make counts shorter
 # A member begins as RFC 1952 says: no name, no time, level 1, Unix, extra fields of 24 bytes. The
@@ -63,6 +65,7 @@ _HEAD = bytes((0x1F, 0x8B, 8, 4, 0, 0, 0, 0, 4, 3)) + b"\x18\x00vp\x08\x00"
 _TIE_FIELD = b"vj\x08\x00"
 _EXTRA = struct.Struct("<II")
 _TRAILER = struct.Struct("<II")
+_START = struct.Struct(f"<{len(_HEAD)}sII{len(_TIE_FIELD)}sII")
 # All checksums of a smaller trace are looked at when a `ChunkedTrace` opens it.
 _SOON_CHECKED_BYTES = 1 << 25
 # No chunk has so many ticks: what says so is no trace.
@@ -186,6 +189,9 @@ class Trace:
     later: tuple[NDArray[np.void], ...] = ()
 
 
+NO_TRACE = Trace(np.zeros(0, TRACE), 0, None)
+
+
 def read_trace(path: Path, upto: str = LAST_FIELD) -> Trace:
     """Read a trace, including its whole chunks after a damage.
 
@@ -200,17 +206,9 @@ def read_trace(path: Path, upto: str = LAST_FIELD) -> Trace:
         If the file cannot be read at all.
     """
     chunks = ChunkedTrace(path, checked=True)
-    bounds = sorted({0, *chunks.damage, len(chunks)})
-    first, *later = (chunks.between(*span, upto) for span in pairwise([*bounds, len(chunks)]))
-    damage = None
-    if chunks.damage:
-        damage = f"chunk {chunks.damage[0] + 1} of {path.name} does not match its checksum"
-        if not chunks.damage[0]:
-            first, later = first[:0], [first, *later]
-    later = tuple(stretch for stretch in later if stretch.size)
-    torn_bytes = 0 if chunks.damage else chunks.torn_bytes
+    trace = chunks.whole(upto)
     chunks.close()
-    return Trace(first, torn_bytes, damage, tuple(dict.fromkeys(chunks.ties)), later)
+    return trace
 
 
 def read_last_tie(path: Path) -> Tie | None:
@@ -245,6 +243,8 @@ class ChunkedTrace:
         Length of a last chunk that a crash cut short.
     ties : list[Tie]
         Line of the journal that each chunk names.
+    size_bytes : int
+        Length of the file.
 
     Raises
     ------
@@ -255,16 +255,20 @@ class ChunkedTrace:
     def __init__(self, path: Path, *, checked: bool | None = None) -> None:
         self._path = path
         self._places: list[tuple[int, int]] = []
+        self._content: memoryview | None = None
         self.damage: list[int] = []
         self.torn_bytes = 0
         self.ties: list[Tie] = []
         try:
             self._file = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
             self._close = weakref.finalize(self, os.close, self._file)
-            self._size = os.fstat(self._file).st_size
+            self.size_bytes = os.fstat(self._file).st_size
         except OSError as error:
-            raise self._fault(error) from None
-        self._checked = self._size <= _SOON_CHECKED_BYTES if checked is None else checked
+            raise self._unreadable(error) from None
+        self._checked = self.size_bytes <= _SOON_CHECKED_BYTES if checked is None else checked
+        if self._checked:  # all of it is read anyway, and at once in less time
+            self._content = self._read(0, self.size_bytes)
+            self.size_bytes = len(self._content)
         self._walk()
 
     def __len__(self) -> int:
@@ -277,22 +281,21 @@ class ChunkedTrace:
 
     def between(self, first: int, stop: int, upto: str = LAST_FIELD) -> NDArray[np.void]:
         """Ticks of some chunks that follow each other, with the fields of `TRACE` up to one."""
-        names = (TRACE.names or ())[: (TRACE.names or ()).index(upto) + 1]
-        parts = [self._unpacked(number, len(names)) for number in range(first, stop)]
+        names = _names(upto)
+        parts = [self.differences(n, len(names)) for n in range(first, stop)]
         found = np.empty(
-            sum(part.shape[1] for part in parts),
-            [(name, TRACE[name]) for name in names],
+            sum(part.shape[1] for part in parts), [(name, TRACE[name]) for name in names]
         )
         whole = found.view("<i8").reshape(-1, len(names))
         at = 0
         for part in parts:
-            np.cumsum(part, axis=1, out=whole[at : at + part.shape[1]].T)
+            part.cumsum(axis=1, out=whole[at : at + part.shape[1]].T)
             at += part.shape[1]
         return found
 
-    def _unpacked(self, number: int, fields: int) -> NDArray[np.int64]:
+    def differences(self, number: int, fields: int) -> NDArray[np.int64]:
         """Differences of a chunk's first fields, int64[fields, n]; n is 0 if it is damaged."""
-        member = memoryview(self._read(*self._places[number]))
+        member = self._read(*self._places[number])
         try:
             whole = len(member) if self._checked else _whole(member)
             stop = whole - _TRAILER.size
@@ -304,6 +307,22 @@ class ChunkedTrace:
         except (ValueError, struct.error, zlib.error):
             return np.zeros((fields, 0), np.int64)
 
+    def whole(self, upto: str = LAST_FIELD) -> Trace:
+        """Content of the trace, with the fields of `TRACE` up to one."""
+        bounds = sorted({0, *self.damage, len(self)})
+        first, *later = (self.between(*span, upto) for span in pairwise([*bounds, len(self)]))
+        if self.damage and not self.damage[0]:
+            first, later = first[:0], [first, *later]
+        later = tuple(stretch for stretch in later if stretch.size)
+        torn_bytes = 0 if self.damage else self.torn_bytes
+        return Trace(first, torn_bytes, self.fault(), tuple(dict.fromkeys(self.ties)), later)
+
+    def fault(self) -> str | None:
+        """Say which chunk is the first that is not whole; None if all are."""
+        if not self.damage:
+            return None
+        return f"chunk {self.damage[0] + 1} of {self._path.name} does not match its checksum"
+
     def close(self) -> None:
         """Close the file; it is closed with the last use of this, too."""
         self._close()
@@ -311,14 +330,16 @@ class ChunkedTrace:
     def _walk(self) -> None:
         """Find all chunks, and what is not whole between them."""
         at = 0
-        while at < self._size:
-            head = self._read(at, _AFTER_TIE)
-            if length := self._length(at, head):
-                self._places.append((at, length))
-                self.ties.append(Tie(*_EXTRA.unpack_from(head, _AFTER_LENGTH + len(_TIE_FIELD))))
-                at += length
-                continue
-            rest = self._read(at, self._size - at)
+        while at < self.size_bytes:
+            head = self._read(at, _START.size)
+            if len(head) == _START.size:
+                start, length, crc, _, *tie = _START.unpack(head)
+                if start == _HEAD and self._is_whole(at, length, crc):
+                    self._places.append((at, length))
+                    self.ties.append(Tie(*tie))
+                    at += length
+                    continue
+            rest = bytes(self._read(at, self.size_bytes - at))
             after = _next_start(rest)
             if after < len(rest) or not _is_torn(rest):
                 self.damage.append(len(self._places))
@@ -326,25 +347,89 @@ class ChunkedTrace:
                 self.torn_bytes = len(rest)
             at += after
 
-    def _length(self, at: int, head: bytes) -> int:
-        """Length of the chunk that begins with these bytes at a place; 0 if it is none."""
-        if len(head) < _AFTER_TIE or not head.startswith(_HEAD):
-            return 0
-        length = int(_EXTRA.unpack_from(head, len(_HEAD))[0])
-        if length > min(self._size - at, _MOST_BYTES):
-            return 0
-        with suppress(ValueError):
-            return _whole(memoryview(self._read(at, length))) if self._checked else length
-        return 0
+    def _is_whole(self, at: int, length: int, crc: int) -> bool:
+        """True if a chunk whose header says so can begin here; its checksum may be looked at."""
+        if not _AFTER_TIE + _TRAILER.size <= length <= min(self.size_bytes - at, _MOST_BYTES):
+            return False
+        return not self._checked or zlib.crc32(self._read(at, length)[_AFTER_LENGTH:]) == crc
 
-    def _read(self, at: int, length: int) -> bytes:
+    def _read(self, at: int, length: int) -> memoryview:
+        if self._content is not None:
+            return self._content[at : at + length]
         try:
-            return os.pread(self._file, length, at)
+            return memoryview(os.pread(self._file, length, at))
         except OSError as error:
-            raise self._fault(error) from None
+            raise self._unreadable(error) from None
 
-    def _fault(self, error: OSError) -> VbrailleError:
+    def _unreadable(self, error: OSError) -> VbrailleError:
         return VbrailleError(f"{self._path} cannot be read: {error.strerror}")
+
+
+class TraceLines:
+    """Ticks of a trace without damage, by their line numbers, which grow along it.
+
+    Those that are wanted in the order of the trace are unpacked once, and a few at a time: hours
+    of ticks at once would take more time for their memory than for themselves.
+
+    Parameters
+    ----------
+    chunks
+        The trace.
+    upto
+        Last field of `TRACE` that ticks have.
+    """
+
+    def __init__(self, chunks: ChunkedTrace, upto: str = LAST_FIELD) -> None:
+        self._chunks = chunks
+        self._upto = upto
+        self._names = _names(upto)
+        self._next = 0  # the first chunk that was not passed,
+        self._passed: int | None = None  # the last line number that was,
+        self._kept: tuple[int, NDArray[np.int64]] | None = None  # and the chunk unpacked last
+
+    def between(self, least: int, most: int) -> TickColumns:
+        """Ticks whose line number is within bounds."""
+        line = self._names.index("line")
+        if self._passed is not None and least <= self._passed:
+            self._next, self._passed = 0, None
+        parts: list[NDArray[np.int64]] = []
+        while self._next < len(self._chunks):
+            part = self._unpacked(self._next)
+            if part.shape[1]:
+                first, last = int(part[line, 0]), int(part[line].sum())
+                if first > most:
+                    break
+                if last >= least:
+                    parts.append(part)
+                if last > most:
+                    break
+                self._passed = last
+            self._next += 1
+        whole = np.empty((len(self._names), sum(part.shape[1] for part in parts)), "<i8")
+        at = 0
+        for part in parts:
+            part.cumsum(axis=1, out=whole[:, at : at + part.shape[1]])
+            at += part.shape[1]
+        some = slice(*np.searchsorted(whole[line], (least, most + 1)))
+        return {
+            name: column[some].view(TRACE[name])
+            for name, column in zip(self._names, whole, strict=True)
+        }
+
+    def whole(self) -> Trace:
+        """All ticks at once."""
+        return self._chunks.whole(self._upto)
+
+    def _unpacked(self, number: int) -> NDArray[np.int64]:
+        if self._kept is None or self._kept[0] != number:
+            self._kept = number, self._chunks.differences(number, len(self._names))
+        return self._kept[1]
+
+
+def _names(upto: str) -> tuple[str, ...]:
+    """Names of the fields of `TRACE` up to one."""
+    names = TRACE.names or ()
+    return names[: names.index(upto) + 1]
 
 
 def _differences(ticks: NDArray[np.void]) -> bytes:
