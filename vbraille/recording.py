@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 FORMAT = 3
 CHUNK_FRAMES = 1024
 _CHUNK_LINES = 64
+_TEXT: Final = h5py.string_dtype()
 _AXES: Final = ("column", "row")
 _MAPPINGS: Final = MAPPINGS | {m.name: m for m in map(single_row, (1, 2, 3))}
 NUMBERS: Final = ("t_s", "x_mm", "y_mm", "theta_rad", "line", "part")
@@ -39,6 +40,22 @@ UNLIKE: Final = (
     OSError, KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError,
     RuntimeError, MemoryError,
 )  # fmt: skip
+
+
+class Print(NamedTuple):
+    """Print of a line of braille.
+
+    Parameters
+    ----------
+    text
+        Text of the line; empty where its source is braille.
+    sources : int32[cells, 2]
+        For each cell, where in the text that begins and ends which it stands for; two equal
+        numbers where it stands for nothing.
+    """
+
+    text: str
+    sources: NDArray[np.int32]
 
 
 class SceneRecorded(NamedTuple):
@@ -102,6 +119,10 @@ class Recorder:
         self._frames = growing("frames", "f4", rows, columns)
         self._cells = growing("page/cells", "u1", width, chunk=_CHUNK_LINES)
         self._length = growing("page/length", "i8", chunk=_CHUNK_LINES)
+        self._sources = growing("page/sources", "i4", width, 2, chunk=_CHUNK_LINES)
+        self._texts = file.create_dataset(
+            "page/text", (0,), _TEXT, maxshape=(None,), chunks=(_CHUNK_LINES,)
+        )
         file.attrs["column_offset_mm"] = display.column_offsets_mm()
         file.attrs["row_offset_mm"] = display.row_offsets_mm()
         file.attrs["vbraille_version"] = __version__
@@ -167,9 +188,15 @@ class Recorder:
         kept = (self._time, *self._pose, self._line, self._part, self._frames)
         return sum(dataset.id.get_storage_size() for dataset in kept)
 
-    def add_line(self, masks: NDArray[np.uint8]) -> int:
-        """Append a line of the page, and return its row in ``page/cells``."""
+    def add_line(self, masks: NDArray[np.uint8], printed: Print | None = None) -> int:
+        """Append a line of the page with its print, and return its row in ``page/cells``."""
         row = self._length.shape[0]
+        self._sources.resize(row + 1, 0)
+        self._texts.resize(row + 1, 0)
+        if printed is not None:
+            # A lone surrogate, as of a damaged book, has no bytes.
+            self._texts[row] = printed.text.encode("utf-8", "replace")
+            self._sources[row, : masks.size] = printed.sources
         self._cells.resize(row + 1, 0)
         self._cells[row, : masks.size] = masks
         self._length.resize(row + 1, 0)
@@ -240,6 +267,8 @@ class Recording:
         Number in the source of the first of ``cells``.
     scene
         Picture that was rendered; None if lines were.
+    prints
+        Print of each line; empty where there is none.
 
     Raises
     ------
@@ -259,6 +288,7 @@ class Recording:
     source: str = ""
     first_line: int = 1
     scene: SceneRecorded | None = None
+    prints: Sequence[Print] = ()
 
     def __post_init__(self) -> None:
         size = len(self.t_s)
@@ -270,6 +300,9 @@ class Recording:
             raise InputError(f"the frames must be {size} × {rows_columns}, one for each time")
         if not ((self.frames >= 0) & (self.frames <= 1)).all():
             raise InputError("a deflection is not from 0 to 1; a recording has none of those")
+        cells = [len(row) for row in self.cells]
+        if self.prints and [len(one.sources) for one in self.prints] != cells:
+            raise InputError("prints need one print for each line, with a source for each cell")
         if not (np.diff(self.t_s) >= 0).all():
             raise InputError("the times of a recording must increase")
 
@@ -305,6 +338,7 @@ class Recording:
             source=str(file.attrs["source"]),
             first_line=int(np.asarray(file.attrs["first_line"])),
             scene=scene_of(file),
+            prints=[print_in(file, row, length) for row, length in enumerate(lengths)],
         )
 
     def write(self, path: Path | str, *, replace: bool = False) -> None:
@@ -337,8 +371,8 @@ class Recording:
                     model=self.model, rate_hz=rate_hz, first_line=self.first_line,
                     source=self.source, sha256="",
                 )  # fmt: skip
-                for masks in self.cells:
-                    recorder.add_line(masks)
+                for row, masks in enumerate(self.cells):
+                    recorder.add_line(masks, self.prints[row] if self.prints else None)
             recorder.add_frames(
                 self.t_s, self.x_mm, self.line, self.frames, y_mm=self.y_mm,
                 theta_rad=self.theta_rad, part=self.part,
@@ -407,6 +441,20 @@ def scene_of(file: h5py.File) -> SceneRecorded | None:
         float(np.asarray(told["height_mm"])),
         drawn,
     )
+
+
+def print_in(file: h5py.File, row: int, length: int) -> Print:
+    """Read the print of a line, of a row of ``page/cells`` with so many cells.
+
+    A recording of braille, and one that was written before recordings had their print, has none.
+    """
+    if "page/text" not in file:
+        return Print("", np.zeros((length, 2), np.int32))
+    texts, sources = file["page/text"], dataset_in(file, "page/sources")
+    assert isinstance(texts, h5py.Dataset)
+    text = texts[row]
+    text = text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)
+    return Print(text, np.clip(sources[row, :length], 0, len(text)).astype(np.int32))
 
 
 def check_format(file: h5py.File) -> None:

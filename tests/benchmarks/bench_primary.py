@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-STUDIES, POOL = 2000, 1500
+STUDIES, POOL = 2500, 4000
 PEOPLE = (3, 5, 8, 12)
 LEAST, MOST = 93.0, 98.0
 FEWEST_GIVEN = 0.05  # of the studies; of fewer intervals too little is known

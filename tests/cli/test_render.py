@@ -19,6 +19,7 @@ from vbraille import __version__
 from vbraille.braille.geometry import PRESETS, Geometry
 from vbraille.cli.terminal import WorkProgress
 from vbraille.layout.pages import Layout
+from vbraille.recording import print_in
 from vbraille.render import MAPPINGS, MODELS, Tuning, single_row
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.wording import count
@@ -101,6 +102,8 @@ def test_the_file_holds_all_that_was_rendered(
         assert cells.dtype == np.uint8
         layout = Layout(Book(Document.open(source), BrailleTable("en-ueb-g2.ctb")), cells.shape[1])
         masks = [wanted.masks for wanted in layout.lines(first, last)]
+        for row, wanted in enumerate(layout.lines(first, last)):
+            assert print_in(file, row, wanted.masks.size).text == wanted.text
         assert length.tolist() == [m.size for m in masks]
         for row, wanted in enumerate(masks):
             assert cells[row, : length[row]].tolist() == wanted.tolist()

@@ -8,6 +8,7 @@ import weakref
 import numpy as np
 
 from vbraille.engine.mailbox import Extent, attach, divide
+from vbraille.engine.record import SIGNAL
 from vbraille.live.devicesource import TickViews
 
 EXTENT = Extent(2, 3, 200_000, 500)
@@ -53,6 +54,7 @@ class TestRing:
             )
             floats[slot] = 0
             floats[slot, :9] = n / 8, n / 16, n / 32, -n / 4, 0, 0, 0, 0, 0.5
+            floats[slot, SIGNAL : SIGNAL + 2] = n / 128, n / 256
             frames[slot] = frame_of(n, self.extent.shape)
             self._ring.end()
             self.ticks += 1

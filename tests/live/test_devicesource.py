@@ -18,7 +18,16 @@ from vbraille.engine.mailbox import Extent
 from vbraille.engine.record import FLOATS, INTS, tick_dtype
 from vbraille.errors import InputError
 from vbraille.live.devicesource import _NUMBERS, DeviceSource, TickViews
-from vbraille.live.messages import MOST_SAMPLES, LetGo, Map, Next, PagePress, Point, Turn
+from vbraille.live.messages import (
+    MOST_SAMPLES,
+    LetGo,
+    Map,
+    Next,
+    PagePress,
+    Point,
+    SignalShown,
+    Turn,
+)
 from vbraille.render import STRESS2
 from vbraille.render.program import vibration
 from vbraille.simulation.steering import BeAt, Pointer
@@ -63,6 +72,19 @@ def test_a_frame_is_the_newest_record_bit_for_bit(ring, source):
     assert header["lateness_us"] == np.float32((2000 + n) / 1e3)
     assert header["work_us"] == np.float32((3000 + n) / 1e3)
     assert header["age_ms"] > 0
+
+
+def test_a_frame_has_the_values_of_the_signals_that_its_state_names(ring, source):
+    viewer = source.viewer()
+    ring.append(41)
+    assert frame(viewer).signals.size == 0
+    signals = [SignalShown("slow", ""), SignalShown("view", "")]
+    source.show(canned_state(2, signals=signals))
+    ring.append(1)
+    np.testing.assert_array_equal(frame(viewer).signals, np.float32([41 / 128, 41 / 256]))
+    source.show(canned_state(3, signals=signals, blind=True))
+    ring.append(1)
+    assert frame(viewer).signals.size == 0  # which would tell what is felt
 
 
 def test_the_samples_are_the_ticks_since_the_frame_before(ring, source):

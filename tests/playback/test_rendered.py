@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import vbraille
 from tests.playback.written import LINES, MODELS, asked, record, recorded
 from vbraille.braille.geometry import Geometry
 from vbraille.errors import InputError
 from vbraille.live.messages import Map, Next
 from vbraille.playback import open_recording
+from vbraille.playback.rendered import Rendered
 from vbraille.render import STRESS2
 
 
@@ -137,3 +139,27 @@ def test_a_damaged_chunk_is_passed_over(tmp_path):
     assert asked(viewer, 2.1)[0]["tick"] == 2047
     assert asked(viewer, 1.0)[0]["tick"] == 1000
     assert asked(viewer, 4.0, 1.9)[0]["tick"] == 4000
+
+
+def test_a_line_has_its_print_and_what_each_cell_stands_for(tmp_path):
+    made = vbraille.render_text("the day", grade=2).recording()
+    made.write(tmp_path / "made.h5")
+    again = vbraille.Recording.open(tmp_path / "made.h5")
+    assert [one.text for one in again.prints] == [one.text for one in made.prints]
+    again.write(tmp_path / "again.h5")
+    played = Rendered(tmp_path / "again.h5")
+    line = played.describe(1).lines[0]
+    assert line.text == "the day"
+    assert line.cells == made.cells[0].tolist()
+    pieces = ["".join(line.text[begin:end]) for begin, end in line.sources]
+    assert pieces[0] == "the"  # one cell, contracted
+    assert "".join(dict.fromkeys(pieces)).replace(" ", "") == "theday"
+    with pytest.raises(InputError, match="prints need one print"):
+        vbraille.Recording(
+            **{name: getattr(made, name) for name in made.__slots__} | {"prints": made.prints * 2}
+        )
+
+
+def test_a_recording_of_braille_alone_has_no_print():
+    line = Rendered(recorded()).describe(1).lines[0]
+    assert (line.text, line.sources) == ("", [(0, 0)] * len(line.cells))

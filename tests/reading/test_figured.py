@@ -1,19 +1,23 @@
 """Figures of a text: on the page below their line, under a hand that a test holds, or alone."""
 
+import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from tests.reading.held import Held
+from tests.reading.test_sounding import write_sound
 from tests.render.scene.lanes import lane_places
 from tests.render.scene.twin import deflections
 from tests.tiers import heavy
 from vbraille.feeling.index import SceneIndex
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import choose_table
+from vbraille.live.messages import PagePress
 from vbraille.reading.bookfigures import BookFigures
 from vbraille.reading.device import OpenDevice
+from vbraille.reading.liveview import LastSentences, ReadState
 from vbraille.render import STRESS2, STRESS2_8X8, model_of
 from vbraille.render.braille.style import Straying
 from vbraille.scene.reading import open_scene
@@ -53,18 +57,21 @@ ROWS = 6  # of a page: two lines, the figure of three rows, and a line
 class Bench(Held):
     """A text with figures on a page, under a hand that is held."""
 
-    def __init__(self, folder, text=TEXT, model=STRESS2_8X8, rows=ROWS, scene=SCENE, **style):
+    def __init__(
+        self, folder, text=TEXT, model=STRESS2_8X8, rows=ROWS, scene=SCENE, sounding=False, **style
+    ):
         (folder / "water.scene").write_text(scene)
         (folder / "text.md").write_text(text)
-        self.said, self.notes = [], []
+        self.said, self.notes, self.heard = [], [], []
         super().__init__(model, rows, self.said.append)
         self.y_mm = PITCH_MM / 2
         own = self.own.style.replace(**style)
         self.opened.start(replace(self.own, style=own))
         source = open_source(str(folder / "text.md"))
         self.figures = BookFigures(
-            source, folder, self.opened, self.notes.append, rate_hz=1000.0, room=1 << 21
-        )
+            source, folder, self.opened, self.notes.append, rate_hz=1000.0, room=1 << 21,
+            sound=self.heard.append, sounding=sounding,
+        )  # fmt: skip
         layout = Layout(Book(source, choose_table("en", 1, None)), 17)
         self.opened.show(layout, figures=lambda: self.figures)
         while rows and any(self.surface.kept) and not self.under.figured.placed:
@@ -266,6 +273,49 @@ def test_a_key_feels_it_alone_and_leads_back(tmp_path):
     bench.opened.style.render(bench.reader.line.masks, bench.opened.display).frame(ON_A_MM, felt)
     assert felt.max() > 0.3
     np.testing.assert_allclose(frame, felt, rtol=0, atol=1e-6)
+
+
+def test_sounds_of_its_elements_are_played_while_it_is_felt_alone(tmp_path):
+    write_sound(tmp_path / "lake.wav", [0, 16384, -32768])
+    scene = SCENE.replace('title = "lake"', 'title = "lake"\nwords = "water"\nsound = "lake.wav"')
+    bench = Bench(tmp_path, model=STRESS2, rows=0, scene=scene, sounding=True)
+    bench.press("n")
+    bench.run(0.3)
+    bench.press("G")
+    bench.to(12.0, 0.0)
+    assert "water" in bench.said
+    assert bench.heard == [tmp_path / "lake.wav"]
+    bench.press("escape")
+
+
+def test_pages_of_the_live_view_draw_it_where_it_stands_and_alone(bench):
+    told = ReadState(bench.opened, "A pond", LastSentences())
+
+    def state(so):
+        end_s, newest = time.monotonic() + 60, told.changed()
+        while newest is None or not so(newest):  # it is drawn meanwhile
+            assert time.monotonic() < end_s
+            newest = told.changed() or newest
+        return newest
+
+    (figure,) = state(lambda new: new.figures and new.figures[0].image).figures
+    assert (figure.title, figure.width_mm, figure.height_mm) == ("Water cycle", 40, 30)
+    assert figure.top_mm == -2 * PITCH_MM
+    assert figure.image.startswith("data:image/png")
+    assert told.changed() is None
+
+    bench.to(12.0, 3.5 * PITCH_MM)
+    told.obey(PagePress("FEEL"))
+    bench.run(0.3)
+    alone = state(lambda new: new.scene)
+    assert (alone.title, alone.lines, alone.figures) == ("Water cycle", [], [])
+    assert alone.scene.image == figure.image
+    assert alone.commands[0].name == "BACK"
+    told.obey(PagePress("BACK"))
+    bench.run(0.3)
+    back = state(lambda new: new.lines)
+    assert back.scene is None
+    assert [command.name for command in back.commands][:2] == ["LNUP", "LNDN"]
 
 
 def test_a_page_comes_back_with_its_figure(bench):

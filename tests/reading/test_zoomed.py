@@ -245,6 +245,61 @@ zoom_from = 3
 """
 
 
+# Everything that moves by itself, so slowly that what its period asks for is known.
+MOVING_MM_S = 5.0
+MOVING = f"""
+canvas = {{ width_mm = 120, height_mm = 90 }}
+
+[signals.on]
+kind = "switch"
+levels = [1, 0]
+
+[[elements]]
+kind = "moving"
+velocity_mm_s = [3, 4]
+array_at_mm = [0, 0]
+part = {{ kind = "linear-grating", ridge_mm = 5, wave_angle_deg = 53 }}
+factor = "on"
+
+[[elements]]
+kind = "radial-grating"
+center_mm = [20, 20]
+ridge_mm = 4
+velocity_mm_s = {MOVING_MM_S}
+factor = "on"
+zoom_from = 3
+
+[[elements]]
+kind = "circle"
+title = "Ring of dots"
+center_mm = [60, 50]
+radius_mm = 12
+dots = {{ dot = {{ radius_mm = 2 }}, velocity_mm_s = {MOVING_MM_S}, velocity_by = "on" }}
+
+[[elements]]
+kind = "line"
+title = "Row of dots"
+start_mm = [55, 45]
+end_mm = [75, 58]
+dots = {{ dot = {{ radius_mm = 1.5 }}, velocity_mm_s = {MOVING_MM_S} }}
+
+[[elements]]
+kind = "polygon"
+title = "Texture"
+vertices_mm = [[40, 30], [80, 35], [70, 75]]
+stroke = {{ width_mm = 4, along = {{ ridge_mm = 3, velocity_mm_s = {MOVING_MM_S} }} }}
+cue = {{ way = "mask", ridge_mm = 3, width_mm = 2, velocity_mm_s = {MOVING_MM_S} }}
+
+[[elements]]
+kind = "line"
+title = "Cue"
+start_mm = [30, 52]
+end_mm = [90, 48]
+stroke = {{ width_mm = 3 }}
+cue = {{ way = "blend", ridge_mm = 3, velocity_mm_s = {MOVING_MM_S}, velocity_by = "on" }}
+"""
+
+
 def felt_at_random(path, frames, seed):
     """Keys, poses that do not come and carriages that are lost, at random; largest steps."""
     rng = np.random.default_rng(seed)
@@ -277,3 +332,13 @@ def test_nothing_jumps_by_switches_pans_and_troubles(tmp_path, frames):
     largest = felt_at_random(path, frames, seed=32)
     # A fade of 0.1 s, which goes quicker where poses were late, and in it another by a switch.
     assert 0.005 < largest.max() <= 0.01 * (CATCH_UP + 1.0) + 1e-6
+
+
+@pytest.mark.parametrize("frames", [2_000, pytest.param(100_000, marks=heavy)])
+def test_what_moves_by_itself_jumps_no_more_than_its_period_asks_for(tmp_path, frames):
+    path = tmp_path / "a.scene"
+    path.write_text(MOVING)
+    largest = felt_at_random(path, frames, seed=33)
+    # The steepest of them, a ridge of 3 mm cut by bands of 3 mm, in a millisecond.
+    period = MOVING_MM_S / 1000 * 2 * np.pi / 3
+    assert 0.005 < largest.max() <= 0.01 * (CATCH_UP + 1.0) + period + 1e-6

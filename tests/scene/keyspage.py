@@ -38,7 +38,11 @@ def _name(table):
     if tag is not None:
         return f'kind = "{tag}"'
     named = {"SceneFile": "The file as a whole", "Canvas": "[canvas]", "DotStyle": "table dot"}
-    named |= {"ClassLook": "table [classes.NAME]", "VertexMarkers": "table markers"}
+    named |= {
+        "ClassLook": "table [classes.NAME]",
+        "VertexMarkers": "table markers",
+        "MovingCue": "table cue",
+    }
     named |= {"Dotting": "table dots, of shapes", "TurnPeak": "table distortion, of axial gratings"}
     return named.get(table.__name__, f"table {table.__name__.lower()}")
 

@@ -452,7 +452,7 @@ def _panel(row: Row, answers: list[Row]) -> Rise:
         shares = row["guesses"] + (1 - row["guesses"] - row["lapses"]) * rising
         curve = tuple(zip(x.tolist(), shares.tolist(), strict=True))
         threshold = (row["threshold"], row["low"], row["high"])
-    what = "difference of " if row["question"] == "which" else ""
+    what = "difference of " if row["question"] != "detect" else ""
     return Rise(
         f"{row['participant']}, {row['question']}, {row['level']}",
         f"{what}{_in_words(row['level'])}",

@@ -330,7 +330,7 @@ def _d_prime(study: Study, _places: Places | None, columns: list[str]) -> _Found
 
 
 def _threshold(study: Study, _places: Places | None, columns: list[str]) -> _Found:
-    rows = _judged(study, ("detect", "which"))
+    rows = _judged(study, [name for name in MEASURES["threshold"].questions if name != "identify"])
     if rows is None:
         return _adaptive(study, columns)
     table = thresholds(rows, columns)[0].frame

@@ -112,7 +112,7 @@ COMMANDS = {
         "Read a text on a device, line after line.",
         (
             *(_BOOK, *SOURCE, *_settled(*TEXT), "book", *_unset(*READING)),
-            *("no_places", *LIVE, *_unset("verbose")),
+            *("no_places", "sounds", *LIVE, *_unset("verbose")),
         ),
         "vbraille read book.txt --device serial:/dev/ttyACM0",
         **_LEFT,

@@ -436,7 +436,11 @@ OPTIONS = {
             high=MOST_ZOOM,
         ),
         Option("say_entering", "Say the name of each element when the finger comes to it.", bool),
-        Option("sounds", "Say that, and play the sounds of elements, too.", bool),
+        Option(
+            "sounds",
+            "Say each element of a picture when the finger comes to it, and play its sound.",
+            bool,
+        ),
         Option(
             "deck",
             "Play with the scenes of this folder, two cards of each.",

@@ -239,7 +239,11 @@ def _shape_words(shape: StraightLine | Circle | Polygon | PathShape) -> str:
     if shape.stroke is not None:
         said.append(_stroke_words(shape.stroke))
     if shape.dots is not None:
-        said.append(f"of dots {_dot_words(shape.dots.dot)}")
+        speed = shape.dots.velocity_mm_s
+        moving = f", moving by {speed:g} mm/s" if speed else ""
+        said.append(f"of dots {_dot_words(shape.dots.dot)}{moving}")
+    if shape.cue is not None:
+        said.append(f"under bands that move by {shape.cue.velocity_mm_s:g} mm/s")
     if isinstance(shape, Polygon) and shape.markers is not None:
         said.append("with markers")
     if not isinstance(shape, StraightLine) and shape.fill is not None:

@@ -4,16 +4,25 @@ from __future__ import annotations
 
 import base64
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import h5py
 import numpy as np
+from msgspec.structs import replace as replace_fields
 
 from vbraille.errors import InputError
 from vbraille.live.messages import PlayedEvent, SceneShown, ViewState
 from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
 from vbraille.playback.recorded import PLAYED, Piece, Playback
-from vbraille.recording import NUMBERS, UNLIKE, check_format, dataset_in, model_in, scene_of
+from vbraille.recording import (
+    NUMBERS,
+    UNLIKE,
+    check_format,
+    dataset_in,
+    model_in,
+    print_in,
+    scene_of,
+)
 from vbraille.render import STRESS2
 
 if TYPE_CHECKING:
@@ -208,17 +217,33 @@ class Rendered(Playback):
             return None
         return cells[: max(int(self._lengths[row]), 0)]
 
+    def _print(self, row: int, masks: NDArray[np.uint8] | None) -> dict[str, Any]:
+        """Read the text of a line and what each cell stands for; nothing where it is damaged."""
+        if masks is None:
+            return {}
+        try:
+            printed = print_in(self._file, row, masks.size)
+        except UNLIKE:
+            return {}
+        return {
+            "text": printed.text,
+            "sources": [(begin, end) for begin, end in printed.sources.tolist()],
+        }
+
     def _lines(self, row: int) -> list[LineShown]:
         """Lines around one; of those that were shown by themselves, the others are beside it."""
         first, stop = self._page(row) if self._paged else (0, self._lengths.size)
         top = first if self._paged else row
         geometry = STRESS2.style.geometry if self._style is None else self._style.geometry
         return [
-            cells_shown(
-                at + self._first_line,
-                () if (masks := self._masks(at)) is None else masks,
-                top_mm=(at - top) * geometry.line_pitch_mm,
-                under=at == row,
+            replace_fields(
+                cells_shown(
+                    at + self._first_line,
+                    () if (masks := self._masks(at)) is None else masks,
+                    top_mm=(at - top) * geometry.line_pitch_mm,
+                    under=at == row,
+                ),
+                **self._print(at, masks),
             )
             for at in range(max(first, row - _AROUND), min(stop, row + _AROUND + 1))
         ]

@@ -186,7 +186,9 @@ class SessionRecording(Playback):
             rows_shown=rows_shown(style, self._display),
             lines=[]
             if stimulus.picture is not None
-            else [cells_shown(scene, protocol.line(stimulus.masks), under=True)],
+            else [
+                cells_shown(scene, protocol.line(stimulus.masks), stimulus.text or "", under=True)
+            ],
             place=_name(trial),
             facts=facts,
         )

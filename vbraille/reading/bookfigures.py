@@ -91,6 +91,8 @@ class BookFigures:
         Frames a second.
     room
         Bytes of the largest program that the engine has room for.
+    sound, sounding
+        Of a figure that is felt alone, as for a `SceneView`.
     """
 
     def __init__(
@@ -102,9 +104,12 @@ class BookFigures:
         *,
         rate_hz: float,
         room: int,
+        sound: Callable[[Path], None] | None = None,
+        sounding: bool = False,
     ) -> None:
         self._source, self._folder, self._device, self._note = source, folder, device, note
         self._rate_hz, self._room = rate_hz, room
+        self._sound, self._sounding = sound, sounding
         self._found: dict[str, BookFigure | None] = {}
         self._why: dict[str, str] = {}  # some figures cannot be felt
         self._noted: set[str] = set()
@@ -200,6 +205,8 @@ class BookFigures:
             bound=BOUND_FROM_TEXT,
             room=self._room,
             cue=cue,
+            sound=self._sound,
+            sounding=self._sounding,
         )
         feeler.start(program)
         return feeler

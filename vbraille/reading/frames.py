@@ -13,6 +13,7 @@ import numpy as np
 from vbraille.display import check_rate
 from vbraille.errors import InputError
 from vbraille.layout.texts import cells_per_line, check_text, choose_table, lay_out_text
+from vbraille.live.states import line_shown
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.wording import count
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from vbraille.braille.cells import Cells
     from vbraille.display import Display
     from vbraille.layout.pages import Layout, Line
-    from vbraille.recording import Recording
+    from vbraille.recording import Print, Recording
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
 
@@ -351,7 +352,16 @@ def _recorded(
         line.astype(np.int64),
         np.zeros(len(frames), np.int64) if part is None else part.astype(np.int64),
         first_line=lines[0].number,
+        prints=[print_of(each) for each in lines],
     )
+
+
+def print_of(line: Line) -> Print:
+    """Print of a line, as pages of the live view show it under the braille."""
+    from vbraille.recording import Print  # loads h5py
+
+    shown = line_shown(line)
+    return Print(shown.text, np.array(shown.sources, np.int32).reshape(-1, 2))
 
 
 def _laid_out(

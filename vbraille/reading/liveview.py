@@ -35,6 +35,7 @@ from vbraille.live.states import (
 )
 from vbraille.reading.commands.turning import turn_to
 from vbraille.reading.keys import Context
+from vbraille.reading.lineviews import figure_address
 from vbraille.reading.outputs import Output
 from vbraille.reading.position import line_name, percent
 from vbraille.reading.reader import Reader
@@ -262,7 +263,9 @@ class ReadState(ExploredState):
             "knobs": knobs_shown(style),
             "mapping": say_mapping(style.mapping),
             "figures": self._placed,
-            "commands": commands_shown(reader, _READING),
+            "commands": commands_shown(
+                reader, (*_READING, "FEEL") if figure_address(line) else _READING
+            ),
         }
 
     def _lines(self, line: Line) -> Iterable[LineShown]:

@@ -147,7 +147,7 @@ def reach_mm(shape: StraightLine | Circle | Polygon | PathShape) -> float:
     drawn_mm = drawn_radius_mm(shape)
     # Dots that move go on in the path's direction beyond its ends, as far as they reach.
     beyond = math.sqrt(2.0) if shape.dots is not None and shape.dots.velocity_mm_s else 1.0
-    return beyond * drawn_mm
+    return max(beyond * drawn_mm, shape.cue_width_mm / 2)
 
 
 def around(points_mm: Iterable[Point]) -> Box:

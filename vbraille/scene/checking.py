@@ -265,9 +265,11 @@ def _element_advice(element: AnyPattern, box: Box | None, canvas: Canvas) -> Ite
         if pattern.wave is not None:
             along = " along a stroke" if isinstance(pattern, Shape) else ""
             yield from _of_wave(f"a grating{along}", pattern.wave)
-        if isinstance(pattern, Shape) and pattern.dots is not None:
+        if isinstance(pattern, Shape):
             for flow in pattern.flows:
-                yield from _of_flow("a row of dots", flow)
+                if flow != pattern.wave:
+                    of_cue = pattern.cue is not None and flow == pattern.cue.wave
+                    yield from _of_flow("a cue" if of_cue else "a row of dots", flow)
         elif isinstance(pattern, Moving):
             for wave in each(pattern.part):
                 if isinstance(wave, LinearGrating):

@@ -99,9 +99,12 @@ def joints(vertices_mm: Sequence[Point], radius_mm: float) -> tuple[Joint, ...]:
 
 
 def rounding_radius_mm(polygon: Polygon) -> float:
-    """Radius R' of a polygon's rounded corners: half of its stroke's width, and the offset."""
+    """Radius R' of a polygon's rounded corners: half of its stroke's width, and the offset.
+
+    A cue that is wider than the stroke counts as the stroke does.
+    """
     width_mm = 0.0 if polygon.stroke is None else polygon.stroke.width_mm
-    return width_mm / 2 + polygon.rounding_offset_mm
+    return max(width_mm, polygon.cue_width_mm) / 2 + polygon.rounding_offset_mm
 
 
 def edge_lengths_mm(points_mm: Sequence[Point], *, closed: bool) -> list[float]:
@@ -230,6 +233,17 @@ def stroke_cycles(shape: StraightLine | Circle | Polygon | PathShape) -> tuple[C
     is_open = isinstance(shape, StraightLine) or (isinstance(shape, PathShape) and not shape.closed)
     whole = along.whole_cycles and not is_open
     return tuple(fitted(cycle, length) if whole else cycle for length in path_lengths_mm(shape))
+
+
+def cue_cycle(shape: StraightLine | Circle | Polygon | PathShape) -> Cycle:
+    """Compute the cycle of the bands of a shape's cue."""
+    cue = shape.cue
+    assert cue is not None
+    cycle = Cycle(cue.ridge_mm, cue.gap_mm)
+    is_open = isinstance(shape, StraightLine) or (isinstance(shape, PathShape) and not shape.closed)
+    lengths = path_lengths_mm(shape)
+    whole = cue.whole_cycles and not is_open and len(lengths) == 1
+    return fitted(cycle, lengths[0]) if whole else cycle
 
 
 def axial_cycle(grating: AxialGrating) -> Cycle:

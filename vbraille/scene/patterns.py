@@ -23,7 +23,7 @@ from vbraille.scene.measures import (
     check_velocity_by,
 )
 from vbraille.scene.pattern import Pattern
-from vbraille.scene.strokes import DotStyle, Dotting, Stroke, VertexMarkers
+from vbraille.scene.strokes import DotStyle, Dotting, MovingCue, Stroke, VertexMarkers
 from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
@@ -161,20 +161,25 @@ class Shape(Pattern, frozen=True, kw_only=True):
         Stroke along the shape; None for none.
     dots
         Dots along the shape, in place of a stroke; None for none.
+    cue
+        Bands that move along it over these; None for none.
 
     Raises
     ------
     ValueError
-        If it has both.
+        If it has both a stroke and dots, or a cue and neither.
     """
 
     stroke: Stroke | None = None
     dots: Dotting | None = None
+    cue: MovingCue | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.stroke is not None and self.dots is not None:
             raise ValueError("dots cannot be given beside a stroke; leave one out")
+        if self.cue is not None and self.stroke is None and self.dots is None:
+            raise ValueError("cue needs a stroke or dots that it goes along; add one")
 
     @property
     def wave(self) -> RidgeWave | None:
@@ -184,10 +189,42 @@ class Shape(Pattern, frozen=True, kw_only=True):
     @property
     def flows(self) -> tuple[RidgeWave, ...]:
         """All that flows along its path by itself, as waves; dots are no farther apart."""
-        dots = self.dots
-        if dots is None or not dots.velocity_mm_s:
-            return super().flows
-        return (RidgeWave(2 * dots.dot.radius_mm + dots.separation_mm, dots.velocity_mm_s),)
+        dots, cue = self.dots, self.cue
+        found = [self.wave, None if cue is None else cue.wave]
+        if dots is not None:
+            spacing_mm = 2 * dots.dot.radius_mm + dots.separation_mm
+            found.append(RidgeWave(spacing_mm, dots.velocity_mm_s))
+        return tuple(wave for wave in found if wave is not None and wave.speed)
+
+    @property
+    def width_mm(self) -> float:
+        """Width of its stroke, or of its dots; 0 without either."""
+        if self.stroke is not None:
+            return self.stroke.width_mm
+        return 0.0 if self.dots is None else 2 * self.dots.dot.radius_mm
+
+    @property
+    def cue_width_mm(self) -> float:
+        """Width of its cue; 0 without one."""
+        return 0.0 if self.cue is None else max(self.cue.width_mm, self.width_mm)
+
+    @property
+    def cue_edge_mm(self) -> float:
+        """Length of the edge of its cue, which is that of what it is drawn with."""
+        edge: float | str = self.width_mm / 2
+        if self.stroke is not None:
+            edge = self.stroke.edge_mm
+        elif self.dots is not None:
+            edge = self.dots.dot.edge
+        half = self.cue_width_mm / 2
+        return half if edge == "smooth" else min(float(edge), half)
+
+    @property
+    def is_cued_over(self) -> bool:
+        """Tell whether its cue changes the finished shape, and not the texture of its stroke."""
+        return self.cue is not None and (
+            self.stroke is None or self.stroke.width_mm < self.cue.width_mm
+        )
 
 
 class StraightLine(Shape, frozen=True, kw_only=True, tag="line"):

@@ -271,6 +271,75 @@ class Dotting(Table, frozen=True, kw_only=True):
         check_velocity_by(self.velocity_by, bool(self.velocity_mm_s))
 
 
+class MovingCue(Table, frozen=True, kw_only=True):
+    """Bands that move along a shape, over what it is drawn with: Lévesque 2009, 9.3 and 9.3.2.
+
+    Bands m as wide as the stroke change its texture before it is cut to its profile. Those that
+    are wider, or go over dots, change the finished shape, with its fill, within a profile of their
+    own; past the ends of an open path they fade over half of what it is drawn with.
+
+    Parameters
+    ----------
+    way
+        How they are felt: "vibrate", a blend to a vibration, (1 - m) δ + m δ_vib, which is felt
+        best; "blend", to a level, (1 - m) δ + m level; "mask", δ (1 - m); or "add", a weighted
+        sum, (1 - share) δ + share m.
+    ridge_mm, gap_mm
+        Length of a band, and of the gap after it.
+    velocity_mm_s
+        Speed of the bands along the path, in the order of its points.
+    velocity_by
+        Name of a signal that is the share of this speed at which they move; empty for all of it.
+    width_mm
+        Width that they have at least, whatever that of the stroke.
+    share, level
+        Weight of the sum, and level of the blend.
+    vibration
+        Vibration of the bands; None for none, or where they vibrate for one of 50 Hz.
+    whole_cycles
+        Whether the lengths are changed a little so that a closed path, of one contour, has a whole
+        number of bands.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or what is down vibrates.
+    """
+
+    way: Literal["vibrate", "blend", "mask", "add"] = "vibrate"
+    ridge_mm: float = 2.0
+    gap_mm: float = 15.0
+    velocity_mm_s: float = 50.0
+    velocity_by: str = ""
+    width_mm: float = 10.0
+    share: float = 0.3
+    level: float = 0.5
+    vibration: Vibration | None = None
+    whole_cycles: bool = True
+
+    def __post_init__(self) -> None:
+        check_length("ridge", self.ridge_mm)
+        check_length("gap", self.gap_mm, 0.0)
+        check_range("velocity", self.velocity_mm_s, -1000, 1000, " mm/s")
+        check_velocity_by(self.velocity_by, bool(self.velocity_mm_s))
+        check_length("width", self.width_mm, 0.0)
+        check_share("share", self.share)
+        check_share("level", self.level)
+        _check_high(self.vibration, "bands")
+
+    @property
+    def wave(self) -> RidgeWave:
+        """Length and speed of the bands."""
+        return RidgeWave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
+
+    @property
+    def swing(self) -> Vibration | None:
+        """Vibration that the bands have; None if they have none."""
+        if self.way == "blend":
+            return None
+        return self.vibration or (Vibration() if self.way == "vibrate" else None)
+
+
 class VertexMarkers(Table, frozen=True, kw_only=True):
     """Markers at the vertices of a polygon: Lévesque 2009, 8.4.3, figs. 8.19 and 8.20.
 

@@ -89,6 +89,8 @@ def drawn_vibrations(pattern: AnyPattern) -> list[Vibration]:
         found += [pattern.stroke.vibration] if pattern.stroke else []
         if pattern.dots is not None:
             found += [pattern.dots.dot.vibration, pattern.dots.vertex_vibration]
+        if pattern.cue is not None:
+            found.append(pattern.cue.swing)
         if isinstance(pattern, Polygon) and pattern.markers is not None:
             found.append(pattern.markers.swing)
     return [vibration for vibration in found if vibration is not None]
@@ -114,6 +116,8 @@ def signals_of(pattern: AnyPattern) -> list[tuple[Steps, str]]:
             found.append((("stroke", "along", "velocity_by"), pattern.stroke.along.velocity_by))
         if pattern.dots is not None:
             found.append((("dots", "velocity_by"), pattern.dots.velocity_by))
+        if pattern.cue is not None:
+            found.append((("cue", "velocity_by"), pattern.cue.velocity_by))
     else:
         found.append((("velocity_by",), getattr(pattern, "velocity_by", "")))
     return [(steps, name) for steps, name in found if name]

@@ -32,6 +32,7 @@ from vbraille.scene.strokes import (
     Along,
     DotStyle,
     Dotting,
+    MovingCue,
     Stroke,
     VertexMarkers,
     Vibration,
@@ -209,9 +210,25 @@ dottings = st.builds(
     vertex_vibration=st.none() | high,
     velocity_mm_s=velocities,
 )
+cues = st.builds(
+    MovingCue,
+    way=st.sampled_from(["vibrate", "blend", "mask", "add"]),
+    ridge_mm=numbers(0.5, 8),
+    gap_mm=gaps,
+    velocity_mm_s=velocities,
+    width_mm=numbers(0, 15),
+    share=shares,
+    level=shares,
+    vibration=st.none() | high,
+    whole_cycles=st.booleans(),
+)
 # What a shape is drawn with; the last has nothing but a fill.
-drawn = st.one_of(
-    st.fixed_dictionaries({"stroke": strokes()}), st.fixed_dictionaries({"dots": dottings})
+drawn = st.builds(
+    lambda look, cue: {**look, **cue},
+    st.one_of(
+        st.fixed_dictionaries({"stroke": strokes()}), st.fixed_dictionaries({"dots": dottings})
+    ),
+    st.one_of(st.just({}), st.just({}), st.fixed_dictionaries({"cue": cues})),
 )
 markers = st.builds(
     lambda span, angle, blend, swing: VertexMarkers(
@@ -274,7 +291,7 @@ def apart(places):
     )
 
 
-contours = st.lists(points, min_size=3, max_size=6).map(tuple).filter(apart)
+contours = st.lists(points, min_size=3, max_size=6, unique=True).map(tuple).filter(apart)
 ends = st.fixed_dictionaries({"start_mm": points, "end_mm": points}).filter(
     lambda line: line["start_mm"] != line["end_mm"]
 )

@@ -2,16 +2,21 @@
 
 import math
 
+import msgspec
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from tests.render.scene.showing import STRESS2_8X8_ARRAY, scene_of
 from vbraille.render.scene.compiling import SceneMap, compile_scene
 from vbraille.scene.bounds import bounds
 from vbraille.scene.dotting import rows_of
 from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
-from vbraille.scene.strokes import DotStyle, Dotting
+from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.signals import Switch, packed
+from vbraille.scene.strokes import Along, DotStyle, Dotting, MovingCue, Stroke, Vibration
 
+CANVAS = Canvas(width_mm=60, height_mm=60)
 DOT = DotStyle(radius_mm=1.0, edge_mm=0.5)
 MOVING = Dotting(dot=DOT, velocity_mm_s=20.0)
 LINE = StraightLine(start_mm=(10, 30), end_mm=(40, 30), dots=MOVING)
@@ -20,6 +25,17 @@ CURVE = tuple((30 + 20 * math.cos(a), 30 + 20 * math.sin(a)) for a in np.arange(
 WINDING = PathShape(contours_mm=(CURVE,), dots=MOVING)
 ROUND = PathShape(contours_mm=((*CURVE[::2], (15.0, 20.0)),), closed=True, dots=MOVING)
 RING = Circle(center_mm=(30, 30), radius_mm=15, dots=MOVING)
+
+CUED = StraightLine(
+    start_mm=(10, 30),
+    end_mm=(40, 30),
+    stroke=Stroke(width_mm=8),
+    cue=MovingCue(way="blend", width_mm=6, ridge_mm=4, gap_mm=6),
+)
+THIN = replace(CUED, stroke=Stroke(width_mm=3, edge_mm=0.5), cue=replace(CUED.cue, width_mm=10))
+CUTS = StraightLine(
+    start_mm=(10, 30), end_mm=(40, 30), stroke=Stroke(along=Along(ridge_mm=4, velocity_mm_s=20))
+)
 
 
 def along(shape, time_s, x, y):
@@ -58,7 +74,37 @@ def test_dots_on_vertices_stay():
     assert len(rows) == 4
 
 
-@pytest.mark.parametrize("shape", [LINE, SQUARE, WINDING, ROUND, RING])
+def at_band(shape, way, **keys):
+    """Deflection in the middle of a band of a cue, on the path's middle line."""
+    shown = replace(shape, cue=replace(shape.cue, way=way, velocity_mm_s=0.0, **keys))
+    return along(shown, 0.0, [22.0], 30)[0]
+
+
+@pytest.mark.parametrize("shape", [CUED, THIN])
+def test_a_cue_is_felt_in_four_ways(shape):
+    assert at_band(shape, "blend") == pytest.approx(0.5)
+    assert at_band(shape, "blend", level=0.2) == pytest.approx(0.2)
+    assert at_band(shape, "mask") == pytest.approx(0)
+    assert at_band(shape, "vibrate") == pytest.approx(0.5)  # a swing at its beginning
+    assert at_band(shape, "add", share=0.3, vibration=Vibration()) == pytest.approx(0.85)
+    assert along(shape, 0.0, [26.0], 30)[0] == pytest.approx(1)
+
+
+def test_a_cue_as_wide_as_the_stroke_ends_with_it_and_a_wider_one_goes_on_beside_it():
+    added = {"way": "add", "velocity_mm_s": 0.0, "share": 0.5}
+    normal, wider = (replace(one, cue=replace(one.cue, **added)) for one in (CUED, THIN))
+    assert along(normal, 0.0, [22.0], 34.1)[0] == 0
+    assert along(normal, 0.0, [26.0], 30)[0] == pytest.approx(0.5)
+    assert along(wider, 0.0, [22.0], 33)[0] == pytest.approx(0.5)
+    assert along(wider, 0.0, [22.0], 35.1)[0] == 0
+    # Past an end it fades over half of the stroke's width.
+    bands = replace(wider, cue=replace(wider.cue, ridge_mm=60, gap_mm=0))
+    beside = along(bands, 0.0, [40.001, 40.75, 41.6], 33)
+    assert beside[1] == pytest.approx(beside[0] / 2, rel=0.05)
+    assert beside[2] == 0
+
+
+@pytest.mark.parametrize("shape", [LINE, SQUARE, WINDING, ROUND, RING, CUED, THIN, CUTS])
 def test_what_moves_stays_within_its_bounds_and_never_jumps(shape):
     program = compile_scene(scene_of(shape), STRESS2_8X8_ARRAY)
     box = bounds(shape)
@@ -69,7 +115,10 @@ def test_what_moves_stays_within_its_bounds_and_never_jumps(shape):
             1
         ].reshape(times.size, -1)
         # The steepest slope of a dot and of the fade, over a fiftieth of a millimetre.
-        assert np.abs(np.diff(frames, axis=0)).max() <= 0.02 * (math.pi / 2 / 0.5 + 1) + 1e-6
+        most = 0.02 * (math.pi / 2 / 0.5 + 1)
+        if shape.cue is not None:
+            most = 0.05 * math.pi / 4
+        assert np.abs(np.diff(frames, axis=0)).max() <= most + 1e-6
     x, y = np.arange(0.0, 60.0, 0.25), np.arange(0.0, 60.0, 0.25)
     for time_s in (0.0, 0.037, 1.21):
         up = SceneMap(scene_of(shape)).deflections(x, y, time_s=time_s) > 0
@@ -77,3 +126,31 @@ def test_what_moves_stays_within_its_bounds_and_never_jumps(shape):
         assert up.any()
         for column, row in zip(columns, rows, strict=True):
             assert box.holds(x[column], y[row])
+
+
+@pytest.mark.parametrize("operation", ["overwrite", "maximum"])
+@pytest.mark.parametrize("shape", [LINE, SQUARE, RING, CUED, THIN, CUTS])
+def test_a_signal_is_the_share_of_the_speed_at_which_it_moves(shape, operation):
+    """A signal that is 1 moves it as time does, and one that is 0 not at all."""
+    signals = {"on": Switch(levels=(1.0, 0.0))}
+    by_signal = msgspec.convert(
+        with_velocity_by(msgspec.to_builtins(shape), "on"), type(shape), strict=False
+    )
+    x, times = np.linspace(12, 38, 40), np.arange(0, 0.08, 0.002)
+    for state, shown in ((0, shape), (1, None)):
+        scene = Scene(canvas=CANVAS, operation=operation, elements=(by_signal,), signals=signals)
+        moved = compile_scene(scene, STRESS2_8X8_ARRAY).poses(
+            x, np.full(40, 30.0), 0.0, times, switches=packed({1: state}, signals)
+        )[1]
+        alone = Scene(canvas=CANVAS, operation=operation, elements=(shape,))
+        at = times if shown is not None else 0.0
+        still = compile_scene(alone, STRESS2_8X8_ARRAY).poses(x, np.full(40, 30.0), 0.0, at)[1]
+        np.testing.assert_allclose(moved, still, atol=1e-6)
+
+
+def with_velocity_by(value, name):
+    """The same with the name of a signal wherever there is a velocity."""
+    if isinstance(value, dict):
+        value = {key: with_velocity_by(inner, name) for key, inner in value.items()}
+        return {**value, "velocity_by": name} if value.get("velocity_mm_s") else value
+    return value

@@ -11,11 +11,14 @@ from functools import reduce
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace as replaced
 
 from tests.render.scene.twinbraille import label_deflections, label_opacity
 from tests.render.scene.twinsignals import SIGNALS, Signals
 from tests.render.scene.twinstrokes import (
     coordinates,
+    cue_profile,
+    cued_over,
     dots_deflection,
     dots_mask,
     drawn,
@@ -203,6 +206,16 @@ def shape(
     A blended fill is eq. 8.20 with the profile at full amplitude, or else a weak stroke would let
     the fill through. Another fill begins at the stroke's inner edge, and does not overlap it.
     """
+    if shape.cue is not None and shape.is_cued_over:
+        finished = _finished(replaced(shape, cue=None), assets, at)
+        return cued_over(finished, shape, shape.cue, at)
+    return _finished(shape, assets, at)
+
+
+def _finished(
+    shape: StraightLine | Circle | Polygon | PathShape, assets: Assets, at: ActuatorPlaces
+) -> Values:
+    """Compute a shape without a cue that goes over all of it."""
     up = drawn(shape, at)
     fill = None if isinstance(shape, StraightLine) else shape.fill
     if fill is None:
@@ -273,6 +286,9 @@ def _own_mask(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Values
             return intensity(opaque(assets.bitmaps[pattern]), at)
         case StraightLine() | Circle() | Polygon() | PathShape():
             own = drawn_mask(pattern, at)
+            if pattern.is_cued_over:
+                over = cue_profile(pattern, coordinates(pattern, at))
+                own = over + (1 - over) * own
             if isinstance(pattern, StraightLine) or pattern.fill is None:
                 return own
             return np.where(is_inside(pattern, at), 1.0, own)

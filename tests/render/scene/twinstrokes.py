@@ -22,6 +22,7 @@ from tests.render.scene.twinwaves import (
 from vbraille.scene.dotting import PlacedDot, dots_of, rows_of
 from vbraille.scene.joints import (
     Joint,
+    cue_cycle,
     joints,
     marker_half_angle_rad,
     places_along_mm,
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
         Along,
         DotStyle,
         Dotting,
+        MovingCue,
         Stroke,
         VertexMarkers,
         Vibration,
@@ -243,7 +245,67 @@ def stroke_deflection(shape: AnyShape, stroke: Stroke, at: ActuatorPlaces) -> Va
         share = marked(shape, shape.markers, width, seen, at)
         marker = vibrated(np.ones(r.shape), at, shape.markers.swing)
         texture = (1 - share) * texture + share * marker
+    if shape.cue is not None and not shape.is_cued_over:
+        texture = cued(texture, shape.cue, bands(shape, shape.cue, seen, at), at)
     return stroke.amplitude * up * texture
+
+
+def bands(shape: AnyShape, cue: MovingCue, seen: Coordinates, at: ActuatorPlaces) -> Values:
+    """Compute the bands m of a cue, fig. 9.3: a grating along the path."""
+    cycle = cue_cycle(shape)
+    moved_s = at.moved_s(cue.velocity_by)
+    return ridges(moved_on(seen.along_mm, cycle, cue.velocity_mm_s, moved_s), cycle)
+
+
+def cued(below: Values, cue: MovingCue, m: Values, at: ActuatorPlaces) -> Values:
+    """Put bands over a deflection in one of the four ways of 9.3."""
+    swing = vibrated(np.ones(m.shape), at, cue.swing)
+    match cue.way:
+        case "vibrate":
+            return (1 - m) * below + m * swing
+        case "blend":
+            return (1 - m) * below + m * cue.level
+        case "mask":
+            return below * (1 - m * swing)
+        case "add":
+            return (1 - cue.share) * below + cue.share * m * swing
+
+
+def cue_profile(shape: AnyShape, seen: Coordinates) -> Values:
+    """Profile of a cue that goes over a finished shape."""
+    return profile(seen.across_mm, shape.cue_width_mm, shape.cue_edge_mm)
+
+
+def cued_over(below: Values, shape: AnyShape, cue: MovingCue, at: ActuatorPlaces) -> Values:
+    """Put bands over a finished shape: 9.3.2.
+
+    Past the ends of an open path they fade over half of the width of what is drawn.
+    """
+    seen = coordinates(shape, at)
+    m = cue_profile(shape, seen) * bands(shape, cue, seen, at)
+    if shape.cue_width_mm > shape.width_mm:
+        m *= np.clip(1 - _past_ends(shape, seen, at) / (shape.width_mm / 2), 0, 1)
+    return cued(below, cue, m, at)
+
+
+def _past_ends(shape: AnyShape, seen: Coordinates, at: ActuatorPlaces) -> Values:
+    """How far past an end of an open path a place is, in the direction of the path there."""
+    past = np.zeros(at.x_mm.shape)
+    if isinstance(shape, StraightLine):
+        contours: tuple[tuple[Point, ...], ...] = ((shape.start_mm, shape.end_mm),)
+    elif isinstance(shape, PathShape) and not shape.closed:
+        contours = shape.contours_mm
+    else:
+        return past
+    for number, points in enumerate(contours):
+        ends = ((points[0], points[1], 0), (points[-1], points[-2], len(points) - 2))
+        for end, inner, edge in ends:
+            length = math.dist(end, inner)
+            way = (end[0] - inner[0]) / length, (end[1] - inner[1]) / length
+            dx, dy = at.from_point(*end)
+            here = (seen.contour == number) & (seen.edge == edge)
+            past = np.where(here, np.maximum(past, dx * way[0] + dy * way[1]), past)
+    return past
 
 
 def _cut(along: Along, cycles: Sequence[Cycle], seen: Coordinates, time_s: float) -> Values:

@@ -122,11 +122,20 @@ def group(node, values, masks):
     return min(1.0, made)
 
 
+def covered(node):
+    """Width of what a stroke hides, which is that of its cue if it has one."""
+    width = number(node.find("stroke"), "width", 10.0)
+    motion = node.find("stroke/motion")
+    if word(motion, "cue", "none") in ("none", "inherent"):
+        return width
+    return max(width, number(motion, "min_width", 10.0))
+
+
 def mask(node, place):
     """Opacity of shapes, which is all that the files here overwrite with."""
     kind = node.get("type")
     stroke = node.find("stroke")
-    width = number(stroke, "width", 10.0)
+    width = covered(node)
     edge = number(None if stroke is None else stroke.find("ridge"), "edge_width", 1.0)
     if kind == "Line":
         return shape(distance_to_line(node, place)[0], width, edge)
@@ -270,8 +279,71 @@ def double(node, x, y, now):
 # Strokes, section 3
 
 
-def stroked(node, away, along, background, now, marker=None):
-    """A shape: eqs. 8.7 to 8.14, over a background by eq. 8.20."""
+def superposed(node, value, away, along, now, length=None, profiled=True):
+    """A value under the moving bands of a stroke, as wide as it is or as the least width says."""
+    stroke = node.find("stroke")
+    motion = stroke.find("motion")
+    cue = word(motion, "cue", "none")
+    if cue in ("none", "inherent"):
+        return value
+    width = number(stroke, "width", 10.0)
+    wide = max(width, number(motion, "min_width", 10.0))
+    share = number(motion, "superposed_ratio", 0.2) if cue == "superposed" else 0.0
+    up = 1.0
+    if away > wide / 2:
+        return (1 - share) * value
+    if profiled:
+        up = shape(away, wide, number(stroke.find("ridge"), "edge_width", 1.0))
+        if width < wide and length is not None and not 0 <= along <= length:
+            past = abs(along - length / 2) - length / 2
+            up *= max(0.0, 1 - past / (width / 2))
+        if up <= 0:
+            return value
+    grating = motion.find("Grating")
+    ridge, gap = number(grating, "ridge_size", 2.0), number(grating, "gap_size", 30.0)
+    speed = number(grating, "velocity", number(motion, "velocity", 50.0))
+    cycle = ridge + gap
+    u = ((along - speed * now.travelled(speed, cycle)) / cycle) % 1.0 * cycle / ridge
+    band = up * ((1 - math.cos(2 * math.pi * u)) / 2 if u <= 1 else 0.0)
+    vibration = motion.find("vibration")
+    swings = vibration is not None and switch(vibration, "enable", True)
+    left = gain(vibration, now) if swings else 1.0
+    if cue == "superposed":
+        return (1 - share) * value + share * left * band
+    if cue == "suppressed":
+        return value * (1 - left * band)
+    to = left if cue == "vibration" else number(motion, "blend_value", 0.5)
+    return (1 - band) * value + band * to
+
+
+def is_cue_wider(node):
+    stroke = node.find("stroke")
+    least = number(None if stroke is None else stroke.find("motion"), "min_width", 10.0)
+    return number(stroke, "width", 10.0) < least
+
+
+def stroked(node, away, along, background, now, marker=None, length=None):
+    """A shape: eqs. 8.7 to 8.14, over a background by eq. 8.20, and its cue."""
+    stroke = node.find("stroke")
+    if stroke is None or stroke.find("motion") is None:
+        return plainly_stroked(node, away, along, background, now, marker)
+    intensity, width = number(stroke, "intensity", 1.0), number(stroke, "width", 10.0)
+    if away > width / 2:
+        return intensity * superposed(
+            node, background, away, along, now, length, is_cue_wider(node)
+        )
+    if is_cue_wider(node):
+        value = plainly_stroked(node, away, along, background, now, marker)
+        return intensity * superposed(node, value / intensity, away, along, now, length)
+
+    def under(texture):
+        return superposed(node, texture, away, along, now, length, profiled=False)
+
+    return plainly_stroked(node, away, along, background, now, marker, under)
+
+
+def plainly_stroked(node, away, along, background, now, marker=None, under=None):
+    """A shape: eqs. 8.7 to 8.14, over a background by eq. 8.20; its texture may be under a cue."""
     stroke = node.find("stroke")
     width = number(stroke, "width", 10.0)
     intensity = number(stroke, "intensity", 1.0)
@@ -298,6 +370,8 @@ def stroked(node, away, along, background, now, marker=None):
     if marker is not None:
         share, marked = marker
         felt = (1 - share) * felt + share * marked
+    if under is not None:
+        felt = under(felt)
     up = profile(ridge, away, width, 1.0)
     return intensity * ((1 - up) * background + up * felt)
 
@@ -328,8 +402,11 @@ def line(node, place, now):
     if has_dots(node):
         start, end = point(node, "start_point", (0.0, 0.0)), point(node, "end_point", SURFACE)
         places = segment_dots(node, start, end)
-        return dotted(node, 0.0, away, places, now, sliding(places, place, node, now))
-    return stroked(node, away, along, 0.0, now)
+        seen = sliding(places, place, node, now)
+        value = dotted(node, 0.0, away, places, now, seen)
+        return superposed(node, value, away, along, now, math.dist(places[0], places[-1]))
+    start, end = point(node, "start_point", (0.0, 0.0)), point(node, "end_point", SURFACE)
+    return stroked(node, away, along, 0.0, now, length=math.dist(start, end))
 
 
 def distance_to_circle(node, place):
@@ -351,7 +428,8 @@ def circle(node, place, now):
             (center[0] + radius * math.cos(a), center[1] + radius * math.sin(a)) for a in turns
         ]
         seen = turning(center, radius, place, node, now)
-        return dotted(node, background, away, places, now, (seen, 1.0))
+        value = dotted(node, background, away, places, now, (seen, 1.0))
+        return superposed(node, value, away, along, now)
     return stroked(node, away, along, background, now)
 
 
@@ -472,7 +550,11 @@ def polygon(node, place, now):
     join = node.find("join")
     rounded = word(join, "type", "round") == "round"
     width = number(node.find("stroke"), "width", 10.0)
-    reach = width / 2 + number(join, "rounding_offset", 0.0)
+    motion = node.find("stroke/motion")
+    wide = width
+    if word(motion, "cue", "none") not in ("none", "inherent"):
+        wide = max(width, number(motion, "min_width", 10.0))
+    reach = wide / 2 + number(join, "rounding_offset", 0.0)
     joints = [Joint(vertices, i, reach) for i in range(len(vertices))]
     away, along, edge = along_polygon(vertices, joints, place, rounded)
     background = filling(node, away - width / 2, place, now, is_inside(vertices, place))
@@ -480,7 +562,8 @@ def polygon(node, place, now):
     corner = node.find("corner")
     if has_dots(node):
         swaps = switch(corner, "enable", False)
-        return dotted_polygon(node, vertices, place, background, away, now, swaps)
+        value = dotted_polygon(node, vertices, place, background, away, now, swaps)
+        return superposed(node, value, away, along, now)
     if switch(corner, "enable", False):
         marker = marked(corner, vertices, width / 2, place, away, edge, now)
     return stroked(node, away, along, background, now, marker)

@@ -31,6 +31,8 @@ CORNER = "<corner><enable>yes</enable>{}</corner>"
 MOTION = "<motion><cue>{}</cue><velocity>{}</velocity></motion>"
 
 DOTS_MOVE = "<dots><enable>yes</enable></dots>" + MOTION.format("inherent", "{}")
+CUE = "<motion><cue>{}</cue><velocity>23</velocity>{}</motion>"
+VIBRATES = swings(50, 0.8)
 SWINGS = f"<fill>{swings(50)}</fill>"
 
 CASES = {
@@ -291,6 +293,34 @@ MOVING = {
     ),
     "dotted polygon whose dots move and whose corners vibrate": polygon(
         CORNER.format("") + stroke(3, DOTS_MOVE.format(-45) + SWINGS), SQUARE
+    ),
+    **{
+        f"{shape} of {width} mm with a {cue} cue": make(
+            stroke(width, CUE.format(cue, f"{waves(4, 9)}{VIBRATES}") + inside, edge=1.2)
+        )
+        for cue in ("superposed", "suppressed", "vibration", "blend")
+        for shape, make, width, inside in (
+            ("line", line, 4, ""),
+            ("line", line, 12, f"<fill>{waves(3, 1)}{swings(25)}</fill>"),
+            ("circle", circle, 3, ""),
+            ("polygon", polygon, 5, ""),
+            ("polygon", lambda inside: polygon(inside, SQUARE), 11, f"<fill>{waves(3, 1)}</fill>"),
+            ("dotted line", line, 5, "<dots><enable>yes</enable></dots>"),
+            ("dotted circle", circle, 11, "<dots><enable>yes</enable></dots>"),
+        )
+    },
+    "filled circle with a cue over it": circle(
+        stroke(
+            4, CUE.format("superposed", f"{waves(4, 9)}<superposed_ratio>0.4</superposed_ratio>")
+        )
+        + fill(grating())
+    ),
+    "filled circle with a cue in its stroke": circle(
+        stroke(12, CUE.format("superposed", waves(4, 9))) + fill(grating(), 1)
+    ),
+    "cue that does not vibrate": line(stroke(4, MOTION.format("vibration", 30))),
+    "weak line with a cue of another width": line(
+        stroke(4, "<intensity>0.4</intensity>" + CUE.format("blend", "<min_width>6</min_width>"))
     ),
 }
 

@@ -77,9 +77,13 @@ DIFFERENT = {
         texture("Blend", f'<Modulator type="Sideways"/>{grating()}{grating(angle=9)}'),
         '"Sideways" is not known, so "Directional" is taken',
     ),
-    "a cue": (
-        line(stroke(9, "<motion><cue>superposed</cue></motion>")),
-        'the motion cue "superposed" is not shown',
+    "a cue without bands": (
+        line(
+            stroke(
+                9, "<motion><cue>blend</cue><Grating><enable>no</enable></Grating></motion>"
+            )
+        ),
+        "its cue has no bands; left out",
     ),
     "moving bands": (
         texture("Motion", f"<cue_type>vibration bands</cue_type>{grating()}"),

@@ -4,14 +4,17 @@ import shutil
 from copy import copy
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from msgspec import structs
 
-from tests.sessions.sittings import COMPARED, MINI, Session, crash, of
+from tests.sessions.sittings import COMPARED, MINI, Session, crash, kill_often, of
 from tests.tiers import by_tier
-from vbraille.errors import VbrailleError
+from vbraille.analysis.input.study import load_study
+from vbraille.analysis.measures.discrimination import thresholds
+from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.planning.plan import stimulus_to_json
-from vbraille.sessions.planning.protocolfiles import load_protocol
+from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol
 from vbraille.sessions.record.export import rows
 from vbraille.sessions.record.folder import check, load
 from vbraille.sessions.record.progress import Progress
@@ -134,3 +137,133 @@ def test_the_shipped_ones_ask_thirty_questions_in_either_order():
         assert set(ours.design.values) == {min(usual.design.values), max(usual.design.values)}
         for part in ("display", "trial", "faults", "fields", "practice"):
             assert getattr(usual, part) == getattr(ours, part)
+
+
+WIDE = COMPARED.replace("[1.0, 2.0]", "[2.05, 3.05]") + "reference = 2.0\nrepeats = {}\n"
+DIFFERENCE = (
+    '[procedure]\nkind = "quest"\nstep = 0.05\nshape = "weibull"\nspread = [0.8, 1.3, 2.0]\n'
+    "trials = {}\n"
+)
+DOWN = '[procedure]\nkind = "staircase"\nstart = [0.8]\nsteps = [0.2, 0.1, 0.05]\ntrials = {}\n'
+MORE, ODD, MATCH = 'kind = "which"\nright = "more"\n', 'kind = "odd"\n', 'kind = "match"\n'
+# Form of a trial, the question, repeats for 40 trials, the procedure, and a person who tells the
+# right stimulus by what is felt of all, the first of which differs from the others.
+FORMS = {
+    "pairs": ('form = "pairs"', MORE, 10, DIFFERENCE, lambda felt: felt.argmax(axis=1) == 0),
+    "of three": (
+        'form = "one"\nintervals = 3', MORE, 7, DOWN, lambda felt: felt.argmax(axis=1) == 0,
+    ),
+    "odd": (
+        'form = "one"\nintervals = 3', ODD, 7, DIFFERENCE,
+        lambda felt: abs(felt - np.median(felt, axis=1)[:, None]).argmax(axis=1) == 0,
+    ),
+    "triangle": (
+        'form = "triangle"', ODD, 4, DOWN,
+        lambda felt: abs(felt - np.median(felt, axis=1)[:, None]).argmax(axis=1) == 0,
+    ),
+    "abx": (
+        'form = "abx"', MATCH, 5, DIFFERENCE,
+        lambda felt: abs(felt[:, 1] - felt[:, 2]) < abs(felt[:, 0] - felt[:, 2]),
+    ),
+}  # fmt: skip
+NOISE, WIDTH = 0.1, 2.0  # of a width felt, as a share of the nominal one, in mm
+
+
+def form_of(name, trials=40):
+    form, question, repeats, procedure, _ = FORMS[name]
+    return f"{WIDE.format(repeats)}{form}\n[question]\n{question}{procedure.format(trials)}"
+
+
+def half_way(name):
+    """Difference at which a person who feels widths with noise is right in half beyond guessing."""
+    random = np.random.default_rng(1)
+    differences = np.linspace(0.05, 1.05, 41)
+    number, chance = (2, 2) if name == "pairs" else (3, 2 if name == "abx" else 3)
+    noise = NOISE * WIDTH * random.standard_normal((20_000, number))
+    place = np.arange(number) == 0
+    right = [FORMS[name][-1](noise + d * place).mean() for d in differences]
+    return float(np.interp((1 + 1 / chance) / 2, right, differences))
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_a_difference_from_the_standard_is_chosen_and_its_threshold_found(tmp_path, name):
+    session = Session(tmp_path / "s", form_of(name))
+    assert session.protocol.geometry.dot_width_mm == WIDTH
+    sat = session.sit(noise=NOISE)
+    assert sat.progress.ended
+    shown = [sorted({s.value for s in told.trial.stimuli})
+             for told in sat.progress.trials.values()]  # fmt: skip
+    assert all(len(values) == 2 and values[0] == 2.0 for values in shown)
+    assert len({values[1] for values in shown}) > 3
+    (said,) = (line for line in sat.said if line.startswith("threshold difference of dot width:"))
+    truth = half_way(name)
+    assert truth / 2 < float(said.split()[5]) < 2.5 * truth
+    assert all(finding.good for finding in check(sat.record))
+    table, _ = thresholds(load_study([session.folder]).judgements)
+    (row,) = table.records()
+    assert (row["question"], row["trials"]) == (session.protocol.asks.name, 40)
+    assert row["guesses"] == pytest.approx(1 / session.protocol.design.alternatives)
+    assert row["low"] <= truth <= row["high"]
+    assert session.protocol.planned_analysis.measure == "threshold"
+
+
+@pytest.mark.parametrize("name", by_tier(["of three", "abx"], list(FORMS), list(FORMS)))
+def test_killed_and_resumed_it_asks_for_the_same_difference(tmp_path, name):
+    session = Session(tmp_path / "s", form_of(name, trials=6))
+    session.sit(noise=NOISE)
+    kill_often(session, tmp_path / "killed", cuts=3)
+
+
+SEEN = (
+    MINI.replace('after = "c"', 'after = "c"\nrepeats = 10\ncatch = { every = 4 }')
+    + '[question]\nkind = "detect"\n[procedure]\nkind = "quest"\nparameter = "contrast"\n'
+    "least = 0.05\nmost = 1.0\nstep = 0.05\nspread = [0.05, 0.1, 0.2]\n"
+    "guess = [0.02, 0.1, 0.2, 0.3]\ntrials = 24\n"
+).replace('characters = ["a", "c", "4", "0"]', 'characters = ["a", "c", "4"]')
+
+
+def test_yes_and_no_by_the_answers_with_blank_trials_that_choose_nothing(tmp_path):
+    session = Session(tmp_path / "s", SEEN)
+    sat = session.sit(noise=0.2)
+    assert sat.progress.ended
+    trials = [told.trial for told in sat.progress.trials.values()]
+    blanks = [trial for trial in trials if trial.catch]
+    assert len(trials) - len(blanks) == 24
+    assert len(blanks) == len(trials) // 4 == session.protocol.trials - 24
+    assert all(not any(b.stimuli[0].masks[slice(*b.asked)]) for b in blanks)
+    assert len({t.stimuli[0].tuning.contrast for t in trials if not t.catch}) > 3
+    (table, _) = thresholds(load_study([session.folder]).judgements)
+    (row,) = (r for r in table.records() if r["level"] == "contrast")
+    assert (row["trials"], row["blanks"]) == (len(trials), len(blanks))
+    (said,) = (line for line in sat.said if line.startswith("95 % interval: "))
+    low, high = (float(said.split()[at]) for at in (3, 5))
+    # A yes is said beyond one standard deviation of the noise; some are given at nothing. Full
+    # contrast is felt as strong as about 1.
+    assert low <= 0.22 <= high
+    kill_often(session, tmp_path / "killed", cuts=2)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (form_of("pairs").replace("[2.05, 3.05]", "[1.0, 3.05]"), "both sides of reference 2"),
+        (form_of("pairs").replace("[2.05, 3.05]", "[3.05]"), "give the one nearest to reference"),
+        (form_of("pairs").replace('"pairs"', '"standard"'), "always be the right one"),
+        (form_of("pairs").replace('right = "more"\n', ""), "must be 'more' or 'less'"),
+        (form_of("of three").replace('"more"', '"less"'), "give 'more'"),
+        (form_of("odd").replace("trials =", "guess = [0.1]\ntrials ="), "guess follows from"),
+        (form_of("odd").replace("trials =", 'harder = "more"\ntrials ='), "harder is of strings"),
+        (form_of("odd").replace("trials =", 'scale = "log"\ntrials ='), "scale is of two values"),
+        (form_of("odd").replace("trials =", "least = 0.1\ntrials ="), "are those of [design]"),
+        (WIDTHS + '[question]\nkind = "which"\nright = "more"\n', "leave right out"),
+        (SEEN.replace("every = 4", 'every = 4, show = "repeat"'), "give show = 'blank'"),
+        (
+            form_of("pairs").replace(MORE, 'kind = "same-different"\n'),
+            "whose answers cannot choose what is shown next",
+        ),
+    ],
+)  # fmt: skip
+def test_forms_in_which_nothing_can_be_chosen_are_refused(text, says):
+    with pytest.raises(InputError) as refused:
+        parse_protocol(text, "page.toml")
+    assert says in str(refused.value)

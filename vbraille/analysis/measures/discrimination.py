@@ -87,6 +87,7 @@ def _counts(question: str, part: pd.DataFrame, own: pd.DataFrame) -> tuple[int, 
     Of two, a signal is where the first is right, and noises are those of the condition alone.
     """
     if question == "which":
+        part = part[part["presented"].str.split().map(len) == 2]
         yes = part["presented"].str.split().str[0] == part["answered"]
         signal = yes == (part["outcome"] == "right")
         signals, noises = yes[signal], yes[~signal]
@@ -111,11 +112,11 @@ def _told(found: Detection) -> Row:
 
 
 _WHOSE = (
-    Column("question", "question", "detect or which"),
+    Column("question", "question", "detect, which, odd or match"),
     PARTICIPANT,
     PROTOCOL,
     Column("condition", "condition", "levels of what it is found for; all if that is all"),
-    Column("level", "level", "what varies, with its unit: of which, the difference of the two"),
+    Column("level", "level", "what varies, with its unit: of values compared, their difference"),
 )
 _NONE = "no level of what was detected or told apart varies"
 THRESHOLDS = Schema(
@@ -123,17 +124,17 @@ THRESHOLDS = Schema(
     "Thresholds",
     "Of detect, the level at which half of what is neither guessed nor lapsed is answered yes, by "
     "a logistic function with free lapses and free guesses, of which a participant's blank trials "
-    "tell most. Of which, where one of two is right by "
-    "being more or by being less, the difference at which half of what is neither guessed nor "
-    "lapsed is right, by a Weibull function with half of the answers guessed, and free lapses. A "
-    "participant has a row for each level that varies.",
+    "tell most. Of which, where one is right by being more or by being less, of odd and of match, "
+    "the difference at which half of what is neither guessed nor lapsed is right, by a Weibull "
+    "function with free lapses, in which each answer is guessed as often. A participant has a row "
+    "for each level that varies.",
     (
         *_WHOSE,
         Column("trials", "trials", "how many", Kind.COUNT),
         Column("blanks", "blank trials", "of these, without anything to be felt", Kind.COUNT),
         Column("threshold", "threshold", "in the unit of the level", Kind.NUMBER),
         *ends(of="95 % credible interval"),
-        Column("spread", "spread", "the larger, the flatter; of which, one over the exponent",
+        Column("spread", "spread", "the larger, the flatter; of a difference, 1 / the exponent",
                Kind.NUMBER),
         *ends(name="spread_", heading="spread ", of="95 % credible interval"),
         Column("guesses", "guesses (%)", "share of yes, or of right answers, at nothing",
@@ -146,7 +147,7 @@ THRESHOLDS = Schema(
 THRESHOLD_LEVELS = Schema(
     "threshold_levels",
     "Answers by level",
-    "What the thresholds are fitted to: answers yes of detect, right ones of which. Blank trials "
+    "What the thresholds are fitted to: answers yes of detect, right ones of others. Blank trials "
     "of detect are a row of their own, without a value but for contrast, of which they have none.",
     (
         *_WHOSE,
@@ -161,8 +162,11 @@ THRESHOLD_LEVELS = Schema(
 )
 _BLANK = ("false alarm", "correct rejection")
 _TO_ONE = ("contrast", "texture")  # levels from 0 to 1; the others are lengths
-SHAPE_OF = {"detect": "logistic", "which": "weibull"}
-_GUESSES = {"detect": None, "which": 0.5}
+SHAPE_OF = {"detect": "logistic", "which": "weibull", "odd": "weibull", "match": "weibull"}
+
+
+# Questions with one right answer among so many; None for as many as there are stimuli.
+_GUESSED_OF = {"which": None, "odd": None, "match": 2}
 
 
 class LevelAnswers(NamedTuple):
@@ -172,6 +176,7 @@ class LevelAnswers(NamedTuple):
     levels: NDArray[np.float64]
     positive: NDArray[np.int64]
     trials: NDArray[np.int64]
+    guess: float | None = None  # share of right answers at no difference; None if it is free
     blanks: tuple[int, int] = (0, 0)  # answers yes, and all
 
 
@@ -233,35 +238,45 @@ def _detected(judgements: pd.DataFrame, columns: Sequence[str]) -> Iterator[Leve
 
 
 def _told_apart(judgements: pd.DataFrame, columns: Sequence[str]) -> Iterator[LevelAnswers | Row]:
-    """Right answers by difference, for each parameter of which one of two was right.
+    """Right answers by difference, for each parameter of which one of several was right.
 
     A row with a note stands for what can have no threshold.
     """
-    which = judgements[(judgements["question"] == "which") & (judgements["outcome"] != "")]
-    values = which["presented"].str.split(expand=True).reindex(columns=[0, 1])
-    first, second = (pd.to_numeric(values[at], errors="coerce") for at in (0, 1))
-    known = which.assign(apart=second - first, first=values[0] == which["answered"])
-    known = known[known["apart"].notna() & (known["apart"] != 0)]
-    for (participant, protocol), own in groups(known, "participant", "protocol"):
+    asked = judgements["question"].isin(_GUESSED_OF) & (judgements["outcome"] != "")
+    apart = judgements[asked]
+    texts = apart["presented"].str.split(expand=True)
+    values = texts.reindex(columns=range(max(2, texts.shape[1])))
+    values = values.apply(pd.to_numeric, errors="coerce")
+    known = apart.assign(
+        apart=values[1] - values[0],
+        furthest=values.max(axis=1) - values.min(axis=1),
+        number=values.notna().sum(axis=1),
+        first=values[0] == pd.to_numeric(apart["answered"], errors="coerce"),
+    )
+    known = known[(known["number"] > 1) & (known["furthest"] > 0)]
+    for (question, participant, protocol), own in groups(
+        known, "question", "participant", "protocol"
+    ):
         each = (
             (cell, parameter, part)
             for cell, shown in cells(own, columns)
             for parameter, part in shown.groupby("parameter", sort=True)
         )
         for cell, parameter, part in each:
-            whose: Row = {"question": "which", "participant": participant, "protocol": protocol}
+            whose: Row = {"question": question, "participant": participant, "protocol": protocol}
             whose |= {"condition": cell, "level": str(parameter) or "value"}
             right = part["outcome"] == "right"
-            # The second is right if it was chosen rightly, or the first wrongly.
+            guess = 1 / (_GUESSED_OF[question] or int(part["number"].max()))
+            # Of two, the second is right if it was chosen rightly, or the first wrongly.
             more = (part["apart"] > 0) == (right != part["first"])
-            if more.nunique() > 1:
+            if question == "which" and part["number"].max() == 2 and more.nunique() > 1:
                 yield whose | {
                     "trials": len(part),
                     "note": "no threshold: neither the larger of two is always right, nor the "
                     "smaller",
                 }
             else:
-                yield _counted(whose, part["apart"].abs(), right)
+                yield _counted(whose, part["furthest"], right)._replace(guess=guess)
 
 
 def _counted(whose: Row, levels: pd.Series, positive: pd.Series) -> LevelAnswers:
@@ -283,7 +298,7 @@ def _fitted(asked: LevelAnswers) -> tuple[Row, NDArray[np.float64] | None]:
             asked.positive,
             asked.trials,
             shape=SHAPE_OF[question],
-            guess=_GUESSES[question],
+            guess=asked.guess,
             blanks=asked.blanks,
             scale=(0.0, most),
         )

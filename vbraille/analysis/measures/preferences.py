@@ -20,6 +20,7 @@ from vbraille.analysis.results import (
 )
 from vbraille.analysis.statistics.bradleyterry import bradley_terry, position_bias, preferred
 from vbraille.analysis.statistics.intervals import Unanswerable, too_few
+from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.procedures import PREFERRED as CENTRE
 from vbraille.sessions.planning.procedures import QuestProcedure
 
@@ -223,9 +224,11 @@ def _axes_of(protocols: Iterable[Protocol]) -> dict[str, Axes]:
     """Possible values of the model's parameters, by what is compared, of the first quest of it."""
     found: dict[str, Axes] = {}
     for protocol in protocols:
-        table, parameter = protocol.procedure, protocol.parameter
-        if parameter and isinstance(table, QuestProcedure) and table.scale == "linear":
-            found.setdefault(parameter, table.quest(protocol.design).axes)
+        table, design = protocol.procedure, protocol.design
+        if not isinstance(table, QuestProcedure) or table.scale != "linear":
+            continue
+        if isinstance(design, Choice) and design.reference is None:
+            found.setdefault(design.parameter, table.quest(design).axes)
     return found
 
 

@@ -189,6 +189,8 @@ def _constant(part: pd.DataFrame, standard: float) -> Row:
     if asked_more.nunique() > 1:
         raise Unanswerable("neither the larger of two is always right, nor the smaller")
     more = chosen if asked_more.iloc[0] else ~chosen
+    if (other > standard).nunique() == 1:
+        raise Unanswerable("all values lie on one side of the standard")
     counts = more.groupby((other - standard).round(9)).agg(["sum", "size"])
     fit = fit_psychometric(
         counts.index.to_numpy(np.float64),

@@ -115,7 +115,7 @@ def run(arguments: argparse.Namespace) -> int:
                 cue=outputs.cue,
                 save_style=lambda style: _save(settings.path, profile, replace(model, style=style)),
                 verbose=arguments.verbose,
-                figures=lambda: _figures(page, Path(arguments.file).parent, device, rate_hz),
+                figures=lambda: _figures(arguments, page, around, rate_hz),
             )
             if opened.place is not None:
                 outputs.say(f"book: {opened.book.source.title or opened.book.source.name}")
@@ -173,14 +173,23 @@ def _show_also(arguments: argparse.Namespace, around: Around) -> None:
     around.outputs.add(ConventionalView(display, lambda: around.device.reader, around.outputs.say))
 
 
-def _figures(page: Page, folder: Path, device: OpenDevice, rate_hz: float) -> Figures:
+def _figures(arguments: argparse.Namespace, page: Page, around: Around, rate_hz: float) -> Figures:
     """Figures of the text; a text without any does not wait for what reads them."""
     from vbraille.reading.bookfigures import BookFigures
 
     def note(sentence: str) -> None:
         say_line(f"note: {sentence}", aside=True)
 
-    return BookFigures(page.source, folder, device, note, rate_hz=rate_hz, room=_FIGURE_ROOM)
+    return BookFigures(
+        page.source,
+        Path(arguments.file).parent,
+        around.device,
+        note,
+        rate_hz=rate_hz,
+        room=_FIGURE_ROOM,
+        sound=around.outputs.sound,
+        sounding=arguments.sounds,
+    )
 
 
 def _save(path: Path, profile: str, model: Model) -> str:

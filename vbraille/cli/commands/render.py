@@ -28,6 +28,7 @@ from vbraille.engine.engine import EndOfLine
 from vbraille.errors import InputError
 from vbraille.newfile import new_file
 from vbraille.reading.advancing import too_fast_note
+from vbraille.reading.frames import print_of
 from vbraille.recording import Recorder
 from vbraille.render import MODELS
 from vbraille.signals import EAR
@@ -95,7 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
         for stretch in _walk(page, hand, rate_hz, pages):
             last = stretch.lines[-1]
             estimate.before(page.share_before(stretch.lines[0]), frames, recorder)
-            row = min([recorder.add_line(line.masks) for line in stretch.lines])
+            row = min([recorder.add_line(line.masks, print_of(line)) for line in stretch.lines])
             masks = [line.masks for line in stretch.lines]
             program = (
                 style.render_page(masks, display) if pages else style.render(masks[0], display)

@@ -269,7 +269,7 @@ COMMANDS = (
         "follow the link or note under the finger; from a note, go back",
         structure.follow,
     ),
-    Command("FEEL", ("G",), "feel the figure of this line, alone", structure.feel),
+    shared("FEEL", ("G",), "feel the figure of this line, alone", structure.feel),
     shared("TOP", ("<", "ctrl-home"), "first line of the text", moving.top),
     shared("BOT", (">", "ctrl-end"), "last line of the text", moving.bottom),
     Command(

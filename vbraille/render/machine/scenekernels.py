@@ -129,6 +129,9 @@ def evaluate(numbers, table, rows, start, count, gates, time, left, right, top_m
         elif operation == w.MOVING_DOTS_MASK:
             strokes.moving_dots_mask(numbers, rows, place, time, block, first, parts, top, count)
             top += 1
+        elif operation == w.CUE:
+            strokes.cue(numbers, rows, place, time, top, count)
+            top += 2
         elif operation == w.CIRCLE:
             shapes.circle(numbers, rows, place, count)
         elif operation == w.SEGMENTS:

@@ -16,6 +16,7 @@ from vbraille.render.machine.words import (
     INSIDE_ROW,
     MARKED_ROW,
     PART_ROW,
+    PLACE_ROW,
     X_ROW,
     Y_ROW,
 )
@@ -133,30 +134,29 @@ def segments(numbers, rows, at, time, block, first, parts, count):
         rows[ACROSS_ROW, n] = math.sqrt(rows[ACROSS_ROW, n])
     if numbers[at] == ROUNDED:
         for n in range(count):
-            rows[ALONG_ROW, n] = _along(
-                numbers,
-                int(rows[PART_ROW, n]),
-                rows[FREE_ROW, n],
-                rows[X_ROW, n],
-                rows[Y_ROW, n],
-                time,
-            )
+            part = int(rows[PART_ROW, n])
+            place = _along(numbers, part, rows[FREE_ROW, n], rows[X_ROW, n], rows[Y_ROW, n])
+            rows[PLACE_ROW, n] = place
+            rows[ALONG_ROW, n] = _in_ridge(numbers, part, place, time)
 
 
 @compiled
-def _along(numbers, part, u, x, y, time):
+def _along(numbers, part, u, x, y):
     """Tell how far along its path a place is, from how far it is along the part that is nearest.
 
-    Near a corner that is rounded it follows an arc: fig. 8.18. Where contours have cycles of their
-    own, the place is one within the stroke's ridge, if it is in a ridge.
+    Near a corner that is rounded it follows an arc: fig. 8.18.
     """
     first, last = part + CORNER, part + CORNER + CORNER_NUMBERS
     if u < numbers[first + REACH]:
-        place = _round(numbers, first, x, y)
-    elif u > numbers[part + LENGTH] - numbers[last + REACH]:
-        place = _round(numbers, last, x, y)
-    else:
-        place = numbers[part + BEGIN] + u
+        return _round(numbers, first, x, y)
+    if u > numbers[part + LENGTH] - numbers[last + REACH]:
+        return _round(numbers, last, x, y)
+    return numbers[part + BEGIN] + u
+
+
+@compiled
+def _in_ridge(numbers, part, place, time):
+    """Place within the stroke's ridge, if it is in one, where contours have their own cycles."""
     ridge = numbers[part + RIDGE]
     if ridge == 0.0:
         return place

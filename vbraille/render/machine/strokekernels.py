@@ -6,6 +6,15 @@
 
 import math
 
+from vbraille.render.machine.shapekernels import (
+    DOWN,
+    END_BIAS,
+    HALF_X,
+    HALF_Y,
+    LENGTH,
+    RIGHT,
+    START_Y,
+)
 from vbraille.render.machine.texturekernels import passed_s, phase
 from vbraille.render.machine.words import (
     ACROSS_ROW,
@@ -13,6 +22,7 @@ from vbraille.render.machine.words import (
     FREE_ROW,
     INSIDE_ROW,
     MARKED_ROW,
+    PART_ROW,
     SIGN_ROW,
     SPARE_ROW,
     X_ROW,
@@ -37,8 +47,28 @@ NO_VIBRATION, HIGH, LOW = 0.0, 1.0, 2.0
     MARKS,  # 1 if there are markers, or dots on vertices, that vibrate in their own way; then how
     _MARKS_HZ,
     _MARKS_SHARE,
-    STROKE_NUMBERS,
+    STROKE_CUE,  # first of the numbers of a cue
 ) = range(5, 20)
+# Numbers of a cue m: what is left of the stroke is 1 - its weight - what m hides, and what it shows
+# is added.
+(
+    CUE_CYCLE,  # 0 for no cue
+    CUE_RIDGE,
+    CUE_VELOCITY,
+    CUE_CLOCK,
+    CUE_ROW,  # row of the places along the path
+    CUE_WEIGHT,
+    CUE_HIDES,  # 0 for nothing, 1 for m, 2 for as much of m as its vibration leaves
+    CUE_SHOWS,
+    _CUE_SWING,  # any number, and then the frequency and amplitude of the bands' vibration
+    _CUE_HZ,
+    _CUE_SHARE,
+    CUE_NUMBERS,
+) = range(12)
+STROKE_NUMBERS = STROKE_CUE + CUE_NUMBERS
+# A cue over a finished shape has first those of its profile, and then 1 over the distance beyond an
+# end over which it fades, 0 for a path without ends.
+CUE_FADE, OVER_CUE = 5, 6
 # Numbers of a row of dots that moves along a segment, or around a circle, or of a dot that stays.
 (
     ROW_X,  # start of the segment, or middle of the circle
@@ -111,7 +141,8 @@ def stroke(numbers, rows, at, time, top, count):
             rows[top, n] *= amplitude
     outlined, cut = numbers[at + OUTLINED], numbers[at + CUT]
     swing, marks = numbers[at + SWING], numbers[at + MARKS]
-    if outlined == 0.0 and cut == 0.0 and swing == NO_VIBRATION and marks == 0.0:
+    cued = numbers[at + STROKE_CUE + CUE_CYCLE] != 0.0
+    if outlined == 0.0 and cut == 0.0 and swing == NO_VIBRATION and marks == 0.0 and not cued:
         return
     if cut != 0.0:
         _cut(numbers, rows, at, time, count)
@@ -138,8 +169,71 @@ def stroke(numbers, rows, at, time, top, count):
         for n in range(count):
             change = rows[SPARE_ROW, n] - rows[FREE_ROW, n]
             rows[FREE_ROW, n] += rows[MARKED_ROW, n] * change
+    if cued:
+        _bands(numbers, rows, at + STROKE_CUE, time, count)
+        weight, hides = numbers[at + STROKE_CUE + CUE_WEIGHT], numbers[at + STROKE_CUE + CUE_HIDES]
+        shows, swing, least = _cue_swing(numbers, at + STROKE_CUE, time)
+        for n in range(count):
+            band = rows[SPARE_ROW, n]
+            left = least + swing * rows[SIGN_ROW, n]
+            hidden = hides * band if hides < 2.0 else left * band
+            rows[FREE_ROW, n] = rows[FREE_ROW, n] * (1.0 - weight - hidden) + shows * left * band
     for n in range(count):
         rows[top, n] *= rows[FREE_ROW, n]
+
+
+@compiled
+def _bands(numbers, rows, at, time, count):
+    """Bands m of a cue along a path, whose numbers begin at ``at``: Lévesque 2009, fig. 9.3."""
+    cycle, velocity = numbers[at + CUE_CYCLE], numbers[at + CUE_VELOCITY]
+    shift = 0.0
+    passed = passed_s(rows, numbers[at + CUE_CLOCK], time)
+    if velocity != 0.0 and passed == passed:
+        shift = velocity * passed / cycle
+        shift = cycle * (shift - math.floor(shift))
+    place, cycles, ridges = int(numbers[at + CUE_ROW]), 1.0 / cycle, 1.0 / numbers[at + CUE_RIDGE]
+    for n in range(count):
+        u = rows[place, n] - shift
+        u -= cycle * math.floor(u * cycles)
+        rows[SPARE_ROW, n] = hump(u * ridges - 0.5)
+
+
+@compiled
+def _cue_swing(numbers, at, time):
+    """What a cue shows, and by how much that swings about what its vibration leaves of it."""
+    amplitude = numbers[at + _CUE_SHARE]
+    swing = 0.5 * amplitude * phase(numbers[at + _CUE_HZ], time)
+    return numbers[at + CUE_SHOWS], swing, 1.0 - 0.5 * amplitude
+
+
+@compiled
+def cue(numbers, rows, at, time, top, count):
+    """Push what bands along a shape add to it, and then what they hide of it: 9.3.2."""
+    flat, sharp, fades = numbers[at], numbers[at + 1], numbers[at + CUE_FADE]
+    _bands(numbers, rows, at + OVER_CUE, time, count)
+    hides = numbers[at + OVER_CUE + CUE_HIDES]
+    shows, swing, least = _cue_swing(numbers, at + OVER_CUE, time)
+    for n in range(count):
+        band = rows[SPARE_ROW, n] * fall((rows[ACROSS_ROW, n] - flat) * sharp)
+        if fades != 0.0 and band > 0.0:
+            beyond = _beyond(numbers, int(rows[PART_ROW, n]), rows[X_ROW, n], rows[Y_ROW, n])
+            rest = 1.0 - fades * beyond
+            band *= rest if rest > 0.0 else 0.0
+        left = least + swing * rows[SIGN_ROW, n]
+        rows[top, n] = shows * left * band
+        rows[top + 1, n] = hides * band if hides < 2.0 else left * band
+
+
+@compiled
+def _beyond(numbers, part, x, y):
+    """Distance in a path's direction beyond its end, if the nearest segment is there; 0 else."""
+    dx, dy = x - numbers[part], y - numbers[part + START_Y]
+    u = dx * numbers[part + RIGHT] + dy * numbers[part + DOWN]
+    if u < 0.0:
+        is_open = numbers[part + HALF_X] == 0.0 and numbers[part + HALF_Y] == 0.0
+        return -u if is_open else 0.0
+    u -= numbers[part + LENGTH]
+    return u if u > 0.0 and numbers[part + END_BIAS] < 0.0 else 0.0
 
 
 @compiled

@@ -78,7 +78,8 @@ OPERATIONS = 64
     SHIFT,  # places are moved, until UNWRAP
     MOVING_DOTS,  # push dots that move along the path of a shape
     MOVING_DOTS_MASK,
-) = range(45)
+    CUE,  # push what bands along a shape add, and what they hide of it
+) = range(46)
 
 # How what a CALL pushes joins what is on the stack: by one of the words from ADD to OVER_ITSELF, or
 # not at all, as one row or as a pair.
@@ -102,8 +103,9 @@ BOX_LEFT, BOX_TOP, BOX_RIGHT, BOX_BOTTOM, SHUT_BY, WORDS = range(6)
     FREE_ROW,
     SPARE_ROW,
     GIVEN_ROW,  # the values of the signals, then where the array's centre is
+    PLACE_ROW,  # how far along, where the row for that has places in ridges
     STACK,
-) = range(12)
+) = range(13)
 CENTER_X, CENTER_Y = MOST_SIGNALS, MOST_SIGNALS + 1
 LEAST_LANES = MOST_SIGNALS + 2  # so that these fit into a row
 DEPTH = 32  # rows of the stack

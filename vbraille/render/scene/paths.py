@@ -29,7 +29,6 @@ from vbraille.scene.joints import (
     marker_half_angle_rad,
     places_along_mm,
     rounding_radius_mm,
-    stroke_cycles,
 )
 from vbraille.scene.patterns import Circle, Dots, PathShape, Polygon, StraightLine
 
@@ -85,14 +84,18 @@ def _contours(shape: AnyShape) -> tuple[tuple[tuple[Point, ...], ...], bool]:
     return (shape.contours_mm, shape.closed) if isinstance(shape, PathShape) else ((), True)
 
 
-def segments(shape: AnyShape, along: bool) -> Iterator[tuple[float, ...]]:
-    """Numbers of the segments of a shape; fewer if only the distance from it counts."""
+def segments(
+    shape: AnyShape, along: bool, *, cycles: Sequence[Cycle] = ()
+) -> Iterator[tuple[float, ...]]:
+    """Numbers of the segments of a shape; fewer if only the distance from it counts.
+
+    ``cycles`` are those of the texture along each of its contours.
+    """
     contours, closed = _contours(shape)
     if not along:
         for points in contours:
             yield from (_segment(*pair) for pair in _pairs(points, closed))
         return
-    cycles = stroke_cycles(shape)
     for number, points in enumerate(contours):
         cycle = cycles[number] if differ(cycles) else None
         yield from _segments_along(shape, points, closed, cycle)
@@ -299,10 +302,17 @@ def enclosed_dots(pattern: ShapeOrDots) -> tuple[Enclosed, ...]:
 
 def enclosed_stroke(shape: AnyShape) -> tuple[Enclosed, ...]:
     """Tell what a circle's stroke, or each segment of another shape, lies in."""
-    radius = reach_mm(shape)
+    return _enclosed_path(shape, max(drawn_radius_mm(shape), marker_reach_mm(shape)))
+
+
+def enclosed_cue(shape: AnyShape) -> tuple[Enclosed, ...]:
+    """Tell what the cue over a circle, or over each segment of another shape, lies in."""
+    return _enclosed_path(shape, shape.cue_width_mm / 2)
+
+
+def _enclosed_path(shape: AnyShape, radius: float) -> tuple[Enclosed, ...]:
     if isinstance(shape, Circle):
         return ((RING, *shape.center_mm, shape.radius_mm, 0.0, radius),)
-    radius = max(radius, marker_reach_mm(shape))
     return tuple(
         (CAPSULE, *start, *end, radius) for points in edges_of(shape) for start, end in points
     )

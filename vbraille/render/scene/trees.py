@@ -12,6 +12,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, cast
 
+import msgspec
 import numpy as np
 
 from vbraille.render.machine import shapekernels as places
@@ -25,6 +26,7 @@ from vbraille.render.scene.paths import (
     ShapeOrDots,
     differ,
     dots_move,
+    enclosed_cue,
     enclosed_dots,
     enclosed_fill,
     enclosed_stroke,
@@ -36,7 +38,7 @@ from vbraille.render.work import MOST_SIGNALS
 from vbraille.scene.bitmap import WHOLE, bitmap_box, opaque
 from vbraille.scene.bounds import drawn_radius_mm, is_everywhere, unchanged_bounds
 from vbraille.scene.dotting import PlacedDot, dots_of
-from vbraille.scene.joints import Cycle, axial_cycle, stroke_cycles
+from vbraille.scene.joints import Cycle, axial_cycle, cue_cycle, stroke_cycles
 from vbraille.scene.measures import travel_deg
 from vbraille.scene.patterns import (
     Circle,
@@ -45,6 +47,7 @@ from vbraille.scene.patterns import (
     Image,
     Label,
     Moving,
+    PathShape,
     Polygon,
     StraightLine,
     Tile,
@@ -69,7 +72,7 @@ if TYPE_CHECKING:
     from vbraille.scene.bitmap import Bitmap
     from vbraille.scene.pattern import Pattern
     from vbraille.scene.patterns import AnyPattern, Fill
-    from vbraille.scene.strokes import Across, DotStyle, Stroke, Vibration
+    from vbraille.scene.strokes import Across, DotStyle, MovingCue, Stroke, Vibration
 
     Saying = Callable[[WordBlock, bool], list[int]]
     Changes = tuple[tuple[int, tuple[float, ...]], ...]
@@ -114,7 +117,7 @@ def layer(pattern: AnyPattern, assets: Assets) -> Node:
         own = _leaf(pattern, assets)
         if _is_plain(pattern) and is_own_mask(pattern):
             return own
-        return shape_pair(pattern, own, _by_signal(pattern, assets))
+        return shape_pair(_with_clock(pattern, assets), own, _by_signal(pattern, assets))
     covered = mask(pattern, assets)
     own = deflection(pattern, assets)
     if covered is None:
@@ -148,7 +151,7 @@ def _mask(pattern: AnyPattern, assets: Assets) -> Node | None:
         case Group():
             return _group_mask(pattern, assets)
         case _ if isinstance(pattern, ShapeOrDots):
-            return shape_mask(pattern)
+            return shape_mask(_with_clock(pattern, assets))
     return None
 
 
@@ -402,8 +405,12 @@ def _waveform(
 
 def is_apart(pattern: ShapeOrDots) -> bool:
     """Tell whether a pattern is several leaves."""
+    if isinstance(pattern, Dots):
+        return False
+    if pattern.is_cued_over:
+        return True
     fill = fill_of(pattern)
-    if fill is None or isinstance(pattern, Dots):
+    if fill is None:
         return False
     return pattern.dots is not None or any(
         isinstance(part, ShapeOrDots) for part in each(fill.texture)
@@ -420,6 +427,8 @@ def _with_clock(pattern: ShapeOrDots, assets: Assets) -> ShapeOrDots:
 
 def shape_apart(shape: AnyShape, texture: Node | None, assets: Assets) -> Node:
     """Tree of a shape that is several leaves, without its own changes."""
+    if shape.is_cued_over:
+        return _cued_over(shape, texture, assets)
     shape = cast("AnyShape", _with_clock(shape, assets))
     fill = fill_of(shape)
     assert fill is not None
@@ -432,6 +441,24 @@ def shape_apart(shape: AnyShape, texture: Node | None, assets: Assets) -> Node:
         return joined(NodeKind.ADD, (filled, _drawn(shape, partial(say_shape, shape, None))))
     over = _drawn(shape, partial(say_stroke_pair, shape))
     return joined(NodeKind.OVER, (filled, replace(over, pushes=Pushes.PAIR, depth=2)))
+
+
+def _cued_over(shape: AnyShape, texture: Node | None, assets: Assets) -> Node:
+    """Tree of a shape with a cue over all of it: what the cue shows lies on it as a layer."""
+    cue, bare = shape.cue, msgspec.structs.replace(shape, cue=None)
+    assert cue is not None
+    own = (shape_apart if is_apart(bare) else shape_leaf)(bare, texture, assets)
+    if cue.way == "add":
+        own = _change(own, ((words.SCALE, (1.0 - cue.share,)),))
+    shape = cast("AnyShape", _with_clock(shape, assets))
+    over = replace(_cue_leaf(shape, partial(_say_cue, shape)), pushes=Pushes.PAIR, depth=2)
+    return joined(NodeKind.OVER, (own, over))
+
+
+def _cue_leaf(shape: AnyShape, say: Saying) -> Node:
+    """Leaf of the cue over a shape, or of its opacity mask."""
+    enclosed, parts = enclosed_cue(shape), not isinstance(shape, Circle)
+    return Node(NodeKind.LEAF, say=say, box=unchanged_bounds(shape), enclosed=enclosed, parts=parts)
 
 
 def shape_leaf(pattern: ShapeOrDots, texture: Node | None, assets: Assets) -> Node:
@@ -454,6 +481,10 @@ def shape_pair(pattern: ShapeOrDots, own: Node, changes: Changes) -> Node:
 
 def shape_mask(pattern: ShapeOrDots) -> Node:
     """Tree of a pattern's opacity mask."""
+    if not isinstance(pattern, Dots) and pattern.is_cued_over:
+        own = shape_mask(msgspec.structs.replace(pattern, cue=None))
+        over = _cue_leaf(pattern, partial(_say_cue_mask, pattern))
+        return joined(NodeKind.OVER, (own, over))
     if isinstance(pattern, Dots) or fill_of(pattern) is None:
         return _drawn(pattern, partial(_say_mask, pattern))
     if pattern.dots is None:
@@ -482,6 +513,37 @@ def _filled(shape: AnyShape, say: Saying, depth: int = 3) -> Node:
 
 
 # What leaves say
+
+
+def _say_cue(shape: AnyShape, block: WordBlock, parts: bool) -> list[int]:
+    """Say what the cue over a shape adds, and what it hides."""
+    assert shape.cue is not None
+    kept = _say_path(shape, block, parts, along=True)
+    is_open = isinstance(shape, StraightLine) or (isinstance(shape, PathShape) and not shape.closed)
+    # Those that are not wider than a row of dots end as the row does.
+    fades = is_open and shape.cue_width_mm > shape.width_mm
+    profile = _profile(shape.cue_width_mm, shape.cue_edge_mm, None)
+    fade = 2.0 / shape.width_mm if fades else 0.0
+    block.say(words.CUE, *profile, fade, *_cue_numbers(shape, shape.cue, words.ALONG_ROW))
+    return kept
+
+
+def _say_cue_mask(shape: AnyShape, block: WordBlock, parts: bool) -> list[int]:
+    kept = _say_path(shape, block, parts, along=False)
+    block.say(words.PROFILE, *_profile(shape.cue_width_mm, shape.cue_edge_mm, None))
+    return kept
+
+
+def _say_path(shape: AnyShape, block: WordBlock, parts: bool, *, along: bool) -> list[int]:
+    """Say the coordinates of a shape's path alone, whatever it is drawn with."""
+    if isinstance(shape, Circle):
+        block.say(words.CIRCLE, *shape.center_mm, shape.radius_mm, float(along))
+        return []
+    kept = _keep_parts(segments(shape, along), block, parts)
+    rounded = isinstance(shape, Polygon) and shape.join == "rounded"
+    asked = (places.ROUNDED if rounded else places.ALONG) if along else places.ACROSS
+    block.say(words.SEGMENTS, float(asked), -1.0)
+    return kept
 
 
 def _say_pair(say, say_mask, changes: Changes, block: WordBlock, parts: bool) -> list[int]:
@@ -686,6 +748,7 @@ def is_own_mask(shape: AnyShape | Dots) -> bool:
             stroke = shape.stroke
             plain = stroke.across is None and stroke.along is None and not stroke.outlined
             marked = isinstance(shape, Polygon) and shape.markers is not None
+            marked = marked or shape.cue is not None
             return plain and stroke.amplitude == 1.0 and stroke.vibration is None and not marked
         style = _dotting(shape)
         if _vertices(shape) is not None:
@@ -752,7 +815,23 @@ def _stroke_numbers(shape: AnyShape, stroke: Stroke) -> list[float]:
     if isinstance(shape, Polygon) and shape.markers is not None:
         swing = _swing(shape.markers.swing)
         numbers[strokes.MARKS : strokes.MARKS + 3] = (1.0, *swing[1:])
+    if shape.cue is not None:
+        row = words.PLACE_ROW if differ(stroke_cycles(shape)) else words.ALONG_ROW
+        numbers[strokes.STROKE_CUE :] = _cue_numbers(shape, shape.cue, row)
     return numbers
+
+
+def _cue_numbers(shape: AnyShape, cue: MovingCue, row: int) -> tuple[float, ...]:
+    """Numbers of a cue whose places along the path are in a row."""
+    cycle = cue_cycle(shape)
+    motion = (cue.velocity_mm_s, float(cue.velocity_by or -1.0), float(row))
+    weight, hides, shows = {
+        "vibrate": (0.0, 1.0, 1.0),
+        "blend": (0.0, 1.0, cue.level),
+        "mask": (0.0, 2.0, 0.0),
+        "add": (cue.share, 0.0, cue.share),
+    }[cue.way]
+    return (cycle.length, cycle.ridge, *motion, weight, hides, shows, *_swing(cue.swing))
 
 
 def _clock_of(shape: AnyShape) -> float:
@@ -792,12 +871,13 @@ def _say_places(
     Its parts are its segments, and if it is filled the walls of `pathparts`.
     """
     stroke = shape.stroke if drawn else None
-    along = stroke is not None and stroke.along is not None
+    along = stroke is not None and (stroke.along is not None or shape.cue is not None)
     marked = isinstance(shape, Polygon) and shape.markers is not None and stroke is not None
     if isinstance(shape, Circle):
         block.say(words.CIRCLE, *shape.center_mm, shape.radius_mm, float(along))
         return []
-    kept = block.keep(segments(shape, along or marked))
+    cycles = stroke_cycles(shape) if stroke is not None else ()
+    kept = block.keep(segments(shape, along or marked, cycles=cycles))
     if not parts:
         block.say_parts(kept)
     elif filled:

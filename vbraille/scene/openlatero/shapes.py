@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final, Literal
 
 from msgspec.structs import replace
 
@@ -25,18 +25,20 @@ from vbraille.scene.openlatero.context import (
 from vbraille.scene.openlatero.elements import (
     ANGLE,
     OFF,
+    ON,
     ORIGIN,
     SHARE,
     NumberField,
     PlaceField,
     WordField,
 )
-from vbraille.scene.patterns import Circle, Dots, Fill, PathShape, Polygon, StraightLine
+from vbraille.scene.patterns import Circle, Dots, Fill, Group, PathShape, Polygon, StraightLine
 from vbraille.scene.strokes import (
     Across,
     Along,
     DotStyle,
     Dotting,
+    MovingCue,
     Stroke,
     VertexMarkers,
     Vibration,
@@ -75,6 +77,16 @@ ALONG = {"enable": OFF, "ridge_size": NumberField(2.0), "gap_size": NumberField(
 CUE = {
     "cue": WordField("none", _CUES),
     "velocity": NumberField(50.0, -_MOST_SPEED, _MOST_SPEED, "mm/s"),
+    "superposed_ratio": NumberField(0.2, 0.0, 1.0, "share"),
+    "blend_value": NumberField(0.5, 0.0, 1.0, "share"),
+    "min_width": NumberField(10.0),
+}
+BANDS = {"enable": ON, "ridge_size": NumberField(2.0), "gap_size": NumberField(30.0), "invert": OFF}
+_WAYS: Final[dict[str, Literal["add", "mask", "blend", "vibrate"]]] = {
+    "superposed": "add",
+    "suppressed": "mask",
+    "vibration": "vibrate",
+    "blend": "blend",
 }
 FILL_TEXTURE = {"enable": OFF, "gap": NumberField(0.0, -MOST_MM), "edge_size": NumberField(1.0)}
 JOIN = {"type": WordField("round", ("straight", "round")), "rounding_offset": NumberField(0.0)}
@@ -98,11 +110,14 @@ class StrokeLook:
         Factor of the stroke, and of the fill with it.
     stroke, dots
         The stroke, or the dots in its place; neither if nothing of it can be felt.
+    cue
+        Bands that move along it; None for none.
     """
 
     intensity: float
     stroke: Stroke | None
     dots: Dotting | None
+    cue: MovingCue | None = None
 
 
 def drawn(shape: GenElement, context: GenContext, *, corners_swing: bool = False) -> StrokeLook:
@@ -152,14 +167,52 @@ def drawn(shape: GenElement, context: GenContext, *, corners_swing: bool = False
             vertex_vibration=corners,
             velocity_mm_s=speed,
         )
-        return StrokeLook(intensity, None, dots)
+        return StrokeLook(intensity, None, dots, _cue(element, context))
     row.forget()
     stroke = _stroke(fill, context, Stroke(width_mm=width, edge_mm=edge, across=across), swing)
     along = None if stroke is None else stroke.along
     speed = _speed(element, fill, along, context)
     if stroke is not None and along is not None and speed:
         stroke = replace(stroke, along=replace(along, velocity_mm_s=speed))
-    return StrokeLook(intensity, stroke, None)
+    cue = _cue(element, context) if stroke is not None else None
+    return StrokeLook(intensity, stroke, None, cue)
+
+
+def _cue(stroke: GenElement, context: GenContext) -> MovingCue | None:
+    """Bands that move along a shape; None for none."""
+    motion = stroke.part("motion", CUE)
+    way = _WAYS.get(motion["cue"])
+    if way is None:
+        motion.forget()
+        return None
+    share, level, width = motion["superposed_ratio"], motion["blend_value"], motion["min_width"]
+    speed = motion["velocity"]
+    grating = motion.part("Grating", BANDS)
+    ridge, gap = grating["ridge_size"], grating["gap_size"]
+    if not grating["enable"] or ridge < LEAST_MM:
+        motion.forget()
+        motion.say("its cue has no bands; left out")
+        return None
+    if grating["invert"]:
+        grating.say("the bands of its cue are inverted, which they cannot be here")
+    if grating.one("velocity") is not None:
+        speed = speed_of(grating, "mm", ridge + gap)
+    element = motion.one("vibration")
+    swing = vibration(motion, context, "bands")
+    if way == "vibrate" and swing is None and (context.as_shown or element is not None):
+        way, level = "blend", 1.0  # what does not vibrate is up
+    motion.forget()
+    return MovingCue(
+        way=way,
+        ridge_mm=ridge,
+        gap_mm=gap,
+        velocity_mm_s=travelled(speed, ridge + gap, context),
+        width_mm=width,
+        share=share,
+        level=level,
+        vibration=swing,
+        whole_cycles=False,
+    )
 
 
 def across_of(ridge: GenElement) -> Across | None:
@@ -269,11 +322,10 @@ def _speed(
     if motion is None:
         return own if along is None else travelled(own, along.wave.length, context)
     cue = motion["cue"] if motion.one("cue") else None
-    speed = motion["velocity"]
-    motion.forget()
-    if cue not in (None, "none", "inherent"):
-        motion.say(f'the motion cue "{cue}" is not shown')
-    shown = speed if cue == "inherent" else own if cue is None else 0.0
+    speed = motion["velocity"] if cue == "inherent" else 0.0
+    # A speed alone is that of the cue "none", by which nothing moves.
+    stands = cue is not None or motion.one("velocity") is not None
+    shown = speed if cue == "inherent" else 0.0 if stands else own
     return shown if along is None else travelled(shown, along.wave.length, context)
 
 
@@ -318,7 +370,12 @@ def _line(element: GenElement, context: GenContext) -> AnyPattern | None:
     if look.stroke is None and look.dots is None:
         return _nothing(element)
     made = StraightLine(
-        start_mm=start, end_mm=end, amplitude=look.intensity, stroke=look.stroke, dots=look.dots
+        start_mm=start,
+        end_mm=end,
+        amplitude=look.intensity,
+        stroke=look.stroke,
+        dots=look.dots,
+        cue=look.cue,
     )
     _, rows = rows_of(made)
     return _paced(made, math.dist(start, end) + rows[0].pitch_mm, context) if rows else made
@@ -337,6 +394,7 @@ def _circle(element: GenElement, context: GenContext) -> AnyPattern | None:
         amplitude=look.intensity,
         stroke=look.stroke,
         dots=look.dots,
+        cue=look.cue,
         fill=fill,
     )
     return _paced(made, math.tau * radius, context)
@@ -377,6 +435,7 @@ def _polygon(element: GenElement, context: GenContext) -> AnyPattern | None:
         amplitude=look.intensity,
         stroke=look.stroke,
         dots=look.dots,
+        cue=look.cue,
         fill=fill,
         markers=markers,
     )
@@ -413,6 +472,7 @@ def _path(
         amplitude=look.intensity,
         stroke=look.stroke,
         dots=look.dots,
+        cue=look.cue,
         fill=fill,
     )
 
@@ -469,6 +529,8 @@ def _markers(corner: GenElement, context: GenContext, look: StrokeLook) -> Verte
     angle = corner["user_angle"] if span == "user specified" else 30.0
     if corner["blend"] == "in":
         corner.say("markers blend outwards here, not inwards")
+    if look.cue is not None and not corner.read("motion", ON):
+        corner.say("its cue goes over the markers here")
     swing = vibration(corner, context, "markers")
     stroke = look.stroke
     if kind == "invert vib" and stroke is not None:
@@ -484,7 +546,16 @@ def _fill(element: GenElement, context: GenContext, look: StrokeLook) -> Fill | 
     fill = filling(element, context)
     if fill is not None and fill.blended and look.dots is not None:
         element.say("dots stand in the place of the fill there, and are blended into it here")
-    return fill
+    cue, stroke = look.cue, look.stroke
+    dims = cue is not None and cue.way == "add" and stroke is not None
+    if fill is None or not context.as_shown or not dims or stroke.width_mm < cue.width_mm:
+        return fill
+    if fill.blended:
+        element.say("its superposed cue weakens all of the fill there, and only its stroke here")
+        return fill
+    # It weakens what is beyond the stroke, too.
+    whole = Group(operation="maximum", parts=(fill.texture,), amplitude=1.0 - cue.share)
+    return replace(fill, texture=whole)
 
 
 def _nothing(element: GenElement) -> None:

@@ -43,12 +43,13 @@ class Measure(NamedTuple):
     questions: tuple[str, ...]
 
 
+_APART = ("which", "odd", "match", "same-different", "detect")
 MEASURES = {
     "legibility": Measure("legibility of strings", "%", "share", ("identify",)),
     "characters": Measure("legibility of characters", "%", "share", ("identify",)),
     "duration": Measure("duration of right answers", "s", "log", ("identify",)),
-    "right": Measure("right answers", "%", "share", ("which", "same-different", "detect", "name")),
-    "threshold": Measure("threshold", "", "log", ("detect", "which", "identify")),
+    "right": Measure("right answers", "%", "share", (*_APART, "name")),
+    "threshold": Measure("threshold", "", "log", ("detect", "which", "odd", "match", "identify")),
     "d_prime": Measure("d′", "", "linear", ("detect", "same-different", "which")),
     "preferred": Measure("preferred value", "", "linear", ("which",)),
     "rating": Measure("rating", "", "linear", ("rating",)),
@@ -94,6 +95,8 @@ class Task(NamedTuple):
         match self.question:
             case "identify" if self.adaptive:
                 return "threshold"
+            case "odd" | "match":
+                return "threshold" if self.adaptive else "right"
             case "which":
                 return "threshold" if self.scored else "preferred"
             case "same-different":

@@ -384,6 +384,44 @@ class Choice(_Design, frozen=True, tag="choice"):
         return len(self.items())
 
     @property
+    def alternatives(self) -> int:
+        """Number of answers that there are to a trial, of which one is right."""
+        return 2 if self.form == "abx" else self.stimuli
+
+    @property
+    def differences(self) -> tuple[float, ...]:
+        """Differences of the values from the standard, increasing, for a procedure to choose from.
+
+        Raises
+        ------
+        ValueError
+            If the values do not lie on one side of a standard, which a trial shows at any place.
+        """
+        if self.reference is None:
+            raise ValueError("there is no reference that values differ from; add it")
+        if self.form == "standard":
+            raise ValueError(
+                "form is 'standard', whose second stimulus would always be the right one; give "
+                "'pairs', 'one', 'triangle' or 'abx'"
+            )
+        if min(self.values) < self.reference < max(self.values):
+            raise ValueError(
+                f"[design] values lie on both sides of reference {self.reference:g}, and a "
+                f"procedure goes to one side of it; give those of one side"
+            )
+        if len(self.values) < 2:
+            raise ValueError(
+                "[design] values is one; give the one nearest to reference, and the furthest one"
+            )
+        return tuple(sorted(round(abs(value - self.reference), 9) for value in self.values))
+
+    def apart(self, difference: float) -> float:
+        """Value that differs by so much from the standard, on the side of the design's values."""
+        assert self.reference is not None
+        away = difference if self.values[0] > self.reference else -difference
+        return round(self.reference + away, 9)
+
+    @property
     def cells(self) -> int:
         """Number of cells in the line."""
         return len(self.string)

@@ -7,13 +7,14 @@ A procedure takes the next trial of the deck and decides the values that it is s
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from msgspec import structs
 
 from vbraille.adaptive.staircase import Asked
+from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.procedures import (
     FixedProcedure,
     QuestProcedure,
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
-    from vbraille.sessions.planning.questions import AnyQuestion
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ class ByAnswers:
     """Procedure that takes trials from a deck, and decides the values by the answers.
 
     Each condition has its own history. A condition of which enough is known is left out from then
-    on.
+    on, with its catch trials. These are shown as they were planned, and choose nothing.
 
     Parameters
     ----------
@@ -108,7 +108,11 @@ class ByAnswers:
     def most(self) -> int:
         """Largest number of trials that there may be."""
         limit = self._table.stop.trials
-        return sum(min(len(own), limit or len(own)) for own in self._of.values())
+        most = 0
+        for own in self._of.values():
+            chosen = [place for place, trial in enumerate(own, 1) if not trial.catch]
+            most += len(own) if limit is None or len(chosen) <= limit else chosen[limit - 1]
+        return most
 
     @property
     def _table(self) -> QuestProcedure | StaircaseProcedure:
@@ -123,12 +127,12 @@ class ByAnswers:
     def next(self, history: Sequence[Answered], /) -> Trial | None:
         """Trial that follows a history, with the values that the procedure chooses."""
         asked = self.asked(history)
-        for place, condition in self._places(asked):
-            own, design = asked[condition], self.protocol.design
-            chosen = self._table.next(own, design, self._seed(condition))
+        for trial in self._left(history):
+            own, design = asked[trial.condition], self.protocol.design
+            chosen = self._table.next(own, design, self._seed(trial.condition))
             if chosen is not None:
-                trial = self._of[condition][place]
-                stimuli = _at(self.protocol, trial.stimuli, chosen)
+                stimuli = trial.stimuli
+                stimuli = stimuli if trial.catch else _at(self.protocol, stimuli, chosen)
                 return structs.replace(trial, number=len(history) + 1, stimuli=stimuli)
         return None
 
@@ -149,15 +153,16 @@ class ByAnswers:
         """Questions and outcomes of each condition, as the choosers know them."""
         asked: dict[str, list[Asked]] = {name: [] for name in self._of}
         for answered in history:
-            told = _asked(answered, self.parameter, self.protocol.asks)
-            asked[answered.trial.condition].append(told)
+            if not answered.trial.catch:
+                told = _asked(answered, self.parameter, self.protocol)
+                asked[answered.trial.condition].append(told)
         return asked
 
-    def _places(self, asked: Mapping[str, Sequence[Asked]]) -> list[tuple[int, str]]:
+    def _left(self, history: Sequence[Answered]) -> list[Trial]:
         """Next trial of each condition that has one left, in the order of the deck."""
-        left = [(self._of[name][len(own)].number, len(own), name)
-                for name, own in asked.items() if len(own) < len(self._of[name])]  # fmt: skip
-        return [(place, name) for _, place, name in sorted(left)]
+        done = Counter(answered.trial.condition for answered in history)
+        left = [own[done[name]] for name, own in self._of.items() if done[name] < len(own)]
+        return sorted(left, key=lambda trial: trial.number)
 
 
 # Rule that chooses the next trial by the history, which leaves practice out, and has an answer that
@@ -189,9 +194,15 @@ def describe(protocol: Protocol) -> str:
     return f"staircase, {what} by the answers, from {ends}"
 
 
-def _asked(answered: Answered, parameter: str, question: AnyQuestion) -> Asked:
-    """Question and outcome of an answered trial; of two values, the lower stands first."""
-    trial, t_s = answered.trial, answered.t_s
+def _asked(answered: Answered, parameter: str, protocol: Protocol) -> Asked:
+    """Question and outcome of an answered trial; of two values, the lower stands first.
+
+    Of values and a standard, what was asked is how much they differ from it.
+    """
+    trial, t_s, question = answered.trial, answered.t_s, protocol.asks
+    if (standard := protocol.standard) is not None:
+        apart = max(round(abs(value - standard), 9) for value in values_of(trial))
+        return Asked((apart,), int(question.good(trial, answered.answer)), t_s)
     if len(trial.stimuli) == 1:
         value = value_at(trial.stimuli[0], parameter)
         return Asked((value,), int(question.positive(trial, answered.answer)), t_s)
@@ -207,8 +218,13 @@ def _at(protocol: Protocol, stimuli: Stimuli, chosen: tuple[float, ...]) -> Stim
     if len(stimuli) == 1:
         (stimulus,), (value,) = stimuli, chosen
         return Stimuli((with_value(stimulus, knob, value),))
-    first, second = (stimulus.value or 0.0 for stimulus in stimuli)
-    ordered = chosen if first < second else chosen[::-1]
+    values = [stimulus.value or 0.0 for stimulus in stimuli]
+    design = protocol.design
+    if isinstance(design, Choice) and design.reference is not None:
+        other = design.apart(chosen[0])
+        ordered = [value if value == design.reference else other for value in values]
+    else:
+        ordered = chosen if values[0] < values[1] else chosen[::-1]
     return Stimuli(
         with_value(replace(stimulus, value=value), knob, value)
         for stimulus, value in zip(stimuli, ordered, strict=True)

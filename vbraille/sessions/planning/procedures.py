@@ -85,6 +85,37 @@ class _ByAnswersTable(Table, frozen=True, kw_only=True, tag_field="kind"):
             raise ValueError("least or most is missing; add it")
         return self.least, self.most
 
+    def ends(self, design: Design) -> tuple[float, float]:
+        """Least and largest of what is chosen: of a value, or of a difference from a standard.
+
+        Raises
+        ------
+        ValueError
+            If there is none.
+        """
+        if not isinstance(design, Choice):
+            return self.bounds
+        chosen = design.values if design.reference is None else design.differences
+        return min(chosen), max(chosen)
+
+    def _check_varied(self, design: Design) -> None:
+        """Check that there is something to vary, in one table.
+
+        Raises
+        ------
+        ValueError
+            If there is nothing, or a choice has it twice.
+        """
+        if not isinstance(design, Choice):
+            self._check_bounds()
+            return
+        if (self.parameter, self.least, self.most) != (None, None, None):
+            raise ValueError("parameter, least and most are those of [design]; leave them out")
+        if design.reference is not None:
+            if self.harder != "less":
+                raise ValueError("harder is of strings; the less two differ, the harder it is")
+            _ = design.differences
+
     def _check_bounds(self) -> None:
         """Check that a procedure with strings has something to vary."""
         for name in ("parameter", "least", "most"):
@@ -113,7 +144,8 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
     shape
         Shape of the psychometric function of strings.
     spread, guess, lapse
-        Possible values of these parameters; one value fixes the parameter.
+        Possible values of these parameters; one value fixes the parameter. Without ``guess``,
+        strings are not guessed, and of several stimuli each is guessed as often.
     sd, width
         Standard deviation, and width of the interval of 95 %, that are precise enough; None for
         no end by precision.
@@ -131,7 +163,7 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
     scale: Literal["linear", "log"] = "linear"
     shape: Literal["normal", "logistic", "weibull"] = "normal"
     spread: tuple[float, ...]
-    guess: tuple[float, ...] = (0.0,)
+    guess: tuple[float, ...] | None = None
     lapse: tuple[float, ...] = (0.03,)
     sd: float | None = None
     width: float | None = None
@@ -144,10 +176,11 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
         for value in self.spread:
             check_range("spread: one", value, 1e-4, 100)
         for name in ("guess", "lapse"):
-            for value in getattr(self, name):
+            for value in getattr(self, name) or ():
                 check_range(f"{name}: one", value, 0, 0.9)
         for name in ("spread", "guess", "lapse"):
-            GridAxis(name, getattr(self, name))
+            if (given := getattr(self, name)) is not None:
+                GridAxis(name, given)
         self.stop  # noqa: B018
 
     @property
@@ -163,19 +196,18 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
         ValueError
             If it does not.
         """
-        if isinstance(design, Choice):
-            if design.reference is not None or design.form != "pairs":
-                raise ValueError(
-                    "chooses both values of a pair; leave reference and form out of [design]"
-                )
-            if self.parameter is not None or self.least is not None or self.most is not None:
-                raise ValueError("parameter, least and most are those of [design]; leave them out")
-        else:
-            self._check_bounds()
-            if self.step is None:
-                raise ValueError("lacks step; add it")
-            if self.furthest is not None:
-                raise ValueError("furthest is of kind = 'choice'; leave it out")
+        self._check_varied(design)
+        compares = isinstance(design, Choice)
+        if compares and design.reference is None and design.form != "pairs":
+            raise ValueError("chooses both values of a pair; leave form out of [design]")
+        if compares and design.reference is not None and self.scale != "linear":
+            raise ValueError("scale is of two values that are compared freely; leave it out")
+        if compares and self.guess is not None:
+            raise ValueError("guess follows from the number of stimuli; leave it out")
+        if not compares and self.step is None:
+            raise ValueError("lacks step; add it")
+        if self.furthest is not None and not (compares and design.reference is None):
+            raise ValueError("furthest is of kind = 'choice' without a reference; leave it out")
         self.quest(design)
 
     def next(
@@ -199,7 +231,7 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
         name = quest.axes[0].name
         known = quest.estimate(self._history(asked, design), name)
         return (
-            f"{name} {what}: {known.mean:.3g}{unit}",
+            f"{name} {_of(design, what)}: {known.mean:.3g}{unit}",
             f"95 % interval: {known.low:.3g} to {known.high:.3g}{unit}",
         )
 
@@ -217,20 +249,21 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
         return [(each.stimulus, each.outcome) for each in asked]
 
     def values(self, design: Design) -> tuple[float, ...]:
-        """Values that may be asked, increasing.
+        """Values that may be shown, increasing; see `chosen`."""
+        return _shown(design, self.chosen(design))
+
+    def chosen(self, design: Design) -> tuple[float, ...]:
+        """Values, or differences from the standard, that may be asked, increasing.
 
         Raises
         ------
         ValueError
             If the step does not lead from one end to the other, or there are too many values.
         """
-        if isinstance(design, Choice):
-            if self.step is None:
-                return tuple(sorted(design.values))
-            low, high = min(design.values), max(design.values)
-        else:
-            low, high = self.bounds
-        assert self.step is not None, "check() has seen to that"
+        low, high = self.ends(design)
+        if self.step is None:
+            assert isinstance(design, Choice), "check() has seen to that"
+            return tuple(sorted(design.values if design.reference is None else design.differences))
         if (high - low) / self.step > _MOST_VALUES:
             raise ValueError(f"step makes more than {_MOST_VALUES} values; make it larger")
         return steps(low, high, self.step)
@@ -244,10 +277,11 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
         ValueError
             If there is no such grid.
         """
-        values = self.values(design)
+        values = self.chosen(design)
         spread, lapse = GridAxis("spread", self.spread), GridAxis("lapse", self.lapse)
-        if not isinstance(design, Choice):
-            threshold, guess = GridAxis(THRESHOLD, values), GridAxis("guess", self.guess)
+        if not isinstance(design, Choice) or design.reference is not None:
+            alike = (1 / design.alternatives,) if isinstance(design, Choice) else (0.0,)
+            threshold, guess = GridAxis(THRESHOLD, values), GridAxis("guess", self.guess or alike)
             falls = self.harder == "more"
             return detection_quest(
                 self.shape, values, threshold, spread, guess, lapse, falls=falls, about=THRESHOLD
@@ -321,18 +355,19 @@ class StaircaseProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="stairc
         ValueError
             If one cannot.
         """
-        if isinstance(design, Choice):
+        if isinstance(design, Choice) and design.reference is None:
             raise ValueError(
-                "kind is 'staircase', which needs right answers; for a choice give 'quest'"
+                "kind is 'staircase', which needs right answers; add reference to [design], or "
+                "give 'quest'"
             )
-        self._check_bounds()
+        self._check_varied(design)
         trials = min(self.trials or MOST_TRIALS, design.trials)
         if trials < min(self.right, self.wrong):
             raise ValueError(
                 f"right is {self.right} and wrong is {self.wrong}, and a condition has {trials} "
                 f"trials: the staircase cannot move; give it more trials"
             )
-        self.staircases("")
+        self.staircases(design, "")
         if trials < min(self.right, self.wrong) * len(self.start):
             raise ValueError(
                 f"start is of {len(self.start)} staircases, and a condition has {trials} trials: "
@@ -340,19 +375,19 @@ class StaircaseProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="stairc
             )
 
     def next(
-        self, asked: Sequence[Asked], _design: Design, seed: str = ""
+        self, asked: Sequence[Asked], design: Design, seed: str = ""
     ) -> tuple[float, ...] | None:
         """Value that is shown next in a condition; None if enough was asked."""
         if self.stop.out_of_limits(asked):
             return None
-        level = self.staircases(seed).next(asked)
+        level = self.staircases(design, seed).next(asked)
         return None if level is None else (level,)
 
     def found(
-        self, asked: Sequence[Asked], _design: Design, what: str, unit: str, seed: str = ""
+        self, asked: Sequence[Asked], design: Design, what: str, unit: str, seed: str = ""
     ) -> tuple[str, ...]:
         """Sentences on the level that the staircases came to."""
-        known = self.staircases(seed).estimate(asked)
+        known, what = self.staircases(design, seed).estimate(asked), _of(design, what)
         if known is None:
             return (f"{THRESHOLD} {what}: not known, no staircase turned round with its last step",)
         return (
@@ -360,11 +395,11 @@ class StaircaseProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="stairc
             f"reversals: {known.reversals}, standard deviation {known.sd:.2g}{unit}",
         )
 
-    def values(self, _design: Design) -> tuple[float, ...]:
+    def values(self, design: Design) -> tuple[float, ...]:
         """Ends of the values that may be shown."""
-        return self.bounds
+        return _shown(design, self.ends(design))
 
-    def staircases(self, seed: str) -> Staircases:
+    def staircases(self, design: Design, seed: str) -> Staircases:
         """The staircases of a condition.
 
         Raises
@@ -372,7 +407,7 @@ class StaircaseProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="stairc
         ValueError
             If one could not move.
         """
-        least, most = self.bounds
+        least, most = self.ends(design)
         easier = 1.0 if self.target is None else self.target / (1 - self.target)
         rules = tuple(
             StaircaseRule(
@@ -389,6 +424,19 @@ class StaircaseProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="stairc
             for start in self.start
         )
         return Staircases(rules, seed)
+
+
+def _shown(design: Design, chosen: tuple[float, ...]) -> tuple[float, ...]:
+    """Values that stimuli have, increasing, for what a procedure chooses."""
+    if not isinstance(design, Choice) or design.reference is None:
+        return chosen
+    return tuple(sorted(map(design.apart, chosen)))
+
+
+def _of(design: Design, what: str) -> str:
+    """Words for what a threshold is of: a value, or a difference from the standard."""
+    compared = isinstance(design, Choice) and design.reference is not None
+    return f"difference of {what}" if compared else what
 
 
 ProcedureTable = FixedProcedure | QuestProcedure | StaircaseProcedure

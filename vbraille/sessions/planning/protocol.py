@@ -325,6 +325,11 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         return self.design.parameter if isinstance(self.design, Choice) else None
 
     @property
+    def standard(self) -> float | None:
+        """Value that all others are compared with; None if there is none."""
+        return self.design.reference if isinstance(self.design, Choice) else None
+
+    @property
     def asks(self) -> AnyQuestion:
         """Question that is asked of each trial."""
         usual = ReadQuestion() if self.passages else usual_question(self.intervals)
@@ -384,11 +389,9 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
     @property
     def trials(self) -> int:
         """Number of trials, practice left out; the most if answers decide."""
-        table = self.procedure
-        most = None if isinstance(table, FixedProcedure) else table.trials
-        if most is not None:
-            return min(most, self.design.trials) * len(self.conditions)
-        catch, trials = self.design.catch, self.design.trials * len(self.conditions)
+        table, trials = self.procedure, self.design.trials
+        most = trials if isinstance(table, FixedProcedure) else table.trials or trials
+        catch, trials = self.design.catch, min(most, trials) * len(self.conditions)
         return trials if catch is None else trials + catch.number(trials)
 
     @property

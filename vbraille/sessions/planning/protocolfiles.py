@@ -488,7 +488,8 @@ def _check_question(protocol: Protocol) -> None:
         raise ValueError(
             f"[question] kind is {asks.name!r}, which turns what a device shows; leave it"
         )
-    if asks.of_catch and getattr(protocol.procedure, "guess", None) == (0.0,):
+    guess = getattr(protocol.procedure, "guess", (0.5,))
+    if asks.of_catch and guess in (None, (0.0,)):
         # With a fifth of false alarms the threshold would be told far too low.
         raise ValueError(
             "[procedure] guess is 0, and people say yes at nothing too; give the shares that may "
@@ -554,10 +555,12 @@ def _check_conventional(protocol: Protocol) -> None:
 
 def _check_trials(protocol: Protocol) -> None:
     design = protocol.design
-    if design.catch is not None and (protocol.adaptive or protocol.task == "choice"):
-        what = "[procedure] chooses what is asked" if protocol.adaptive else "two are compared"
+    if design.catch is not None and protocol.task == "choice":
+        raise ValueError("[design] catch is for strings, and values are compared; leave it out")
+    if design.catch is not None and protocol.adaptive and design.catch.show == "repeat":
         raise ValueError(
-            f"[design] catch is for strings in a fixed order, and {what}; leave it out"
+            "[design] catch shows what the trial before it has shown, which [procedure] chooses; "
+            "give show = 'blank'"
         )
     trials, blocks = design.trials * len(protocol.conditions), design.blocks
     catch = 0 if design.catch is None else design.catch.number(trials)

@@ -208,10 +208,40 @@ class WhichQuestion(_Chosen, frozen=True, kw_only=True, tag="which"):
                 "[question] right is missing, and there are more than two to choose from; add it"
             )
         standard = getattr(design, "reference", None)
+        if adaptive:
+            self._check_chosen(design)
         if standard is not None and standard in getattr(design, "values", ()):
             raise ValueError(
                 f"[design] reference is {standard:g}, which is one of values, and of two that are "
                 f"the same none can be chosen; leave it out there"
+            )
+
+    def _check_chosen(self, design: Design) -> None:
+        """Check that a procedure knows which answers are right, or that none is.
+
+        Raises
+        ------
+        ValueError
+            If it does not.
+        """
+        standard = getattr(design, "reference", None)
+        if standard is None:
+            if self.right is not None:
+                raise ValueError(
+                    "[question] right is of values and a standard, where [procedure] chooses them; "
+                    "add reference to [design], or leave right out"
+                )
+            return
+        if self.right not in ("more", "less"):
+            raise ValueError(
+                "[question] right must be 'more' or 'less', since [procedure] goes by right answers"
+            )
+        above = getattr(design, "values", (standard,))[0] > standard
+        if getattr(design, "stimuli", 2) > 2 and above != (self.right == "more"):
+            other = "less" if self.right == "more" else "more"
+            raise ValueError(
+                f"[question] right is {self.right!r}, and several stimuli of each trial are the "
+                f"standard, which has it; give {other!r}"
             )
 
     def unfelt(self, parameter: str, *, pairs: bool) -> str:
@@ -278,6 +308,7 @@ class WhichQuestion(_Chosen, frozen=True, kw_only=True, tag="which"):
 class OddQuestion(_Chosen, frozen=True, kw_only=True, tag="odd"):
     """The question which of the stimuli differed from the others."""
 
+    positive_known: ClassVar[bool] = True
     stimuli: ClassVar[tuple[int, ...]] = (3, 4, 5)
     forms: ClassVar[tuple[str, ...]] = ("one", "triangle")
     typed: ClassVar[str] = "1, 2 or 3, for the one that differs"
@@ -303,6 +334,7 @@ class OddQuestion(_Chosen, frozen=True, kw_only=True, tag="odd"):
 class MatchQuestion(_Chosen, frozen=True, kw_only=True, tag="match"):
     """The question which of the first two stimuli the third one was (ABX)."""
 
+    positive_known: ClassVar[bool] = True
     stimuli: ClassVar[tuple[int, ...]] = (3,)
     forms: ClassVar[tuple[str, ...]] = ("abx",)
     among: ClassVar[int | None] = 2
