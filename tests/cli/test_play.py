@@ -3,6 +3,8 @@
 import re
 
 from tests.cli import program
+from tests.cli.test_read_live import until_address
+from tests.cli.watcher import Watcher
 
 SUMMARY = r"summary: seconds [0-9.]+"
 
@@ -29,3 +31,17 @@ def test_a_game_without_a_terminal_is_refused(call):
     said = call("play")
     assert said.code == 2
     assert "start it at a terminal" in said.err
+
+
+def test_a_page_turns_cards_without_a_terminal():
+    with program.start("play", "--seed", "3", "--monitor", "--hand", "sweep:400") as process:
+        try:
+            with Watcher(until_address(process)) as page:
+                page.until(lambda _, state: state["cards"])
+                assert [len(row) for row in page.state["cards"]] == [6, 6, 6, 6]
+                page.ask(ask="press", command="POINT", place=7)
+                page.until(lambda _, state: state["cards"][1][1]["side"] == "turned up")
+                assert page.state["blind"]
+                assert page.state["said"][-1] == "card: row 2, card 2; feel it"
+        finally:
+            process.kill()

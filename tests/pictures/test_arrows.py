@@ -18,7 +18,7 @@ from vbraille.scene.patterns import (
 )
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import Direction, Inverse
-from vbraille.scene.strokes import Along, Stroke
+from vbraille.scene.strokes import Along, Dotting, Stroke
 from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
@@ -87,6 +87,9 @@ def test_strokes_point_along_their_longest_pieces():
     np.testing.assert_allclose(line.points_mm.mean(axis=0), (35, 10))
     (edge,) = found(Polygon(vertices_mm=((0, 0), (30, 0), (30, 50)), stroke=stroke))
     assert way(edge) == pytest.approx(math.degrees(math.atan2(-50, -30)))
+    dots = Dotting(velocity_mm_s=-20)
+    (line,) = found(StraightLine(start_mm=(10, 10), end_mm=(60, 10), dots=dots))
+    assert abs(way(line)) == pytest.approx(180)
     contours = (((0, 0), (5, 0), (5, 40)), ((50, 50), (50, 10)))
     down, up = found(PathShape(contours_mm=contours, stroke=stroke))
     assert (way(down), way(up)) == (pytest.approx(90), pytest.approx(-90))

@@ -75,6 +75,11 @@ CANVAS = Canvas(width_mm=100, height_mm=80)
             StraightLine(start_mm=(0, 0), end_mm=(9, 0), stroke=Stroke(width_mm=3, along=Along())),
             "line from (0, 0) mm to (9, 0) mm, stroke of 3 mm cut every 2 mm",
         ),
+        (
+            Circle(center_mm=(9, 9), radius_mm=5, dots=Dotting(velocity_mm_s=20)),
+            "circle of radius 5 mm around (9, 9) mm, of dots of radius 1 mm, moving along it at 20 "
+            "mm/s",
+        ),
         (Dots(centers_mm=((1, 1), (2, 2))), "2 dots of radius 1 mm"),
         (Label(text="sun\n", place_mm=(3, 4)), 'braille "sun " at (3, 4) mm'),
         (

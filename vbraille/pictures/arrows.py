@@ -91,15 +91,20 @@ def _directions(scene: Scene, name: str) -> Iterator[tuple[str, Direction]]:
 
 def _motion(part: AnyPattern, box: Box) -> Iterator[Arrow]:
     """Arrows of what a pattern itself moves, in the box of its element."""
-    middle, wave = _middle(box), part.wave
+    middle = _middle(box)
     if isinstance(part, Moving) and any(part.velocity_mm_s):
         right, down = part.velocity_mm_s
         length_mm = _size(math.hypot(right, down), box)
         yield Arrow(_straight(middle, math.degrees(math.atan2(down, right)), length_mm))
-    if wave is None or not wave.speed:
-        return
-    back = wave.speed < 0
-    length_mm = _size(abs(wave.speed), box)
+    for wave in part.flows:
+        if wave.speed:
+            yield from _flow(part, wave.speed, box)
+
+
+def _flow(part: AnyPattern, speed: float, box: Box) -> Iterator[Arrow]:
+    """Arrows of what flows in a pattern at a speed, in mm/s or °/s."""
+    middle, back = _middle(box), speed < 0
+    length_mm = _size(abs(speed), box)
     if isinstance(part, LinearGrating):
         angle = travel_deg(part.wave_angle_deg, part.ridge_angle_deg) + 180.0 * back
         yield Arrow(_straight(middle, angle, length_mm))

@@ -127,6 +127,10 @@ def _way(angle_deg: float) -> str:
     return way if math.isclose(beside, 22.5) else f"at {turned:g}° ({way})"
 
 
+def _along(speed: float) -> str:
+    return "from its end to its beginning" if speed < 0 else "along it"
+
+
 def _moving_by(speed: float, way: str, by: str, unit: str = "mm/s") -> str:
     """Tell that something moves, and by which signal; nothing if it does not."""
     if not speed:
@@ -239,9 +243,9 @@ def _shape_words(shape: StraightLine | Circle | Polygon | PathShape) -> str:
     if shape.stroke is not None:
         said.append(_stroke_words(shape.stroke))
     if shape.dots is not None:
-        speed = shape.dots.velocity_mm_s
-        moving = f", moving by {speed:g} mm/s" if speed else ""
-        said.append(f"of dots {_dot_words(shape.dots.dot)}{moving}")
+        dots = shape.dots
+        moves = _moving_by(dots.velocity_mm_s, _along(dots.velocity_mm_s), dots.velocity_by)
+        said.append(f"of dots {_dot_words(dots.dot)}{moves}")
     if shape.cue is not None:
         said.append(f"under bands that move by {shape.cue.velocity_mm_s:g} mm/s")
     if isinstance(shape, Polygon) and shape.markers is not None:
@@ -257,8 +261,7 @@ def _stroke_words(stroke: Stroke) -> str:
         words.append("outlined")
     if stroke.along is not None:
         along = stroke.along
-        way = "from its end to its beginning" if along.velocity_mm_s < 0 else "along it"
-        moves = _moving_by(along.velocity_mm_s, way, along.velocity_by)
+        moves = _moving_by(along.velocity_mm_s, _along(along.velocity_mm_s), along.velocity_by)
         words.append(f"cut every {along.wave.length:g} mm{moves}")
     if stroke.across is not None:
         words.append(f"with {stroke.across.cycles} cycles across")
