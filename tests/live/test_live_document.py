@@ -23,6 +23,7 @@ PARTS = (
     messages.ArrayShown,
     messages.LineShown,
     messages.SceneShown,
+    messages.BesideShown,
     messages.SignalShown,
     messages.CommandShown,
     messages.CardShown,

@@ -1,18 +1,22 @@
 """A reading as pages are told of it: made anew when something changes, and only then."""
 
+import base64
 import io
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Silent
 from vbraille.engine.clock import ManualClock
 from vbraille.layout.pages import Layout
+from vbraille.live.messages import PagePress
 from vbraille.reading.device import OpenDevice
 from vbraille.reading.liveview import MOST_SAID, LastSentences, ReadState
 from vbraille.render import STRESS2, VBD
+from vbraille.render.braille.reference import deflections
 from vbraille.simulation.steering import BeAt, Pointer
 from vbraille.testing import simulated_device
 from vbraille.translate import Book, BrailleTable, Document
@@ -250,3 +254,41 @@ def test_a_change_of_the_table_is_told():
 def test_the_style_of_another_model_is_that_of_the_device():
     model = replace(STRESS2, style=STRESS2.style.replace(texture=0.3))
     assert Watch(model).viewed.changed().knobs[0].value == 0.3
+
+
+def test_another_mapping_beside_it_is_that_of_the_same_line():
+    watch = Watch()
+    assert watch.viewed.changed().beside is None
+    watch.viewed.obey(PagePress("BESIDE"))
+    state = watch.viewed.changed()
+    mapping = watch.reader.beside
+    assert mapping not in (None, watch.reader.style.mapping)
+    assert state.mapping == "mapping: alternate"
+    assert state.beside.mapping == f"mapping: {mapping.name}" == watch.said.last[-1][8:]
+    places_mm = state.beside.first_mm + state.beside.step_mm * np.arange(
+        len(base64.b64decode(state.beside.rows[0]))
+    )
+    style = watch.reader.style.replace(mapping=mapping)
+    window, array = watch.reader.window, watch.device.display
+    assert places_mm[0] == -style.geometry.cell_pitch_mm
+    assert places_mm[-1] > style.geometry.extent_mm(len(window))
+    # What the array feels with its centre somewhere is what its rows do at its columns' places.
+    for x_mm in (0.0, 11.3, 40.7):
+        felt = style.render(window.masks, array).path(np.array([x_mm]))[0]
+        columns_mm = x_mm + array.column_offsets_mm() - array.span_mm / 2
+        at = np.rint((columns_mm - places_mm[0]) / state.beside.step_mm).astype(int)
+        rows = [np.frombuffer(base64.b64decode(row), np.uint8) for row in state.beside.rows]
+        near = np.array([row[at] / 255 for row in rows])
+        there = deflections_at_places(style, window.masks, array, places_mm[at])
+        np.testing.assert_allclose(near, there, atol=1 / 255)
+        assert np.abs(near - felt).mean() < 0.1
+    while watch.reader.beside is not None:
+        watch.viewed.obey(PagePress("BESIDE"))
+    assert watch.said.last[-1] == "beside: nothing"
+    assert watch.viewed.changed().beside is None
+
+
+def deflections_at_places(style, masks, array, places_mm):
+    """Deflections of each row of actuators at places, by the equations in plain numpy."""
+    column = replace(array, columns=1)
+    return deflections(places_mm, masks, style, column)[:, :, 0].T

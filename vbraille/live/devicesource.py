@@ -198,7 +198,14 @@ class DeviceSource:
         self.blind = self.blind or state.blind
         if self.blind:
             state = msgspec.structs.replace(
-                state, lines=[], rows_shown=[], scene=None, figures=[], signals=[], blind=True
+                state,
+                lines=[],
+                rows_shown=[],
+                scene=None,
+                beside=None,
+                figures=[],
+                signals=[],
+                blind=True,
             )
         self._title = state.title
         self.signals = len(state.signals)

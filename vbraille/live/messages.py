@@ -236,6 +236,31 @@ class SceneShown(msgspec.Struct, frozen=True):
     off_image: str = ""
 
 
+class BesideShown(msgspec.Struct, frozen=True):
+    """The line under the hand in another mapping, which a page draws beside the array.
+
+    All actuators of a row do the same at one place, so that a row of values tells of all of them.
+
+    Parameters
+    ----------
+    mapping
+        Words for the mapping, as in `ViewState`.
+    rows_shown
+        Rows of dots that it shows, as in `ViewState`.
+    first_mm, step_mm
+        First of the places, and the distance from each to the next.
+    rows
+        For each row of actuators the deflections at these places, in base64: a byte each, 0 for
+        rest and 255 for full swing.
+    """
+
+    mapping: str
+    rows_shown: list[tuple[int, int]]
+    first_mm: float
+    step_mm: float
+    rows: list[str]
+
+
 class SignalShown(msgspec.Struct, frozen=True):
     """A signal of a picture; frames have its value at its place in the list.
 
@@ -375,6 +400,8 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
         Whether reading is over.
     scene
         Tactile picture that is felt; None where lines are read, and in a blind session.
+    beside
+        The line under the hand in another mapping, where that was asked for.
     figures
         Tactile pictures that stand on the page of a text, at their places.
     signals
@@ -404,6 +431,7 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
     blind: bool = False
     done: bool = False
     scene: SceneShown | None = None
+    beside: BesideShown | None = None
     figures: list[SceneShown] = []
     signals: list[SignalShown] = []
     commands: list[CommandShown] = []

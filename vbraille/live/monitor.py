@@ -219,8 +219,8 @@ def _fewer(state: ViewState) -> Iterator[ViewState]:
     under = [line for line in state.lines if line.under]
     yield msgspec.structs.replace(state, lines=under)
     pale = [msgspec.structs.replace(one, image="") for one in state.figures]
-    yield msgspec.structs.replace(state, lines=under, figures=pale)
+    yield msgspec.structs.replace(state, lines=under, figures=pale, beside=None)
     if state.scene is not None:
         scene = msgspec.structs.replace(state.scene, image="", off_image="")
-        yield msgspec.structs.replace(state, lines=under, figures=pale, scene=scene)
+        yield msgspec.structs.replace(state, lines=under, figures=pale, beside=None, scene=scene)
     yield ViewState(state.number, place=state.place, device=_TOO_LARGE, blind=state.blind)

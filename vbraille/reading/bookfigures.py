@@ -92,7 +92,7 @@ class BookFigures:
     room
         Bytes of the largest program that the engine has room for.
     sound, sounding
-        Of a figure that is felt alone, as for a `SceneView`.
+        Sounds of a figure that is felt alone, as for a `SceneView`.
     """
 
     def __init__(

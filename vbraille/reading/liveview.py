@@ -9,6 +9,7 @@ from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any, Final, Self, cast
 
+import numpy as np
 from msgspec.structs import replace
 
 from vbraille.config.settings import KNOBS, say_mapping
@@ -16,6 +17,7 @@ from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Changed, Silent, Stalled, Stranger, Unplugged
 from vbraille.errors import InputError
 from vbraille.live.messages import (
+    BesideShown,
     CardShown,
     CommandShown,
     LineShown,
@@ -56,6 +58,7 @@ if TYPE_CHECKING:
     from vbraille.reading.sceneview import SceneView
     from vbraille.reading.view import View
     from vbraille.reading.viewport import Window
+    from vbraille.render.braille.mappings import Mapping
     from vbraille.scene.scene import Scene
     from vbraille.simulation.steering import Pointer
 
@@ -236,7 +239,7 @@ class ReadState(ExploredState):
             for one, picture in zip(under.figured.placed, pictures, strict=True)
         ]
         seen = reader.window, under.style, layout, under.shown, under.reached, layout.counted
-        return (*seen, under.alone, *felt, *pictures)
+        return (*seen, reader.beside, under.alone, *felt, *pictures)
 
     @property
     def _alone(self) -> FeltScene | None:
@@ -263,10 +266,30 @@ class ReadState(ExploredState):
             "knobs": knobs_shown(style),
             "mapping": say_mapping(style.mapping),
             "figures": self._placed,
+            "beside": None if reader.beside is None else self._beside(reader.beside),
             "commands": commands_shown(
                 reader, (*_READING, "FEEL") if figure_address(line) else _READING
             ),
         }
+
+    def _beside(self, mapping: Mapping) -> BesideShown:
+        """Make the line under the hand in another mapping."""
+        # Only a page that wants it waits for what makes maps.
+        from vbraille.live.maps import STEP_MM, deflections_at
+
+        window, display = self._device.reader.window, self._device.display
+        style = self._device.reader.style.replace(mapping=mapping)
+        geometry = style.geometry
+        length_mm = geometry.extent_mm(len(window)) + 2 * geometry.cell_pitch_mm
+        places_mm = STEP_MM * np.arange(int(length_mm / STEP_MM)) - geometry.cell_pitch_mm
+        (rows,) = deflections_at(style.render(window.masks, display), places_mm)
+        return BesideShown(
+            say_mapping(mapping),
+            rows_shown(style, display),
+            float(places_mm[0]) + window.start_mm,
+            STEP_MM,
+            [base64.b64encode(np.rint(255 * row).astype(np.uint8)).decode() for row in rows],
+        )
 
     def _lines(self, line: Line) -> Iterable[LineShown]:
         """Lines to be drawn, from top to bottom."""
@@ -505,7 +528,7 @@ def scene_shown(loaded: LoadedScene, image: str) -> SceneShown:
 
 
 # Commands that pages offer as buttons, in this order.
-_READING: Final = ("LNUP", "LNDN", "PAUSE", "MAPPING", "UNDO")
+_READING: Final = ("LNUP", "LNDN", "PAUSE", "MAPPING", "BESIDE", "UNDO")
 _FEELING: Final = (
     *("BACK", "PAUSE", "ZOOM_IN", "ZOOM_OUT", "WHOLE"),
     *("PAN_LEFT", "PAN_RIGHT", "PAN_UP", "PAN_DOWN", "HERE", "ENTERING"),

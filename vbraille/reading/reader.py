@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from vbraille.reading.search.questions import Counted, Query
     from vbraille.reading.search.seeker import Seeker
     from vbraille.render import BrailleStyle, Model
+    from vbraille.render.braille.mappings import Mapping
     from vbraille.simulation.steering import Steering
     from vbraille.translate import Book
     from vbraille.translate.source import Mark, Source
@@ -188,6 +189,8 @@ class Reader(View):
         Whether it was looked for backward.
     lines : int
         Number of lines read so far: those that were under the hand.
+    beside : Mapping or None
+        Mapping in which the live view shows the line beside the array; None for none.
     """
 
     does, doing = "read", "reading"
@@ -232,6 +235,7 @@ class Reader(View):
         self.sought = ""
         self.followed: Mark | None = None  # link or reference that was followed last
         self.lines = 0
+        self.beside: Mapping | None = None
         # Whether lines are as wide as the user says, and not as wide as the hand can go.
         self._fixed = layout.width != self.under.width
         self._book = layout.book  # which is the one that the other process knows

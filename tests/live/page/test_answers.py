@@ -4,12 +4,20 @@ import base64
 from pathlib import Path
 
 import msgspec
+import numpy as np
 import pytest
 
 from tests.live.canned import ARRAY, SIGNALS, CannedSource, canned_state
 from tests.live.page.showing import comes, settled, until
 from tests.live.page.test_everyone import faults
-from vbraille.live.messages import CardShown, CommandShown, PagePress, SceneShown, SignalShown
+from vbraille.live.messages import (
+    BesideShown,
+    CardShown,
+    CommandShown,
+    PagePress,
+    SceneShown,
+    SignalShown,
+)
 
 PNG = base64.b64encode((Path(__file__).parents[3] / "docs/wave.png").read_bytes()).decode()
 IMAGE = f"data:image/png;base64,{PNG}"
@@ -129,3 +137,29 @@ def test_who_watches_a_game_sees_how_cards_lie_and_turns_none(opens):
 def test_a_game_fits_a_narrow_page(opens):
     page, _ = opens(CannedSource(state=played()), viewport={"width": 320, "height": 640})
     assert page.evaluate("document.documentElement.scrollWidth") <= 320
+
+
+def test_another_mapping_is_drawn_beside_the_array_under_the_same_finger(opens):
+    # Row r of the other mapping deflects by r tenths of a share that rises with the place.
+    places = np.arange(0, 220, 0.1)
+    rows = [np.rint(places / 220 * (row + 1) / 6 * 255).astype(np.uint8) for row in range(6)]
+    beside = BesideShown(
+        "mapping: compact",
+        [(row % 3, row % 3) for row in range(6)],
+        0.0,
+        0.1,
+        [base64.b64encode(row).decode() for row in rows],
+    )
+    source = CannedSource(state=canned_state(beside=beside))
+    page, _ = opens(source)
+    page.get_by_role("heading", name="Beside it: mapping: compact").wait_for()
+    until(page, "Boolean(vbraille.beside)")
+    x_mm, found = page.evaluate("[vbraille.beside.x_mm, vbraille.beside.deflections]")
+    for n, value in enumerate(found):
+        at = x_mm + (n % 10 - 4.5) * ARRAY.column_pitch_mm
+        assert value == pytest.approx(at / 220 * (n // 10 + 1) / 6, abs=1 / 255)
+    assert page.locator("#beside-deflection [role=gridcell]").count() == 60
+    assert "dots 1 4" in page.locator("#beside-deflection").inner_text()
+    assert faults(page) == []
+    source.show(canned_state(2))
+    until(page, "document.getElementById('beside').hidden")

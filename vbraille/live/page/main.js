@@ -4,6 +4,7 @@
  */
 
 import { Cards, Signals } from "./answers.js";
+import { Beside } from "./beside.js";
 import { sayWhere } from "./braille.js";
 import { Connection } from "./connection.js";
 import { byId, write } from "./drawing.js";
@@ -91,6 +92,7 @@ const connection = new Connection(token(), {
 const ask = (request) => connection.ask(request);
 const sheet = new Sheet(byId("sheet"));
 const skin = new Skin(byId("deflection"), byId("strain"), byId("touch-note"));
+const beside = new Beside();
 const saving = new Saving(skin);
 saving.now = () => /** @type {[State | null, Frame | null]} */ ([state, frame]);
 const traces = new Traces(byId("scopes"));
@@ -166,10 +168,11 @@ function show() {
   const open = connection.open;
   const steers = Boolean(open && welcome?.steers && !playback.on && !state.done);
   document.body.classList.toggle("blind", state.blind);
-  for (const id of ["touch"]) byId(id).hidden = state.blind;
+  byId("touch").hidden = state.blind;
   telling.show(state);
   sheet.show(state);
   skin.show(state);
+  beside.show(state);
   traces.show(state, skin.chosen);
   knobs.show(state, steers, whyNot(state, open));
   hand.show(state, steers);
@@ -180,7 +183,10 @@ function show() {
   if (state.array) playback.tick(state.array.rate_hz);
   write(byId("kind"), playback.on ? "· a recording" : open ? (steers ? "· may steer" : "· watching") : "· not connected");
   write(byId("page-note"), pageNote(state));
-  if (frame && frame.deflections.length) skin.move(state, frame);
+  if (frame && frame.deflections.length) {
+    skin.move(state, frame);
+    beside.move(frame);
+  }
 }
 
 /**
@@ -212,6 +218,7 @@ function draw(now) {
   queue = [];
   sheet.move(state, frame);
   if (!state.blind) skin.move(state, frame);
+  beside.move(frame);
   saving.take(frame);
   hand.see(frame);
   if (playback.on) playback.show();
@@ -233,6 +240,7 @@ function read() {
   signals.read(frame);
   traces.draw();
   if (!state.blind) skin.tell();
+  beside.tell();
 }
 
 byId("say").addEventListener("click", () => {
@@ -274,6 +282,9 @@ const shown = {
     if (!frame) return null;
     const { tick, time_s, x_mm, y_mm, rows, columns } = frame;
     return { tick, time_s, x_mm, y_mm, rows, columns, deflections: Array.from(frame.deflections) };
+  },
+  get beside() {
+    return frame && beside.shown ? { x_mm: frame.x_mm, deflections: Array.from(beside.shown) } : null;
   },
   get state() {
     return state;

@@ -43,6 +43,13 @@ const MAP_BYTES = 8;
  * @property {string[]} off
  * @property {string} off_image
  *
+ * @typedef {object} BesideShown
+ * @property {string} mapping
+ * @property {[number, number][]} rows_shown
+ * @property {number} first_mm
+ * @property {number} step_mm
+ * @property {string[]} rows
+ *
  * @typedef {object} CardShown
  * @property {string} place
  * @property {string} side
@@ -94,6 +101,7 @@ const MAP_BYTES = 8;
  * @property {boolean} blind
  * @property {boolean} done
  * @property {SceneShown | null} [scene]
+ * @property {BesideShown | null} [beside]
  * @property {SceneShown[]} figures
  * @property {{name: string, words: string}[]} signals
  * @property {{name: string, words: string}[]} commands

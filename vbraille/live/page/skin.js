@@ -76,8 +76,10 @@ export class Skin {
    * @param {HTMLElement} leaning
    * @param {HTMLElement} strained
    * @param {HTMLElement} note
+   * @param {string} heading id of the heading that names it
    */
-  constructor(leaning, strained, note) {
+  constructor(leaning, strained, note, heading = "touch-heading") {
+    this.heading = heading;
     this.left = svg("svg", { class: "skin" });
     this.right = svg("svg", {
       class: "skin", role: "img", "aria-label": "Strain of the skin between neighbours, a bar for each; the same stands in a table below",
@@ -164,7 +166,7 @@ export class Skin {
       }
       return group;
     };
-    const grid = svg("g", { role: "grid", "aria-labelledby": "touch-heading", class: "actuators" });
+    const grid = svg("g", { role: "grid", "aria-labelledby": this.heading, class: "actuators" });
     const count = array.rows * array.columns;
     this.#cells = [];
     this.#seats = { x: new Float64Array(count), y: new Float64Array(count), wide: 0.36 * pitch, high: 0.62 * row_mm };

@@ -60,6 +60,15 @@ def change_mapping(reader: Reader) -> None:
         _turn(reader, "mapping", mapping, say_mapping(mapping))
 
 
+def show_beside(reader: Reader) -> None:
+    """Show the line in the next mapping beside the array in the live view, or in none any more."""
+    style, display = reader.style, reader.engine.display
+    now = style if reader.beside is None else style.replace(mapping=reader.beside)
+    mapping = next_mapping(now, display)
+    reader.beside = None if mapping == style.mapping else mapping
+    reader.say(f"beside: {'nothing' if reader.beside is None else say_mapping(mapping)}")
+
+
 def undo_turn(reader: Reader) -> None:
     """Take back the last turn that was not taken back yet."""
     if not reader.styles_before:
