@@ -1,5 +1,6 @@
 """``vbraille device calibrate`` at a terminal, with a simulated controller."""
 
+import json
 import re
 import tomllib
 from contextlib import contextmanager
@@ -81,9 +82,17 @@ def test_a_round_is_led_left_taken_up_and_kept(spec, tmp_path, call):
         "inverted: row 1, column 2",
         "gain of row 1, column 2: 90 %",
     ]
+    shown = json.loads(call("device", "calibrate", spec, "--show", "--json").out)
+    assert (shown["device"], shown["own_gains"]) == ("bench", False)
+    assert shown["calibration"]["dead"] == [[0, 2]]
+    assert shown["calibration"]["scale"] == [[1.0, -0.9, 0.0]]
+    assert shown["file"].endswith(FILE)
+    assert call("device", "calibrate", spec, "--json").code == 2
     assert "actuators tried: 3 of 3" in call("device", "info", spec).out
     assert call("device", "calibrate", spec, "--forget").out == "calibration: forgotten\n"
     assert call("device", "calibrate", spec, "--forget").out == "calibration: none was kept\n"
+    shown = json.loads(call("device", "calibrate", spec, "--show", "--json").out)
+    assert (shown["calibration"], shown["file"]) == (None, None)
     assert "calibration: none;" in call("device", "info", spec).out
     assert not (tmp_path / FILE).exists()
 

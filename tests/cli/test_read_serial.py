@@ -1,6 +1,7 @@
 """Reading on a device at a serial line: the whole path, pseudo-terminal and processes included."""
 
 import ctypes
+import json
 import os
 import re
 import resource
@@ -324,11 +325,13 @@ def test_device_check(tmp_path):
 @heavy  # verdicts are tested on a clock of their own; here all of a check goes by in real time
 def test_a_device_without_a_watchdog_is_not_fit_to_be_read_on(tmp_path):
     with simulated(tmp_path, "--model", "vbd", "--defect", "no-watchdog") as (spec, _):
-        checked = program.run("device", "check", spec)
-    verdict = checked.stdout.splitlines()[-1]
+        checked = program.run("device", "check", spec, "--json")
+    verdict = checked.stderr.splitlines()[-1]
     assert verdict.startswith("verdict: not fit to be read on: ")
     assert "its watchdog does not trip in time when no frame comes" in verdict
-    assert (checked.returncode, checked.stderr) == (1, "")
+    found = json.loads(checked.stdout)
+    assert (checked.returncode, found["fit"], found["trips_ms"]) == (1, False, [None] * 3)
+    assert verdict.endswith("; ".join(found["wrong"]))
 
 
 def test_device_list_and_a_simulated_device_without_a_model(call):

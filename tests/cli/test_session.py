@@ -3,6 +3,7 @@
 import csv
 import hashlib
 import io
+import json
 import os
 import re
 import resource
@@ -182,6 +183,11 @@ def test_check_says_what_is_whole(call, folder):
         r"record: \d+ events, SHA-256 [0-9a-f]{64}\n",
         said.out,
     )
+    found = json.loads(call("session", "check", folder, "--json").out)
+    assert found == {
+        "good": True,
+        "findings": [{"text": text, "good": True} for text in said.out.splitlines()],
+    }
     assert contents(folder) == before
 
 

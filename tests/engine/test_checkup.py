@@ -1,5 +1,6 @@
 """Whether a device is fit to be read on, by a controller on a clock that is turned by hand."""
 
+import json
 import re
 from dataclasses import replace
 
@@ -42,15 +43,17 @@ def checked():
         spoil(bench)
         said = []
         with bench.begin(None) as device:
-            code = check(device, BenchClock(bench), said.append, rate_s=RATE_S)
-        return code, said
+            found = check(device, BenchClock(bench), said.append, rate_s=RATE_S)
+        # As --json prints it: without NaN, which JSON has not.
+        assert json.loads(json.dumps(found.to_json(), allow_nan=False))["wrong"] == found.wrong
+        return found.fit, said
 
     return run
 
 
 def test_what_is_as_it_should_be_is_fit_and_measured(checked):
-    code, said = checked()
-    assert (code, said[-1]) == (0, "verdict: fit to be read on")
+    fit, said = checked()
+    assert (fit, said[-1]) == (True, "verdict: fit to be read on")
     kinds = [line.partition(":")[0] for line in said]
     assert kinds[:7] == ["actuator", "actuator", "rate", "work", "late", "clock", "place"]
     assert "late: this computer by 0.0 ms at most, the line by 0.0 ms" in said
@@ -135,8 +138,8 @@ EARLY = "its watchdog trips after 31 ms, too early; 50 ms are right"
     ids=["unacknowledged", "untaken", "clock 0.5", "far off", "late", "early", "clock 0.97"],
 )
 def test_what_is_not_as_it_should_be_is_not_fit(checked, spoil, found):
-    code, said = checked(spoil)
-    assert code == 1
+    fit, said = checked(spoil)
+    assert not fit
     verdict = said[-1].removeprefix("verdict: not fit to be read on: ")
     assert verdict != said[-1]
     assert [sentence for sentence in found if sentence not in verdict] == []
@@ -146,16 +149,16 @@ def test_what_is_not_as_it_should_be_is_not_fit(checked, spoil, found):
     "changes", [{"enabled": b"\0\0"}, pytest.param({"gain": b"\0\0"}, marks=heavy)]
 )
 def test_actuators_that_are_all_disabled_are_not_fit_and_not_swung(checked, changes):
-    code, said = checked(**changes)
-    assert code == 1
+    fit, said = checked(**changes)
+    assert not fit
     assert said[-1] == "verdict: not fit to be read on: every one of its actuators is disabled"
     assert not [line for line in said if line.startswith("actuator")]
 
 
 def test_some_disabled_actuators_and_a_place_not_tested_are_said_with_the_verdict(checked):
     """The place is not tested where the reader is to show it."""
-    code, said = checked(enabled=b"\1\0", encoder=Encoder.INCREMENTAL, left_stop_count=0)
-    assert code == 0
+    fit, said = checked(enabled=b"\1\0", encoder=Encoder.INCREMENTAL, left_stop_count=0)
+    assert fit
     assert said[-1] == (
         "verdict: fit to be read on, without 1 of its actuators, which are disabled"
     )
@@ -179,7 +182,7 @@ def test_a_device_of_two_axes_is_shown_a_corner_and_has_no_stop(checked):
 def test_a_bad_driver_is_not_fit_by_the_name_of_its_fault(driver, found):
     clock, said = ManualClock(), []
     device = driver(replace(info(), rows=1, columns=2), clock)
-    assert check(device, clock, said.append) == 1
+    assert not check(device, clock, said.append).fit
     assert said[-1].startswith("verdict: not fit to be read on: ")
     assert found in said[-1]
 
@@ -189,13 +192,13 @@ def test_a_slow_but_right_clock_and_a_carriage_at_its_stop_are_fit(checked):
         clock_at(0.99)(bench)
         bench.way_mm = -1.5
 
-    assert checked(spoil)[0] == 0
+    assert checked(spoil)[0]
 
 
 def test_what_a_device_does_not_tell_is_said_with_the_verdict():
     clock, said = ManualClock(), []
     with Good(replace(info(), rows=1, columns=2), clock) as device:
-        assert check(device, clock, said.append) == 0
+        assert check(device, clock, said.append).fit
     assert said[-1] == (
         "verdict: fit to be read on, but what it has taken and its watchdog could not be tested"
     )

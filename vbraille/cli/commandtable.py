@@ -357,13 +357,13 @@ ACTIONS = {
         "check": CommandRow(
             "Swing each actuator, hold the rate, measure the clock, the round trip and the "
             "watchdog, and judge whether a person can read on the device.",
-            (_SPEC, _OWN),
+            (_SPEC, _OWN, "json"),
             "vbraille device check serial:/dev/ttyACM0 --model stress2",
         ),
         "calibrate": CommandRow(
             "Feel or look at each actuator in turn, and keep which are dead, weak or inverted, and "
             "their gains; h says the keys.",
-            (_SPEC, _OWN, ("show", "forget")),
+            (_SPEC, _OWN, ("show", "forget"), "json"),
             "vbraille device calibrate serial:/dev/ttyACM0",
         ),
     },
@@ -461,7 +461,7 @@ ACTIONS = {
         ),
         "check": CommandRow(
             "See whether every file of a session is whole, and nothing was changed.",
-            (_FOLDER, "expect"),
+            (_FOLDER, "expect", "json"),
             "vbraille session check P07-legibility-20261121-101500",
         ),
         "withdraw": CommandRow(

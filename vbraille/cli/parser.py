@@ -50,6 +50,7 @@ _GONE = {
     "simulate --port": "--udp-port is where a simulated Latero listens",
     "simulate --lines": "--page-lines has a hand read so many lines of a page",
     "simulate --foreign": "--stray sends a stranger's datagrams",
+    "--cues sound": "--cues tones plays them through the loudspeakers",
     "--plain": "progress is lines, at a terminal or with --verbose",
     "--play": "give the recording by itself, as in vbraille monitor reading.h5",
     "--abstract": "--outline draws what is felt",
@@ -146,7 +147,8 @@ class CommandParser(argparse.ArgumentParser):
         try:
             super()._check_value(action, value)
         except argparse.ArgumentError as error:
-            self._refuse_gone(str(value))
+            option = "".join(f"{name} " for name in action.option_strings[-1:])
+            self._refuse_gone(f"{option}{value}")
             near = nearest(str(value), map(str, action.choices or ()))
             if isinstance(action, argparse._SubParsersAction):
                 self.error(f"there is no {action.dest} {value!r}{near}")

@@ -9,7 +9,7 @@ import gc
 import math
 import resource
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -88,6 +88,46 @@ class Rate:
     x_mm: tuple[float, float]
     host_ms: float
     place_ms: float
+
+
+@dataclass(slots=True)
+class Checkup:
+    """Result of a checkup, filled as it goes on.
+
+    Parameters
+    ----------
+    rate
+        How well the device held its rate; None before that is measured.
+    round_trips_ms
+        First percentile, median and 99th percentile of the round trips; empty without any.
+    trips_ms
+        For each time without frames, when the watchdog's trip was reported; None if it was not.
+    counts
+        Faults by name, as the device and its line count them.
+    wrong
+        Clauses on why the device is not fit to be read on.
+    """
+
+    rate: Rate | None = None
+    round_trips_ms: list[float] = field(default_factory=list)
+    trips_ms: list[float | None] = field(default_factory=list)
+    counts: dict[str, int] = field(default_factory=dict)
+    wrong: list[str] = field(default_factory=list)
+
+    @property
+    def fit(self) -> bool:
+        """Tell if the device is fit to be read on."""
+        return not self.wrong
+
+    def to_json(self) -> dict[str, Any]:
+        """Tell all of it for JSON, which has no NaN: null stands for what was not told."""
+        rate = {} if self.rate is None else asdict(self.rate)
+        if self.rate is not None:
+            if math.isnan(self.rate.clock_s):
+                rate["clock_s"] = None
+            if math.isnan(self.rate.x_mm[0]):
+                rate["x_mm"] = None
+        return {"fit": self.fit, **asdict(self), "rate": rate}
 
 
 class Watch:
@@ -477,7 +517,7 @@ class ActuatorSwings:
 
 def check(
     device: Device, clock: Clock, say: Callable[[str], None], *, rate_s: float = _RATE_S
-) -> int:
+) -> Checkup:
     """Measure a device; say what was measured, one thing a line, and last the verdict.
 
     Parameters
@@ -488,11 +528,6 @@ def check(
         Takes a line.
     rate_s
         For how long the device is held to its rate, in seconds.
-
-    Returns
-    -------
-    int
-        Exit code: 0 if the device is fit to be read on, 1 if it is not.
 
     Raises
     ------
@@ -520,15 +555,17 @@ class _Check:
         self._watch = watch
         self._rate_s = rate_s
         self._shown = False  # whether its place was chosen here, and says nothing
+        self._found = Checkup()
 
-    def run(self) -> int:
+    def run(self) -> Checkup:
         device = self._device
         self._wait_for_place()
         self._swing_each()
         missed = device.counts().get("states missed", 0)
-        rate = hold_rate(device, self._clock, self._rate_s)
+        rate = self._found.rate = hold_rate(device, self._clock, self._rate_s)
         missed = device.counts().get("states missed", 0) - missed
-        wrong = [
+        wrong = self._found.wrong
+        wrong += [
             *self._actuators(),
             *self._rate(rate, missed),
             *self._time(rate),
@@ -542,9 +579,9 @@ class _Check:
         wrong += [*self._watch.faults(), *self._end()]
         if wrong:
             self._say(f"verdict: not fit to be read on: {'; '.join(wrong)}")
-            return 1
-        self._say(f"verdict: fit to be read on{self._but()}")
-        return 0
+        else:
+            self._say(f"verdict: fit to be read on{self._but()}")
+        return self._found
 
     def _swing_each(self) -> None:
         """Swing one actuator after the other, but for those that the device reports as disabled."""
@@ -671,7 +708,7 @@ class _Check:
                 "it acknowledges none of the frames that it is sent; see to its frame_sequence, "
                 "or to acknowledged_ns of its driver"
             ]
-        low, median, high = np.percentile(taken, (1, 50, 99))
+        low, median, high = self._found.round_trips_ms = np.percentile(taken, (1, 50, 99)).tolist()
         self._say(f"round trip: median {median:.2f} ms, 98 % within {low:.2f} to {high:.2f} ms")
         if taken.size < _ROUND_TRIPS:
             return [f"only {taken.size} frames were acknowledged before one was not"]
@@ -686,6 +723,7 @@ class _Check:
             return []
         self._say("watchdog: the device is sent nothing now, so that it trips")
         taken = [trip_ms(self._device, self._clock) for _ in range(_TRIPS)]
+        self._found.trips_ms = taken
         tripped = [ms for ms in taken if ms is not None]
         if not tripped:
             self._say("watchdog: no trip was reported")
@@ -707,7 +745,7 @@ class _Check:
         return [f"its watchdog trips after {median:.0f} ms, too {how}; {WATCHDOG_MS} ms are right"]
 
     def _faults(self) -> list[str]:
-        counts = self._device.counts()
+        counts = self._found.counts = dict(self._device.counts())
         for name, count in counts.items():
             self._say(f"{name}: {count}")
         return [f"{name}: {count}" for name, count in counts.items() if count > _MOST_FAULTS]

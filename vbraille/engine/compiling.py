@@ -1,7 +1,7 @@
 """Compile all that a reading calls, so that the first one does not wait for it.
 
-What all kernels share, the frames, is compiled first. Then three processes go on, each with a part
-of the rest: `python -m vbraille.engine.compiling ticks` compiles one part.
+What all kernels share, the frames, is compiled first. Then two processes go on, each with half of
+the rest; `python -m vbraille.engine.compiling` is the second.
 """
 
 from __future__ import annotations
@@ -28,21 +28,16 @@ def compile_all() -> None:
     Raises
     ------
     subprocess.CalledProcessError
-        If one of the processes fails, which says why on standard error.
+        If the other process fails, which says why on standard error.
     """
     # The frames were compiled with the modules above, which name the types of their numbers.
-    first, *others = _PARTS
-    processes = [
-        subprocess.Popen([sys.executable, "-m", "vbraille.engine.compiling", part])
-        for part in others
-    ]
+    other = subprocess.Popen([sys.executable, "-m", "vbraille.engine.compiling"])
     try:
-        _PARTS[first]()
+        _compile_ticks()
     finally:
-        codes = [process.wait() for process in processes]
-    for process, code in zip(processes, codes, strict=True):
-        if code:
-            raise subprocess.CalledProcessError(code, process.args)
+        code = other.wait()
+    if code:
+        raise subprocess.CalledProcessError(code, other.args)
 
 
 def _compile_ticks() -> None:
@@ -69,22 +64,17 @@ def _compile_ticks() -> None:
 
 
 def _compile_pictures() -> None:
-    """Frames of lines and pictures along a path."""
+    """Frames of lines and pictures along a path, and maps, whose grids they share."""
     for model in MODELS.values():
         line = model.style.render(np.zeros(1, np.uint8), model.display)
         line.path(np.zeros(1))
         line.poses(np.zeros(1), np.zeros(1))
         line.frame(0.0, np.zeros(model.display.shape))
         compile_scene(_SCENE, model.display).poses(np.zeros(1), np.zeros(1))
-
-
-def _compile_maps() -> None:
-    """Maps of pictures, and the grids that frames of pictures are found by."""
     SceneMap(_SCENE).deflections(np.zeros(1), np.zeros(1))
 
 
 _SCENE = Scene(canvas=Canvas(width_mm=10.0, height_mm=10.0), elements=(Uniform(),))
-_PARTS = {"ticks": _compile_ticks, "pictures": _compile_pictures, "maps": _compile_maps}
 
 if __name__ == "__main__":
-    _PARTS[sys.argv[1]]()
+    _compile_pictures()

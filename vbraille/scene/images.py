@@ -162,15 +162,16 @@ def shape_of(width_mm: float, height_mm: float, per_mm: float) -> tuple[int, int
 def _source(image: Image) -> tuple[object, ...]:
     """All that the intensities of an image follow from."""
     outside = image.outside if image.blur_mm else 0.0
-    looks = (image.channel, image.inverted_source, image.blur_mm, outside)
+    looks = (image.channel, image.inverted_source, image.blur_mm, outside, image.nearest)
     return (image.file, image.width_mm, image.height_mm, *looks)
 
 
 def _laid(image: Image, folder: Path) -> _Laid:
     """Read an image, and blur it."""
     size = (0.0, 0.0)
-    per_mm = MOST_PER_MM
-    if image.blur_mm:
+    # Whose own pixels count has all of them.
+    per_mm = math.inf if image.nearest else MOST_PER_MM
+    if image.blur_mm and not image.nearest:
         per_mm = min(per_mm, _WIDEST_BLUR / image.blur_mm)
 
     def shape(columns: int, rows: int, own: tuple[float, float] | None) -> tuple[int, int]:
@@ -224,4 +225,5 @@ def _bitmap(image: Image, laid: _Laid) -> Bitmap:
         width_mm=laid.width_mm + 2 * beside,
         height_mm=laid.height_mm + 2 * above,
         outside=image.outside,
+        nearest=image.nearest,
     )

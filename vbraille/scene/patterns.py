@@ -357,6 +357,9 @@ class Image(Pattern, frozen=True, kw_only=True, tag="image"):
         Standard deviation of the Gauss by which it is blurred, since sharp edges are not pleasant.
     outside
         Intensity beyond its edges.
+    nearest
+        Whether each place has the intensity of the pixel that it is in, and not one between those
+        of the pixels around it.
     texture
         Pattern that it is the mask of; None for a plain map.
 
@@ -374,6 +377,7 @@ class Image(Pattern, frozen=True, kw_only=True, tag="image"):
     inverted_source: bool = False
     blur_mm: float = 0.0
     outside: float = 0.0
+    nearest: bool = False
     texture: AnyPattern | None = None
 
     def __post_init__(self) -> None:

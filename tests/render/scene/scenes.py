@@ -323,6 +323,7 @@ image_fields = {
     "width_mm": numbers(0.5, 40),
     "height_mm": numbers(0.5, 40),
     "outside": st.just(0.0) | shares,
+    "nearest": st.booleans(),
 }
 labels = patterns_of(
     Label,

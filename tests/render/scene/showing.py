@@ -42,7 +42,8 @@ def bitmap_of(image):
         "sparse.png": rng.uniform(size=(rows, columns)) * (rng.uniform(size=(rows, columns)) > 0.8),
     }.get(image.file, rng.uniform(size=(rows, columns)))
     pixels = np.round(gray * WHOLE).astype(np.uint16)
-    return Bitmap(pixels, image.place_mm, image.width_mm, image.height_mm, image.outside)
+    size = image.width_mm, image.height_mm
+    return Bitmap(pixels, image.place_mm, *size, image.outside, image.nearest)
 
 
 def written_of(label):

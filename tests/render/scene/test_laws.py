@@ -227,6 +227,10 @@ def _regular_dot(dot):
 
 
 def _regular_shape(shape):
+    if shape.cue is not None:
+        cue = replace(shape.cue, whole_cycles=False, vibration=_whole(shape.cue.vibration))
+        speed = cue.ridge_mm + cue.gap_mm if cue.velocity_mm_s else 0.0
+        shape = replace(shape, cue=replace(cue, velocity_mm_s=speed))
     if shape.stroke is not None:
         stroke = replace(shape.stroke, vibration=_whole(shape.stroke.vibration))
         if stroke.along is not None:
@@ -237,7 +241,9 @@ def _regular_shape(shape):
         return replace(shape, stroke=stroke)
     if shape.dots is not None:
         swing = _whole(shape.dots.vertex_vibration)
-        dots = replace(shape.dots, dot=_regular_dot(shape.dots.dot), vertex_vibration=swing)
+        dot = _regular_dot(shape.dots.dot)
+        # Each row of dots that moves has a period of its own.
+        dots = replace(shape.dots, dot=dot, vertex_vibration=swing, velocity_mm_s=0.0)
         return replace(shape, dots=dots)
     return shape
 

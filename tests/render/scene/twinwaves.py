@@ -178,12 +178,19 @@ def axial_grating(grating: AxialGrating, at: ActuatorPlaces) -> Values:
 
 
 def intensity(bitmap: Bitmap, at: ActuatorPlaces) -> Values:
-    """Compute the intensity of a bitmap, bilinear between the middles of its pixels: 8.4.2."""
+    """Compute the intensity of a bitmap: 8.4.2.
+
+    It is bilinear between the middles of its pixels, or that of the nearest.
+    """
     rows, columns = bitmap.intensities.shape
     framed = np.full((rows + 2, columns + 2), round(bitmap.outside * WHOLE))
     framed[1:-1, 1:-1] = bitmap.intensities
     framed = framed / WHOLE
     dx, dy = at.from_point(*bitmap.place_mm)
+    if bitmap.nearest:
+        i = np.floor(dy / bitmap.height_mm * rows).astype(int)
+        j = np.floor(dx / bitmap.width_mm * columns).astype(int)
+        return framed[np.clip(i + 1, 0, rows + 1), np.clip(j + 1, 0, columns + 1)]
     # The pixel with its middle at (0, 0) is the first of the frame around them.
     u = np.clip(dx / bitmap.width_mm * columns + 0.5, 0, columns + 1)
     v = np.clip(dy / bitmap.height_mm * rows + 0.5, 0, rows + 1)

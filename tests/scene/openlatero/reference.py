@@ -132,8 +132,13 @@ def covered(node):
 
 
 def mask(node, place):
-    """Opacity of shapes, which is all that the files here overwrite with."""
+    """Opacity of shapes and groups, which is all that the files here overwrite with."""
     kind = node.get("type")
+    if kind == "Group":
+        masks = [mask(part, place) for part in node.findall("Pattern")]
+        name = operation(node)
+        together = {"multiply": math.prod, "add": sum}.get(name, max)
+        return min(1.0, together(masks))
     stroke = node.find("stroke")
     width = covered(node)
     edge = number(None if stroke is None else stroke.find("ridge"), "edge_width", 1.0)
@@ -144,6 +149,12 @@ def mask(node, place):
         if inside and switch(node.find("fill_texture"), "enable", False):
             return 1.0
         return shape(away, width, edge)
+    if kind == "Polygon":
+        vertices = [read_point(vertex.text) for vertex in node.find("vertices")]
+        if is_inside(vertices, place) and switch(node.find("fill_texture"), "enable", False):
+            return 1.0
+        joints = [Joint(vertices, i, width / 2) for i in range(len(vertices))]
+        return shape(along_polygon(vertices, joints, place, False)[0], width, edge)
     raise AssertionError(kind)
 
 

@@ -340,6 +340,52 @@ def test_what_moves_by_itself_feels_as_there(name, tmp_path):
         np.testing.assert_allclose(ours, theirs, atol=2e-4, rtol=0, err_msg=name)
 
 
+RIPPLES = (
+    "<texture><enable>yes</enable><amplitude>0.6</amplitude><nb_cycles>2</nb_cycles></texture>"
+)
+GROUPED = '<Pattern type="Group"><operation type="{}"/>{}{}</Pattern>'
+OVER = {
+    "a line": line(stroke(9)),
+    "a weak line": line(stroke(9, "<intensity>0.4</intensity>")),
+    "a line with a texture that vibrates": line(
+        stroke(9, f"<fill>{waves(3, 1)}{swings(50)}</fill>")
+    ),
+    "an outline": line(stroke(9, "<fill><gutter>yes</gutter></fill>")),
+    "an outline that is too thin": line(stroke(4, "<fill><gutter>yes</gutter></fill>")),
+    "a filled circle": circle(stroke(4) + fill(grating())),
+    "a polygon": polygon(stroke(7, edge=3), SQUARE),
+    "a polygon with markers": polygon(CORNER.format(swings(50)) + stroke(7), SQUARE),
+    "a group": GROUPED.format("max", line(stroke(9)), circle(stroke(6))),
+    "layers in layers": GROUPED.format("overwrite", line(stroke(9)), circle(stroke(6))),
+    "ripples": line(stroke(9, ridge=RIPPLES)),
+    "dots": line(stroke(5, "<dots><enable>yes</enable></dots>")),
+    "a cue": line(stroke(12, CUE.format("vibration", VIBRATES))),
+    "a cue over it": line(stroke(4, CUE.format("superposed", waves(4, 4)))),
+}
+SAID = (
+    "an outline that is too thin", "layers in layers", "ripples", "dots", "a cue over it"
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", OVER)
+def test_what_overwrites_feels_as_there_or_the_difference_is_said(name, tmp_path):
+    under = circle(stroke(8) + fill(grating(angle=45)), "45,38", 20)
+    text = scene(under, OVER[name], operation='<operation type="overwrite"/>')
+    path = tmp_path / "old.gen"
+    path.write_text(text)
+    found = read_gen(path, as_shown=True)
+    at = places(found.scene.canvas, 300)
+    x, y = zip(*at, strict=True)
+    ours = deflections(found.scene, Assets(), x, y, 0, 0.013)
+    theirs = reference.deflections(text, at, 1.0, 0.013)
+    if np.abs(ours - theirs).max() > 2e-4:
+        assert any(
+            said.startswith("line 9") and ("here" in said or "there" in said)
+            for said in found.warnings
+        )
+        assert name in SAID
+
+
 MODULATOR = '<Modulator type="{}">{}</Modulator>'
 TOWARDS = "<direction>30</direction><direction_tolerance>20</direction_tolerance>"
 CARRIED = "<motion><enable>yes</enable><direction>30</direction><velocity>20</velocity></motion>"

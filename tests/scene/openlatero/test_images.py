@@ -124,6 +124,8 @@ def test_colours_and_what_is_transparent_are_said(folder):
     _, said = read(folder, '<imgfile type="gray">wide.png</imgfile>')
     assert said.count("\n") == 0
     assert "bilinear" in said
+    _, said = read(folder, '<imgfile type="gray">wide.png</imgfile>', as_shown=True)
+    assert said == ""
 
 
 def test_a_picture_that_openlatero_lost_is_found_beside_the_scene(folder):
@@ -191,3 +193,42 @@ def test_pixels_are_where_they_were_to_the_step_between_neighbours(folder):
     steps = (200 / (columns - 1) + 40 / (rows - 1)) / 2 + 1
     felt = deflections(opened.resolved, assets, x, y)
     assert np.abs(felt - shades[row, column] / 255).max() <= steps / 255
+
+
+def shown(folder, text, x, y):
+    """What is felt of a scene as OpenLatero shows it, with the deflections of its picture."""
+    (folder / "old.gen").write_text(text)
+    found = read_gen(folder / "old.gen", as_shown=True).scene
+    return deflections(found, Assets(bitmaps=load_bitmaps(found, folder)), x, y)
+
+
+PIXELS = image(
+    "<imgfile>spots.png</imgfile><position>12.5,30.25</position>"
+    '<width units="mm">3.2</width><height units="mm">4</height>{}',
+    texture("Plain"),
+)
+
+
+@pytest.mark.parametrize("outside", [0.0, 0.4])
+def test_the_nearest_pixel_counts_as_shown_and_hides_five_pixels_around_it(folder, outside):
+    rng = np.random.default_rng(8)
+    shades = rng.integers(1, 256, (40, 64)) * (rng.random((40, 64)) < 0.02)
+    Pillow.fromarray(shades.astype(np.uint8)).save(folder / "spots.png")
+    spots = PIXELS.format(f"<default_alpha>{outside}</default_alpha>")
+    # More pixels than are felt, and places beyond them.
+    x, y = rng.uniform(12, 16.5, 900), rng.uniform(29.5, 35, 900)
+    row, column = (np.floor((y - 30.25) * 10).astype(int), np.floor((x - 12.5) * 20).astype(int))
+    within = (row >= 0) & (row < 40) & (column >= 0) & (column < 64)
+    row, column = np.clip(row, 0, 39), np.clip(column, 0, 63)
+    up = np.where(within, shades[row, column] / 255, outside)
+    np.testing.assert_allclose(shown(folder, scene(spots), x, y), up, atol=2e-4)
+    hiding = np.zeros(shades.shape)
+    for above, left in np.argwhere(shades > 0):
+        for i in range(max(above - 5, 0), min(above + 5, 40)):
+            for j in range(max(left - 5, 0), min(left + 5, 64)):
+                share = max(0.0, 1 - np.hypot(i - above, j - left) / 5)
+                hiding[i, j] = max(hiding[i, j], int(255 * share) / 255)
+    mask = np.where(within, hiding[row, column], outside)
+    whole = texture("Plain", "<amplitude>0.5</amplitude>")
+    over = shown(folder, scene(whole, spots, operation="<operation>overwrite</operation>"), x, y)
+    np.testing.assert_allclose(over, np.minimum(up + (1 - mask) * 0.5, 1), atol=2e-4)

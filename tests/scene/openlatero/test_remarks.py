@@ -14,6 +14,15 @@ from tests.scene.openlatero.files import (
 )
 from vbraille.scene.patterns import Circle
 
+
+def layers(over):
+    """A part that overwrites a circle."""
+    return (
+        f'<Pattern type="Group"><operation type="overwrite"/>{circle(stroke() + fill(grating()))}'
+        f"{over}</Pattern>"
+    )
+
+
 LEFT_OUT = {
     "an unknown type": ('<Pattern type="Cirkel"/>', 'type of this pattern is "Cirkel"'),
     "no type": ("<Pattern/>", "type of this pattern is missing"),
@@ -86,8 +95,38 @@ DIFFERENT = {
         "its cue has no bands; left out",
     ),
     "moving bands": (
-        texture("Motion", f"<cue_type>vibration bands</cue_type>{grating()}"),
-        'the moving bands of its cue "vibration bands" are 2 mm wide here, 30 apart',
+        texture("Motion", f"<cue_type>superposed vibration bands</cue_type>{grating()}"),
+        "its bands vibrate, as their name says",
+    ),
+    "ripples over another shape": (
+        layers(
+            line(
+                stroke(
+                    9,
+                    ridge="<texture><enable>yes</enable><amplitude>0.6</amplitude>"
+                    "<nb_cycles>2</nb_cycles></texture>",
+                )
+            )
+        ),
+        "its ripples hide as much as they are up here",
+    ),
+    "dots over another shape": (
+        layers(line(stroke(4, "<dots><enable>yes</enable></dots>"))),
+        "its dots hide what is below them here",
+    ),
+    "a cue over another shape": (
+        layers(line(stroke(4, "<motion><cue>blend</cue></motion>"))),
+        "its cue hides a little more",
+    ),
+    "layers over another shape": (
+        layers(
+            f'<Pattern type="Group"><operation type="overwrite"/>{line()}{circle()}</Pattern>'
+        ),
+        "where its parts overlap it hides more",
+    ),
+    "a picture of textures over another shape": (
+        layers(texture("Combo", f'<operation type="max"/>{grating()}{grating(angle=90)}')),
+        "a texture hides all below it here",
     ),
     "an inverted texture along a stroke": (
         line(stroke(9, f"<fill>{waves(inside='<invert>yes</invert>')}</fill>")),

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, Self
 
 from vbraille.cli.exploring import opened_in_time
-from vbraille.cli.terminal import say_line
+from vbraille.cli.terminal import print_json, say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.calibration import LEAST_GAIN, Calibration, Tried
 from vbraille.devices.calibrations import load, name_of, path_of, save
@@ -150,10 +150,23 @@ def calibrate(arguments: argparse.Namespace, wanted: Display | None) -> int:
         actuators itself.
     """
     settings = settings_path()
+    if arguments.json and not arguments.show:
+        raise InputError("--json prints what is kept; add --show, or leave --json out")
     with Keyboard() as keyboard, opened_in_time(arguments.spec, wanted) as device:
         path = path_of(settings, name_of(device))
         if arguments.forget:
             return _forget(path)
+        if arguments.show and arguments.json:
+            found = None if device.has_own_gains else load(settings, device)
+            print_json(
+                {
+                    "device": name_of(device),
+                    "own_gains": device.has_own_gains,
+                    "calibration": found and found.to_json(),
+                    "file": found and str(path),
+                }
+            )
+            return 0
         if arguments.show:
             say_line(f"device: {name_of(device)}")
             say_calibration(device, settings, whole=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from functools import partial
 from typing import TYPE_CHECKING
 
 from vbraille.cli.commands.calibrate import calibrate, say_calibration
@@ -18,7 +19,7 @@ from vbraille.signals import EAR
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from vbraille.devices import Device
     from vbraille.display import Display
@@ -39,12 +40,13 @@ def run(arguments: argparse.Namespace) -> int:
             told = device.particulars
             print_json({"display": asdict(device.display), "particulars": told and asdict(told)})
             return 0
-        _describe(device)
+        say = partial(say_line, aside=arguments.json)
+        _describe(device, say)
         if arguments.action == "info":
             say_calibration(device, settings_path())
             return 0
         try:
-            return _check(device)
+            return _check(device, say, as_json=arguments.json)
         finally:
             EAR.close()  # so that the array goes to rest
 
@@ -82,32 +84,32 @@ def _wanted(arguments: argparse.Namespace) -> Display | None:
     return MODELS[arguments.model].display
 
 
-def _describe(device: Device) -> None:
+def _describe(device: Device, say: Callable[[str], None]) -> None:
     info, told = device.display, device.particulars
-    say_line(f"name: {info.name}")
-    say_line(f"actuators: {info.rows} row{'s' * (info.rows > 1)} of {info.columns}")
-    say_line(f"pitch: {info.column_pitch_mm:g} mm along the line, {info.row_pitch_mm:g} mm across")
-    say_line(f"levels: {info.levels}")
-    say_line(f"rest side: {info.rest_side}")
-    say_line(f"travel: {info.travel_mm:g} mm")
-    say_line(f"axes: {_axes(info)}")
+    say(f"name: {info.name}")
+    say(f"actuators: {info.rows} row{'s' * (info.rows > 1)} of {info.columns}")
+    say(f"pitch: {info.column_pitch_mm:g} mm along the line, {info.row_pitch_mm:g} mm across")
+    say(f"levels: {info.levels}")
+    say(f"rest side: {info.rest_side}")
+    say(f"travel: {info.travel_mm:g} mm")
+    say(f"axes: {_axes(info)}")
     if info.contactor_mm is not None:
         width_mm, height_mm = info.contactor_mm
-        say_line(f"contactor: {width_mm:g} mm wide, {height_mm:g} mm high")
-    say_line(f"encoder: {info.counts_per_mm:g} counts a mm{f', {told.encoder}' if told else ''}")
-    say_line(f"rate: {info.rate_hz:g} Hz")
+        say(f"contactor: {width_mm:g} mm wide, {height_mm:g} mm high")
+    say(f"encoder: {info.counts_per_mm:g} counts a mm{f', {told.encoder}' if told else ''}")
+    say(f"rate: {info.rate_hz:g} Hz")
     if told is None:
         return
     slew = told.largest_slew_per_s
     if told.protocol:
-        say_line(f"protocol: {told.protocol}")
+        say(f"protocol: {told.protocol}")
     if told.buttons is not None and told.knobs is not None:
-        say_line(f"buttons: {told.buttons}")
-        say_line(f"knobs: {told.knobs}")
-    say_line(f"firmware: {told.firmware or 'it does not say'}")
-    say_line(f"slew: {f'at most {slew:g} full swings a second' if slew else 'without a limit'}")
-    say_line(f"disabled actuators: {_places(told.disabled, info)}")
-    say_line(f"inverted actuators: {_places(told.inverted, info)}")
+        say(f"buttons: {told.buttons}")
+        say(f"knobs: {told.knobs}")
+    say(f"firmware: {told.firmware or 'it does not say'}")
+    say(f"slew: {f'at most {slew:g} full swings a second' if slew else 'without a limit'}")
+    say(f"disabled actuators: {_places(told.disabled, info)}")
+    say(f"inverted actuators: {_places(told.inverted, info)}")
 
 
 def _axes(info: Display) -> str:
@@ -124,8 +126,11 @@ def _places(actuators: Sequence[tuple[int, int]], info: Display) -> str:
     return "; ".join(f"row {row + 1}, column {column + 1}" for row, column in actuators)
 
 
-def _check(device: Device) -> int:
+def _check(device: Device, say: Callable[[str], None], *, as_json: bool) -> int:
     refused = go_real_time()
     if refused is not None:
-        say_line(refused.say())
-    return check(device, RealClock(), say_line)
+        say(refused.say())
+    found = check(device, RealClock(), say)
+    if as_json:
+        print_json(found.to_json())
+    return 0 if found.fit else 1

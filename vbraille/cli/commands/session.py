@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import contextmanager, suppress
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -192,8 +193,14 @@ def _methods(arguments: argparse.Namespace) -> int:
 def _check(arguments: argparse.Namespace) -> int:
     from vbraille.sessions.record.folder import check_folder
 
+    findings = check_folder(Path(arguments.folder), arguments.expect)
+    if arguments.json:
+        found = [asdict(finding) for finding in findings]
+        good = all(each["good"] for each in found)
+        print_json({"good": good, "findings": found})
+        return 0 if good else 1
     good = True
-    for finding in check_folder(Path(arguments.folder), arguments.expect):
+    for finding in findings:
         good &= finding.good
         _say(finding.text if finding.good else f"fault: {finding.text}")
     return 0 if good else 1

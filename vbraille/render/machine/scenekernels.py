@@ -111,6 +111,9 @@ def evaluate(numbers, table, rows, start, count, gates, time, left, right, top_m
         elif operation == w.IMAGE:
             textures.image(numbers, table, rows, place, top, count)
             top += 1
+        elif operation == w.PIXELS:
+            textures.pixels(numbers, table, rows, place, top, count)
+            top += 1
         elif operation == w.LABEL:
             label(numbers, place, table, rows[w.X_ROW], rows[w.Y_ROW], count, rows[top])
             top += 1

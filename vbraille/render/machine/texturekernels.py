@@ -164,3 +164,22 @@ def image(numbers, table, rows, at, top, count):
         above = a + u * (b - a)
         below = c + u * (d - c)
         rows[top, n] = _WHOLE * (above + v * (below - above))
+
+
+@compiled
+def pixels(numbers, table, rows, at, top, count):
+    """Image by the pixel that each place is in; constants as for `image`."""
+    x0, y0 = numbers[at], numbers[at + 1]
+    columns_per_mm, rows_per_mm = numbers[at + 2], numbers[at + 3]
+    columns, lines = numbers[at + 4], numbers[at + 5]
+    base = int(numbers[at + 6])
+    for n in range(count):
+        u = math.floor((rows[X_ROW, n] - x0) * columns_per_mm + 0.5)
+        v = math.floor((rows[Y_ROW, n] - y0) * rows_per_mm + 0.5)
+        u = u if u > 0.0 else 0.0
+        v = v if v > 0.0 else 0.0
+        u = u if u < columns - 1.0 else columns - 1.0
+        v = v if v < lines - 1.0 else lines - 1.0
+        rows[FREE_ROW, n] = v * columns + u
+    for n in range(count):
+        rows[top, n] = _WHOLE * float(table[base + int(rows[FREE_ROW, n])])

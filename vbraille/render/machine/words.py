@@ -79,7 +79,8 @@ OPERATIONS = 64
     MOVING_DOTS,  # push dots that move along the path of a shape
     MOVING_DOTS_MASK,
     CUE,  # push what bands along a shape add, and what they hide of it
-) = range(46)
+    PIXELS,  # push an image by its nearest pixels
+) = range(47)
 
 # How what a CALL pushes joins what is on the stack: by one of the words from ADD to OVER_ITSELF, or
 # not at all, as one row or as a pair.

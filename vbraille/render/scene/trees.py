@@ -378,7 +378,8 @@ def _say_bitmap(bitmap: Bitmap, block: WordBlock, _parts: bool) -> list[int]:
     # The middle of the frame's first pixel is half a pixel beyond the corner.
     first = x - 0.5 / per_mm[0], y - 0.5 / per_mm[1]
     numbers = (*first, *per_mm, columns + 2, rows + 2, 0.0)
-    block.say_table(words.IMAGE, *numbers, at=6, entries=framed.ravel())
+    word = words.PIXELS if bitmap.nearest else words.IMAGE
+    block.say_table(word, *numbers, at=6, entries=framed.ravel())
     return []
 
 

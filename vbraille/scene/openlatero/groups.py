@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from vbraille.scene.openlatero.context import Kinds
 from vbraille.scene.openlatero.elements import ANGLE, OFF, NumberField, WordField
 from vbraille.scene.openlatero.shapes import operation_of
-from vbraille.scene.patterns import Group, Tile
+from vbraille.scene.patterns import Dots, Group, Image, Moving, Shape, Tile
 from vbraille.scene.signals import Direction, Speed, Switch
 from vbraille.scene.textures import (
     AxialGrating,
@@ -23,6 +23,8 @@ from vbraille.scene.textures import (
 from vbraille.wording import count
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from vbraille.scene.openlatero.context import GenContext
     from vbraille.scene.openlatero.elements import GenElement
     from vbraille.scene.patterns import AnyPattern, Operation
@@ -42,7 +44,9 @@ _AT_REST: Final[dict[str, Literal["high", "low", "keep"]]] = {
     "low": "low",
     "toggle": "keep",
 }
-_TEXTURES = (Uniform, UniformVibration, LinearGrating, RadialGrating, AxialGrating, Tile)
+_TEXTURES = (
+    Uniform, UniformVibration, LinearGrating, RadialGrating, AxialGrating, Tile, Moving
+)  # fmt: skip
 
 
 _SPEED = NumberField(5.0, 0.1, 1000.0, "mm/s")
@@ -152,7 +156,7 @@ def joined(
         return None
     found = [part for part in parts if part is not None]
     if name == "overwrite":
-        _say_layers(element, found)
+        _say_layers(element, found, context)
     if len(found) < 2:
         return found[0] if found else None
     return Group(operation=OPERATIONS[name], parts=tuple(found))
@@ -175,10 +179,41 @@ def _blended(element: GenElement, parts: list[AnyPattern | None]) -> AnyPattern 
     return Group(operation="blend", parts=(second, first), by=by)
 
 
-def _say_layers(element: GenElement, parts: list[AnyPattern]) -> None:
-    """Say so if a texture covers what is below it, which it does in part only there."""
-    if any(isinstance(part, _TEXTURES) for part in parts[1:]):
-        element.say("a texture hides all below it here, and only where it is up there")
+def _say_layers(element: GenElement, parts: list[AnyPattern], context: GenContext) -> None:
+    """Say so where a part hides something else of what is below it than it does there."""
+    for part in parts[1:]:
+        own = context.element_of(part) or element
+        for sentence in dict.fromkeys(_hides_otherwise(part)):
+            own.say(sentence)
+
+
+def _hides_otherwise(part: AnyPattern) -> Iterator[str]:
+    """Sentences about what a part hides here and there."""
+    if isinstance(part, _TEXTURES) or (isinstance(part, Group) and part.by is not None):
+        yield "a texture hides all below it here, and only where it is up there"
+    elif isinstance(part, Group):
+        if part.operation == "overwrite" and len(part.parts) > 1:
+            yield "where its parts overlap it hides more of what is below here than there"
+        for inner in part.parts:
+            yield from _hides_otherwise(inner)
+    elif isinstance(part, Image):
+        if not part.nearest:
+            yield "it hides what is around it by other pixels here than there"
+    elif isinstance(part, Dots):
+        if part.dot.across is not None:
+            yield _RIPPLED
+    elif isinstance(part, Shape):
+        if part.dots is not None:
+            yield "its dots hide what is below them here, and all of their stroke does there"
+        elif part.stroke is None:
+            yield "its stroke, of which there is nothing, hides nothing here"
+        elif part.stroke.across is not None:
+            yield _RIPPLED
+        if part.is_cued_over:
+            yield "its cue hides a little more of what is below here, where its edge is"
+
+
+_RIPPLED = "its ripples hide as much as they are up here, and its profile without them does there"
 
 
 @ROWS.row("Toggle")

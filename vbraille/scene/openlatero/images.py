@@ -156,7 +156,8 @@ def _image(element: GenElement, context: GenContext) -> AnyPattern | None:
     masked = _masked(mask, context)
     if masked is None:
         return None
-    mask.say("between pixels it is bilinear here, and the nearest pixel counts there")
+    if not context.as_shown:
+        mask.say("between pixels it is bilinear here, and the nearest pixel counts there")
     return replace(masked, texture=None if texture == Uniform() else texture)
 
 
@@ -204,6 +205,7 @@ def _masked(mask: GenElement, context: GenContext) -> Image | None:
         channel=channel,
         blur_mm=_plain(blur),
         outside=mask["default_alpha"],
+        nearest=context.as_shown,
     )
 
 

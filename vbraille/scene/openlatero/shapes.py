@@ -279,7 +279,8 @@ def _stroke(
         return replace(plain, outlined=True, vibration=swing)
     if context.as_shown:
         fill.say(
-            "the outline needs a stroke of four edges, so OpenLatero shows nothing of the stroke"
+            "the outline needs a stroke of four edges, so OpenLatero shows nothing of the stroke, "
+            "which hides what is below it there"
         )
         return None
     edge = plain.width_mm / 4

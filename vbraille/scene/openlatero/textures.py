@@ -47,8 +47,9 @@ _MOST_MM_S = 1000.0
 _STILL = 1e-3  # mm/s, below which OpenLatero takes a projected speed as none
 
 
-# Bands of a cue: those of the thesis that are best felt (9.7), at what OpenLatero weakens them to.
-_BAND_MM, _BAND_GAP_MM, _BAND_AMPLITUDE = 2.0, 30.0, 0.2
+# Bands of a cue, which OpenLatero weakens where they are added.
+_BAND_MM, _WIDE_BAND_MM, _BAND_GAP_MM, _BAND_AMPLITUDE = 2.0, 5.0, 30.0, 0.2
+_WIDE = ("vibration bands", "superposed vibration bands")
 _CUES = (
     "none",
     "vibration bands",
@@ -293,21 +294,22 @@ def _motion(element: GenElement, context: GenContext) -> AnyPattern | None:
     if pattern is None:
         return None
     if cue != "none":
-        element.say(
-            f'the moving bands of its cue "{cue}" are {_BAND_MM:g} mm wide here, {_BAND_GAP_MM:g} '
-            "apart, and may be wider there"
-        )
-        pattern = _cued(pattern, cue, angle, speed)
+        if cue == "superposed vibration bands" and not context.as_shown:
+            element.say("its bands vibrate, as their name says; OpenLatero's do not")
+        pattern = _cued(pattern, cue, angle, speed, context)
     return _unread(_carried(pattern, element), element, context)
 
 
-def _cued(pattern: AnyPattern, cue: str, angle_deg: float, speed_mm_s: float) -> Group:
+def _cued(
+    pattern: AnyPattern, cue: str, angle_deg: float, speed_mm_s: float, context: GenContext
+) -> Group:
     """Texture over which bands move under the finger, whether the hand moves or not: 9.3."""
+    ridge = _WIDE_BAND_MM if cue in _WIDE else _BAND_MM
     wave = LinearGrating(
-        ridge_mm=_BAND_MM,
+        ridge_mm=ridge,
         gap_mm=_BAND_GAP_MM,
         wave_angle_deg=angle_deg or None,
-        velocity_mm_s=speed_mm_s,
+        velocity_mm_s=travelled(speed_mm_s, ridge + _BAND_GAP_MM, context),
     )
     bands = Moving(part=wave, array_at_mm=(0.0, 0.0))
     if cue in ("vibration bands", "blending bands"):
@@ -315,7 +317,8 @@ def _cued(pattern: AnyPattern, cue: str, angle_deg: float, speed_mm_s: float) ->
         return Group(operation="blend", parts=(pattern, to), by=bands)
     if cue == "disabling bands":
         return Group(operation="multiply", parts=(pattern, replace(bands, inverted=True)))
-    swing = Vibration() if cue == "superposed vibration bands" else None
+    swings = cue == "superposed vibration bands" and not context.as_shown
+    swing = Vibration() if swings else None
     weak = replace(bands, amplitude=_BAND_AMPLITUDE, vibration=swing)
     return Group(operation="add", parts=(pattern, weak))
 
