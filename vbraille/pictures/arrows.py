@@ -91,12 +91,12 @@ def _directions(scene: Scene, name: str) -> Iterator[tuple[str, Direction]]:
 
 def _motion(part: AnyPattern, box: Box) -> Iterator[Arrow]:
     """Arrows of what a pattern itself moves, in the box of its element."""
-    middle, wave = _middle(box), part.wave
+    middle, wave = _middle(box), next(iter(part.flows), None)
     if isinstance(part, Moving) and any(part.velocity_mm_s):
         right, down = part.velocity_mm_s
         length_mm = _size(math.hypot(right, down), box)
         yield Arrow(_straight(middle, math.degrees(math.atan2(down, right)), length_mm))
-    if wave is None or not wave.speed:
+    if wave is None:
         return
     back = wave.speed < 0
     length_mm = _size(abs(wave.speed), box)
