@@ -15,13 +15,14 @@ from vbraille.scene.patterns import (
     Fill,
     Group,
     Image,
+    Moving,
     PathShape,
     Polygon,
     StraightLine,
 )
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch
-from vbraille.scene.strokes import Across, Along, DotStyle, Stroke
+from vbraille.scene.strokes import Across, Along, DotStyle, Dotting, MovingCue, Stroke
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, UniformVibration
 
 # The display of the source's own measurements: Lévesque 2009, 6.2.
@@ -119,6 +120,29 @@ def hidden(scene: Scene, layers: int) -> Scene:
     shown, others = scene.elements[:-layers], scene.elements[-layers:]
     off = tuple(replace(element, factor="off") for element in others)
     return replace(scene, elements=(*shown, *off), signals=signals)
+
+
+def ten_parts(speed: float) -> Scene:
+    """Ten parts about one place that move at a speed, or at 0 stand still."""
+    x, y = CANVAS.width_mm / 2, CANVAS.height_mm / 2
+    corners = ((x - 9, y - 7), (x + 9, y - 6), (x, y + 9))
+    along = Stroke(along=Along(ridge_mm=3.0, velocity_mm_s=speed))
+    dots = Dotting(dot=DotStyle(radius_mm=1.0), velocity_mm_s=speed)
+    carried = AxialGrating(center_mm=(x + 30, y), ridge_deg=9.0, amplitude=0.3)
+    cue = MovingCue(way="add", velocity_mm_s=speed)
+    parts = (
+        LinearGrating(ridge_mm=4.0, velocity_mm_s=speed, amplitude=0.3),
+        RadialGrating(center_mm=(x, y), ridge_mm=5.0, velocity_mm_s=speed, amplitude=0.3),
+        AxialGrating(center_mm=(x, y), ridge_deg=12.0, velocity_deg_s=speed, amplitude=0.3),
+        Moving(part=carried, velocity_mm_s=(speed, speed)) if speed else carried,
+        StraightLine(start_mm=(x - 20, y), end_mm=(x + 20, y), stroke=along),
+        Circle(center_mm=(x, y), radius_mm=6.0, stroke=along),
+        StraightLine(start_mm=(x - 20, y + 4), end_mm=(x + 20, y + 4), dots=dots),
+        Circle(center_mm=(x, y), radius_mm=10.0, dots=dots),
+        Polygon(vertices_mm=corners, dots=dots),
+        StraightLine(start_mm=(x, y - 20), end_mm=(x, y + 20), stroke=Stroke(), cue=cue),
+    )
+    return Scene(canvas=CANVAS, operation="maximum", elements=parts)
 
 
 def short_lines() -> Scene:

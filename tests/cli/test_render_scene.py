@@ -116,6 +116,16 @@ def test_what_frames_cost_is_said_and_written(call, scene, tmp_path):
     assert again.err == f"written: {out}\n"
 
 
+def test_what_cannot_be_read_as_it_stands_is_said(call, scene, tmp_path):
+    scene.write_text(MOVING + '[[elements]]\nkind = "label"\ntext = "sea"\nplace_mm = [119, 20]\n')
+    hand = tmp_path / "hand.csv"
+    hand.write_text("t_s,x_mm,y_mm\n0,80,10\n0.01,81,10\n")
+    done = call("render", scene, "--hand", f"recorded:{hand}", "--out", tmp_path / "house.h5")
+    assert done.code == 0
+    (note,) = [line for line in done.err.splitlines() if line.startswith("note: ")]
+    assert "beyond the canvas; move it" in note
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

@@ -61,3 +61,42 @@ def test_at_a_pipe_enter_is_pressed_instead(tmp_path):
     done = program.run(*arguments(tmp_path), stdin=None, input="stop\n")
     assert done.returncode == 0, done.stderr
     assert "key: standard input is no terminal, so that space cannot be told; Enter" in done.stdout
+
+
+LEFT, RIGHT, HOME, END, DELETE = "\x1b[D", "\x1b[C", "\x1b[H", "\x1b[F", "\x1b[3~"
+
+
+def test_what_is_typed_is_edited_by_arrows_and_said(tmp_path):
+    with Terminal(*arguments(tmp_path)) as terminal:
+        terminal.until("cue: trial 1 of 2")
+        terminal.type("note bc")
+        terminal.type(LEFT)
+        terminal.until(r"cursor: c\s+note bc\x08")
+        terminal.type(LEFT)
+        terminal.until(r"cursor: b\s+note bc\x08\x08")
+        terminal.type("a")
+        terminal.type(END + "x" + LEFT)
+        terminal.until("cursor: x")
+        terminal.type(DELETE + HOME)
+        terminal.until("cursor: n")
+        terminal.type(RIGHT + "\n")
+        terminal.until("note: is in")
+        terminal.type(" ")
+        terminal.until("ended: .* s, by key space")
+        terminal.type("ca" + LEFT + "\x7f" + "\n")
+        terminal.until("answer: trial 1 of 2, a")
+        terminal.type("stop\n")
+        assert terminal.end() == 0
+        assert terminal.settings() == terminal.before
+    first = rows(load(tmp_path / "s"))[0]
+    assert (first["notes"], first["answered"]) == ("abc", "⠁")
+
+
+def test_a_sentence_leaves_what_is_being_typed_as_it_is(tmp_path):
+    with Terminal(*arguments(tmp_path)) as terminal:
+        terminal.until("ready: trial 1")
+        terminal.type("note mine")
+        terminal.until(r"cue: trial 1 of 2[^\n]*\s+note mine")
+        terminal.type("\nstop\n")
+        assert terminal.end() == 0
+    assert rows(load(tmp_path / "s"))[0]["notes"] == "mine"

@@ -18,7 +18,7 @@ from vbraille.scene.patterns import (
 )
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch
-from vbraille.scene.strokes import Along, Dotting, Stroke, VertexMarkers, Vibration
+from vbraille.scene.strokes import Along, Dotting, MovingCue, Stroke, VertexMarkers, Vibration
 from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
@@ -76,8 +76,14 @@ CANVAS = Canvas(width_mm=100, height_mm=80)
             "line from (0, 0) mm to (9, 0) mm, stroke of 3 mm cut every 2 mm",
         ),
         (
-            Circle(center_mm=(9, 9), radius_mm=5, dots=Dotting(velocity_mm_s=20)),
-            "circle of radius 5 mm around (9, 9) mm, of dots of radius 1 mm, moving along it at 20 "
+            StraightLine(
+                start_mm=(0, 0),
+                end_mm=(9, 0),
+                dots=Dotting(velocity_mm_s=-5, velocity_by="on"),
+                cue=MovingCue(),
+            ),
+            "line from (0, 0) mm to (9, 0) mm, of dots of radius 1 mm, moving from its end to its "
+            "beginning at 5 mm/s times signal on, under bands every 17 mm, moving along it at 50 "
             "mm/s",
         ),
         (Dots(centers_mm=((1, 1), (2, 2))), "2 dots of radius 1 mm"),

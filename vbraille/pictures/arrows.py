@@ -91,20 +91,15 @@ def _directions(scene: Scene, name: str) -> Iterator[tuple[str, Direction]]:
 
 def _motion(part: AnyPattern, box: Box) -> Iterator[Arrow]:
     """Arrows of what a pattern itself moves, in the box of its element."""
-    middle = _middle(box)
+    middle, wave = _middle(box), next(iter(part.flows), None)
     if isinstance(part, Moving) and any(part.velocity_mm_s):
         right, down = part.velocity_mm_s
         length_mm = _size(math.hypot(right, down), box)
         yield Arrow(_straight(middle, math.degrees(math.atan2(down, right)), length_mm))
-    for wave in part.flows:
-        if wave.speed:
-            yield from _flow(part, wave.speed, box)
-
-
-def _flow(part: AnyPattern, speed: float, box: Box) -> Iterator[Arrow]:
-    """Arrows of what flows in a pattern at a speed, in mm/s or °/s."""
-    middle, back = _middle(box), speed < 0
-    length_mm = _size(abs(speed), box)
+    if wave is None:
+        return
+    back = wave.speed < 0
+    length_mm = _size(abs(wave.speed), box)
     if isinstance(part, LinearGrating):
         angle = travel_deg(part.wave_angle_deg, part.ridge_angle_deg) + 180.0 * back
         yield Arrow(_straight(middle, angle, length_mm))

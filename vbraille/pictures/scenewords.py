@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
     from vbraille.scene.signals import AnySignal
-    from vbraille.scene.strokes import DotStyle, Stroke, Vibration
+    from vbraille.scene.strokes import Along, DotStyle, Dotting, MovingCue, Stroke, Vibration
 
 # How groups put their parts together, in words that need no formula.
 _TOGETHER = {
@@ -125,10 +125,6 @@ def _way(angle_deg: float) -> str:
     eighth, beside = divmod(turned + 22.5, 45.0)
     way = WAYS[int(eighth) % len(WAYS)]
     return way if math.isclose(beside, 22.5) else f"at {turned:g}° ({way})"
-
-
-def _along(speed: float) -> str:
-    return "from its end to its beginning" if speed < 0 else "along it"
 
 
 def _moving_by(speed: float, way: str, by: str, unit: str = "mm/s") -> str:
@@ -243,11 +239,10 @@ def _shape_words(shape: StraightLine | Circle | Polygon | PathShape) -> str:
     if shape.stroke is not None:
         said.append(_stroke_words(shape.stroke))
     if shape.dots is not None:
-        dots = shape.dots
-        moves = _moving_by(dots.velocity_mm_s, _along(dots.velocity_mm_s), dots.velocity_by)
-        said.append(f"of dots {_dot_words(dots.dot)}{moves}")
+        said.append(f"of dots {_dot_words(shape.dots.dot)}{_along_words(shape.dots)}")
     if shape.cue is not None:
-        said.append(f"under bands that move by {shape.cue.velocity_mm_s:g} mm/s")
+        bands = f"under bands every {shape.cue.wave.length:g} mm"
+        said.append(f"{bands}{_along_words(shape.cue)}")
     if isinstance(shape, Polygon) and shape.markers is not None:
         said.append("with markers")
     if not isinstance(shape, StraightLine) and shape.fill is not None:
@@ -260,14 +255,18 @@ def _stroke_words(stroke: Stroke) -> str:
     if stroke.outlined:
         words.append("outlined")
     if stroke.along is not None:
-        along = stroke.along
-        moves = _moving_by(along.velocity_mm_s, _along(along.velocity_mm_s), along.velocity_by)
-        words.append(f"cut every {along.wave.length:g} mm{moves}")
+        words.append(f"cut every {stroke.along.wave.length:g} mm{_along_words(stroke.along)}")
     if stroke.across is not None:
         words.append(f"with {stroke.across.cycles} cycles across")
     if stroke.vibration is not None:
         words.append(f"vibrating: {_swing_words(stroke.vibration)}")
     return " ".join(words)
+
+
+def _along_words(moving: Along | Dotting | MovingCue) -> str:
+    """Tell how something moves along a path."""
+    way = "from its end to its beginning" if moving.velocity_mm_s < 0 else "along it"
+    return _moving_by(moving.velocity_mm_s, way, moving.velocity_by)
 
 
 def _dot_words(dot: DotStyle) -> str:

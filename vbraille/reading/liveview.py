@@ -281,7 +281,8 @@ class ReadState(ExploredState):
         style = self._device.reader.style.replace(mapping=mapping)
         geometry = style.geometry
         length_mm = geometry.extent_mm(len(window)) + 2 * geometry.cell_pitch_mm
-        places_mm = STEP_MM * np.arange(int(length_mm / STEP_MM)) - geometry.cell_pitch_mm
+        count = int(length_mm / STEP_MM)
+        places_mm = STEP_MM * np.arange(count, dtype=np.float64) - geometry.cell_pitch_mm
         (rows,) = deflections_at(style.render(window.masks, display), places_mm)
         return BesideShown(
             say_mapping(mapping),

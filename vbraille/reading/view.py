@@ -53,6 +53,8 @@ class Prompt:
         Texts that can be brought instead of being typed, such as earlier answers.
     at
         Index of the text that is brought next by going on; past the last if None.
+    longest
+        Most characters that are typed.
 
     Attributes
     ----------
@@ -67,12 +69,13 @@ class Prompt:
     again: str = ""
     others: list[str] = field(default_factory=list)
     at: int | None = None
+    longest: int = LONGEST
     typed: str = ""
     cursor: int = 0
 
     def press(self, key: str) -> None:
         """Take a key that is a character; others are passed over."""
-        if len(key) == 1 and key.isprintable() and len(self.typed) < LONGEST:
+        if len(key) == 1 and key.isprintable() and len(self.typed) < self.longest:
             self.typed = self.typed[: self.cursor] + key + self.typed[self.cursor :]
             self.cursor += 1
 

@@ -157,7 +157,7 @@ class _Run(NamedTuple):
         Whether it is a closed path without a corner.
     """
 
-    points_mm: Sequence[Point]
+    points_mm: tuple[Point, ...]
     least_mm: float
     angles: tuple[float | None, float | None] = (None, None)
     closes: bool = False
@@ -200,7 +200,7 @@ def _runs_of(shape: StraightLine | Polygon | PathShape, least_mm: float) -> Iter
         for run in _runs(count, closed, sorted(corners)):
             ends = corners.get(run[0]), corners.get(run[-1])
             widening = max(1.0 if angle is None else _widening(angle) for angle in ends)
-            places = [points[i] for i in run]
+            places = tuple(points[i] for i in run)
             yield _Run(places, least_mm * widening, ends, closed and not corners)
 
 

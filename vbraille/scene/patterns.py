@@ -359,7 +359,8 @@ class Image(Pattern, frozen=True, kw_only=True, tag="image"):
         Intensity beyond its edges.
     nearest
         Whether each place has the intensity of the pixel that it is in, and not one between those
-        of the pixels around it.
+        of the pixels around it. Its blur is alike in pixels then, and ends at twice its deviation
+        and at the picture's edges.
     texture
         Pattern that it is the mask of; None for a plain map.
 

@@ -125,12 +125,13 @@ def signals_of(pattern: AnyPattern) -> list[tuple[Steps, str]]:
 
 def with_name(pattern: AnyPattern, steps: Steps, name: str) -> AnyPattern:
     """Pattern with another name of a signal where `signals_of` found one."""
-
-    def within(value: Any, keys: Steps) -> Any:
-        key, *inner = keys
-        return replace(value, **{key: within(getattr(value, key), inner) if inner else name})
-
-    return within(pattern, steps)
+    values: list[Any] = [pattern]
+    for key in steps[:-1]:
+        values.append(getattr(values[-1], str(key)))
+    made: Any = name
+    for value, key in zip(reversed(values), reversed(steps), strict=True):
+        made = replace(value, **{str(key): made})
+    return made
 
 
 def with_signals(pattern: AnyPattern, names: Mapping[str, str]) -> AnyPattern:

@@ -151,3 +151,12 @@ def test_what_is_under_the_finger_stays_there_when_the_page_is_laid_out_anew(cel
     assert bench.reader.cell == line.cell_of(before)
     first, after = line.source(bench.reader.cell)
     assert first <= before < after
+
+
+def test_where_no_cell_is_under_the_finger_the_line_stays_at_its_beginning():
+    bench = Bench("one two", width=CROSSED)
+    finger_at(bench, len(bench.reader.line) + 5)
+    before = bench.reader.window
+    assert bench.reader.cell is None
+    bench.reader.lay_out_again(width=CROSSED - 1)
+    assert (bench.reader.window.offset, bench.reader.window.start_mm) == (0, before.start_mm)

@@ -1,5 +1,7 @@
 """Pictures of OpenLatero's scenes: where they stand, how large, and what of them counts."""
 
+import math
+
 import numpy as np
 import pytest
 from PIL import Image as Pillow
@@ -232,3 +234,49 @@ def test_the_nearest_pixel_counts_as_shown_and_hides_five_pixels_around_it(folde
     whole = texture("Plain", "<amplitude>0.5</amplitude>")
     over = shown(folder, scene(whole, spots, operation="<operation>overwrite</operation>"), x, y)
     np.testing.assert_allclose(over, np.minimum(up + (1 - mask) * 0.5, 1), atol=2e-4)
+
+
+def blurred(shades, *, up):
+    """What ImageMagick 6.9 makes of `-blur 4x2`, pixel by pixel: measured from its own pictures."""
+    weights = [
+        sum(math.exp(-((3 * n + third) ** 2) / 72) for third in (-1, 0, 1)) for n in range(-4, 5)
+    ]
+    made = shades * 257.0
+    for _ in range(2):  # along, and then down
+        columns = made.shape[1]
+        made = np.rint(
+            sum(
+                weight * made[:, np.clip(np.arange(columns) + n, 0, columns - 1)]
+                for n, weight in zip(range(-4, 5), weights, strict=True)
+            )
+            / sum(weights)
+        ).T
+    return (np.ceil if up else np.floor)(made / 257)
+
+
+@pytest.mark.parametrize("channel", ["gray", "alpha"])
+def test_a_blur_as_shown_is_of_pixels(folder, channel):
+    rng = np.random.default_rng(9)
+    shades = rng.integers(0, 256, (30, 50)).astype(np.uint8)
+    whole = np.full_like(shades, 255)
+    picture = shades if channel == "gray" else np.stack([whole, whole, whole, shades], axis=-1)
+    Pillow.fromarray(picture).save(folder / "spots.png")
+    text = scene(
+        image(
+            f'<imgfile type="{channel}">spots.png</imgfile><blur>yes</blur>'
+            '<position>12.5,30.25</position><width units="mm">25</width>'
+            '<height units="mm">20</height>',
+            texture("Plain"),
+        )
+    )
+    row, column = np.indices(shades.shape)
+    x, y = 12.5 + (column.ravel() + 0.3) / 2, 30.25 + (row.ravel() + 0.6) / 1.5
+    felt = shown(folder, text, x, y).reshape(shades.shape)
+    np.testing.assert_allclose(felt, blurred(shades, up=channel == "alpha") / 255, atol=2e-4)
+
+
+def test_blurred_pixels_are_those_of_imagemagick():
+    """A row of the picture that its version 6.9.11 makes of a single white pixel."""
+    spot = np.zeros((31, 31))
+    spot[15, 15] = 255
+    assert blurred(spot, up=False)[15, 10:21].tolist() == [0, 1, 3, 6, 9, 10, 9, 6, 3, 1, 0]

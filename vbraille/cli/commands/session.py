@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -14,13 +14,14 @@ from vbraille.errors import InputError
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.planning.stimuli import said_value
 from vbraille.sessions.record.folder import nearly_same
-from vbraille.sessions.running.responses import Typed
+from vbraille.sessions.running.responses import Typed, takes_lines
 from vbraille.signals import EAR
 from vbraille.simulation.specs import refuse_hand
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Callable, Iterator
 
     from vbraille.sessions.planning.pace import ParticipantField
     from vbraille.sessions.planning.protocol import Protocol
@@ -115,12 +116,12 @@ def _run(arguments: argparse.Namespace) -> int:
         conditions=Conditions(rate_hz=arguments.rate, fast=arguments.fast, **_chosen(arguments)),
         begun=arguments.begun,
     )
-    answers = session.answers()
-    if not arguments.another:
-        _ask_who(session.folder.absolute().parent, session.plan.participant, answers)
-    if isinstance(answers, Typed):
-        session.tell(_ask_fields(session.protocol, arguments.field, answers))
-    return _conduct(session, answers)
+    with _taken(session.answers()) as (answers, say):
+        if not arguments.another:
+            _ask_who(session.folder.absolute().parent, session.plan.participant, answers)
+        if isinstance(answers, Typed):
+            session.tell(_ask_fields(session.protocol, arguments.field, answers))
+        return _conduct(session, answers, say)
 
 
 def _resume(arguments: argparse.Namespace) -> int:
@@ -128,11 +129,28 @@ def _resume(arguments: argparse.Namespace) -> int:
 
     fast = {"fast": True} if arguments.fast else {}
     session = Session.resume(arguments.folder, begun=arguments.begun, **fast, **_chosen(arguments))
-    return _conduct(session, session.answers())
+    with _taken(session.answers()) as (answers, say):
+        return _conduct(session, answers, say)
 
 
-def _conduct(session: Session, answers: Responses) -> int:
-    session.run(answers, say=_say, warn=partial(say_line, aside=True), before_rest=EAR.close)
+@contextmanager
+def _taken(answers: Responses) -> Iterator[tuple[Responses, Callable[[str], None]]]:
+    """Have lines that are typed at a terminal edited there; give who answers, and who speaks."""
+    if not isinstance(answers, Typed) or not (sys.stdin and takes_lines(sys.stdin.fileno())):
+        yield answers, _say
+        return
+    from vbraille.cli.typedlines import EditedLines
+
+    lines = EditedLines(_say)
+    lines.take()
+    try:
+        yield lines, lines.say
+    finally:
+        lines.release()
+
+
+def _conduct(session: Session, answers: Responses, say: Callable[[str], None]) -> int:
+    session.run(answers, say=say, warn=partial(say_line, aside=True), before_rest=EAR.close)
     return 0
 
 

@@ -195,7 +195,9 @@ def _masked(mask: GenElement, context: GenContext) -> Image | None:
     width, height = _size(mask, picture)
     place = _place(mask, width, height)
     channel = "alpha" if file.attribute("type") == "alpha" else "gray"
-    blur = _blur(mask, picture, width, height)
+    blur = _blur(mask, picture, width, height, context)
+    if context.as_shown and name.lower().endswith(".svg"):
+        file.say("its drawing becomes pixels here by other ways than there")
     _say_channel(file, picture, channel)
     return Image(
         file=name,
@@ -276,11 +278,15 @@ def _place(mask: GenElement, width: float, height: float) -> Point:
     return PlaceField(middle).read(element)
 
 
-def _blur(mask: GenElement, picture: MaskPicture, width: float, height: float) -> float:
+def _blur(
+    mask: GenElement, picture: MaskPicture, width: float, height: float, context: GenContext
+) -> float:
     """Standard deviation of the blur of an image as it is placed, in mm."""
     if not mask["blur"]:
         return 0.0
     pixel = width / picture.width_px, height / picture.height_px
+    if context.as_shown:
+        return _BLUR_PIXELS * math.sqrt(pixel[0] * pixel[1])
     if abs(pixel[0] / pixel[1] - 1.0) > _EVEN:
         mask.say("its pixels are longer than wide; it is blurred alike both ways here")
     mask.say("its blur is of 2 pixels of the picture, as mm here, and does not end at 4 pixels")

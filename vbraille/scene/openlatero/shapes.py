@@ -548,8 +548,9 @@ def _fill(element: GenElement, context: GenContext, look: StrokeLook) -> Fill | 
     if fill is not None and fill.blended and look.dots is not None:
         element.say("dots stand in the place of the fill there, and are blended into it here")
     cue, stroke = look.cue, look.stroke
-    dims = cue is not None and cue.way == "add" and stroke is not None
-    if fill is None or not context.as_shown or not dims or stroke.width_mm < cue.width_mm:
+    if fill is None or cue is None or stroke is None or not context.as_shown:
+        return fill
+    if cue.way != "add" or stroke.width_mm < cue.width_mm:
         return fill
     if fill.blended:
         element.say("its superposed cue weakens all of the fill there, and only its stroke here")

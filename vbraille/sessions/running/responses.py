@@ -24,6 +24,14 @@ if TYPE_CHECKING:
 _OFF = b"\0"  # the sign for none
 
 
+def takes_lines(descriptor: int) -> bool:
+    """True if a descriptor is that of a terminal which gives what is typed line by line."""
+    try:
+        return os.isatty(descriptor) and bool(termios.tcgetattr(descriptor)[3] & termios.ICANON)
+    except termios.error:
+        return False
+
+
 class KeyPress(str):
     """The participant's key, where a line might have come."""
 
@@ -49,13 +57,9 @@ class TerminalKey:
     @classmethod
     def at(cls, descriptor: int | None, key: str) -> TerminalKey | None:
         """Make it if the descriptor is that of a terminal which takes lines; else None."""
-        if descriptor is None or not os.isatty(descriptor):
+        if descriptor is None or not takes_lines(descriptor):
             return None
-        try:
-            lines = termios.tcgetattr(descriptor)[3] & termios.ICANON
-        except termios.error:
-            return None
-        return cls(descriptor, key) if lines else None
+        return cls(descriptor, key)
 
     def tell(self, at_once: bool) -> None:
         """Have the key told at once, or be typed into lines like all others."""
@@ -150,6 +154,13 @@ class Typed:
         if self._key is not None:
             # In a line that was begun the key is a character like any other.
             self._key.tell(awaited and not self._partial)
+
+    def take(self) -> None:
+        """Have the terminal give what is typed as this reads it."""
+
+    def release(self) -> None:
+        """Leave the terminal to another program, until it is taken again."""
+        self.await_key(False)
 
     def lines(self, wait_s: float) -> list[str] | None:
         """Lines typed since the last call; see `Responses`."""

@@ -424,8 +424,12 @@ class Runner:
         paused = self.paused
         if not paused:
             take("pause", 0)
-        self.await_key(False)  # the terminal belongs to another program for a while
-        suspension.stop()
+        if isinstance(self.responses, Typed):
+            self.responses.release()
+            suspension.stop()
+            self.responses.take()
+        else:
+            suspension.stop()
         if not paused and not self.responses.typed:
             take("go", 0)
 
