@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from scipy.special import ndtr
+from scipy.stats import norm
 
 from tests.benchmarks.coverage_people import Found
 from tests.conftest import SEED
@@ -71,3 +73,28 @@ def curve(trials: int, shape: str, alarms: float | None, studies: int) -> dict[s
             held[what] += ends.low <= truth <= ends.high
     covered = {what: Found(given, of, studies) for what, of in held.items()}
     return {**covered, "bias": Bias(error / given, given)}
+
+
+def just_noticeable(readers: int, lapse: float, seed: int = 5) -> tuple[float, float]:
+    """Coverage of the point of equality, and of the just noticeable difference, as shares.
+
+    Constant stimuli have 7 levels of 12 trials; a share of the answers lapses at each end.
+    """
+    random, levels = np.random.default_rng(seed), np.linspace(-2.1, 2.1, 7)
+    held, given = np.zeros(2), 0
+    for _ in range(readers):
+        middle = random.uniform(-0.3, 0.3)
+        spread = math.exp(random.uniform(math.log(0.5), math.log(1.2)))
+        share = lapse + (1 - 2 * lapse) * norm.cdf(levels, middle, spread)
+        more = random.binomial(12, share)
+        try:
+            fit = fit_psychometric(levels, more, np.full(7, 12), shape="normal", even=True)
+        except Unanswerable:
+            continue
+        given += 1
+        held += [
+            of.low <= truth <= of.high
+            for of, truth in ((fit.threshold_interval, middle), (fit.spread_interval, spread))
+        ]
+    equal, jnd = (held / given).tolist()
+    return equal, jnd

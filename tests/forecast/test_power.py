@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from msgspec import structs
 from scipy.stats import t as student
@@ -12,7 +13,8 @@ from tests.forecast.closedform import of_row, t_power
 from tests.forecast.independent import off_by
 from tests.tiers import by_tier, heavy
 from vbraille.errors import InputError
-from vbraille.forecast.power import PowerQuestion, power, values_of
+from vbraille.forecast.power import PowerQuestion, names_of, power, values_of
+from vbraille.forecast.studies import StudyTask, simulate
 from vbraille.forecast.workers import Workers
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol
@@ -88,6 +90,32 @@ def test_catch_trials_belong_to_no_condition():
     protocol = parse_protocol(watched, "letters.toml")
     assert any(trial.catch for trial in make_plan(protocol, "P1", 1).trials)
     assert replace(QUESTION, protocol=protocol).plan().trials == QUESTION.plan().trials
+
+
+def shares_of(question):
+    """Mean share of right answers in each condition of simulated studies."""
+    plan = question.plan()
+    made = simulate(StudyTask(plan, 1, 0, 400))
+    return (made.sum(axis=(0, 1)) / (400 * np.array(plan.trials).sum(axis=0))).tolist()
+
+
+def test_lapses_are_answered_by_chance_and_false_alarms_whatever_is_felt():
+    attended = shares_of(QUESTION)
+    lapsing = shares_of(replace(QUESTION, lapses=0.2))
+    assert lapsing == pytest.approx([0.8 * share for share in attended], abs=0.01)
+    shipped = load_protocol("same-different")
+    judged = structs.replace(shipped, analysis=structs.replace(shipped.analysis, measure="right"))
+    name = names_of(judged, judged.planned_analysis)[0]
+    question = PowerQuestion(judged, {name: "0.7"}, (6,), between=0.4)
+    differ = np.mean([
+        judged.asks.has_signal(trial) for trial in make_plan(judged, "P1", 1).trials
+    ])  # fmt: skip
+    # A tenth is said to differ, and is right where it does; of the rest, a fifth is chance.
+    told = replace(question, lapses=0.2, false_alarms=0.1)
+    assert shares_of(told) == pytest.approx(
+        [0.2 * 0.5 + 0.8 * (0.1 * differ + 0.9 * 0.7)], abs=0.01
+    )
+    assert "20 % of lapses and 10 % of false alarms" in dict(power(told, ONE).about)["assumed"]
 
 
 def test_rows_are_of_each_size_and_pair_with_what_is_enough():
@@ -167,6 +195,12 @@ def test_work_that_was_ended_goes_on(tmp_path):
         (
             {"protocol": load_protocol("icons"), "effect": {"all": "0.5"}},
             "circle-upright-2-mm",
+        ),
+        ({"lapses": 1.5}, "lapses are 1.5"),
+        ({"false_alarms": 0.1}, "false alarms are of the questions detect and same-different"),
+        (
+            {"protocol": load_protocol("rating"), "lapses": 0.1},
+            "lapses and false alarms are of shares",
         ),
     ],
 )  # fmt: skip

@@ -294,6 +294,7 @@ COMMANDS = {
         "Say how often a study of a protocol would find an effect, by simulation.",
         (
             *(_PROTOCOL, "effect", "participants", "studies", "between", "differing"),
+            *("lapses", "false_alarms"),
             *("correction", "seed", "workers", "keep", ("json", "csv")),
         ),
         "vbraille power letters --effect T0=0.5,T25=0.56,T100=0.64 --participants 4-40",

@@ -801,15 +801,15 @@ OPTIONS = {
         ),
         Option(
             "lapses",
-            "Let the simulated reader answer this share of the trials by chance alone.",
+            "Let simulated people answer this share of the trials by chance alone.",
             float,
             "0…1",
             default=0.0,
         ),
         Option(
             "false_alarms",
-            'Let the simulated reader say "yes", or "different", in this share of the trials, '
-            "whatever it feels.",
+            'Let simulated people say "yes", or "different", in this share of the trials, whatever '
+            "they feel.",
             float,
             "0…1",
             default=0.0,

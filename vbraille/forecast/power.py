@@ -20,6 +20,8 @@ from vbraille.forecast.studies import ALPHA, StudyPlan, StudyTask, count_found, 
 from vbraille.forecast.workers import KeptResults, work_on
 from vbraille.sessions.planning.analysis import CONDITION, ITEM, MEASURES
 from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.questions import OneOfTwo
+from vbraille.sessions.running.reader import ReaderHabits
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -36,6 +38,7 @@ MOST_STUDIES = 1_000_000
 MOST_SPREAD = 5.0  # of log odds, and of logarithms
 PORTION = 125  # studies of a task, however many workers there are
 SEED = 1
+_GUESSES = 50  # of each trial, from which it is known how often one is right by chance
 OF_GROUP = ":"  # between a group and its condition
 ODDS_RATIO = "odds-ratio"
 # Group, condition, and levels of items that the measure is compared by.
@@ -143,6 +146,10 @@ class PowerQuestion:
         How p are corrected; None as planned.
     studies, seed
         Number of studies of each size, and what they are drawn by.
+    lapses, false_alarms
+        Of shares: share of the trials that are answered by chance alone, and share of the others
+        that are answered "yes" or "different" whatever was felt. Values by condition are those
+        without them.
 
     Raises
     ------
@@ -158,8 +165,11 @@ class PowerQuestion:
     correction: str | None = None
     studies: int = 1000
     seed: int = SEED
+    lapses: float = 0.0
+    false_alarms: float = 0.0
 
     def __post_init__(self) -> None:
+        self._check_habits()
         if not 1 <= self.studies <= MOST_STUDIES:
             raise InputError(
                 f"{setting('studies')} is {self.studies}; it must be 1 to {MOST_STUDIES}"
@@ -180,6 +190,30 @@ class PowerQuestion:
         if not self.shares and not self.between and not self.differing:
             raise InputError(
                 f"people would not differ; give {setting('between')} or {setting('differing')}"
+            )
+
+    def _check_habits(self) -> None:
+        """Check lapses and false alarms.
+
+        Raises
+        ------
+        InputError
+            If they are out of range, or the measure or the question has none.
+        """
+        ReaderHabits(0.0, self.lapses, self.false_alarms).checked()
+        if not (self.lapses or self.false_alarms):
+            return
+        measure = self.protocol.planned_analysis.measure
+        if measure is not None and not self.shares:
+            raise InputError(
+                f"{self.protocol.name} compares {MEASURES[measure].words}, and lapses and false "
+                f"alarms are of shares of right answers; leave them out"
+            )
+        question = self.protocol.asks
+        if self.false_alarms and not isinstance(question, OneOfTwo):
+            raise InputError(
+                f"false alarms are of the questions detect and same-different, and "
+                f"{self.protocol.name} asks {question.name}; leave them out"
             )
 
     @property
@@ -213,7 +247,33 @@ class PowerQuestion:
             sizes=self.sizes,
             model=(self.analysis.model or "means") if self.shares else "scores",
             correction=self.analysis.correction,
+            by_chance=self._by_chance(strata),
+            attended=(1 - self.lapses) * (1 - self.false_alarms),
         )
+
+    def _by_chance(self, strata: list[Stratum]) -> tuple[float, ...]:
+        """Right answers to trials of each condition that are lapses or false alarms, as shares."""
+        if not (self.lapses or self.false_alarms):
+            return ()
+        question, found = self.protocol.asks, []
+        random = np.random.default_rng(self.seed)
+        people = range(1, max(1, len(self.protocol.groups)) + 1)  # one of each group
+        plans = [make_plan(self.protocol, f"P{number}", self.seed) for number in people]
+        for group, condition, *_ in strata:
+            own = [
+                trial
+                for plan in plans
+                for trial in plan.trials
+                if (plan.group, trial.condition) == (group, condition) and not trial.catch
+            ]
+            guesses = [(trial, question.guess(trial, random)) for trial in own * _GUESSES]
+            lapsed = np.mean([question.good(*each) for each in guesses])
+            alarmed = 0.0
+            if isinstance(question, OneOfTwo):
+                alarmed = np.mean([question.good(trial, question.words[0]) for trial in own])
+            alarms = (1 - self.lapses) * self.false_alarms
+            found.append(float(self.lapses * lapsed + alarms * alarmed))
+        return tuple(found)
 
     def _trials(self, strata: list[Stratum]) -> tuple[tuple[int, ...], ...]:
         """Trials of each participant in each condition, by the participant's own plan.
@@ -391,7 +451,7 @@ def _about(question: PowerQuestion, plan: StudyPlan, studies: int) -> tuple[tupl
     return (
         ("protocol", f"{protocol.name}{f', {many} trials of each person' * question.shares}"),
         ("planned", analysis.described()),
-        ("assumed", assumed),
+        ("assumed", f"{assumed}{_habits(question)}"),
         (
             "people differ",
             f"by an s.d. of {plan.between:g} in {scale}, the same in all conditions, and by one of "
@@ -401,6 +461,13 @@ def _about(question: PowerQuestion, plan: StudyPlan, studies: int) -> tuple[tupl
         ("test", f"two-sided at {ALPHA:g}, p corrected as in the report"),
         ("simulated", f"{studies} {studied} of each size, seed {question.seed}"),
     )
+
+
+def _habits(question: PowerQuestion) -> str:
+    """Clause on lapses and false alarms; empty if there are none."""
+    told = (("lapses", question.lapses), ("false alarms", question.false_alarms))
+    known = [f"{100 * share:g} % of {name}" for name, share in told if share]
+    return f", and beside these {' and '.join(known)}" if known else ""
 
 
 def names_of(protocol: Protocol, analysis: PlannedAnalysis) -> list[str]:

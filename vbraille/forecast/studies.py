@@ -7,7 +7,8 @@ Of each participant, the log odds of a right answer in a condition, or the score
 with a_c of the condition, and z and z_c standard normal: σ is how much participants differ, τ how
 much a condition differs between them; a difference of two conditions then has the standard
 deviation √2 τ. Of shares, a_c is chosen so that the share of right answers, averaged over the
-population, is the one that was asked for, and each trial is drawn by itself. A score is η.
+population, is the one that was asked for, and each trial is drawn by itself. Where people lapse, or
+give false alarms, a trial is right with the probability b_c + s / (1 + exp(-η)). A score is η.
 
 A study has a random generator of its own, which follows from the seed and from the study's number
 alone, and a participant draws before the next one does. So the studies are the same in whatever
@@ -73,6 +74,9 @@ class StudyPlan:
         "trials" for the model of trials; "means" for participants' shares; "scores" for scores.
     correction
         How p are corrected: a key of `METHODS`.
+    by_chance, attended
+        Share of right answers in each condition that no feeling makes, b_c, and share s of the
+        trials that are answered by feeling alone; empty and 1 if all are.
     """
 
     trials: tuple[tuple[int, ...], ...]
@@ -84,6 +88,8 @@ class StudyPlan:
     sizes: tuple[int, ...]
     model: str
     correction: str
+    by_chance: tuple[float, ...] = ()
+    attended: float = 1.0
 
     @property
     def design(self) -> CellDesign:
@@ -147,6 +153,8 @@ def simulate(task: StudyTask) -> NDArray[np.float64]:
     if scores:
         return np.where(trials > 0, made, np.nan)
     shares = expit(made)
+    if plan.by_chance:
+        shares = np.asarray(plan.by_chance) + plan.attended * shares
     correct = np.empty((task.studies, people, conditions))
     for condition in range(conditions):
         right = draws[..., 1 + conditions :] < shares[..., condition, None]

@@ -8,7 +8,7 @@ from scipy.optimize import minimize
 from scipy.special import expit
 from scipy.stats import norm
 
-from tests.benchmarks.coverage_readers import curve
+from tests.benchmarks.coverage_readers import curve, just_noticeable
 from tests.tiers import by_tier
 from vbraille.analysis.statistics.intervals import Unanswerable
 from vbraille.analysis.statistics.psychometric import fit_psychometric
@@ -211,3 +211,11 @@ def test_lapses_at_both_ends_leave_the_point_of_equality_and_the_spread():
     assert even.guess == even.lapse == pytest.approx(0.04, abs=0.005)
     assert even.shares(levels) == pytest.approx(share, abs=0.005)
     assert fit_psychometric(*given, shape="normal", guess=0.0).spread > 0.6
+
+
+@pytest.mark.parametrize("lapse", by_tier([0.0], [0.0, 0.05], [0.0, 0.02, 0.05]))
+def test_equality_and_the_just_noticeable_are_within_their_intervals(lapse):
+    readers = by_tier(40, 400, 4000)
+    spread = math.sqrt(0.95 * 0.05 / readers)
+    for share in just_noticeable(readers, lapse):
+        assert 0.93 - 4 * spread <= share <= min(0.98 + 4 * spread, 1.0)

@@ -34,6 +34,9 @@ MOST_LAPSES = 0.1
 MOST_GUESSES = 0.9
 FEWEST_LEVELS = 3
 _FEW = 20.0  # second parameter of the lapses' prior; the first is 1
+# Of lapses at both ends: with less, the spread of people who never lapse is too seldom within its
+# interval, since some lapses are expected of all (docs/validation.md).
+_WIDER = 1.05
 _SIZE = (48, 32, 5, 12)  # cells of the grid along threshold, spread, lapses, and guesses if free
 _COARSE = (40, 24, 3, 6)  # and of the two before it, each grid over what the last left likely
 _UNLIKELY = 12.0  # in log likelihood below the best
@@ -94,6 +97,11 @@ class LevelCounts(NamedTuple):
     guess: float | None
     blanks: tuple[int, int]
     even: bool
+
+    @property
+    def few(self) -> float:
+        """Second parameter of the lapses' prior: at both ends there are half as many at each."""
+        return 2 * _FEW if self.even else _FEW
 
     def floor(self, lapse: Any) -> Any:
         """Fixed share of guesses, where a share lapses."""
@@ -156,12 +164,15 @@ def fit_psychometric(
     threshold, spread, lapse = best[0], math.exp(best[1]), best[2]
     floor = best[3] if asked.guess is None else asked.floor(lapse)
     interval = Interval(min(ends[0][0], threshold), max(ends[0][1], threshold))
+    middle = math.log(spread)
+    wider = _WIDER if even else 1.0
+    low, high = (math.exp(middle + wider * (end - middle)) for end in ends[1])
     return PsychometricFit(
         shape,
         threshold,
         interval,
         spread,
-        Interval(min(math.exp(ends[1][0]), spread), max(math.exp(ends[1][1]), spread)),
+        Interval(min(low, spread), max(high, spread)),
         floor,
         lapse,
         "; ".join(_beyond(asked, threshold, interval)),
@@ -231,7 +242,7 @@ def _log_posterior(asked: LevelCounts, edges: list[NDArray[np.float64]]) -> NDAr
             share = np.clip(share, _EDGE, 1 - _EDGE)
             yes, no = asked.positive[at], asked.trials[at] - asked.positive[at]
             of += yes * np.log(share) + no * np.log1p(-share)
-        of += (_FEW - 1) * np.log1p(-lapse[:, 0]) + _of_blanks(asked, guess)
+        of += (asked.few - 1) * np.log1p(-lapse[:, 0]) + _of_blanks(asked, guess)
     return total
 
 
@@ -266,7 +277,7 @@ def _best(asked: LevelCounts, start: list[float], within: list[tuple[float, floa
     def lost(at: NDArray[np.float64]) -> float:
         found = at.tolist()
         guess = found[3] if asked.guess is None else 0.0
-        prior = (_FEW - 1) * math.log1p(-found[2])
+        prior = (asked.few - 1) * math.log1p(-found[2])
         share, no = _shares(asked, found), asked.trials - asked.positive
         likely = float((xlogy(asked.positive, share) + xlog1py(no, -share)).sum())
         return -likely - prior - _of_blanks(asked, guess)

@@ -32,6 +32,8 @@ def run(arguments: argparse.Namespace) -> int:
         correction=arguments.correction,
         studies=arguments.studies,
         seed=arguments.seed,
+        lapses=arguments.lapses,
+        false_alarms=arguments.false_alarms,
     )
     workers = Workers(arguments.workers)
     keep = None if arguments.keep is None else Path(arguments.keep)
