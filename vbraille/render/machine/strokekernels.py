@@ -200,7 +200,7 @@ def _bands(numbers, rows, at, time, count):
 
 @compiled
 def _cue_swing(numbers, at, time):
-    """What a cue shows, and by how much that swings about what its vibration leaves of it."""
+    """Tell what a cue shows, and by how much it swings about what its vibration leaves of it."""
     amplitude = numbers[at + _CUE_SHARE]
     swing = 0.5 * amplitude * phase(numbers[at + _CUE_HZ], time)
     return numbers[at + CUE_SHOWS], swing, 1.0 - 0.5 * amplitude
