@@ -22,7 +22,15 @@ from vbraille.scene.patterns import (
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import Inverse, Pulse, Speed, Switch
-from vbraille.scene.strokes import Along, DotStyle, Dotting, Stroke, VertexMarkers, Vibration
+from vbraille.scene.strokes import (
+    Along,
+    DotStyle,
+    Dotting,
+    MovingCue,
+    Stroke,
+    VertexMarkers,
+    Vibration,
+)
 from vbraille.scene.textures import AxialGrating, LinearGrating, Uniform, UniformVibration
 
 LATERO = Canvas(width_mm=280, height_mm=217)
@@ -201,6 +209,14 @@ ADVICE = {
     "what moves quickly as a whole": (
         Moving(part=LinearGrating(ridge_mm=5, wave_angle_deg=90), velocity_mm_s=(90, -30)),
         "has a grating that moves by 6 waves a second",
+    ),
+    "dots that move quickly": (
+        circle(stroke=None, dots=Dotting(velocity_mm_s=-18)),
+        "has a row of dots that moves by 6 waves a second",
+    ),
+    "a cue that moves quickly": (
+        circle(stroke=Stroke(), cue=MovingCue(velocity_mm_s=102)),
+        "has a cue that moves by 6 waves a second",
     ),
     "a quick flow along a stroke": (
         circle(stroke=Stroke(along=Along(ridge_mm=2, velocity_mm_s=12))),

@@ -154,3 +154,20 @@ def with_velocity_by(value, name):
         value = {key: with_velocity_by(inner, name) for key, inner in value.items()}
         return {**value, "velocity_by": name} if value.get("velocity_mm_s") else value
     return value
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: Circle(center_mm=(9, 9), radius_mm=5, cue=MovingCue()), "cue needs a stroke"),
+        (lambda: MovingCue(velocity_mm_s=0, velocity_by="on"), "without a velocity"),
+        (lambda: MovingCue(ridge_mm=0), "ridge is 0"),
+        (lambda: MovingCue(share=1.5), "share is 1.5"),
+        (lambda: MovingCue(vibration=Vibration(of="low")), "not for bands"),
+        (lambda: Dotting(velocity_mm_s=5000), "velocity is 5000"),
+        (lambda: Dotting(velocity_by="on"), "without a velocity"),
+    ],
+)
+def test_what_cannot_move_so_is_refused(make, said):
+    with pytest.raises(ValueError, match=said):
+        make()
