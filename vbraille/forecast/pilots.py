@@ -93,7 +93,7 @@ def expected_minutes(protocol: Protocol, plan: Plan) -> float:
     cells = sum(len(stimulus.masks) for trial in shown for stimulus in trial.stimuli)
     seconds = READING_S * cells + len(shown) * (ANSWERING_S + protocol.trial.gap_s)
     if every := protocol.session.break_every:
-        seconds += BREAK_S * ((len(trials) - 1) // every)
+        seconds += (protocol.session.break_s or BREAK_S) * ((len(trials) - 1) // every)
     limit = protocol.session.limit_s
     return (seconds if limit is None else min(seconds, limit)) / 60
 

@@ -9,13 +9,16 @@ import pytest
 from msgspec import structs
 
 from tests.sessions.bidsvalid import complaints
+from tests.sessions.running.test_adaptive import FORMS as DIFFERENCES
+from tests.sessions.running.test_adaptive import SEEN, form_of
 from tests.sessions.running.test_adjusting import ADJUST
 from tests.sessions.running.test_intervals import FORMS
 from tests.sessions.running.test_passages import PASSAGES
 from tests.sessions.running.test_questionnaire import ALL
 from tests.sessions.sittings import MINI, Session
-from tests.tiers import heavy
+from tests.tiers import by_tier, heavy
 from vbraille.errors import InputError, VbrailleError
+from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.record import bids
 from vbraille.sessions.record.folder import alike, label_of
 
@@ -126,10 +129,30 @@ def test_without_times_no_file_tells_when_or_where(record, tmp_path):
             assert "trace-001" not in text
 
 
+# Those of chapter 6 are in tests/analysis/test_chapter6.py; two need paper, or another display.
+SHIPPED = [
+    name
+    for name in builtin_names()
+    if not load_protocol(name).pictures and not name.startswith("control")
+]
+
+
+def test_what_comes_with_the_program_is_a_valid_dataset(tmp_path):
+    for name in by_tier(["detection"], SHIPPED, SHIPPED):
+        text = re.sub(r"(?m)^limit_s = .*\n", "", builtin_text(name))
+        text = text.replace("\n[session]\n", "\n[session]\nlimit_s = 60\n", 1)
+        sat = Session(tmp_path / name, text).sit(noise=0.2)
+        assert sat.progress.done
+        bids.write(sat.record, tmp_path / "set")
+    assert complaints(tmp_path / "set") == ""
+
+
 @heavy
 def test_each_paradigm_is_a_valid_dataset(tmp_path):
     limits = MINI + "[trial]\nexposure_s = 0.6\nanswer_s = 5.0\n"
-    for number, toml in enumerate((ALL, limits, *FORMS.values(), ADJUST, PASSAGES)):
+    adaptive = (SEEN, *(form_of(form, trials=6) for form in DIFFERENCES))
+    paradigms = (ALL, limits, *FORMS.values(), ADJUST, PASSAGES, *adaptive)
+    for number, toml in enumerate(paradigms):
         named = re.sub('name = "[a-z-]+"', f'name = "task{number}"', toml, count=1)
         bids.write(Session(tmp_path / f"{number}", named).sit().record, tmp_path / "set")
     assert complaints(tmp_path / "set") == ""

@@ -117,6 +117,15 @@ def test_breaks_of_the_protocol_and_between_blocks(tmp_path):
     assert len(of(sat.events, "break")) == 3
 
 
+def test_the_end_of_a_planned_break_is_said(tmp_path):
+    session = Session(tmp_path / "s", STUDIED + "[session]\nbreak_every = 3\nbreak_s = 5\n")
+    script = [("read:", "c")] * 3 + [("break: its time is over", "")] + [("read:", "c")]
+    sat = session.sit(*script, ("break: 4 trials are done; 5 s are planned, Enter goes on", "stop"))
+    assert "break: 3 trials are done; 5 s are planned, Enter goes on" in sat.said
+    (begun, *_), (gone_on, *_) = of(sat.events, "break"), of(sat.events, "go")
+    assert 5 <= gone_on["t_s"] - begun["t_s"] < 6
+
+
 def test_stop_leaves_the_open_trial_to_be_shown_again(session):
     session.sit(*ALL[:2], ("cue: trial 3", "stop"))
     sat = session.sit(*ALL[2:], ("last", ""))

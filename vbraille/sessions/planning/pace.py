@@ -146,6 +146,8 @@ class SessionPace(Table, frozen=True):
     break_every
         Number of trials in a block from one break to the next; None for breaks between blocks
         only.
+    break_s
+        Planned seconds of a break, whose end the console says; None if it is as long as it takes.
     blind
         Whether the live view keeps back all from which a stimulus or an answer could be read.
 
@@ -157,11 +159,13 @@ class SessionPace(Table, frozen=True):
 
     limit_s: float | None = None
     break_every: int | None = None
+    break_s: float | None = None
     blind: bool = True
 
     def __post_init__(self) -> None:
         check_range("limit_s", self.limit_s, 1, 86_400, " s")
         check_range("break_every", self.break_every, 1, 10_000)
+        check_range("break_s", self.break_s, 1, 7200, " s")
 
 
 FIRST_CODE, LEAST_CODE, MOST_CODE = 101, 40, 254  # bytes below the least are those of events

@@ -194,6 +194,7 @@ class Runner:
         self._exposed: TimePoint | None = None  # from when the stimulus's exposure counts
         self._asked: TimePoint | None = None  # from when the time for the answer counts
         self._told_late = False
+        self._break_end_ns: int | None = None  # when the planned time of an open break is over
         self._turned: Stimulus | None = None  # what the participant has turned in the open trial
         self._deaths = 0
         self._why = ""  # what the experimenter was told that the trial waits for
@@ -689,7 +690,10 @@ class Runner:
         """
         if not self.look():
             return
-        trial = self.trial
+        trial, over_ns = self.trial, self._break_end_ns
+        if self.phase is Phase.BREAK and over_ns is not None and self._now_ns() >= over_ns:
+            self._break_end_ns = None
+            self._say("break: its time is over; Enter goes on")
         if trial is None or self.paused:
             return
         if self.phase is Phase.OPEN:
@@ -729,7 +733,12 @@ class Runner:
         self.log(events.Break)
         if self.responses.typed:
             self.phase = Phase.BREAK
-            self._say(f"break: {self.progress.done} trials are done; Enter goes on")
+            planned_s = self.protocol.session.break_s
+            planned = "" if planned_s is None else f"{planned_s:g} s are planned, "
+            self._break_end_ns = None
+            if planned_s is not None:
+                self._break_end_ns = self._now_ns() + round(planned_s * 1e9)
+            self._say(f"break: {self.progress.done} trials are done; {planned}Enter goes on")
         elif self.trial is not None:
             self._ready(self.trial)
 
