@@ -248,10 +248,30 @@ def plain_texture(node, kind, place, now):
         values = [pattern(part, place, now) for part in node.findall("Pattern")]
         return blended(node.find("Modulator"), values, now)
     if kind == "Motion":
-        return pattern(node.find("Pattern"), place, now)
+        return under_bands(node, pattern(node.find("Pattern"), place, now), place, now)
     assert kind == "Pattern"
     wide, high = number(node, "grid_width", 20.0), number(node, "grid_height", 20.0)
     return pattern(node.find("Pattern"), (place[0] % wide, place[1] % high), now)
+
+
+def under_bands(node, value, place, now):
+    """A texture under bands that move as though the array stood at 0, 0."""
+    cue = word(node, "cue_type", "none")
+    if cue == "none":
+        return value
+    ridge = 5.0 if "vibration" in cue else 2.0
+    way, speed = math.radians(number(node, "direction", 0.0)), number(node, "velocity", 50.0)
+    x, y = (place[n] - now.center[n] for n in (0, 1))
+    along = x * math.cos(way) + y * math.sin(way) - speed * now.travelled(speed, ridge + 30.0)
+    u = along % (ridge + 30.0) / ridge
+    band = (1 - math.cos(2 * math.pi * u)) / 2 if u <= 1 else 0.0
+    if cue == "vibration bands":
+        return (1 - band) * value + band * now.swing(50.0)
+    if cue == "blending bands":
+        return (1 - band) * value + band * 0.5
+    if cue == "disabling bands":
+        return value * (1 - band)
+    return min(1.0, value + 0.2 * band)
 
 
 def axial(node, x, y, now):

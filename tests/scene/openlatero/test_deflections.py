@@ -416,6 +416,19 @@ REACTIVE = {
         "LinearGrating",
         waves(5, 1, '<PitchModulator type="slope"><enable>yes</enable></PitchModulator>') + CARRIED,
     ),
+    **{
+        cue: texture(
+            "Motion",
+            f"<cue_type>{cue}</cue_type><direction>40</direction><velocity>-23</velocity>{grating()}",
+        )
+        for cue in (
+            "vibration bands",
+            "superposed bands",
+            "superposed vibration bands",
+            "disabling bands",
+            "blending bands",
+        )
+    },
     "still under the hand": grating(inside="<td_centric>5,5</td_centric>"),
     "moving rings under the hand": texture(
         "RadialGrating", f"<seed>9,9</seed>{waves(3, 1)}{CARRIED}<td_centric>0,8</td_centric>"
@@ -428,7 +441,7 @@ def test_what_moves_and_answers_feels_as_there(name, tmp_path):
     text = scene(REACTIVE[name])
     path = tmp_path / "old.gen"
     path.write_text(text)
-    found = read_gen(path)
+    found = read_gen(path, as_shown="bands" in name)
     assert not found.warnings
     program = compile_scene(found.scene, STRESS2_8X8.display)
     chance = random.Random(3)
@@ -440,8 +453,10 @@ def test_what_moves_and_answers_feels_as_there(name, tmp_path):
             for row in range(8)
             for column in range(8)
         ]
+        signs = [1.0 - 2 * ((row + column) % 2) for row in range(8) for column in range(8)]
         theirs = [
-            reference.deflections(text, [place], 1.0, time, velocity, (x, y))[0] for place in places
+            reference.deflections(text, [place], sign, time, velocity, (x, y))[0]
+            for place, sign in zip(places, signs, strict=True)
         ]
         np.testing.assert_allclose(shown.ravel(), theirs, atol=2e-4, rtol=0, err_msg=name)
 
