@@ -1,4 +1,4 @@
-/** The line under the hand in another mapping, drawn as the array would feel it at the same place. */
+/** The line under the hand in another mapping, as the array would feel it there. */
 
 import { byId, write } from "./drawing.js";
 import { Skin } from "./skin.js";
@@ -8,7 +8,7 @@ import { Skin } from "./skin.js";
 
 export class Beside {
   /** @type {State | null} */
-  #state = null; // with the other mapping in place of its own
+  #state = null; // with the other mapping
   /** @type {Uint8Array[]} */
   #rows = [];
   #made = "";

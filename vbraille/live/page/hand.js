@@ -45,7 +45,9 @@ export class Hand {
     this.wake = wake;
     const drawing = sheet.moving;
     drawing.addEventListener("pointerdown", (event) => this.#down(event));
-    drawing.addEventListener("pointermove", (event) => this.#drag(event));
+    // All but raw updates are held back until the browser draws.
+    const moves = "onpointerrawupdate" in drawing ? "pointerrawupdate" : "pointermove";
+    drawing.addEventListener(moves, (event) => this.#drag(/** @type {PointerEvent} */ (event)));
     for (const end of ["pointerup", "pointercancel"]) drawing.addEventListener(end, () => this.#up());
     sheet.array.addEventListener("keydown", (event) => this.#key(event));
     sheet.array.addEventListener("focus", () => this.#name(true));

@@ -284,7 +284,7 @@ const shown = {
     return { tick, time_s, x_mm, y_mm, rows, columns, deflections: Array.from(frame.deflections) };
   },
   get beside() {
-    return frame && beside.shown ? { x_mm: frame.x_mm, deflections: Array.from(beside.shown) } : null;
+    return frame && beside.shown && { x_mm: frame.x_mm, deflections: [...beside.shown] };
   },
   get state() {
     return state;
