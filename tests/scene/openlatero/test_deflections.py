@@ -164,6 +164,9 @@ CASES = {
     "thin line with a texture and a gutter": line(
         stroke(4, f"<fill>{waves(3, 1.5)}<gutter>yes</gutter></fill>")
     ),
+    "line of little more than four edges, outlined": line(
+        stroke(6.5, f"<fill>{waves(3, 1.5)}<gutter>yes</gutter></fill>")
+    ),
     "outlined line, vibrating": line(stroke(9, f"<fill>{swings()}<gutter>yes</gutter></fill>")),
     "line, vibrating where it is up": line(stroke(9, f"<fill>{waves(3, 1.5)}{swings()}</fill>")),
     "line, vibrating where it is down": line(
