@@ -4,6 +4,7 @@ from pathlib import Path
 
 from tests.cli import program
 from tests.cli.program import Terminal
+from tests.reading.ssipserver import SsipServer
 from vbraille.sessions.record.export import rows
 from vbraille.sessions.record.folder import load
 
@@ -100,3 +101,18 @@ def test_a_sentence_leaves_what_is_being_typed_as_it_is(tmp_path):
         terminal.type("\nstop\n")
         assert terminal.end() == 0
     assert rows(load(tmp_path / "s"))[0]["notes"] == "mine"
+
+
+def test_what_the_console_says_is_spoken(tmp_path):
+    place = {"SPEECHD_ADDRESS": f"unix_socket:{tmp_path / 'sock'}"}
+    with (
+        SsipServer(tmp_path / "sock") as server,
+        Terminal(*arguments(tmp_path), "--speech", **place) as terminal,
+    ):
+        server.until(lambda it: "cue: trial 1 of 2" in it.said)
+        terminal.type("note ab" + LEFT)
+        server.until(lambda it: it.said[-1] == "cursor: b")
+        terminal.type("\n")
+        server.until(lambda it: it.said[-1].startswith("note: is in"))
+        terminal.type("stop\n")
+        assert terminal.end() == 0

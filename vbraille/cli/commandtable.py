@@ -100,6 +100,7 @@ def _conduct(*, begun: bool) -> tuple[Row, ...]:
         _of("answers", **usual),
         _of("hand", default=None, usual="as the session began" if begun else "slow"),
         "fast",
+        "speech",
         _of("cues", usual="tones, or the bell where there is no audio output"),
         _of("also", usual="BRLTTY's on this machine, where the protocol shows something on it"),
         "markers",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, closing, contextmanager, suppress
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Callable, Iterator
 
+    from vbraille.reading.speech import Speech
     from vbraille.sessions.planning.pace import ParticipantField
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
@@ -116,11 +117,11 @@ def _run(arguments: argparse.Namespace) -> int:
         conditions=Conditions(rate_hz=arguments.rate, fast=arguments.fast, **_chosen(arguments)),
         begun=arguments.begun,
     )
-    with _taken(session.answers()) as (answers, say):
+    with _taken(session.answers(), speech=arguments.speech) as (answers, say):
         if not arguments.another:
-            _ask_who(session.folder.absolute().parent, session.plan.participant, answers)
+            _ask_who(session.folder.absolute().parent, session.plan.participant, answers, say)
         if isinstance(answers, Typed):
-            session.tell(_ask_fields(session.protocol, arguments.field, answers))
+            session.tell(_ask_fields(session.protocol, arguments.field, answers, say))
         return _conduct(session, answers, say)
 
 
@@ -129,24 +130,29 @@ def _resume(arguments: argparse.Namespace) -> int:
 
     fast = {"fast": True} if arguments.fast else {}
     session = Session.resume(arguments.folder, begun=arguments.begun, **fast, **_chosen(arguments))
-    with _taken(session.answers()) as (answers, say):
+    with _taken(session.answers(), speech=arguments.speech) as (answers, say):
         return _conduct(session, answers, say)
 
 
 @contextmanager
-def _taken(answers: Responses) -> Iterator[tuple[Responses, Callable[[str], None]]]:
+def _taken(
+    answers: Responses, *, speech: bool
+) -> Iterator[tuple[Responses, Callable[[str], None]]]:
     """Have lines that are typed at a terminal edited there; give who answers, and who speaks."""
-    if not isinstance(answers, Typed) or not (sys.stdin and takes_lines(sys.stdin.fileno())):
-        yield answers, _say
-        return
-    from vbraille.cli.typedlines import EditedLines
+    say = _say
+    with ExitStack() as stack:
+        if speech:
+            from vbraille.reading.speech import Speech
 
-    lines = EditedLines(_say)
-    lines.take()
-    try:
-        yield lines, lines.say
-    finally:
-        lines.release()
+            say = partial(_say_aloud, stack.enter_context(closing(Speech())))
+        if isinstance(answers, Typed) and sys.stdin and takes_lines(sys.stdin.fileno()):
+            from vbraille.cli.typedlines import EditedLines
+
+            lines = EditedLines(say)
+            lines.take()
+            stack.callback(lines.release)
+            answers, say = lines, lines.say
+        yield answers, say
 
 
 def _conduct(session: Session, answers: Responses, say: Callable[[str], None]) -> int:
@@ -290,7 +296,7 @@ def _cells(trial: Trial):
     return Cells.bare(np.array(trial.stimuli[0].masks, np.uint8))
 
 
-def _ask_who(room: Path, participant: str, answers: Responses) -> None:
+def _ask_who(room: Path, participant: str, answers: Responses, say: Callable[[str], None]) -> None:
     """Ask whether a new participant is one whose pseudonym is nearly the same.
 
     Raises
@@ -304,31 +310,33 @@ def _ask_who(room: Path, participant: str, answers: Responses) -> None:
     near, session = found
     told = f"{participant} is new here, and {near} has the session {session}"
     if isinstance(answers, Typed) and sys.stdin.isatty():
-        _say(f"participant: {told}; is {participant} another person? (yes or no):")
+        say(f"participant: {told}; is {participant} another person? (yes or no):")
         while (line := answers.line()) is not None:
             if line.strip().lower() in ("y", "yes"):
                 return
             if line.strip().lower() in ("n", "no"):
                 break
-            _say("type yes or no:")
+            say("type yes or no:")
         raise InputError(f"nothing was begun; give --participant {near}")
     raise InputError(
         f"{told}; give --participant {near}, or --another if {participant} is another person"
     )
 
 
-def _ask_fields(protocol: Protocol, given: dict[str, str], typed: Typed) -> dict[str, str]:
+def _ask_fields(
+    protocol: Protocol, given: dict[str, str], typed: Typed, say: Callable[[str], None]
+) -> dict[str, str]:
     """Responses to what the protocol asks about the participant: as given, otherwise as typed."""
     return {
-        field.name: given[field.name] if field.name in given else _ask(field, typed)
+        field.name: given[field.name] if field.name in given else _ask(field, typed, say)
         for field in protocol.fields
     }
 
 
-def _ask(field: ParticipantField, typed: Typed) -> str:
+def _ask(field: ParticipantField, typed: Typed, say: Callable[[str], None]) -> str:
     choices = f" ({' or '.join(field.choices)})" if field.choices else ""
     while True:
-        _say(f"{field.ask}{choices}:")
+        say(f"{field.ask}{choices}:")
         line = typed.line()
         if line is None:
             raise InputError(f"{field.name} was not answered; give --field {field.name}=…")
@@ -340,3 +348,8 @@ def _ask(field: ParticipantField, typed: Typed) -> str:
 def _say(sentence: str) -> None:
     with suppress(BrokenPipeError):  # a session does not end because its output is closed
         say_line(spelled(sentence))
+
+
+def _say_aloud(speech: Speech, sentence: str) -> None:
+    _say(sentence)
+    speech.say(spelled(sentence))
