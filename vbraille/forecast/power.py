@@ -147,7 +147,7 @@ class PowerQuestion:
     studies, seed
         Number of studies of each size, and what they are drawn by.
     lapses, false_alarms
-        Of shares: share of the trials that are answered by chance alone, and share of the others
+        For shares: share of the trials that are answered by chance alone, and share of the others
         that are answered "yes" or "different" whatever was felt. Values by condition are those
         without them.
 
