@@ -115,6 +115,20 @@ def test_of_a_comparison_the_plan_tells_both_values(call, tmp_path):
     assert "widths compares dots, which cannot be embossed" in said.err
 
 
+def test_a_plan_whose_values_the_answers_choose_says_where_the_standard_is(call, tmp_path):
+    (tmp_path / "three.toml").write_text(
+        COMPARED.replace("[1.0, 2.0]", "[2.1, 3.0]") + 'reference = 2.0\nform = "triangle"\n'
+        '[question]\nkind = "odd"\n[procedure]\nkind = "staircase"\nstart = [0.8]\n'
+        "steps = [0.1]\n"
+    )
+    said = call("session", "plan", tmp_path / "three.toml", *WHO, "--seed", "1")
+    assert said.code == 0
+    trials = [line.split(": all, ")[1] for line in said.out.splitlines() if ": all, " in line]
+    orders = {tuple(trial.split(", then ")) for trial in trials}
+    assert len(orders) == 6
+    assert {part for order in orders for part in order} == {"a value", "the standard"}
+
+
 def test_a_seed_that_was_drawn_is_said_and_makes_the_plan_again(call):
     drawn = call("session", "plan", "letters", *WHO)
     seed = re.fullmatch(r"seed: (\d+)\n", drawn.err)[1]

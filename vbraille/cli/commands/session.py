@@ -275,8 +275,12 @@ _ACTIONS = {
 def _describe(protocol: Protocol, trial: Trial) -> str:
     if protocol.parameter is not None:
         if protocol.adaptive and not trial.practice:
-            first, second = (stimulus.value or 0.0 for stimulus in trial.stimuli)
-            return f"{trial.condition}, the {'lower' if first < second else 'higher'} value first"
+            shown = [stimulus.value or 0.0 for stimulus in trial.stimuli]
+            if (standard := protocol.standard) is not None:
+                words = ["the standard" if value == standard else "a value" for value in shown]
+                return f"{trial.condition}, {', then '.join(words)}"
+            lower = shown[0] < shown[1]
+            return f"{trial.condition}, the {'lower' if lower else 'higher'} value first"
         values = [stimulus.value or 0.0 for stimulus in trial.stimuli]
         return ", then ".join(said_value(value, protocol.parameter) for value in values)
     stimulus = trial.stimuli[0]
