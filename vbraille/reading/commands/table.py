@@ -307,7 +307,7 @@ COMMANDS = (
     PAUSE,
     *_knobs(),
     shared("MAPPING", ("#",), "another way to show dots by actuators", turning.change_mapping),
-    shared("BESIDE", (), "in the live view: another mapping beside it", turning.show_beside),
+    shared("BESIDE", ("|",), "in the live view: another mapping beside it", turning.show_beside),
     shared("STRAYING", ("=",), "keep the finger on its line, or show all", turning.change_straying),
     shared("BAND_UP", (")",), "leave a line of a page later", calling(turning.turn_band, 1)),
     shared("BAND_DOWN", ("(",), "leave a line of a page sooner", calling(turning.turn_band, -1)),
