@@ -214,9 +214,11 @@ def _people(sessions: Sequence[SessionTrials], tested: Sequence[Rows], rows: Row
     elif protocol.parameter is not None:
         knob = KNOBS[protocol.parameter]
         values = {float(value) for row in rows for value in row["presented"].split()}
+        two = protocol.intervals == 2
         did = (
-            f"compared {_span(numbers, 'pair')} of {len(values)} values of the {knob.words}, "
-            f"{min(values):g} to {max(values):g}{knob.unit}"
+            f"{'compared' if two else 'judged'} {_span(numbers, 'pair' if two else 'trial')} of "
+            f"{len(values)} values of the {knob.words}, {min(values):g} to {max(values):g}"
+            f"{knob.unit}"
         )
     elif protocol.pictures:
         did = f"felt {_span(numbers, 'picture')}{' each' if max(numbers) > 1 else ''}"
