@@ -207,6 +207,14 @@ def test_with_an_index_the_hand_crosses_the_mark_once_greeted(make):
     assert bench.way_mm() > 20  # on its way it stays
 
 
+def test_a_mark_that_was_crossed_while_the_computer_stood_still_is_crossed_again(make):
+    bench = make(info=replace(SLOW, encoder=Encoder.INDEX))
+    bench.greet()
+    bench.run(lambda: bench.way_mm() > 0)
+    time.sleep(0.15)  # there and back takes 88 ms
+    bench.run(lambda: bench.host.states[-1].placed)
+
+
 def test_with_an_incremental_encoder_it_goes_back_at_each_greeting(make):
     bench = make(info=replace(SLOW, encoder=Encoder.INCREMENTAL, left_stop_count=0))
     bench.greet()

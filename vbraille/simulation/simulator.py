@@ -200,6 +200,7 @@ class Simulator:
         self._say = say
         self._spoiler = Spoiler(self._faults)
         self._begun_ns = time.monotonic_ns()
+        self._seeks_mark = info.encoder is Encoder.INDEX
         self._greetings = self._frames = self._trips = 0
         self._stalled = False
         self._turn_us = round(STALL_EVERY_S * 1e6)  # when the device stalls, or goes on
@@ -256,8 +257,6 @@ class Simulator:
             self._greeted_us = now_us if self._greeted_us is None else self._greeted_us
             if controller.info.encoder is Encoder.INCREMENTAL:
                 self._carriage.go_back(now_us)
-            elif not controller.placed:
-                self._carriage.cross(controller.mark_mm, now_us)
         self._follow_frames()
 
     def _follow_frames(self) -> None:
@@ -273,6 +272,9 @@ class Simulator:
             at = at._replace(way_mm=at.way_mm + _OFF_PLACE_MM)
         self._move_controls(now_us)
         *messages, _ = split(controller.tick(now_us, *at))
+        if controller.greeted and self._seeks_mark and not controller.placed:
+            # Once more where this computer stood still while the mark was crossed.
+            self._carriage.cross(controller.mark_mm, now_us)
         self._follow_frames()
         if messages:  # the last message is STATE
             sent = [self._send(message) for message in messages][-1]
