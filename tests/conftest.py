@@ -24,7 +24,7 @@ _OWN_NAMES = {"LANG", "LANGUAGE", "COLUMNS", "LINES", "DISPLAY", "WAYLAND_DISPLA
 
 
 def start_alike() -> None:
-    """Have tests and what they start see the same, whoever started the tests.
+    """Have tests and what they start see the same, however the tests were started.
 
     A signal that is ignored here (by nohup, in the background of a shell) would be ignored by every
     process from here on. One that is handled is not: a new program has its default again.
@@ -32,7 +32,7 @@ def start_alike() -> None:
     for name in [*os.environ]:
         if name in _OWN_NAMES or (name.startswith(_OWN) and name != "PYTHONPATH"):
             del os.environ[name]
-    # Nobody's own settings; there is no such file.
+    # No person's own settings; there is no such file.
     os.environ |= {
         "VBRAILLE_SETTINGS": "/nonexistent/settings.toml",
         "LANG": "C.UTF-8",
@@ -72,7 +72,7 @@ def pytest_report_header() -> str:
 
 
 def pytest_collection(session: pytest.Session) -> None:  # noqa: ARG001 - as hooks are called
-    """Have nobody look for garbage among modules and tests: hardly any of it is."""
+    """Look for no garbage among modules and tests: hardly any of it is."""
     gc.disable()
 
 

@@ -7,10 +7,12 @@ import json
 import re
 import subprocess
 import sys
+from dataclasses import asdict
 from importlib import import_module
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import vbraille
@@ -297,3 +299,67 @@ def test_answers_and_folders_of_a_session_that_cannot_be_used_are_said(tmp_path)
     done = vbraille.Session.resume(tmp_path / "P01").run(lambda trial: trial.presented).progress
     assert (done.done, done.planned, done.ended) == (2, 2, True)
     assert repr(done) == "<Progress: 2 of 2 trials have answers, ended>"
+
+
+WRONG = (None, 3.5, True, b"x", [], {}, object(), np.array(["a"]), float("nan"))
+
+
+def calls():
+    """Functions and values of the front door, with arguments that each takes."""
+    line = vbraille.render_text("abc")
+    page = vbraille.render_page("abc", display=vbraille.STRESS2_8X8)
+    canvas = vbraille.Canvas(width_mm=30, height_mm=30)
+    scene = vbraille.open_scene(vbraille.Scene(canvas=canvas))
+    array = {"name": "m", "rows": 4, "columns": 6, "column_pitch_mm": 1.0, "row_pitch_mm": 2.0}
+    text = {"text": "abc", "language": "en", "grade": 2}
+    yield vbraille.translate_text, text | {"undefined": "mark"}
+    yield vbraille.render_text, text | {"display": vbraille.VBD, "line": 1, "step_mm": 0.06}
+    yield vbraille.render_page, text | {"display": vbraille.STRESS2, "first": 1, "last": 1}
+    yield vbraille.Display, array | {"travel_mm": 9.0, "height_mm": 9.0, "levels": 9}
+    yield vbraille.Tuning, {"texture": 0.5, "contrast": 0.5, "cycles": 7}
+    yield vbraille.Geometry, asdict(vbraille.VBD.style.geometry)
+    yield vbraille.Straying, {"manner": "line", "band": 0.5}
+    yield vbraille.Canvas, {"width_mm": 9.0, "height_mm": 9.0}
+    yield vbraille.Scene, {"canvas": canvas, "elements": ()}
+    yield vbraille.Conditions, {"device": "sim", "hand": "slow", "rate_hz": 1000.0}
+    yield vbraille.Session.create, {"protocol": "letters", "participant": "P1", "seed": 1}
+    yield vbraille.Recording.open, {"path": "x.h5"}
+    yield vbraille.open_scene, {"scene": scene.written}
+    yield scene.frames, {"poses": [(1.0, 2.0)], "display": vbraille.STRESS2_8X8}
+    yield scene.recording, {"poses": [(1.0, 2.0)], "rate_hz": 100.0}
+    yield line.at, {"x_mm": 1.0}
+    yield line.recording, {"speed_mm_s": 60.0}
+    yield page.frames, {"x_mm": [1.0], "y_mm": [2.0]}
+    yield vbraille.testing.parse_hand, {"spec": "slow", "seed": 1}
+    yield vbraille.testing.simulated_device, {"display": vbraille.VBD, "hand": "slow"}
+    yield vbraille.analyse, {"paths": "x.csv", "correction": "holm"}
+
+
+def test_a_value_of_the_wrong_type_is_one_sentence(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    said = []
+    for function, right in calls():
+        for name, wrong in product(right, WRONG):
+            try:
+                function(**{**right, name: wrong})
+            except (vbraille.VbrailleError, ValueError) as error:
+                said.append(str(error))
+    assert len(said) > 400
+    assert not [sentence for sentence in said if "\n" in sentence]
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: vbraille.render_text("a", line="1"), "line is '1'; give a whole number or None"),
+        (lambda: vbraille.render_text("a", grade=True), "grade is True; give a whole number"),
+        (lambda: vbraille.VBD.style.replace(texture="x"), "texture is 'x'; it must be a number"),
+        (lambda: vbraille.Display("m", 3.5, 1, 1.0, 1.0), "rows is 3.5; it must be a whole number"),
+        (lambda: vbraille.Scene(canvas=1), "canvas is 1; it must be a Canvas"),
+        (lambda: vbraille.Session.create("letters", "P1", conditions={}), "give a Conditions"),
+        (lambda: vbraille.analyse(None), "give a path"),
+    ],
+)
+def test_the_sentence_names_what_is_wrong(call, said):
+    with pytest.raises((vbraille.InputError, ValueError), match=said):
+        call()

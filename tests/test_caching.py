@@ -14,7 +14,7 @@ import vbraille
 from tests.cli import program
 from tests.tiers import heavy
 
-# Nobody can make anything here, not even root.
+# Not even root can make anything here.
 NOWHERE = "/proc/none"
 VBRAILLE = ("-m", "vbraille")
 

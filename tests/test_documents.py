@@ -12,7 +12,7 @@ from vbraille.cli.parser import parse
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
-# Pages that lead somebody to a first success: their commands are copied as they stand.
+# Pages that lead a reader to a first success: their commands are copied as they stand.
 DOORS = [ROOT / "README.md", *(ROOT / f"docs/{name}.md" for name in ("reading", "lab", "building"))]
 
 _INDENTED = r"(?<=\n\n)((?:    \S[^\n]*\n)+)"

@@ -1,4 +1,4 @@
-"""Docstrings and comments of the package: first words, subjects, and width of lines."""
+"""Docstrings and comments: first words, subjects, and width of lines."""
 
 import ast
 import inspect
@@ -11,6 +11,7 @@ from pathlib import Path
 import vbraille
 
 PACKAGE = Path(vbraille.__file__).parent
+TESTS = Path(__file__).parent
 WIDEST = 100  # columns
 FRAGMENT = re.compile(r"(?:Of|Its|None of) ")  # a beginning that needs the name before it
 QUESTION = re.compile(r"(?:What|Whether|Who|How|Of|Which|Where|When)\b")  # no verb and no thing
@@ -80,8 +81,8 @@ def test_docstrings_open_with_a_verb_or_a_thing_stand_alone_and_fit_the_page():
 
 def test_docstrings_and_comments_name_the_person_or_thing_that_is_meant():
     faults = [
-        f"{path.relative_to(PACKAGE.parent)}:{line}: {found[0]}"
-        for path in sorted(PACKAGE.rglob("*.py"))
+        f"{path}:{line}: {found[0]}"
+        for path in sorted([*PACKAGE.rglob("*.py"), *TESTS.rglob("*.py")])
         for line, text in english(path)
         if (found := NO_ONE.search(text))
     ]

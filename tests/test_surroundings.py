@@ -1,4 +1,4 @@
-"""What the tests start finds the same, whoever has started the tests."""
+"""What the tests start finds the same, however the tests were started."""
 
 import json
 import os

@@ -105,7 +105,7 @@ def _install(folder):
 
 
 def _another_user(python):
-    """The user nobody, where they can be had and can run this Python; else the one who tests."""
+    """The user 65534, where it can be had and can run this Python; else the one who tests."""
     if os.getuid():
         return {}
     other = {"user": 65534, "group": 65534, "extra_groups": []}

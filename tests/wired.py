@@ -1,6 +1,6 @@
 """A host's loop and a controller on a line in memory, with all that can go wrong there.
 
-Nobody waits: the clock goes on when the host sleeps, and when it is stopped. What the actuators do
+No test waits: the clock goes on when the host sleeps, and when it is stopped. What the actuators do
 is held against the law that nothing jumps, whatever was lost, late, doubled or stopped:
 
 - In any millisecond an actuator moves by no more than three times what is asked for in one: the
@@ -58,7 +58,7 @@ PERIOD_US = 1000
 COUNT_MM = 0.005
 # How much quicker than is asked for what was missed may be caught up with.
 CATCH_UP = 3
-# What a line gives at a read, and what it holds of what nobody reads.
+# What a line gives at a read, and what it holds of what is not read.
 READ_BYTES, HELD_BYTES = 4096, 60_000
 INFO = Display(
     name="wired", rows=1, columns=3, column_pitch_mm=1.2, row_pitch_mm=1.8, levels=TOP + 1,

@@ -6,13 +6,14 @@ pictures are compiled for it.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from numbers import Integral
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from vbraille.errors import InputError
+from vbraille.typed import check_fields
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -78,9 +79,7 @@ class Display:
     shown_near: bool = False
 
     def __post_init__(self) -> None:
-        for name in ("rows", "columns", "levels"):
-            if not isinstance(getattr(self, name), Integral):
-                raise ValueError(f"{name} is {getattr(self, name)!r}; it must be a whole number")
+        check_fields(self)
         if not (1 <= self.rows <= MOST_ROWS and 1 <= self.columns <= MOST_COLUMNS):
             raise ValueError(
                 f"an array of {self.rows} × {self.columns} actuators is not possible; "
@@ -94,9 +93,9 @@ class Display:
         if self.rest_side not in REST_SIDES:
             raise ValueError(f"rest side is {self.rest_side!r}; it must be left or right")
         for name in ("travel_mm", "counts_per_mm", "rate_hz"):
-            if not getattr(self, name) > 0:
+            if not 0 < getattr(self, name) < math.inf:
                 raise ValueError(f"{name} is {getattr(self, name)}; it must be above 0")
-        if not self.height_mm >= 0:
+        if not 0 <= self.height_mm < math.inf:
             raise ValueError(f"height_mm is {self.height_mm}; it must be 0 or more")
         if self.contactor_mm is not None:
             width, height = self.contactor_mm  # JSON has lists

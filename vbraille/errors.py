@@ -41,8 +41,13 @@ def check_range(what: str, value: float | None, low: float, high: float, unit: s
     Traceback (most recent call last):
     ValueError: gap is 61 s; it must be 0 to 60 s
     """
-    if value is not None and not low <= value <= high:
-        raise ValueError(f"{what} is {value:g}{unit}; it must be {low:g} to {high:g}{unit}")
+    try:
+        if value is None or low <= value <= high:
+            return
+        shown = f"{value:g}"
+    except (TypeError, ValueError):  # no number at all
+        shown = f"{value!r:.40}, not a number"
+    raise ValueError(f"{what} is {shown}{unit}; it must be {low:g} to {high:g}{unit}")
 
 
 # Extras of pyproject.toml by the modules that they bring; two modules come with two of them.

@@ -44,7 +44,7 @@ def test_it_is_over_after_its_reversals():
                            ({"right": 1, "easier": 3.0}, 0.75)],
 )  # fmt: skip
 def test_where_they_converge(changed, share):
-    """Whoever is right with a probability that is the level stays at the level's own share."""
+    """A reader who is right with a probability that is the level stays at the level's own share."""
     random, both = np.random.default_rng(2), Staircases((rule(steps=(0.02,), **changed),))
     history = []
     for _ in range(800):

@@ -85,7 +85,7 @@ OF_CHARACTERS = legibilities.characters(COUNTED_PLACES)
 
 
 def column(name, condition):
-    """A column of table 3.1 as it is made here, as it is printed; None where nobody read."""
+    """A column of table 3.1 as it is made here, as it is printed; None where none read."""
     (kind,) = {c.kind for c in BY_SUBJECT.columns if c.name == name}
     found = [
         record(BY_SUBJECT, participant=who, condition=condition)[name] for who in READ["subjects"]

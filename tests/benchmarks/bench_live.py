@@ -111,7 +111,7 @@ def live() -> Iterator[LiveBlock]:
 
 @contextmanager
 def canned() -> Iterator[LiveBlock]:
-    """A host whose loop nobody watches, beside a server of canned frames."""
+    """A host whose loop no page watches, beside a server of canned frames."""
     command = [sys.executable, "-m", "tests.live.canned"]
     with (
         subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process,
@@ -292,7 +292,7 @@ def _pointing(pages: list[Page]) -> Result:
 
 
 def _heaps_mb(pages: list[Page]) -> list[float]:
-    """What the scripts of each page hold, after all that nobody holds is gone."""
+    """What the scripts of each page hold, after all that is no longer referred to is gone."""
     heaps = []
     for page in pages:
         session = page.context.new_cdp_session(page)

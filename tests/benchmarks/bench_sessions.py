@@ -225,7 +225,7 @@ def _ready_s(command: list[str], line: str) -> float:
         assert process.stdin is not None
         _until(process, line)
         taken_s = time.perf_counter() - begun_s
-        process.stdin.close()  # nobody types any more: it stops
+        process.stdin.close()  # no answers come any more: it stops
         assert not process.wait(_PATIENCE_S)
     return taken_s
 

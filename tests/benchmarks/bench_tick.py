@@ -175,7 +175,7 @@ def _line(process: subprocess.Popen[str]) -> str:
 
 def _python(root: Path, installed: str, module: str, *arguments: str) -> subprocess.Popen[str]:
     """Run a module of these benchmarks with the package that is in a directory."""
-    # Whoever measures with byte code forbidden would measure the compiler.
+    # With byte code forbidden the compiler would be measured.
     environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
     # The working directory comes first, and an old checkout has benchmarks of its own: this one's
     # are run by their path.

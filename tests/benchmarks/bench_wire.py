@@ -1,4 +1,4 @@
-"""Garbage at the decoder: nothing is taken for a message that nobody sent."""
+"""Garbage at the decoder: nothing is taken for a message that was not sent."""
 
 from __future__ import annotations
 

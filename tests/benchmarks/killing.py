@@ -76,7 +76,7 @@ MOST_LINES = 24
 MOST_PAUSE_S = 0.012  # some more than a trial takes
 # Shares of the kills, and of those a cut of the journal's last line if it may be lost.
 STARTING, BEGINNING, CUT = 0.3, 0.2, 0.5
-# What a crash of the machine may take: nobody was told that it is in.
+# What a crash of the machine may take: it was not said to be kept.
 _NOT_DURABLE = ("presented", "cue", "contact", "read")
 _DONE = ("answer", "undo", "note", "repeat")
 Event = dict
@@ -136,7 +136,7 @@ def script(random: np.random.Generator) -> str:
 
 
 class _Killed:
-    """A session that is killed and gone on with, beside one that nobody disturbed."""
+    """A session that is killed and gone on with, beside one that was not disturbed."""
 
     def __init__(
         self,
@@ -207,7 +207,7 @@ class _Killed:
             self._add(self._lost, f"answer to trial {trial}, {answer}, is not in the journal")
 
     def _compare(self) -> None:
-        """What must hold at the end, beside the session that nobody disturbed."""
+        """What must hold at the end, beside the session that was not disturbed."""
         tally, events = self._tally, self._events()
         whole = [to_json(event) for event in load(self._whole).journal.events]
         tally.acknowledged += len(acknowledged(self._said))
@@ -361,7 +361,7 @@ def _wrong_attempts(events: list[Event]) -> list[str]:
                     f"{attempts[trial]}, with trial {open_trial} open"
                 )
             if attempts[trial] and not reason:
-                problems.append(f"trial {trial} was shown again, and nobody wanted it")
+                problems.append(f"trial {trial} was shown again, and was not to be")
             attempts[trial] = event["attempt"]
             open_trial, reason = trial, False
         elif kind == "answer" and trial == open_trial:

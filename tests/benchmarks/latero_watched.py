@@ -1,8 +1,8 @@
 """A Latero that says, each time its blades come to rest, how long that took since the host's last.
 
 A line for each: milliseconds from the last FULL of the host with anything to feel until all blades
-were at rest, and until motor power was off as well. The host is whoever has sent most since the
-last time; the watchdog has another port.
+were at rest, and until motor power was off as well. The host is the address that has sent most
+since the last time; the watchdog has another port.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Watched(LateroSimulator):
 
 
 def main() -> None:
-    """Answer until somebody kills it."""
+    """Answer until it is killed."""
     watched = Watched()
     print(watched.spec, flush=True)
     come_first(_PRIORITY)

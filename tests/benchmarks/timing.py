@@ -52,7 +52,7 @@ def ratio(
 
 def process_seconds(arguments: Sequence[str]) -> float:
     """Processor time of a command, start to end."""
-    # Whoever measures with byte code forbidden would measure the compiler.
+    # With byte code forbidden the compiler would be measured.
     environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run(arguments, check=True, capture_output=True, env=environment)

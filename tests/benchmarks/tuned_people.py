@@ -21,7 +21,7 @@ ADAPTIVE_TRIALS, FIXED_REPEATS = 30, 6  # of the 15 pairs of six values, in eith
 
 @dataclass(frozen=True, slots=True)
 class Person:
-    """Somebody who judges the distance of each value from the one that is liked.
+    """A person who judges the distance of each value from the one that is liked.
 
     Parameters
     ----------

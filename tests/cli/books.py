@@ -1,4 +1,4 @@
-"""Books that are wrong in ways that their makers, or somebody who means harm, have made them."""
+"""Books that are wrong in ways that their makers, or an attacker, have made them."""
 
 import io
 import struct

@@ -165,7 +165,7 @@ def test_a_chunk_names_the_last_event_that_is_on_the_disk(tmp_path):
     assert told.events[trace.ties[-1].number - 1].kind == "end"
     assert read_last_tie(session.folder / "trace-001.gz") == trace.ties[-1]
     with Journal(session.folder) as journal:
-        assert journal.durable == Tie(0, 0)  # nobody knows what of the others is
+        assert journal.durable == Tie(0, 0)  # of the others it is not known
         journal.append(Cue(trial=1, t_s=1.0))
         assert journal.durable == Tie(0, 0)
         journal.append(Note(text="", t_s=1.0))

@@ -95,7 +95,7 @@ def test_ctrl_z_rests_the_array_and_fg_gives_the_keys_back(shell, tmp_path, text
     shell.type(" ")
     shell.until("reading\r\n")
 
-    os.kill(job(shell), signal.SIGSTOP)  # of which nobody can hear
+    os.kill(job(shell), signal.SIGSTOP)  # which no process can catch
     shell.until(STOPPED)
     shell.type("fg\n")
     shell.until("--texture 0")
@@ -137,7 +137,7 @@ def test_without_keys_the_array_rests_too(shell, tmp_path, text):
 def test_whoever_else_is_at_a_device_has_the_keys_back(
     shell, tmp_path, command, begun, again, key, said
 ):
-    """After Ctrl-Z, and after a stop that nobody can hear of."""
+    """After Ctrl-Z, and after a stop that no process can catch."""
     (tmp_path / "house.scene").write_text(SCENE)
     (tmp_path / "mine.toml").touch()
     shell.type(f"cd {tmp_path}; export VBRAILLE_SETTINGS=mine.toml\n")

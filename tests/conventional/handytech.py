@@ -160,7 +160,7 @@ class Brltty:
 
 
 def _free():
-    """Find a port of those at which BRLTTY can listen, at which nobody does."""
+    """Find a port of those at which BRLTTY can listen, at which no process does."""
     start = os.getpid() * 7 % len(_PORTS)
     for port in (*_PORTS[start:], *_PORTS[:start]):
         with socket.socket() as tried:

@@ -28,7 +28,7 @@ HOST_LATE = f"device: this computer was late, and {NO_FRAME}"
 LINE_LATE = f"device: the line was late, and {NO_FRAME}"
 DEVICE_LATE = f"device: it was late itself, and {NO_FRAME}"
 AWAY = "device: unplugged; plug it in again and reading goes on"
-# What a pseudo-terminal holds of what nobody reads, to the device and to the host.
+# What a pseudo-terminal holds of what is not read, to the device and to the host.
 DOWN_BYTES, UP_BYTES = 20_000, 4000
 
 
@@ -173,10 +173,10 @@ class Bench:
         self.run(device, 3, frame)
 
     def find(self) -> None:
-        """Let whoever looks for it find it; in memory nobody has to."""
+        """Let those who look for it find it; in memory no one has to."""
 
     def back(self, device) -> Pose:
-        """Let whoever looks for it find it; the first sample."""
+        """Let those who look for it find it; the first sample."""
         self.find()
         for _ in range(300):
             if sample := self.run(device, 1):

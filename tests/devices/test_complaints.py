@@ -54,7 +54,7 @@ def test_each_kind_of_notice_is_said_once_a_second_with_a_count():
 
 def test_buttons_are_told_as_they_change():
     made = Bench()
-    made.controller.buttons = 0b100  # held while the conversation begins: nobody pressed it now
+    made.controller.buttons = 0b100  # held while the conversation begins: it is not pressed now
     device = made.open()
     made.run(device, 5)
     assert list(device.take_events()) == []
@@ -74,7 +74,7 @@ def test_buttons_are_told_as_they_change():
         Button(2, pressed=False),
         Unplugged(),
     ]
-    made.controller.buttons = 0b100  # held when it is plugged in: nobody pressed it now
+    made.controller.buttons = 0b100  # held when it is plugged in: it is not pressed now
     made.plug()
     made.back(device)
     made.controller.buttons = 0

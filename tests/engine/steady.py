@@ -1,6 +1,6 @@
 """A serial device whose steady ticks are compiled, over a pair of descriptors, tick by tick.
 
-The compiled tick goes by the machine's clock, so that nobody can turn it. But it is due at once
+The compiled tick goes by the machine's clock, so that no test can turn it. But it is due at once
 here, and does one tick at a time, between which the simulated controller goes on by a millisecond
 of its own.
 """

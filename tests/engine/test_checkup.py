@@ -127,7 +127,7 @@ EARLY = "its watchdog trips after 31 ms, too early; 50 ms are right"
     ("spoil", "found"),
     [
         (together(unacknowledged, a_bit_off), [UNTAKEN, A_BIT_OFF]),
-        # The next two are as these to whoever checks.
+        # The next two are as these to a checkup.
         pytest.param(untaken, [UNTAKEN], marks=heavy),
         pytest.param(clock_at(0.5), [HALF_AS_FAST], marks=heavy),
         (together(far_off, missing), [FAR_OFF, MISSING]),

@@ -201,7 +201,7 @@ def test_a_simulated_hand_is_steered_and_held_past_the_engine_and_watched_at_eac
         os.kill(host.process_id, signal.SIGKILL)
         with pytest.raises(HostDiedError):
             until(host, lambda _new: False)
-        steering.give(ReadLine(50.0))  # while there is nobody to take it
+        steering.give(ReadLine(50.0))  # while no process can take it
         host.start()
         until(host, at(40.0))  # it is held where it was
         _, seen = watching

@@ -1,4 +1,4 @@
-"""Buttons and knobs of a device, from its driver in the host process to whoever reads."""
+"""Buttons and knobs of a device, from its driver in the host process to the reader."""
 
 import select
 import time

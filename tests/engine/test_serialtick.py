@@ -234,7 +234,7 @@ def test_a_line_that_is_hung_up_is_gone(rigs, ends):
 
 
 def test_a_line_that_takes_nothing_more_is_gone(rig):
-    """Nothing is wrong with it to whoever reads."""
+    """Nothing is wrong with it for the reader."""
     with socket.socket(fileno=os.dup(rig.theirs)) as theirs:
         theirs.shutdown(socket.SHUT_RD)
     before = rig.loop.tally.ticks

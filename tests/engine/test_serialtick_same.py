@@ -220,7 +220,7 @@ def test_beside_a_controller_of_its_own_pace_frames_are_those_of_the_records(rig
         return chunk
 
     def say(chunk):
-        with suppress(BlockingIOError):  # a line that nobody reads for long loses what is said
+        with suppress(BlockingIOError):  # a line that is not read for long loses what is said
             os.write(rig.theirs, chunk)
 
     def answer():

@@ -1,4 +1,4 @@
-"""Workers: every task once, whoever does it, and what goes wrong in one sentence."""
+"""Workers: every task once, by any of them, and what goes wrong in one sentence."""
 
 import multiprocessing
 import os
@@ -63,7 +63,7 @@ def test_work_that_is_stopped_waits_for_no_worker(tmp_path):
 
 
 def lasting(path):
-    """Whoever makes the file is done at once; the others would take an hour."""
+    """The one that makes the file is done at once; the others would take an hour."""
     try:
         path.touch(exist_ok=False)
     except FileExistsError:

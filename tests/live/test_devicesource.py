@@ -181,7 +181,7 @@ def test_a_host_that_was_started_again_is_watched_in_its_new_memory(ring, source
     after.append(2)
     read = frame(viewer)
     assert (read.header["tick"], read.deflections.shape) == (1, (1, 4))
-    ring.append(5)  # nobody looks there any more
+    ring.append(5)  # no page looks there any more
     assert frame(viewer) is None
     after.append(3)
     assert len(frame(viewer).samples) == 3

@@ -179,7 +179,7 @@ def test_a_damaged_journal_is_salvaged(tmp_path):
     source = open_recording(folder)
     assert any("journal.jsonl is damaged" in note for note in source.notes)
     assert any(m.kind == "fault" and "of the journal" in m.text for m in source.moments)
-    # Nobody knows what was shown there, and so no frame is invented.
+    # It is not known what was shown there, and so no frame is invented.
     at_s = next(m.at_s for m in open_recording(RESUMED).moments if m.kind == "trial") + 0.2
     assert asked(open_recording(RESUMED).viewer(), at_s)[1].any()
     header, frame, _ = asked(source.viewer(), at_s)

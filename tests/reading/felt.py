@@ -37,7 +37,7 @@ fill = { texture = { kind = "linear-grating", ridge_mm = 2, gap_mm = 2 } }
 
 
 class Felt:
-    """Somebody who feels a file, and the device: where the finger is, what was said, the keys."""
+    """A person who feels a file, and the device: where the finger is, what was said, the keys."""
 
     def __init__(
         self, path, *, display=DISPLAY, steering=None, entering=False, room=1 << 22, rate_hz=1000.0

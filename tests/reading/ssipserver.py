@@ -20,7 +20,7 @@ class SsipServer:
         self.done = []  # ("say", text), ("hush", ""), ("SET SELF ...", "") in order
         self.goes_on = threading.Event()  # it answers to SPEAK only then
         self.goes_on.set()
-        self.speaking = threading.Event()  # somebody waits for it to answer to SPEAK
+        self.speaking = threading.Event()  # a test waits for it to answer to SPEAK
         self._refuses = refuses
         self._changed = threading.Condition()
         self._listener = socket.socket(socket.AF_UNIX)
@@ -43,7 +43,7 @@ class SsipServer:
 
     def hang_up(self):
         """Leave everybody who is connected."""
-        for connection in list(self._open):  # not whoever comes back meanwhile
+        for connection in list(self._open):  # not those that come back meanwhile
             with suppress(OSError):
                 connection.shutdown(socket.SHUT_RDWR)
 

@@ -1,4 +1,4 @@
-"""Keys and buttons of somebody's own."""
+"""Keys and buttons of a reader's own."""
 
 from pathlib import Path
 

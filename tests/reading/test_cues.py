@@ -1,4 +1,4 @@
-"""Cues, as somebody at a terminal hears them, and as an audio output gets them."""
+"""Cues, as a person at a terminal hears them, and as an audio output gets them."""
 
 import os
 import select

@@ -164,7 +164,7 @@ def test_next_and_previous_line_and_their_ends():
 
 def test_the_word_is_the_one_under_the_middle_of_the_array():
     bench = Bench()
-    assert bench.press("w") == ["word: none here"]  # nobody knows yet where the hand is
+    assert bench.press("w") == ["word: none here"]  # it is not known yet where the hand is
     pitch = STRESS2.style.geometry.cell_pitch_mm
     cells = {}
     line = bench.layout.line(1)

@@ -1,4 +1,4 @@
-"""What is said to whoever feels a picture, and what keys do to it."""
+"""What is said to those who feel a picture, and what keys do to it."""
 
 import re
 import time

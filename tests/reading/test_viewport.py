@@ -1,4 +1,4 @@
-"""What is near is found as what is far: one answer, whoever looks; and nobody waits for it."""
+"""What is near is found as what is far: one answer in each process; and no reader waits for it."""
 
 from itertools import count
 

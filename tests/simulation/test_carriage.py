@@ -1,4 +1,4 @@
-"""The simulated hand's carriage, in a time that nobody waits for."""
+"""The simulated hand's carriage, in a time that no test waits for."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The simulated controller, rule by rule of the protocol's page; nobody waits for its clock."""
+"""The simulated controller, rule by rule of the protocol's page; no test waits for its clock."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Orders to a simulated hand: taken once, whole, and answered; by whoever shares the memory."""
+"""Orders to a simulated hand: taken once, whole, and answered; by all who share the memory."""
 
 import math
 import os

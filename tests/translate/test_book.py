@@ -73,7 +73,7 @@ class TestCells:
         assert n > 20
 
     def test_the_cells_of_the_pieces_are_those_of_the_whole(self, english, table):
-        """liblouis sees a paragraph too long to hold in pieces; nobody who reads it can tell."""
+        """liblouis sees a paragraph too long to hold in pieces; its reader cannot tell."""
         long = " ".join(english.split() * 5)
         book = Book(Document.from_text(long), table)
         block, cells = book.block(0)

@@ -24,6 +24,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vbraille.errors import InputError
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
@@ -83,13 +85,19 @@ def analyse(
     from vbraille.analysis.chapters import STAGES, analyse_study, options_of
     from vbraille.analysis.input.study import load_study
 
-    options = options_of(
-        correction=correction,
-        factors=None if factors is None else tuple(factors),
-        marks=marks,
-        seed=seed,
-    )
-    given = [Path(p) for p in ([paths] if isinstance(paths, str | PathLike) else paths)]
+    try:
+        options = options_of(
+            correction=correction,
+            factors=None if factors is None else tuple(factors),
+            marks=marks,
+            seed=seed,
+        )
+        given = [Path(p) for p in ([paths] if isinstance(paths, str | PathLike) else paths)]
+    except TypeError:
+        raise InputError(
+            f"paths are {paths!r:.40} and factors {factors!r:.40}; give a path or several, and a "
+            f"list of names"
+        ) from None
     read, parts = len(given), len(given) + STAGES
     study = load_study(
         given,

@@ -149,10 +149,11 @@ class CommandParser(argparse.ArgumentParser):
         except argparse.ArgumentError as error:
             option = "".join(f"{name} " for name in action.option_strings[-1:])
             self._refuse_gone(f"{option}{value}")
-            near = nearest(str(value), map(str, action.choices or ()))
+            names = map(str, action.choices or ())
             if isinstance(action, argparse._SubParsersAction):
+                near = nearest(str(value), [*names, *["help"] * (action.dest == "command")])
                 self.error(f"there is no {action.dest} {value!r}{near}")
-            error.message += near
+            error.message += nearest(str(value), names)
             raise
 
     def take(self, *rows: Row) -> None:

@@ -58,7 +58,11 @@ def choose_table(
     InputError
         If there is no such table, or both a table and a language are given.
     """
-    how = Undefined(undefined)
+    try:
+        how = Undefined(undefined)
+    except ValueError:
+        ways = " or ".join(Undefined)
+        raise InputError(f"undefined is {undefined!r:.40}; it must be {ways}") from None
     if table is None:
         return BrailleTable(find_table("en" if language is None else language, grade), how)
     if language is not None or grade is not None:
@@ -66,12 +70,6 @@ def choose_table(
             f"a table has its language and grade; give either {setting('table')} or those"
         )
     return BrailleTable(table, how)
-
-
-def check_text(text: object) -> None:
-    """Raise InputError if what is given for a text is no string."""
-    if not isinstance(text, str):
-        raise InputError(f"the text is {text!r:.40}; give a string")
 
 
 def translate_text(
@@ -102,7 +100,6 @@ def translate_text(
     >>> cells.to_unicode(), cells.source(0), cells.of_source(4)
     ('⠮⠀⠸⠺', (0, 3), (2, 4))
     """
-    check_text(text)
     return choose_table(language, grade, table, undefined).translate(Text.of(text))
 
 

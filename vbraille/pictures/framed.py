@@ -15,12 +15,13 @@ from vbraille.feeling.loading import with_assets
 from vbraille.files import check_unused, whole_file
 from vbraille.pictures.scenes import small_png
 from vbraille.recording import Recording, SceneRecorded
-from vbraille.render.braille.models import STRESS2_8X8, Model, model_of
+from vbraille.render.braille.models import STRESS2_8X8, Model, check_shown, model_of
 from vbraille.scene.converting import write_scene
 from vbraille.scene.locations import Locations, OpenedScene
 from vbraille.scene.reading import open_scene
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Scene
+from vbraille.typed import typed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -70,13 +71,14 @@ class FramedScene(OpenedScene):
         InputError
             If the numbers do not fit each other, or the scene cannot be shown on the display.
         """
+        check_shown(display)
         model = display if isinstance(display, Model) else model_of(display)
         at = _poses(poses)
         x_mm, y_mm, theta_rad = at.T
         try:
             time = np.broadcast_to(np.asarray(time_s, np.float64), len(at))
             velocity = np.broadcast_to(np.asarray(velocity_mm_s, np.float64), (len(at), 2))
-        except ValueError:
+        except (TypeError, ValueError):
             raise InputError("time_s must be a number or one for each pose, velocity two") from None
         program = self._programs.get(model.display)
         if program is None:
@@ -85,6 +87,7 @@ class FramedScene(OpenedScene):
             self._programs[model.display] = program
         return program.poses(x_mm, y_mm, theta_rad, time, velocity)[1]
 
+    @typed
     def recording(
         self,
         poses: ArrayLike,
@@ -106,6 +109,7 @@ class FramedScene(OpenedScene):
         InputError
             If the numbers do not fit each other, or the scene cannot be shown on the display.
         """
+        check_shown(display)
         model = display if isinstance(display, Model) else model_of(display)
         model = replace(model, display=replace(model.display, rate_hz=check_rate(rate_hz)))
         at = _poses(poses)
@@ -133,6 +137,7 @@ class FramedScene(OpenedScene):
             ),
         )  # fmt: skip
 
+    @typed
     def write(self, path: str | Path, *, replace: bool = False) -> None:
         """Write the scene, as it is `written`, to a scene file.
 
@@ -153,7 +158,10 @@ class FramedScene(OpenedScene):
 
 def _poses(poses: ArrayLike) -> NDArray[np.float64]:
     """Places and angles of an array, checked; float64[n, 3]."""
-    at = np.array(poses, np.float64)
+    try:
+        at = np.array(poses, np.float64)
+    except (TypeError, ValueError):  # no numbers
+        at = np.zeros((0, 0))
     if at.ndim != 2 or at.shape[1] not in (2, 3) or not np.isfinite(at).all():
         raise InputError("poses must be finite numbers, [n, 2] or [n, 3]: x, y in mm, angle")
     return np.column_stack([at, np.zeros(len(at))])[:, :3]

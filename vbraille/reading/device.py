@@ -596,7 +596,7 @@ def open_to_read(
             name = device.__name__
             raise InputError(f"{name} is a class; give a device of it, as in open({name}())")
         raise InputError(f"device is {device!r}; give a spec such as 'sim', or a vbraille.Device")
-    check_shown(display, style)
+    check_shown(STRESS2 if display is None else display, style)
     if isinstance(device, str):
         refuse_hand(device, hand=hand, seed=seed)
     check_rate(rate_hz)

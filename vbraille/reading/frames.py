@@ -12,9 +12,10 @@ import numpy as np
 
 from vbraille.display import check_rate
 from vbraille.errors import InputError
-from vbraille.layout.texts import cells_per_line, check_text, choose_table, lay_out_text
+from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
 from vbraille.live.states import line_shown
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
+from vbraille.typed import typed
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -68,6 +69,7 @@ class RenderedLine:
     def __len__(self) -> int:
         return self.positions_mm.size
 
+    @typed
     def at(self, x_mm: float) -> NDArray[np.float64]:
         """Frame whose place comes nearest to a place of the array's centre.
 
@@ -78,6 +80,7 @@ class RenderedLine:
         """
         return self.frames[np.abs(self.positions_mm - x_mm).argmin()]
 
+    @typed
     def recording(self, speed_mm_s: float = 60.0) -> Recording:
         """Make what a hand feels that goes along the line once at a steady speed, in mm/s.
 
@@ -165,6 +168,7 @@ class RenderedPage:
         """
         return self.program.poses(*_path(x_mm, y_mm, theta_rad))[1].astype(np.float64)
 
+    @typed
     def recording(
         self,
         x_mm: ArrayLike,
@@ -319,10 +323,13 @@ def _path(
     x_mm: ArrayLike, y_mm: ArrayLike, theta_rad: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Places and angles of a path, checked, in arrays of one length; float64[n] each."""
-    poses = [np.atleast_1d(np.asarray(of, np.float64)) for of in (x_mm, y_mm, theta_rad)]
-    x, y, theta = (np.ascontiguousarray(of) for of in np.broadcast_arrays(*poses))
+    try:
+        poses = [np.atleast_1d(np.asarray(of, np.float64)) for of in (x_mm, y_mm, theta_rad)]
+        x, y, theta = (np.ascontiguousarray(of) for of in np.broadcast_arrays(*poses))
+    except (TypeError, ValueError):  # no numbers, or not as many of each
+        x = y = theta = np.zeros((1, 1))
     if x.ndim != 1 or not all(np.isfinite(of).all() for of in (x, y, theta)):
-        raise ValueError("places of a path must be finite numbers, in arrays of one dimension")
+        raise ValueError("places of a path must be finite numbers, in arrays of one length")
     return x, y, theta
 
 
@@ -374,7 +381,6 @@ def _laid_out(
 ) -> tuple[Model, BrailleStyle, Layout]:
     """Lay a text out in the lines of a display; without a style, as the display is usually read."""
     check_shown(display, style)
-    check_text(text)
     model = display if isinstance(display, Model) else model_of(display)
     if style is None:
         geometry = replace(model.style.geometry, travel_mm=model.display.travel_mm)

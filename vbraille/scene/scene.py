@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from vbraille.errors import check_range
+from vbraille.scene.pattern import Pattern
 from vbraille.scene.patterns import AnyPattern, Operation
 from vbraille.scene.signals import AnySignal
 from vbraille.tomlfile import Table
@@ -50,6 +51,11 @@ class Scene(Table, frozen=True, kw_only=True):
         Patterns by name, for `Use`.
     signals
         Numbers by name, by which patterns answer to the hand, to keys and to time.
+
+    Raises
+    ------
+    ValueError
+        If the canvas or an element is something else.
     """
 
     canvas: Canvas
@@ -60,3 +66,13 @@ class Scene(Table, frozen=True, kw_only=True):
     elements: tuple[AnyPattern, ...] = ()
     textures: dict[str, AnyPattern] = {}  # noqa: RUF012 - msgspec copies an empty default
     signals: dict[str, AnySignal] = {}  # noqa: RUF012 - msgspec copies an empty default
+
+    def __post_init__(self) -> None:
+        # Files are read by these types; a program may give anything.
+        if not isinstance(self.canvas, Canvas):
+            raise ValueError(f"canvas is {self.canvas!r:.40}; it must be a Canvas")
+        if not isinstance(self.elements, tuple | list):
+            raise ValueError(f"elements are {self.elements!r:.40}; they must be patterns, in order")
+        for element in self.elements:
+            if not isinstance(element, Pattern):
+                raise ValueError(f"an element is {element!r:.40}; it must be a pattern")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.devices.serial.wire import Encoder
 from vbraille.engine.clock import RealClock
-from vbraille.render.braille.models import STRESS2, Model, model_of
+from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.simulation.carriage import area_of
 from vbraille.simulation.controls import Controls, parse_presses, parse_script
 from vbraille.simulation.firmware import describe
@@ -62,6 +62,7 @@ def simulated_device(
     ...     round(device.read().x_mm, 3)
     -5.4
     """
+    check_shown(display)
     info = display.display if isinstance(display, Model) else display
     now_ns = (RealClock() if clock is None else clock).now_ns
     moved = parse_hand(hand, seed, pointed=pointer is not None)

@@ -14,7 +14,7 @@ from vbraille.simulation.laterosim import LateroFaults, Network
 
 MS = 1_000_000
 OFFSETS = (4452, 4_294_960_000, 120_034)
-FOREIGN_ENCODERS = (9, 9, 9, 9)  # of an answer to what nobody asked
+FOREIGN_ENCODERS = (9, 9, 9, 9)  # of an answer to what was not asked
 FELT = np.linspace(0.1, 1, 64).reshape(8, 8)
 
 

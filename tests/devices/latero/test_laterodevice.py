@@ -190,7 +190,7 @@ def test_what_ends_the_taking_of_leave_leaves_the_blades_to_the_watchdog(latero)
 
 
 class Peer:
-    """Somebody at a port who answers with what a function makes of a request."""
+    """A peer at a port that answers with what a function makes of a request."""
 
     def __init__(self, make):
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)

@@ -1,4 +1,4 @@
-"""What an answer's number says: new, late, doubled, or nobody's."""
+"""What an answer's number says: new, late, doubled, or of no request."""
 
 from vbraille.devices.latero.conversation import KEPT, LATE_NS, Fate, RequestNumbering
 

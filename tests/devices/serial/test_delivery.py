@@ -71,7 +71,7 @@ def test_a_host_that_was_stopped_lets_the_ramp_end_and_begins_from_rest(made_as,
         made.kinds()
         assert (made.controller.levels == 512).all()
         levels = [made.controller.levels[0]]
-        for _ in range(round(stall_ms)):  # nobody asks for the time
+        for _ in range(round(stall_ms)):  # no test asks for the time
             made.pause(0.001)
             levels.append(made.controller.levels[0])
         made.us += round(stall_ms % 1 * 1000)

@@ -48,7 +48,7 @@ def some_bytes(length):
 
 
 class Guarded:
-    """An array between bytes that nobody may touch; ``fill`` is what stands there."""
+    """An array between bytes that may not be touched; ``fill`` is what stands there."""
 
     def __init__(self, size, fill=0xA5, given=b""):
         self._all = np.full(size + 2 * GUARD, fill, np.uint8)

@@ -1,4 +1,4 @@
-"""The table of keys of whoever feels a picture, against its document."""
+"""The table of keys for those who feel a picture, against its document."""
 
 import pytest
 

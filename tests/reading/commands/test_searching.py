@@ -100,7 +100,7 @@ def test_what_is_far_is_looked_for_while_reading_goes_on():
     assert bench.press("n") == ["line: 2"]
     seeker.answers = [Searched(0.5), Found(text.index("needle"), document.index())]
     bench.run(0.05)
-    assert bench.said[-1] == "place: 100 %"  # nobody has counted the lines before
+    assert bench.said[-1] == "place: 100 %"  # the lines are counted only now
     count = seeker.asked[-1]
     assert count == CountLines(20, 5_000)
     seeker.answers = [Counted(5_000, document.index(), count.width, count.block)]

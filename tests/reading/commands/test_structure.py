@@ -242,7 +242,7 @@ def test_a_page_that_is_far_is_looked_for_while_reading_goes_on():
     assert bench.press("g400\n")[1:] == ["go to: 400", "searching"]
     asked = seeker.asked[-1]
     assert (asked.line, asked.width) == (399 * 25 + 1, bench.layout.width)
-    assert bench.layout.lines_to(asked.line) > 9_000  # which nobody waits for
+    assert bench.layout.lines_to(asked.line) > 9_000  # which no reader waits for
     assert bench.press("n") == ["line: 52"]
     answering = Answering(bench.layout.book)
     seeker.answers = list(answering.answer(asked))[-1:]

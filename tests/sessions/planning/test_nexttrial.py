@@ -30,7 +30,7 @@ def made(text, seed=1):
 
 
 def nearer_to(liked):
-    """Answers of somebody who never errs."""
+    """Answers of a participant who never errs."""
 
     def answer(trial):
         first, second = (abs(stimulus.value - liked) for stimulus in trial.stimuli)

@@ -24,7 +24,7 @@ ASKS = MINI + '[[fields]]\nname = "hand"\nask = "Reading hand"\n'
 
 @pytest.fixture(scope="module")
 def record(tmp_path_factory):
-    """A session read by a simulated reader, with a question that nobody answered."""
+    """A session read by a simulated reader, with a question that was not answered."""
     record = Session(tmp_path_factory.mktemp("bids") / "s", ASKS, hand="fluent").sit().record
     return replace(record, head={**record.head, "fields": {"hand": ""}})
 

@@ -31,7 +31,7 @@ KINDS = {"quest": WIDTHS, "staircase": STAIRS}
 
 @pytest.fixture(scope="module", params=KINDS)
 def whole(request, tmp_path_factory):
-    """A session that nobody disturbed, and the sitting that it was run in."""
+    """A session that was not disturbed, and the sitting that it was run in."""
     session = Session(tmp_path_factory.mktemp("adaptive") / "s", KINDS[request.param])
     return session, session.sit(noise=0.1)
 

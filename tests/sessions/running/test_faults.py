@@ -227,7 +227,7 @@ class InMemory(LocalEngine):
         """Nothing: its ticks are the polls."""
 
     def close(self):
-        """Nothing: whoever opened the device closes it."""
+        """Nothing: the one who opened the device closes it."""
 
 
 @pytest.mark.no_cover

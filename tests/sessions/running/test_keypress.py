@@ -37,7 +37,7 @@ def test_a_key_is_told_at_once_while_it_is_waited_for(terminal, key):
     assert come(program) == b""
     told.tell(at_once=True)
     os.write(person, key.encode())
-    # The one from before, which nobody waited for, comes with it, and both are one press.
+    # The one from before, which was not waited for, comes with it, and both are one press.
     assert told.pressed(come(program))
     told.tell(at_once=False)
     os.write(person, key.encode())

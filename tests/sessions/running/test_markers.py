@@ -227,7 +227,7 @@ def test_a_recorder_that_comes_back_is_sent_to_again(tmp_path):
     while recorder.broken and markers._port is not None:
         os.sched_yield()
     recorder.broken = False
-    markers.mark(cue(3), 0)  # a moment later: nobody looks for it yet
+    markers.mark(cue(3), 0)  # a moment later: it is not looked for yet
     while not markers._queue.empty():
         os.sched_yield()
     now[0] += 2_000_000_000
@@ -295,7 +295,7 @@ def test_what_is_named_is_a_stream_or_a_port():
     assert parse_markers("lsl:eeg") == MarkerSpec("lsl", "eeg")
     assert parse_markers("serial:/dev/ttyS0") == MarkerSpec("serial", "/dev/ttyS0", 115_200)
     assert parse_markers("serial:COM3:9600") == MarkerSpec("serial", "COM3", 9600)
-    assert parse_markers("serial:/dev/ttyS0:0").baud == 115_200  # nobody sends at 0 bits a second
+    assert parse_markers("serial:/dev/ttyS0:0").baud == 115_200  # 0 bits a second is no rate
     for wrong in ("", "serial", "serial:", "usb:1", "LSL2"):
         with pytest.raises(InputError, match=r"markers.* is .*; give lsl, lsl:NAME, serial:PORT"):
             parse_markers(wrong)

@@ -1,4 +1,4 @@
-"""What is kept of trials that somebody at a live view has read with the pointer."""
+"""What is kept of trials that a person at a live view has read with the pointer."""
 
 import csv
 import io

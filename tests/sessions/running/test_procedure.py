@@ -120,7 +120,7 @@ def asked(events):
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """A session that nobody disturbed; its practice is left out."""
+    """A session that was not disturbed; its practice is left out."""
     return sit(Session(tmp_path_factory.mktemp("procedure") / "s", PRACTICE))
 
 

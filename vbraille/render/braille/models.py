@@ -169,9 +169,9 @@ def swing_of(display: Display) -> float:
     return model_of(display).swing_mm
 
 
-def check_shown(display: object, style: object) -> None:
-    """Raise InputError if what is given for a display or a style, where it is given, is none."""
-    if not isinstance(display, Model | Display | None):
+def check_shown(display: object, style: object = None) -> None:
+    """Raise InputError if what is given for a display is none, or for a style, if there is one."""
+    if not isinstance(display, Model | Display):
         known = MODELS.get(display.lower()) if isinstance(display, str) else None
         hint = f"vbraille.{known.name.upper()}" if known else "vbraille.VBD, vbraille.STRESS2"
         raise InputError(
