@@ -176,8 +176,8 @@ def test_options_of_a_showing(call, text, options, pattern, command):
 @pytest.mark.parametrize(
     ("options", "pattern"),
     [
-        ("--device netbox", r"there is no device kind 'netbox'; there is .*latero.*sim"),
-        ("--device=", r"there is no device kind ''; there is .*sim"),
+        ("--device netbox", r"there is no device kind 'netbox'; there are .*latero.*sim"),
+        ("--device=", r"there is no device kind ''; there are .*sim"),
         (
             "--device serial:x --hand sweep:60",
             r"^--hand is for the simulated device, and serial:x is",

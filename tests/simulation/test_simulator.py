@@ -316,6 +316,7 @@ def test_what_has_no_end_is_not_held_for_ever():
     assert len(b"".join(spoiler.spoil_stream(b"\1" * 1000) for _ in range(100))) > 90_000
 
 
+@pytest.mark.real_time
 def test_stalled_it_neither_reads_nor_writes_but_its_watchdog_goes_on(make):
     bench = make(faults=Faults(stall_s=0.2))
     bench.greet()
