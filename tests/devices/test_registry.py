@@ -18,7 +18,7 @@ def test_the_simulated_device_is_what_the_page_wants(spec):
 
 @pytest.mark.parametrize("spec", ["", ":", "simulated", "/dev/ttyACM0", "serial "])
 def test_an_unknown_kind_is_named_with_what_there_is(spec):
-    with pytest.raises(InputError, match=r"no device kind .*there is .*serial, sim"):
+    with pytest.raises(InputError, match=r"no device kind .*there are .*serial, sim"):
         open_device(spec, info())
 
 
