@@ -149,6 +149,7 @@ def test_frames_drawn_are_the_renderers_and_strain_and_text_follow(opens):
         assert at_mm == pytest.approx(117.3, abs=1 / px_mm), drawn
     assert page.locator(".line.under").get_attribute("data-line") == "2"
     page.locator("summary").click()
+    until(page, "document.querySelector('#tables td') !== null")
     cells = page.locator("#tables table").first.locator("td").all_inner_texts()
     assert cells == [f"{value:.2f}" for value in frame.ravel()]
 
