@@ -177,7 +177,8 @@ SHAPES = {
     '<text><textPath href="#way">along</textPath></text>': Label(
         text="along", place_mm=(30, 31)
     ),
-    '<svg x="10" y="10" width="20" height="10" viewBox="0 0 2 1" overflow="visible"><circle r="1"/></svg>': Circle(
+    '<svg x="10" y="10" width="20" height="10" viewBox="0 0 2 1" overflow="visible">'
+    '<circle r="1"/></svg>': Circle(
         center_mm=(10, 10), radius_mm=10, fill=Fill(texture=Use(name="stock:linear-0"))
     ),
     '<symbol id="s" viewBox="0 0 2 1" overflow="visible"><circle r="1"/></symbol>'

@@ -47,7 +47,7 @@ def read_tree(path: Path) -> Element:
         raise InputError(f"{path} is a compressed SVG; save it as a plain one")
     parser = etree.XMLPullParser(
         ("start", "end"),
-        resolve_entities="internal",
+        resolve_entities="internal",  # pyright: ignore[reportArgumentType] - since lxml 5
         no_network=True,
         load_dtd=False,
         huge_tree=False,

@@ -545,15 +545,16 @@ class SvgDrawing:
             return None
         if name_of(element) == "pattern":
             return BLACK
+        stops: list[Element] = []
         for _ in range(_MOST_LINKS):
             stops = [child for child in element if name_of(child) == "stop"]
             after = self._ids.get(link_of(element)[1:])
             if stops or after is None:
                 break
             element = after
-        colors = []
+        colors: list[Color] = []
         for stop in stops:
-            written = {key: value for key, value in stop.items() if key.startswith("stop-")}
+            written = {str(key): str(value) for key, value in stop.items()}
             for part in (stop.get("style") or "").split(";"):
                 key, _, value = part.partition(":")
                 written[key.strip()] = value.strip()

@@ -444,7 +444,7 @@ def color_of(text: str) -> Color | None:
     if len(shown) != 1 and not profile:
         return None
     try:
-        found = parse_color(shown[:1])
+        found = parse_color(tinycss2.serialize(shown[:1]))
         if found is None or isinstance(found, str):
             return None
         red, green, blue, alpha = (min(max(one or 0.0, 0.0), 1.0) for one in found.to("srgb"))
