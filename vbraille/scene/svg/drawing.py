@@ -231,7 +231,7 @@ class SvgDrawing:
     name
         Name of its file, for messages.
     root
-        Its element ``svg``.
+        Root element, ``svg``.
     class_looks
         Looks that the scene gives to classes.
     """
@@ -314,7 +314,7 @@ class SvgDrawing:
         return [node for child in children for node in self._one(child, place)]
 
     def _holds(self, element: Element) -> bool:
-        """Whether the conditions of an element hold: its language, and extensions of programs."""
+        """Tell whether the conditions of an element hold, such as its language."""
         if (element.get("requiredExtensions") or "").strip():
             return False
         languages = element.get("systemLanguage")
@@ -942,7 +942,7 @@ class SvgDrawing:
 
 
 def _is_inside(contours: list[Contour], stroke: Stroke | None, clip: tuple[Ring, ...]) -> bool:
-    """Whether a shape with its stroke is wholly within an area, as the box around it shows."""
+    """Tell whether a shape with its stroke is wholly within an area, as the box around it shows."""
     points = [point for contour in contours for point in contour.points_mm]
     if not points:
         return True
@@ -956,7 +956,7 @@ def _is_inside(contours: list[Contour], stroke: Stroke | None, clip: tuple[Ring,
 
 
 def _crosses(points_mm: Ring) -> bool:
-    """Whether a contour crosses itself, or is so long that it may."""
+    """Tell whether a contour crosses itself, or is so long that it may."""
     if len(points_mm) > _MOST_CROSSED:
         return True
     try:

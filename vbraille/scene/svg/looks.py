@@ -108,9 +108,9 @@ def stroke_of(
     Parameters
     ----------
     color
-        Its colour.
+        Colour of the line.
     width_mm
-        Its width; lines of less than 2 mm are made 2 mm wide.
+        Width of the line; less than 2 mm becomes 2 mm.
     dashes_mm
         Lengths of dashes and gaps; empty for a whole line.
     note

@@ -350,7 +350,7 @@ def stroked(contours: Sequence[Contour], width_mm: float, style: Mapping[str, st
 
 
 def is_within(rings: Sequence[Ring], clip: Sequence[Ring]) -> bool:
-    """Whether an area is wholly within another, but for a thousandth of it."""
+    """Tell whether an area is wholly within another, but for a thousandth of it."""
     return area(cut(rings, clip)) >= area(rings) * 0.999
 
 

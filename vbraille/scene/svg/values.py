@@ -218,14 +218,14 @@ class AffineMap:
 
     @property
     def keeps_circles(self) -> bool:
-        """Whether a circle stays a circle."""
+        """Tell whether a circle stays a circle."""
         slack = 1e-6 * (abs(self.a) + abs(self.b) + abs(self.c) + abs(self.d))
         turned = abs(self.a - self.d) <= slack and abs(self.b + self.c) <= slack
         return turned or (abs(self.a + self.d) <= slack and abs(self.b - self.c) <= slack)
 
     @property
     def finite(self) -> bool:
-        """Whether all its numbers are finite."""
+        """Tell whether all its numbers are finite."""
         return all(map(math.isfinite, (self.a, self.b, self.c, self.d, self.e, self.f)))
 
 
@@ -461,7 +461,7 @@ def share_of(text: str | None) -> float | None:
 
 
 def is_length(text: str) -> bool:
-    """Whether a text is a length of CSS or SVG."""
+    """Tell whether a text is a length of CSS or SVG."""
     return length_of(text, 1.0, Units((1.0, 1.0), (1.0, 1.0))) is not None
 
 
