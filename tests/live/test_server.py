@@ -56,7 +56,7 @@ def test_frames_are_the_engines_and_samples_the_ticks_between(reading, address):
 def test_a_page_steers_and_what_it_holds_is_let_go_when_it_goes(reading, address):
     with Client(address) as page:
         page.ask(ask="point", x_mm=12.5)
-        header, _, _ = page.until(lambda header, _: header["x_mm"] == 12.5)
+        page.until(lambda header, _: header["x_mm"] == 12.5)
         page.ask(ask="press", command="LNDN")
         page.until(lambda _, state: state["said"][-1] == "line: 3")
         assert page.state["held"]
@@ -137,7 +137,7 @@ def test_a_blind_view_hides_what_is_felt_for_good():
         assert page.state["lines"] == page.state["rows_shown"] == []
 
 
-def test_too_many_pages_and_connections_do_not_keep_the_others_waiting(reading, address):
+def test_too_many_pages_and_connections_do_not_keep_the_others_waiting(address):
     name, port, _ = split(address)
     with ExitStack() as stack:
         pages = [stack.enter_context(Client(address)) for _ in range(MOST_PAGES)]
