@@ -100,4 +100,4 @@ def test_only_programs_keep_a_log():
         if re.search(r"vbraille\.logs import (.*, )?keep\b", path.read_text())
         or "addHandler(handler)" in path.read_text()
     }
-    assert keepers == {"logs.py", "cli/main.py", "engine/hostprocess.py", "live/serving.py"}
+    assert keepers == {"logs.py", "cli/main.py", "engine/hostprocess.py"}
