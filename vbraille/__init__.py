@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from vbraille.errors import DeviceError as DeviceError
     from vbraille.errors import InputError as InputError
     from vbraille.errors import VbrailleError as VbrailleError
-    from vbraille.layout.texts import translate_text as translate_text
+    from vbraille.translate.tables import translate_text as translate_text
     from vbraille.pictures.framed import open_framed as open_scene
     from vbraille.reading.device import OpenDevice as OpenDevice
     from vbraille.reading.device import open_to_read as open  # noqa: A004
@@ -79,7 +79,7 @@ _PLACES = {
     "open_scene": "vbraille.pictures.framed:open_framed",
     "render_page": "vbraille.reading.frames",
     "render_text": "vbraille.reading.frames",
-    "translate_text": "vbraille.layout.texts",
+    "translate_text": "vbraille.translate.tables",
 }
 __all__ = [
     "LATERO",

@@ -211,8 +211,7 @@ def _by_others(
 ) -> Iterator[tuple[Kind, str]]:
     for text in _equivalents(part):
         yield Kind.EQUIVALENT, text
-    for text in _small_forms(part, cells_of):
-        yield Kind.PLAIN, text
+    yield from _small_forms(part, cells_of)
     for text in _plain_spellings(part):
         yield Kind.PLAIN, text
     for text in _bare_letters(part, undefined):
@@ -260,20 +259,21 @@ def _compositions(part: str) -> Iterator[str]:
             yield composed + "".join(mark for mark in marks if mark not in needed)
 
 
-def _small_forms(part: str, cells_of: Callable[[str], bytes]) -> Iterator[str]:
+def _small_forms(part: str, cells_of: Callable[[str], bytes]) -> Iterator[tuple[Kind, str]]:
     """Spellings of small numbers: by the table's own sign for such, or as in 10^6 and H_2O."""
     for forms, sign in ((_RAISED, "^"), (_LOWERED, "_")):
         if part[0] not in forms:
             continue
         text = "".join(forms[small] for small in part)
         indicator, low = _indicator(forms, cells_of)
+        alone = text.isdigit() or len(text) == 1
         if indicator and low and text.isdigit():
-            yield indicator + "".join(chr(0x2800 | low_dots(cells_of(d)[-1])) for d in text)
+            digits = (chr(0x2800 | low_dots(cells_of(digit)[-1])) for digit in text)
+            yield Kind.EQUIVALENT, indicator + "".join(digits)
         elif indicator:
-            yield indicator + (text if text.isdigit() or len(text) == 1 else f"⠣{text}⠜")
-        yield sign + (text if text.isdigit() or len(text) == 1 else f"({text})")
-        yield f"({text})"
-        yield f" {text} "
+            yield Kind.EQUIVALENT, indicator + (text if alone else f"⠣{text}⠜")
+        for plain in (sign + (text if alone else f"({text})"), f"({text})", f" {text} "):
+            yield Kind.PLAIN, plain
 
 
 def _indicator(forms: dict[str, str], cells_of: Callable[[str], bytes]) -> tuple[str, bool]:
