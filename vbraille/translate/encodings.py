@@ -32,9 +32,8 @@ _MAGIC = {
 }
 _SAMPLE = 65_536
 _TEXT_CONTROLS = frozenset(b"\t\n\v\f\r\b\x1a\x1b\0")
-# The characters that windows-1252 has where Unicode has controls, as browsers read them.
-_CONTROLS = {code: bytes([code]).decode("cp1252", "ignore") or chr(code) for code in range(0x80, 0xA0)}
-_DROPPED = dict.fromkeys(map(ord, "\u00ad\u200b\ufeff"))
+# Controls, where windows-1252 has characters that browsers read; what is only for typesetters.
+_ODD = re.compile("[\x80-\x9f\u00ad\u200b\ufeff]")
 _TAG = re.compile(rb"<[^<>]{1,1000}>")
 _NOT_ASCII = re.compile(r"[^\x00-\x7f\ufffd]")
 _ACCENTED = re.compile("[^\u0300-\u036f\u3099\u309a][\u0300-\u036f\u3099\u309a]+")
@@ -140,5 +139,10 @@ def tidy(text: str) -> str:
     """
     if text.isascii():
         return text
-    text = text.translate(_CONTROLS).translate(_DROPPED)
+    text = _ODD.sub(_evened, text)
     return _ACCENTED.sub(lambda found: unicodedata.normalize("NFC", found[0]), text)
+
+
+def _evened(found: re.Match[str]) -> str:
+    code = ord(found[0])
+    return bytes([code]).decode("cp1252", "ignore") if code < 0xA0 else ""

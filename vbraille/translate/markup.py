@@ -69,7 +69,7 @@ _WORD_NOTE = re.compile(r"#_(?:ftn|edn)\d+$")
 _PAGE_BREAKS = frozenset(("pagebreak", "doc-pagebreak"))
 # Quotation marks of quotations and of those in them, by language; English ones elsewhere.
 _QUOTES = {"de": "„“‚‘", "fr": "«»“”", "es": "«»“”", "it": "«»“”", "ru": "«»„“", "pl": "„”«»"}
-_BLANKS = re.compile(r"[ \t\r\n\f]+")
+_BLANKS = re.compile(r"[\t\r\n\f][ \t\r\n\f]*| [ \t\r\n\f]+")  # but single spaces
 _PLAIN = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
 _NEW_LINE, _NEW_PAGE = "\n", "\f"
 _BULLET = "• "

@@ -15,8 +15,9 @@ if TYPE_CHECKING:
 
 _NEWLINE = re.compile(r"\r\n?|[\v\x85\u2028]")
 _PARAGRAPH = re.compile(r"\n[ \t\u3000]*\n\s*|\f\s*|\u2029\s*")
-# Blanks that may break a line, which no-break spaces are not.
-_BLANKS = re.compile(r"[ \t\n\r\u1680\u2000-\u2006\u2008-\u200a\u205f\u3000]+")
+# Blanks that may break a line, which no-break spaces are not; but single spaces.
+_BLANK = r"\t\n\r\u1680\u2000-\u2006\u2008-\u200a\u205f\u3000"
+_BLANKS = re.compile(f"[{_BLANK}][ {_BLANK}]*| [ {_BLANK}]+")
 # What told old printers to strike a character twice, or to underline it.
 _STRUCK = re.compile(r"_\b(?=.)|(?<=.)\b_|(.)\b(?=\1)".replace(r"\b", "\b"))
 # A word that a line's end cut, but not "pre-" before "and".
@@ -25,8 +26,6 @@ _ITEM = re.compile(
     r"[ \t]*(?:(?P<bullet>[•‣◦⁃●○■▪*])|(?P<dash>[-–—+])|\(?(?P<number>\d{1,3})[.)]"
     r"|\(?(?P<letter>[A-Za-z])[.)])[ \t\u00a0\u3000]+\S"
 )
-_NO_BREAK = str.maketrans({"\u2007": "\u00a0", "\u202f": "\u00a0"})
-_CHUNK = 100_000  # characters
 
 
 def read_text(
@@ -41,7 +40,7 @@ def read_text(
 
 def text_blocks(source: Source, text: str, *, keep_lines: bool = False) -> Iterator[Block]:
     """Blocks of a text."""
-    text = _NEWLINE.sub("\n", text).translate(_NO_BREAK)
+    text = _NEWLINE.sub("\n", text).replace("\u2007", "\u00a0").replace("\u202f", "\u00a0")
     if "\b" in text:
         text = _STRUCK.sub("", text)
     source.expected = len(text)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 DEEPEST = 200
-MOST_ELEMENTS = 5_000_000
+MOST_ELEMENTS = 2_000_000
 _ENTITY = re.compile(r"&(?!(?:amp|lt|gt|quot|apos);)([A-Za-z]\w*);")
 _DECLARED = re.compile(rb"""(?:encoding|charset)\s*=\s*["']?\s*([\w.:-]+)""")
 _XML_HEAD = re.compile(r"^\s*<\?xml.*?\?>|<!DOCTYPE\s[^>\[]*(?:\[.*?\]\s*)?>", re.S | re.I)
@@ -67,7 +67,7 @@ class Element:
     @property
     def elements(self) -> list[Element]:
         """Elements in it, without those within them."""
-        return [child for child in self.children if isinstance(child, Element)]
+        return [child for child in self.children if not isinstance(child, str)]
 
     @property
     def text(self) -> str:
@@ -99,11 +99,11 @@ class _Builder:
         self._count += 1
         if self._count > MOST_ELEMENTS:
             raise InputError(f"it has more than {MOST_ELEMENTS:,} elements")
-        name = self._name(tag)
         if len(self._open) > DEEPEST:
             self.flattened += 1
             self._open.append(self._open[-1])
             return
+        name = self._name(tag)
         child = Element(name, {self._name(key): value for key, value in attributes.items()})
         self._open[-1].children.append(child)
         self._open.append(child)
