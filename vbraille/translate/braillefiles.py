@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 # White space of files, and the no-break space that some programs write for a blank cell.
 _BLANKS = str.maketrans("\t\u00a0", "  ")
+_BRAILLE = re.compile("[!-~⠁-⣿]")
 _ASCII = "".join(map(chr, range(0x20, 0x7F)))
 PEF_NAMESPACE = "http://www.daisy.org/ns/2008/pef"
 DUBLIN_CORE = "http://purl.org/dc/elements/1.1/"
@@ -61,6 +63,8 @@ def read_brf(
     wide = content[:2] in (b"\xff\xfe", b"\xfe\xff")
     text = decode(content, encoding)[0] if is_text or wide else content.decode("latin-1")
     dialect = {} if brf_table is None else _dialect(brf_table)
+    if not _BRAILLE.search(text):
+        raise InputError(f"{source.name} has no braille in it; give a file of braille")
     source.in_cells = True
     source.expected = len(text)
     return _lines(source, text.rstrip("\x1a\0 \n\r\t"), dialect)
@@ -70,7 +74,6 @@ def _lines(source: Source, text: str, dialect: dict[str, str]) -> Iterator[Block
     stray = _Stray(source)
     text = text.replace("\r\n", "\n").replace("\r", "\n").translate(_BLANKS)
     pages = text.rstrip("\f").split("\f")
-    printed = 0
     for number, sheet in enumerate(pages, 1):
         if "\f" in text:
             yield _page(number)
@@ -83,10 +86,7 @@ def _lines(source: Source, text: str, dialect: dict[str, str]) -> Iterator[Block
                     kept.append(character)
                 else:
                     stray.see(character, where)
-            printed += len(kept)
             yield _line("".join(kept))
-    if not printed:
-        raise InputError(f"{source.name} has no braille in it; give a file of braille")
     stray.say()
 
 

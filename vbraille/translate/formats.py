@@ -170,11 +170,16 @@ def _stream(file: str | BinaryIO, name: str) -> BinaryIO:
         path = Path(file)
         if path.is_dir():
             raise InputError(f"{name} is a directory; give a file in it")
+        if path.is_char_device():
+            raise InputError(f"{name} is a device, not a file; give a file")
         stream = path.open("rb")
-        if path.is_file() and stream.read(4).startswith(b"PK"):
+        beginning = stream.read(4)
+        if path.is_file() and beginning.startswith(b"PK"):
             return stream
         with stream:
-            return _kept(stream.seek(0) * b"" + stream.read(MOST_BYTES + 1), name)
+            return _kept(beginning + stream.read(MOST_BYTES), name)
+    except FileNotFoundError:
+        raise InputError(f"there is no file {name}; check the name") from None
     except (OSError, ValueError) as error:
         said = getattr(error, "strerror", None) or error
         raise InputError(f"{name} cannot be read: {said}") from None

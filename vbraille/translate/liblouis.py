@@ -7,6 +7,7 @@ computer does not shorten it. When it has ended, the next question starts a new 
 from __future__ import annotations
 
 import atexit
+import os
 import pickle
 import signal
 import subprocess
@@ -60,6 +61,10 @@ class Louis:
     """Ask liblouis, in a child that is started anew when it has ended."""
 
     def __init__(self) -> None:
+        self.forget()
+
+    def forget(self) -> None:
+        """Leave the child to the process that started it, as in a fork of that."""
         self._child: subprocess.Popen[bytes] | None = None
         self._asking = Lock()
 
@@ -89,8 +94,8 @@ class Louis:
         except RuntimeError:
             names = [each["name"] for each in list_tables()]
             raise InputError(
-                f"liblouis cannot use a table {table!r}{nearest(table, names, 3)} "
-                f"(vbraille tables lists all)"
+                f"there is no braille table {table!r} that liblouis can use"
+                f"{nearest(table, names, 3)} (vbraille tables lists all)"
             ) from None
         undefined = [number for number, cell in enumerate(cells) if cell == _UNDEFINED_CELL]
         return Answer(bytes(cell & 0xFF for cell in cells), places, undefined)
@@ -162,6 +167,7 @@ class Louis:
 
 LOUIS = Louis()
 atexit.register(LOUIS.stop)
+os.register_at_fork(after_in_child=LOUIS.forget)
 
 
 @cache

@@ -6,6 +6,7 @@ import hashlib
 from bisect import bisect_right
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, BinaryIO
+from weakref import finalize
 
 from vbraille.errors import InputError
 from vbraille.translate.blocks import Block, Mark
@@ -88,6 +89,7 @@ class Source:
         self._end = 0
         self._text = ""
         self._notes: list[str] = []
+        finalize(self, stream.close)
         self._reading = reader(self)
         self.gather(1)
         if not self._blocks:
