@@ -14,7 +14,7 @@ from numpy.polynomial import chebyshev
 from vbraille.braille.geometry import Geometry
 from vbraille.errors import InputError, check_range
 from vbraille.render import work
-from vbraille.render.braille.mappings import DOT_BITS, Mapping
+from vbraille.render.braille.mappings import Mapping
 from vbraille.render.work import ProgramKind
 from vbraille.typed import check_fields
 from vbraille.wording import nearest
@@ -299,16 +299,20 @@ class BrailleStyle:
         program = self._compile(lines, display, ProgramKind.PAGE)
         program.numbers[work.LINES] = len(lines)
         program.numbers[work.HYSTERESIS] = hysteresis
-        if self.straying.manner == "free":
-            self._free(program, display)
-        return program
+        return self._freed(program, lines) if self.straying.manner == "free" else program
 
-    def _free(self, program: Program, display: Display) -> None:
+    def _freed(self, page: Program, lines: Sequence[NDArray[np.uint8]]) -> Program:
         """Have each actuator of a page show what lies under it, whatever the mapping."""
-        numbers = program.numbers
+        from vbraille.render.labels import Written, pack_label
+        from vbraille.render.program import Program
+        from vbraille.scene.patterns import Label
+
+        geometry = self.geometry
+        down_mm = geometry.line_pitch_mm / 2 - geometry.row_spacing_mm - geometry.dot_width_mm / 2
+        label = pack_label(Label(text="page", place_mm=(0.0, down_mm)), Written(tuple(lines), self))
+        numbers = page.numbers.copy()
         numbers[work.FREE] = 1.0
-        numbers[work.IDLE : work.IDLE + display.rows] = 0.0
-        numbers[work.IDLE + display.rows :] = self.tuning.contrast
+        return Program(np.concatenate([numbers, label.numbers]), label.table)
 
     def room(self, display: Display, cells: int, lines: int = 1) -> int:
         """Tell how many bytes a program of so many lines and cells takes; each is at least 1."""
@@ -345,10 +349,7 @@ class BrailleStyle:
         numbers[work.IDLE : work.IDLE + display.rows][own] = idle
         numbers[work.IDLE + display.rows :][own] = tuning.contrast * (1 - 2 * idle)
         page = kind is ProgramKind.PAGE
-        if page and self.straying.manner == "free":
-            bits = DOT_BITS
-        else:
-            bits = self.mapping.row_bits() << own.start
+        bits = self.mapping.row_bits() << own.start
         table = np.zeros((len(lines) + 2 * page, slots), np.uint16)
         for row, masks in zip(table[page:], lines, strict=False):
             row[2 : 2 + 2 * len(masks)] = bits[masks].ravel()

@@ -20,7 +20,7 @@ import numpy as np
 
 from vbraille.braille.cells import DOT_ROWS, PLACES
 from vbraille.render.braille.style import coefficients
-from vbraille.render.machine.braillekernel import (
+from vbraille.render.cellkernels import (
     APART,
     CELL_PITCH,
     CELLS_PER_MM,
