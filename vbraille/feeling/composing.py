@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
-from vbraille.render import work
+from vbraille.render import instructions, work
 from vbraille.render.compiling import compile_scene, highest_hz
 from vbraille.render.program import Program
 from vbraille.scene.patterns import Group

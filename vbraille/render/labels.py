@@ -16,40 +16,14 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from vbraille.braille.cells import DOT_ROWS, PLACES
-from vbraille.render.braille.style import coefficients
-from vbraille.render.cellkernels import (
-    APART,
-    CELL_PITCH,
-    CELLS_PER_MM,
-    CONTRAST,
-    COSINE,
-    COUNT,
-    DOT_SPACING,
-    DOT_WIDTH,
-    DOTS_PER_MM,
-    FADE_MM,
-    HEIGHT,
-    LINE_PITCH,
-    LINES,
-    LINES_PER_MM,
-    PROFILE,
-    ROW_PITCH,
-    ROWS_PER_MM,
-    SHAPE,
-    SINE,
-    STRIDE,
-    WIDTH,
-    X0,
-    Y0,
-)
+from vbraille.render.braille.packing import PackedCells, cells_size_mm, pack_cells
+from vbraille.render.cellkernels import FADE_MM
 from vbraille.scene.bounds import around
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from vbraille.render.braille.style import BrailleStyle
@@ -94,46 +68,9 @@ class Assets:
     signals: Mapping[str, int] = field(default_factory=dict)
 
 
-# By so much lines may reach into one another; a dot is less than 1e-9 up so near its edge.
-_SLACK_MM = 1e-6
-_ROWS = 3
-_EIGHT_DOTS = 0xC0  # dots 7 and 8, which make a fourth row
-# Bit r of a word is the dot in row r of the left column; bit 4 + r that of the right one.
-_WORDS = np.array(
-    [
-        sum(1 << 4 * side + row for dot, (side, row) in PLACES.items() if mask >> (dot - 1) & 1)
-        for mask in range(256)
-    ],
-    np.uint16,
-)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PackedLabel:
-    """A label for the kernels.
-
-    Parameters
-    ----------
-    numbers : float64[COUNT]
-        The numbers, at the places that `braillenumbers` names; ``TABLE`` is 0, and has to be where
-        its words begin once they are part of a larger table.
-    table : uint16[lines · STRIDE]
-        A word for each cell of each line.
-    """
-
-    numbers: NDArray[np.float64]
-    table: NDArray[np.uint16]
-
-
 def size_mm(written: Written) -> tuple[float, float]:
-    """Tell the width and height of the rectangle of a label's cells, in mm; 0, 0 without cells."""
-    geometry, lines = written.style.geometry, written.lines
-    cells = max((len(masks) for masks in lines), default=0)
-    if cells == 0:
-        return 0.0, 0.0
-    rows = _ROWS + any(bool(np.any(masks & _EIGHT_DOTS)) for masks in lines)
-    down = (len(lines) - 1) * geometry.line_pitch_mm + (rows - 1) * geometry.row_spacing_mm
-    return geometry.extent_mm(cells), down + geometry.dot_width_mm
+    """Width and height of the rectangle of a label's cells, in mm; 0, 0 without cells."""
+    return cells_size_mm(written.lines, written.style.geometry)
 
 
 def corners_mm(
@@ -156,39 +93,11 @@ def corners_mm(
     return place(left, left), place(right, left), place(right, bottom), place(left, bottom)
 
 
-def pack_label(label: Label, written: Written) -> PackedLabel:
+def pack_label(label: Label, written: Written) -> PackedCells:
     """Make the numbers and the words of a label, whose own modifiers are left to its caller."""
-    geometry, tuning = written.style.geometry, written.style.tuning
-    angle = math.radians(label.angle_deg)
-    numbers = np.zeros(COUNT)
-    numbers[X0], numbers[Y0] = label.place_mm
-    numbers[COSINE], numbers[SINE] = math.cos(angle), math.sin(angle)
-    numbers[WIDTH], numbers[HEIGHT] = size_mm(written)
-    numbers[LINES] = len(written.lines)
-    numbers[LINE_PITCH] = geometry.line_pitch_mm
-    numbers[LINES_PER_MM] = 1 / geometry.line_pitch_mm
-    numbers[ROW_PITCH] = geometry.row_spacing_mm
-    numbers[ROWS_PER_MM] = 1 / geometry.row_spacing_mm
-    numbers[CELL_PITCH] = geometry.cell_pitch_mm
-    numbers[CELLS_PER_MM] = 1 / geometry.cell_pitch_mm
-    numbers[DOT_SPACING] = geometry.dot_spacing_mm
-    numbers[DOT_WIDTH] = geometry.dot_width_mm
-    numbers[DOTS_PER_MM] = 1 / geometry.dot_width_mm
-    numbers[CONTRAST] = tuning.contrast
-    numbers[PROFILE] = written.style.profile
-    numbers[SHAPE : SHAPE + 6] = coefficients(written.style.profile, tuning)
-    stride = max((len(masks) for masks in written.lines), default=0) + 2
-    numbers[STRIDE] = stride
-    numbers[APART] = (
-        geometry.dot_width_mm
-        <= min(geometry.dot_spacing_mm, geometry.cell_gap_mm, geometry.row_spacing_mm)
-        and (DOT_ROWS - 1) * geometry.row_spacing_mm + geometry.dot_width_mm
-        <= geometry.line_pitch_mm + _SLACK_MM
-    )
-    table = np.zeros((len(written.lines), stride), np.uint16)
-    for row, masks in zip(table, written.lines, strict=True):
-        row[1 : 1 + len(masks)] = _WORDS[masks]
-    return PackedLabel(numbers, table.ravel())
+    style = written.style
+    place = (*label.place_mm, math.radians(label.angle_deg))
+    return pack_cells(written.lines, style.geometry, style.profile, style.tuning, place)
 
 
 def box_of(label: Label, written: Written) -> Box:
