@@ -106,19 +106,79 @@ def use_settings(
     settings = read_settings(path)
     command = (ctx.command_path.split() or ["", ""])[1]
     own = {param.name or "" for param in ctx.command.params}
+    origins: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def where(self, *keys: str) -> str:
+        """File and line of a value, such as "settings.toml line 12"."""
+        line = self.lines.get(keys)
+        return self.path.name if line is None else f"{self.path.name} line {line}"
+
+    def table(self, *keys: str) -> dict[str, Any]:
+        """A table of the file; empty if it is not there.
+
+        Raises
+        ------
+        InputError
+            If it is no table.
+        """
+        found: Any = self.tree
+        for depth, key in enumerate(keys, 1):
+            found = found.get(key, {})
+            if not isinstance(found, dict):
+                raise InputError(
+                    f"{self.where(*keys[:depth])}: {key} is not a table; write [{'.'.join(keys)}]"
+                )
+        return found
+
+
+def use_settings(
+    ctx: click.Context,
+    path: str | None,
+    profile: str | None,
+    commands: Collection[str],
+    known: Collection[str],
+) -> None:
+    """Have a command take options that are not given from the settings file.
+
+    Parameters
+    ----------
+    ctx
+        Context of the command, before its options are parsed.
+    path
+        Value of ``--settings``; None for the usual file.
+    profile
+        Value of ``--profile``; None for that of the file, or "default".
+    commands
+        Names of all commands.
+    known
+        Names of all options that commands share.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or has an unknown name.
+    """
+    settings = read_settings(path)
+    command = (ctx.command_path.split() or ["", ""])[1]
+    own = {param.name or "" for param in ctx.command.params}
     for name, value in settings.tree.items():
         if isinstance(value, dict):
             _check_name(settings, (name,), [*_TABLES, *commands], "table")
         else:
             _check_name(settings, (name,), known, "option")
     origins: dict[str, tuple[str, ...]] = {}
-    origins |= {_named(key): (key,) for key in settings.tree if _named(key) in known}
+    for name, value in settings.tree.items():
+        if isinstance(value, dict):
+            _check_name(settings, (name,), [*_TABLES, *commands], "table")
+        else:
+            _check_name(settings, (name,), known, "option")
+            origins[_named(name)] = (name,)
     for key in settings.table(command):
         _check_name(settings, (command, key), own, "option")
         origins[_named(key)] = (command, key)
-    wanted = profile or settings.table(command).get("profile") or settings.tree.get("profile")
+    wanted = profile or settings.table(command).get("profile")
     profile = str(wanted or "default")
-    if wanted is not None and wanted not in settings.table("profile"):
+    if wanted is not None and wanted not in settings.table("profile") and _META not in ctx.meta:
         click.echo(f"profile {wanted}: not saved yet", err=True)
     for key, value in settings.table("profile", profile).items():
         if isinstance(value, dict):
