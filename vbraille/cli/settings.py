@@ -161,11 +161,6 @@ def use_settings(
     settings = read_settings(path)
     command = (ctx.command_path.split() or ["", ""])[1]
     own = {param.name or "" for param in ctx.command.params}
-    for name, value in settings.tree.items():
-        if isinstance(value, dict):
-            _check_name(settings, (name,), [*_TABLES, *commands], "table")
-        else:
-            _check_name(settings, (name,), known, "option")
     origins: dict[str, tuple[str, ...]] = {}
     for name, value in settings.tree.items():
         if isinstance(value, dict):
