@@ -106,61 +106,6 @@ def use_settings(
     settings = read_settings(path)
     command = (ctx.command_path.split() or ["", ""])[1]
     own = {param.name or "" for param in ctx.command.params}
-    origins: dict[str, tuple[str, ...]] = field(default_factory=dict)
-
-    def where(self, *keys: str) -> str:
-        """File and line of a value, such as "settings.toml line 12"."""
-        line = self.lines.get(keys)
-        return self.path.name if line is None else f"{self.path.name} line {line}"
-
-    def table(self, *keys: str) -> dict[str, Any]:
-        """A table of the file; empty if it is not there.
-
-        Raises
-        ------
-        InputError
-            If it is no table.
-        """
-        found: Any = self.tree
-        for depth, key in enumerate(keys, 1):
-            found = found.get(key, {})
-            if not isinstance(found, dict):
-                raise InputError(
-                    f"{self.where(*keys[:depth])}: {key} is not a table; write [{'.'.join(keys)}]"
-                )
-        return found
-
-
-def use_settings(
-    ctx: click.Context,
-    path: str | None,
-    profile: str | None,
-    commands: Collection[str],
-    known: Collection[str],
-) -> None:
-    """Have a command take options that are not given from the settings file.
-
-    Parameters
-    ----------
-    ctx
-        Context of the command, before its options are parsed.
-    path
-        Value of ``--settings``; None for the usual file.
-    profile
-        Value of ``--profile``; None for that of the file, or "default".
-    commands
-        Names of all commands.
-    known
-        Names of all options that commands share.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or has an unknown name.
-    """
-    settings = read_settings(path)
-    command = (ctx.command_path.split() or ["", ""])[1]
-    own = {param.name or "" for param in ctx.command.params}
     origins: dict[str, tuple[str, ...]] = {}
     for name, value in settings.tree.items():
         if isinstance(value, dict):
