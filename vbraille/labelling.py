@@ -14,7 +14,7 @@ import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.layout import wrap_text
-from vbraille.render.scene.labels import Written, corners_mm
+from vbraille.render.labels import Written, corners_mm
 from vbraille.scene.patterns import Label, Tile
 from vbraille.scene.traversal import each
 from vbraille.translate import BrailleTable, find_table

@@ -80,7 +80,7 @@ def test_a_file_is_replaced_only_by_force_and_whole(call, text, tmp_path):
     for options in (("--format", "brf"), ("--format", "pef")):
         said = call("page", text, *options, "--out", out)
         assert (said.code, out.read_text()) == (2, "precious")
-        assert "is there already; choose another name, or replace it by --force" in said.err
+        assert "already exists" in said.err
     eight = tmp_path / "eight.brf"
     eight.write_text("⠁\n⣿\n")
     said = call("page", eight, "--format", "brf", "--out", out, "--force")
