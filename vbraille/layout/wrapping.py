@@ -86,7 +86,7 @@ def wrap(
     pieces, before = [], b""
     while end - start > width - indent - len(before):
         full = start + width - indent - len(before)
-        stop, following = _at_blank(breaks, starts, start, full)
+        stop, following = _at_blank(breaks, starts, text, start, full)
         after, begin = b"", b""
         loose = _between_letters(text, starts, start, full) if spaceless else start
         if loose > stop:
@@ -118,7 +118,7 @@ def _breaks(masks: bytes, starts: Sequence[int], text: str) -> bytes:
 
 
 def _at_blank(
-    breaks: bytes, starts: Sequence[int], start: int, full: int
+    breaks: bytes, starts: Sequence[int], text: str, start: int, full: int
 ) -> tuple[int, int]:
     """Cell at which a line ends before a blank, and the cell at which the next begins.
 
@@ -129,10 +129,19 @@ def _at_blank(
         stop, following = _around(breaks, start, at)
         if stop == start:
             break
-        if following == len(breaks) or starts[stop - 1] != starts[following]:
+        if following == len(breaks) or _parts(text, starts[stop - 1], starts[following]):
             return stop, following
-        at = breaks.rfind(0, start, stop)  # that blank was within a character's cells
+        at = breaks.rfind(0, start, stop)
     return start, start
+
+
+def _parts(text: str, before: int, after: int) -> bool:
+    """Tell whether a line may end between the cells of two characters, where a blank is.
+
+    The blank may be within the cells of one, or be the table's own before a closing mark.
+    """
+    own = text[after] in _CLOSING and not text[before + 1 : after] and not text[before].isspace()
+    return before != after and not own
 
 
 def _between_letters(text: str, starts: Sequence[int], start: int, full: int) -> int:

@@ -141,8 +141,10 @@ def _grid(rows: list[list[_Cell]]) -> list[list[_Cell | None]]:
         grid.append(line)
     most = max((len(row) for row in grid if len(set(map(id, row))) > 1), default=0)
     return [
-        line + [None] * (most - len(line)) if len(set(map(id, line))) > 1 else line for line in grid
-    ]
+        line if len(line) >= most and len(set(map(id, line))) == 1
+        else line[: max(most, 1)] + [None] * (most - len(line))
+        for line in grid
+    ]  # fmt: skip
 
 
 def joined(blocks: list[Block], between: str) -> Block:

@@ -49,7 +49,7 @@ _SAME = dict(
 )
 # Tables of a standard that is no longer in force, or with signs that books leave out.
 _DATED = re.compile(r"_\d{4}\b|-\d{4}[-.]|-detailed\b")
-_SIX_DOTS = ("mn-MN-g1.utb", "mn-MN-g2.ctb")  # whatever their metadata say
+_SIX_DOTS = ("dra.tbl", "mn-MN-g1.utb", "mn-MN-g2.ctb")  # whatever their metadata say
 
 
 @dataclass(frozen=True, slots=True, order=True)

@@ -12,6 +12,7 @@ import pickle
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from threading import Lock
@@ -128,8 +129,8 @@ class Louis:
             child.kill()
             child.wait()
             for stream in (child.stdin, child.stdout):
-                if stream is not None:
-                    stream.close()
+                with suppress(OSError):  # what was not sent yet
+                    stream.close()  # type: ignore[union-attr]
 
     def _exchange_again(self, question: tuple[Any, ...]) -> Any:
         """Ask a new child, for the last one may have been ended from outside."""

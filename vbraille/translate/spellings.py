@@ -8,6 +8,9 @@ from functools import cache
 from itertools import permutations
 from typing import TYPE_CHECKING
 
+from vbraille.braille.cells import UNICODE_BLANK
+from vbraille.braille.spelling import LETTERS
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
@@ -332,6 +335,8 @@ def _bare_letters(part: str, undefined: set[str]) -> Iterator[str]:
     yield bare
     yield from SIGNS.get(bare, ())
     yield bare.lower()
+    if bare.lower() in LETTERS:  # which are the same cells wherever there are Latin letters
+        yield chr(UNICODE_BLANK + LETTERS[bare.lower()])
 
 
 def _flag_letter(sign: str) -> str:
