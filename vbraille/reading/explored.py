@@ -94,6 +94,14 @@ class Explored:
 
     # What the loop calls
 
+    @property
+    def hopeless(self) -> str | None:
+        """Reason why exploring will not come to its end without help; None without one."""
+        return None
+
+    def come_back(self) -> None:
+        """Put this under the hand again, after something was felt in its place."""
+
     def steer(self) -> None:
         """Have a simulated hand begin again with what is under it."""
 

@@ -24,7 +24,7 @@ _TURNS, _SAME_MM = 3, 1.0  # so many turns at the same place are an obstacle
 _LEAST_WAY_MM = 20.0  # a hand that has gone less waits at the left
 _FILTER_HZ = 200.0  # above this the devices' filters take texture away (Lévesque 2009, 6.2)
 # Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
-_PLACING, _HELD = int(Flag.MARK | Flag.STOP), int(Flag.HELD)
+_PLACING, HELD = int(Flag.MARK | Flag.STOP), int(Flag.HELD)
 
 
 class HandWatch:
@@ -80,7 +80,7 @@ class HandWatch:
             Whether the hand may do as it likes, so that only the device is watched.
         """
         now_s = int(ticks["time_ns"][-1]) / 1e9
-        yield from self._watch_device(bool(int(ticks["flags"][-1]) & _HELD), now_s)
+        yield from self._watch_device(bool(int(ticks["flags"][-1]) & HELD), now_s)
         if patient or not self._by_hand or self._refused_s >= 0:
             self._since_s = -1.0
             return

@@ -8,7 +8,7 @@ from vbraille.errors import InputError
 from vbraille.layout.texts import cells_per_line
 from vbraille.reading.commands import Where
 from vbraille.reading.explored import Explored
-from vbraille.reading.hand import HandWatch, too_fast_note
+from vbraille.reading.hand import HELD, HandWatch, too_fast_note
 from vbraille.reading.outputs import Cue
 from vbraille.reading.places import around, nearest
 from vbraille.reading.surface import MOST_CELLS, Part, Surface
@@ -316,8 +316,19 @@ class Reader(Explored):
         if followed.done and self.by_hand and not self.scroll_cells_s and not self.finished:
             self.go_on()
             return
+        if not self.attended and self._hand_done(ticks[-1]):
+            # It was at the end of the line between two ticks, or its recording is over.
+            if self.device.once:
+                self.done = True
+            else:
+                self.go_on()
+            return
         if not self.finished:
             self._say_of_hand(ticks)
+
+    def _hand_done(self, tick: np.void) -> bool:
+        felt = int(tick["line"]) == self.surface.number and not int(tick["flags"]) & HELD
+        return felt and self.device.hand_done()
 
     def _say_of_hand(self, ticks: NDArray[np.void]) -> None:
         """Say what keeps the hand from the end of the line, and whether it is too fast."""

@@ -154,12 +154,19 @@ class Book:
         return list(self.old.notes())
 
 
+def wrapped(old):
+    made = Book.__new__(Book)
+    made.source, made.table, made.old = Source(old.source), old.table, old
+    made.language, made.grade, made.switch = "", None, old.switch
+    return made
+
+
 class Line:
     def __init__(self, layout, old):
         self.layout, self.old = layout, old
         self.id = old.number
         self.block = layout.book.source.block(layout.old.block_of(old))
-        for name in ("indent", "masks", "printed", "text", "word", "cells"):
+        for name in ("indent", "masks", "printed", "text", "word", "cells", "first", "after"):
             setattr(self, name, getattr(old, name))
 
     def __eq__(self, other):
