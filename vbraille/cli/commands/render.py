@@ -65,7 +65,7 @@ def command(ctx: click.Context, **chosen: Any) -> None:
 
 def _render_reading(ctx: click.Context, chosen: dict[str, Any]) -> None:
     from vbraille.cli.build import Page, build_book, build_model
-    from vbraille.playback.rendering import lines_per_page, render_reading
+    from vbraille.reading.rendering import lines_per_page, render_reading
     from vbraille.render import MODELS
     from vbraille.simulation.specs import parse_hand
     from vbraille.wording import count
@@ -87,7 +87,7 @@ def _render_reading(ctx: click.Context, chosen: dict[str, Any]) -> None:
 
 def _render_picture(chosen: dict[str, Any]) -> None:
     from vbraille.feeling.paths import PathOptions, path_of
-    from vbraille.playback.rendering import render_picture
+    from vbraille.reading.rendering import render_picture
     from vbraille.render import MODELS
     from vbraille.wording import count
 

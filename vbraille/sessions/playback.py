@@ -74,6 +74,13 @@ class _PlayedRun:
         return self.begun_s + (time_ns - self.first_ns) / 1e9
 
 
+def open_session(path: Path) -> Playback:
+    """Open a session's directory, or one of its traces."""
+    found = SessionRecording(path) if path.is_dir() else SessionRecording(path.parent, path.name)
+    found.locate(0.0)
+    return found
+
+
 class SessionRecording(Playback):
     """Frames of a session, or of one of its traces.
 
@@ -140,7 +147,7 @@ class SessionRecording(Playback):
         chunk = number - run.first
         ticks = run.trace.ticks(chunk)
         if not ticks.size:
-            return Piece.damaged(self._display)
+            return Piece(np.zeros(0, PLAYED), np.zeros((0, *self._display.shape), np.float32))
         before = self._before(run.trace, chunk, ticks)
         replay = Replay(self._picture, self._display)
         if before.size:
@@ -192,13 +199,6 @@ class SessionRecording(Playback):
             place=_name(trial),
             facts=facts,
         )
-
-    def program(self, scene: int) -> tuple[Program, str] | None:
-        """Compile the stimulus of a showing, and tell its title."""
-        if scene not in self._pictures.shown:
-            return None
-        trial, _ = self._pictures.shown[scene]
-        return self._picture(scene), f"{self._record.protocol.name}, {_name(trial)}"
 
     def _add(self, run: BidsRun, *, alone: bool) -> None:
         """Take in a run: its trace, if it has one, and what happened in it."""
