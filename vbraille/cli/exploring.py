@@ -114,7 +114,7 @@ def equipped(
     with ExitStack() as stack:
         keyboard = Keyboard(beside=beside)
         pointer = None
-        if chosen["monitor"] and has_hand(chosen["device"]):
+        if (chosen["monitor"] or hand == "still") and has_hand(chosen["device"]):
             from vbraille.simulation.steering import Pointer
 
             pointer = Pointer()
@@ -134,7 +134,7 @@ def equipped(
             stack.callback(outputs[-1].close)
         equipment = Equipment(device, keyboard, outputs, [], stack)
         if chosen["monitor"]:
-            _add_view(equipment, ctx, pointer)
+            _add_view(equipment, ctx)
         try:
             yield equipment
         finally:
@@ -145,15 +145,14 @@ def equipped(
         say(f"device: {faults}")
 
 
-def _add_view(equipment: Equipment, ctx: click.Context, pointer: Any) -> None:
-    from vbraille.live import LiveView
+def _add_view(equipment: Equipment, ctx: click.Context) -> None:
+    from vbraille.live.view import LiveView
     from vbraille.reading.liveview import LiveOutput
 
-    view = LiveView(ctx.params["host"], ctx.params["port"], pointer)
+    view = LiveView(host=ctx.params["host"], port=ctx.params["port"])
     equipment.stack.enter_context(view)
     for sentence in view.addresses:
         equipment.outputs[0].say(sentence)
-    view.watch(equipment.device.engine)
     output = LiveOutput(view, equipment.device, equipment.outputs[0].say)
     equipment.outputs.append(output)
     equipment.sources.append(output)

@@ -15,6 +15,7 @@ from vbraille.engine.host import Host, HostDiedError
 from vbraille.errors import DeviceError
 from vbraille.render import model_of
 from vbraille.simulation.specs import device_spec, has_hand, is_simulated, parse_hand, steering_of
+from vbraille.simulation.steering import BeAt
 
 if TYPE_CHECKING:
     import numpy as np
@@ -68,6 +69,8 @@ class ReadingDevice:
         Engine that drives the device.
     placing : Placing
         What the device waits for before it knows where its carriage is; see `set_zero`.
+    starts : int
+        How often it was started.
     """
 
     def __init__(
@@ -82,6 +85,7 @@ class ReadingDevice:
         pointer: Pointer | None = None,
     ) -> None:
         self.placing = Placing.DONE
+        self.starts = 0
         self.pointer: Pointer | None = None
         self._wanted = wanted
         self._model: Model | None = None
@@ -156,11 +160,13 @@ class ReadingDevice:
         if isinstance(self.engine, Host):
             self.engine.fit(model.display, room)
         self.engine.start()
+        self.starts += 1
 
     def start_again(self) -> None:
         """Drive the device again, after a `HostDiedError`."""
         self.placing = Placing.DONE
         self.engine.start()
+        self.starts += 1
 
     @property
     def model(self) -> Model:
@@ -228,7 +234,7 @@ class ReadingDevice:
         """Tell whether a person holds the simulated hand."""
         return self.pointer is not None and self.pointer.held
 
-    def show(self, program: Program, number: int) -> None:
+    def put(self, program: Program, number: int) -> None:
         """Put a picture under the hand; what it replaces fades. Ticks have its number."""
         self.engine.show(program, number)
 
@@ -236,6 +242,20 @@ class ReadingDevice:
         """Tell a simulated hand what to do; a person's hand does as it likes."""
         if self._steering is not None:
             self._steering.give(order)
+
+    def hold(self, x_mm: float, y_mm: float, theta_rad: float) -> None:
+        """Hold a simulated hand at a pose, as a person on a page of the live view does."""
+        if self.pointer is not None:
+            self.pointer.hold(BeAt(x_mm, y_mm, theta_rad))
+
+    def let_go(self) -> None:
+        """Let a hand that is held go on by itself."""
+        if self.pointer is not None:
+            self.pointer.let_go()
+
+    def ring(self) -> Any:
+        """Reader of the records of ticks, for the live view; another after each start."""
+        return self.engine._ring  # noqa: SLF001 - until an engine gives one
 
     def hand_done(self) -> bool:
         """Tell whether a simulated hand has followed its last order; False for a person's."""
@@ -248,7 +268,7 @@ class ReadingDevice:
         """Say that the carriage is at its stop now, which `placing` may wait for."""
         self.engine.set_zero()
 
-    def poll(self, wait_s: float = 0.0) -> tuple[NDArray[np.void], list[Event], list[str]]:
+    def take(self, wait_s: float = 0.0) -> tuple[NDArray[np.void], list[Event], list[str]]:
         """Take the ticks and events since the last poll, and sentences on them.
 
         Raises

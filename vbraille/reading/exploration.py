@@ -118,15 +118,18 @@ class Exploration:
             self._type(what, key)
         elif key.startswith("paste:"):
             what.say("pasted text is ignored here")
-        elif key.startswith("route:"):
-            what.route(int(key.removeprefix("route:")))
+        elif key.startswith(("route:", "place:")):
+            what.route(int(key.partition(":")[2]))
         else:
             self._call(what, key)
 
     def _call(self, what: Explored, key: str) -> None:
         if self._bound[0] is not what:
             self._bound = what, bindings(what.key_set, what.where, self._own)
-        called = self._bound[1].get(key)
+        if key.startswith("command:"):
+            called = next(c for c in self._bound[1].values() if c.name == key.partition(":")[2])
+        else:
+            called = self._bound[1].get(key)
         if called is None:
             what.say(f"{spoken(key)}: no command")
         elif what.learning and called.name not in ("learn", "quit"):
@@ -185,7 +188,7 @@ class Exploration:
         what, device = self.what, self._device
         before = device.placing
         try:
-            ticks, events, sentences = device.poll()
+            ticks, events, sentences = device.take()
         except HostDiedError as error:
             if not self._keyboard.attached:
                 raise

@@ -77,6 +77,14 @@ def mapping(reader: Reader) -> None:
         reader.say(mapping_said(chosen))
 
 
+@command("in the live view: the next mapping beside it", "|", steers=True)
+def beside(reader: Reader) -> None:
+    found = [None, *_mappings(reader.style, reader.device.display.rows)]
+    at = found.index(reader.beside_mapping) if reader.beside_mapping in found else 0
+    reader.beside_mapping = chosen = found[(at + 1) % len(found)]
+    reader.say(f"beside: {'nothing' if chosen is None else mapping_said(chosen)}")
+
+
 def _mappings(style: BrailleStyle, rows: int) -> list[Mapping]:
     if style.mapping.rows == 1:
         return [single_row(row) for row in (1, 2, 3)]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from vbraille.devices.base import Device, Placing
-from vbraille.devices.events import Button, Event
+from vbraille.devices.base import Device
 from vbraille.devices.registry import check_actuators, check_travel
 from vbraille.display import Display, check_rate
 from vbraille.errors import DeviceError, InputError
@@ -22,8 +22,8 @@ from vbraille.translate import Document
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
+    from vbraille.devices.events import Event
     from vbraille.engine.clock import Clock
     from vbraille.layout import Line
     from vbraille.render.braille.style import BrailleStyle, StyleChanges
@@ -79,11 +79,16 @@ class OpenDevice(ReadingDevice):
         return None if self._reader is None else self._reader.line
 
     @property
+    def number(self) -> int:
+        """Number of that line, from 1."""
+        return self.reader.layout.number(self.reader.line)
+
+    @property
     def done(self) -> bool:
         """Tell whether all that was shown has been read."""
         return self._reader is None or self._reader.done
 
-    def show(  # type: ignore[override]
+    def show(
         self,
         text: str,
         *,
@@ -128,7 +133,7 @@ class OpenDevice(ReadingDevice):
         book = Book(source, choose_table(language, grade, table))
         self._reader = None
         self._reader = Reader(
-            Layout(book, width), _Shower(self), self._outputs, Places(None, print).book("", _NO, ""),
+            Layout(book, width), self, self._outputs, Places(None, self._outputs[0].say).book("", Path(), ""),
             lines=(first, last), attended=False, by_hand=advance,
         )  # fmt: skip
 
@@ -145,7 +150,7 @@ class OpenDevice(ReadingDevice):
                 yield given
             self.poll()
 
-    def poll(self, wait_s: float = POLL_S) -> list[Event]:  # type: ignore[override]
+    def poll(self, wait_s: float = POLL_S) -> list[Event]:
         """Let a moment go by, and give the device's events; see `vbraille.devices.events`.
 
         Lines go on by this. A device that was given itself needs it: poll it again and again.
@@ -155,7 +160,7 @@ class OpenDevice(ReadingDevice):
         VbrailleError
             If the device is gone, or a line cannot be read to its end.
         """
-        ticks, events, said = super().poll(wait_s)
+        ticks, events, said = self.take(wait_s)
         for sentence in said:
             self._outputs[0].say(sentence)
         reader = self._reader
@@ -163,10 +168,6 @@ class OpenDevice(ReadingDevice):
             reader.follow(ticks)
             if reader.hopeless is not None:
                 raise DeviceError(reader.hopeless)
-        for event in events:
-            pressed = isinstance(event, Button) and event.pressed
-            if reader is not None and pressed and self.placing is not Placing.STOP:
-                reader.button(event.number)
         return events
 
     def tune(self, **turned: Unpack[StyleChanges]) -> None:

@@ -197,7 +197,7 @@ class Picture(Explored):
         self._number += 1
         self._looked_at = (math.nan, math.nan)
         origin_mm = self.aperture.left_mm, self.aperture.top_mm
-        self.device.show(viewed(self._program, self._y_mm, origin_mm), self._number)
+        self.device.put(viewed(self._program, self._y_mm, origin_mm), self._number)
 
     def set_contrast(self, contrast: float) -> None:
         """Show the picture with a share of the actuators' swing."""

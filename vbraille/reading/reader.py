@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from vbraille.reading.outputs import Output
     from vbraille.reading.places import KeptBook
     from vbraille.render import BrailleStyle
+    from vbraille.render.braille.mappings import Mapping
     from vbraille.translate import Book
 
 _GATHERED = 20  # blocks at a time, for a search to come
@@ -115,6 +116,7 @@ class Reader(Explored):
         self.finished = False  # whether the end was said
         self.has_pages: bool | None = None  # whether the book says where pages begin, once known
         self.note_from: int | None = None  # place of the reference that led to a note
+        self.beside_mapping: Mapping | None = None  # that the live view shows beside the array
         self.lines_read = 0
         self._too_fast_said = False
         self.surface = Surface(device, device.model.style, self._neighbour, figures, by_hand=by_hand)

@@ -268,7 +268,7 @@ class Surface:
     def show_program(self, program: Program) -> None:
         """Have a page with its figures take the place of the page without them."""
         self.figured = True
-        self._device.show(program, self.number)
+        self._device.put(program, self.number)
 
     def steer(self) -> None:
         """Have a simulated hand read what is shown."""
@@ -307,7 +307,7 @@ class Surface:
             program = self.style.render(self.part.masks, self.display)
         if self.part.start_mm:
             program = program.with_anchor(self.display.span_mm / 2 + self.part.start_mm)
-        self._device.show(program, self.number)
+        self._device.put(program, self.number)
 
     def _stack(self, parts: list[Part], line: Line | None, before: int) -> None:
         """Put parts of lines below one another, with free rows for their figures."""

@@ -1,0 +1,289 @@
+"""The live view as an output: what pages are told of a reading, and what they ask for."""
+
+from __future__ import annotations
+
+import base64
+from collections import deque
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any
+
+from msgspec.structs import replace
+
+from vbraille.devices.base import Placing
+from vbraille.errors import InputError
+from vbraille.knobs import KNOBS
+from vbraille.live.messages import (
+    CardShown,
+    CommandShown,
+    KnobShown,
+    LetGo,
+    Point,
+    SceneShown,
+    SignalShown,
+    Turn,
+    ViewState,
+)
+from vbraille.live.states import array_shown, beside_shown, geometry_shown, line_shown, rows_shown
+from vbraille.reading.commands import Where, table
+from vbraille.reading.outputs import Cue
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from vbraille.feeling.loading import LoadedScene
+    from vbraille.live.messages import LineShown
+    from vbraille.live.view import LiveView
+    from vbraille.reading.device import ReadingDevice
+    from vbraille.reading.explored import Explored
+    from vbraille.reading.surface import Part
+
+_MOST_SAID, _MOST_DRAWN = 20, 8
+_BEFORE, _AFTER = 2, 3  # lines around the one under the hand
+_EVERY = 2  # polls from one state to the next
+_NUMBER = 0xFFFF_FFFF  # as much of a line's number as a frame has room for
+_PLACES = {
+    Placing.MARK: "place: the carriage has to pass its mark",
+    Placing.STOP: "place: the carriage has to be shown its place",
+}
+
+
+class LiveOutput:
+    """Shows on pages of a browser what is explored, and gives what they ask as keys.
+
+    Parameters
+    ----------
+    view
+        The live view, which serves the pages.
+    device
+        The device.
+    say
+        Function that is called with each sentence on the live view itself.
+    """
+
+    def __init__(self, view: LiveView, device: ReadingDevice, say: Callable[[str], None]) -> None:
+        self._view, self._device, self._say = view, device, say
+        self._last: deque[str] = deque(maxlen=_MOST_SAID)
+        self._said = self._polls = 0
+        self._drawer = ThreadPoolExecutor(1)
+        self._drawn: dict[tuple[int, int], tuple[LoadedScene, Future[SceneShown]]] = {}
+        self._scene: SceneShown | None = None
+        self._watched = 0
+
+    def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:  # noqa: ARG002 - cues are heard
+        """Show a sentence."""
+        if sentence:
+            self._said += 1
+            self._last.append(sentence)
+
+    def show(self, what: Explored) -> None:
+        """Do nothing: pages are told by `pressed`, whatever has changed."""
+
+    def close(self) -> None:
+        """Do nothing: the view has its own end."""
+
+    def pressed(self, what: Explored) -> list[str]:
+        """Tell pages what has changed, and give what they have asked for, as keys."""
+        for note in self._view.notes():
+            self._say(note)
+        if self._watched != self._device.starts:
+            self._watched = self._device.starts
+            self._view.watch(self._device.ring())
+        self._polls += 1
+        if self._polls % _EVERY == 0:
+            self._view.tell(self._state(what))
+        found = (self._key(what, asked) for asked in self._view.take())
+        return [key for key in found if key]
+
+    def _key(self, what: Explored, asked: Any) -> str:
+        """Key for what a page asks; what is no key is done here."""
+        if isinstance(asked, Point):
+            self._device.hold(asked.x_mm, asked.y_mm, asked.theta_rad)
+        elif isinstance(asked, LetGo):
+            self._device.let_go()
+        elif isinstance(asked, Turn):
+            if asked.knob in KNOBS and what.prompt is None:
+                try:
+                    self._tell(what, what.turn(asked.knob, asked.value))
+                except InputError as error:
+                    what.refuse(str(error))
+        elif asked.place is not None and what.where is Where.GAME:
+            return f"place:{asked.place}"
+        elif any(one.name == asked.command for one in _offered(what)):
+            return f"command:{asked.command}"
+        return ""
+
+    def _tell(self, what: Explored, sentence: str) -> None:
+        if sentence:
+            what.say(sentence)
+
+    # The state
+
+    def _state(self, what: Explored) -> ViewState:
+        device = self._device
+        parts = {Where.BOOK: self._book, Where.TUNING: self._tuning, Where.GAME: self._game}
+        made = parts.get(what.where, self._picture)(what)
+        return ViewState(
+            array=array_shown(device.display),
+            paused=device.paused,
+            simulated=device.steered,
+            held=device.held,
+            device=_PLACES.get(device.placing, "paused" if device.paused else what.doing),
+            said=list(self._last),
+            said_before=self._said - len(self._last),
+            done=what.done,
+            commands=[CommandShown(one.name, one.help) for one in _offered(what)],
+            **made,
+        )
+
+    def _tuning(self, tuning: Any) -> dict[str, Any]:
+        return self._book(tuning.reader)
+
+    def _book(self, reader: Any) -> dict[str, Any]:
+        from vbraille.reading.feeling import mapping_said
+
+        style, surface, source = reader.style, reader.surface, reader.book.source
+        geometry = style.geometry
+        beside = None
+        if reader.beside_mapping is not None:
+            other = style.replace(mapping=reader.beside_mapping)
+            masks, start_mm = surface.part.masks, surface.part.start_mm
+            words = mapping_said(other.mapping)
+            beside = beside_shown(other, self._device.display, masks, start_mm, words)
+        return {
+            "title": source.title or source.name,
+            "geometry": geometry_shown(geometry),
+            "rows_shown": rows_shown(style, self._device.display),
+            "lines": list(self._lines(reader)),
+            "place": f"{reader.named()}, {100 * reader.layout.progress(reader.line):.0f} %",
+            "knobs": [
+                KnobShown(
+                    knob.name, knob.label, knob.unit, knob.value(style), knob.step, knob.low,
+                    knob.high, "" if knob.fits(style) else "it changes nothing on this display",
+                )
+                for knob in KNOBS.values()
+            ],
+            "mapping": mapping_said(style.mapping),
+            "beside": beside,
+            "figures": [
+                replace(self._drawing(figure, 0), top_mm=-top_mm)
+                for figure, top_mm in (reader.figures.on(surface) if surface.figured else ())
+            ],
+        }  # fmt: skip
+
+    def _lines(self, reader: Any) -> Iterator[LineShown]:
+        """Lines to be drawn, from top to bottom: the page, or the line and some around it."""
+        surface = reader.surface
+        pitch_mm, part = reader.style.geometry.line_pitch_mm, surface.part
+        if surface.rows:
+            for row, each in enumerate(surface.parts):
+                if each is not None:
+                    yield _shown(each, row * pitch_mm, under=each is part)
+            return
+        line, above = part.line, []
+        for step in range(1, _BEFORE + 1):
+            line = reader.layout.beside(line, -1)
+            if line is not None:
+                above.append(_shown(type(part)(line, part.width), -step * pitch_mm))
+            else:
+                break
+        yield from reversed(above)
+        yield _shown(part, 0.0, under=True)
+        line = part.line
+        for step in range(1, _AFTER + 1):
+            line = reader.layout.beside(line, 1)
+            if line is None:
+                return
+            yield _shown(type(part)(line, part.width), step * pitch_mm)
+
+    def _picture(self, picture: Any) -> dict[str, Any]:
+        from vbraille.pictures.scenewords import signal_words
+
+        aperture, scene = picture.aperture, picture.shown.scene
+        drawn = self._drawing(picture.shown, self._device.engine.switches)
+        if drawn.image or self._scene is None:  # until then the one before stays
+            self._scene = drawn
+        return {
+            "title": picture.shown.title,
+            "place": "" if picture.spot is None else f"here: {picture.spot.element.name}",
+            "scene": replace(
+                self._scene,
+                width_mm=scene.canvas.width_mm,
+                height_mm=scene.canvas.height_mm,
+                left_mm=aperture.left_mm,
+                top_mm=aperture.top_mm,
+            ),
+            "signals": [
+                SignalShown(name, signal_words(one)) for name, one in scene.signals.items()
+            ],
+        }
+
+    def _game(self, game: Any) -> dict[str, Any]:
+        from vbraille.reading.game import COLUMNS
+
+        cards = [
+            CardShown(game.name(place), side, place == game.felt)
+            for place, side in enumerate(game.sides)
+        ]
+        points = [("points", " : ".join(map(str, game.points))), ("turns", str(game.turns))]
+        return {
+            "title": "memory game",
+            "place": f"{game.name(game.place)}, {game.sides[game.place]}",
+            "facts": points,
+            "blind": True,
+            "cards": [cards[at : at + COLUMNS] for at in range(0, len(cards), COLUMNS)],
+        }
+
+    def _drawing(self, loaded: LoadedScene, switches: int) -> SceneShown:
+        """Picture from above, as its switches stand; without an image until it is drawn."""
+        key = id(loaded), switches
+        if key not in self._drawn:
+            while len(self._drawn) >= _MOST_DRAWN:
+                del self._drawn[next(iter(self._drawn))]
+            self._drawn[key] = loaded, self._drawer.submit(_drawn, loaded, switches)
+        _, drawing = self._drawn[key]
+        return drawing.result() if drawing.done() else _blank(loaded, "")
+
+
+def _offered(what: Explored) -> list[Any]:
+    """Commands that pages offer as buttons."""
+    return [one for one in table(what.where) if one.steers]
+
+
+def _shown(part: Part, top_mm: float, *, under: bool = False) -> LineShown:
+    return line_shown(
+        part.line,
+        first=part.first,
+        count=len(part),
+        start_mm=part.start_mm,
+        top_mm=top_mm,
+        number=part.line.id & _NUMBER,
+        under=under,
+    )
+
+
+def _blank(loaded: LoadedScene, image: str) -> SceneShown:
+    scene = loaded.scene
+    size = scene.canvas.width_mm, scene.canvas.height_mm
+    return SceneShown(loaded.title, scene.description, *size, image)
+
+
+def _drawn(loaded: LoadedScene, switches: int) -> SceneShown:
+    """Draw a scene as its switches have it, and the layers that they hide."""
+    from vbraille.feeling.index import label_of
+    from vbraille.pictures.scenes import hidden_layers, small_png
+    from vbraille.render.scene.compiling import settled
+
+    def address(*scenes: Any) -> str:
+        drawn = small_png(scenes[0], loaded.assets, *scenes[1:])
+        return f"data:image/png;base64,{base64.b64encode(drawn).decode()}"
+
+    scene = loaded.scene
+    shown = settled(scene, switches=switches) if scene.signals else scene
+    picture, hidden = _blank(loaded, address(shown)), hidden_layers(scene, switches)
+    if hidden is None:
+        return picture
+    off = [
+        f"{'' if whole else 'part of '}{label_of(element) or 'a layer'} (signal {name})"
+        for element, whole, name in hidden.elements
+    ]
+    return replace(picture, off=off, off_image=address(hidden.shown, shown))
