@@ -122,6 +122,7 @@ class ReadingDevice:
         from vbraille.simulation.recorded import Recorded
 
         self._steering = getattr(device, "steering", None)
+        self.pointer = getattr(device, "pointer", None)
         self.once = isinstance(getattr(device, "hand", None), Recorded)
         rate_hz = min(self._wanted.rate_hz, device.display.rate_hz)
         return LocalEngine(

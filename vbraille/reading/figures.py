@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
 
 from vbraille.errors import InputError
-from vbraille.feeling.loading import load_scene
 from vbraille.reading.commands import Where
 from vbraille.translate.source import MarkKind
 
@@ -179,6 +178,8 @@ class BookFigures:
         return Picture(figure, reader.device, reader.outputs, where=Where.FIGURE, **how)
 
     def _load(self, address: str) -> LoadedScene:
+        from vbraille.feeling.loading import load_scene  # most books have no figures
+
         if self._folder is not None:
             return load_scene(self._folder / unquote(address).lstrip("/"), self._style())
         # What it includes is looked for beside it, which is nowhere: a book's figure is one file.

@@ -78,7 +78,7 @@ def bottom(reader: Reader) -> None:
         reader.jump(last.place)
 
 
-@command("back to the place before the last jump", "b alt-left", also="pins:BACK", first=True)
+@command("back to the place before the last jump", "b alt-left", also="pins:BACK")
 def back(reader: Reader) -> None:
     if reader.back:
         reader.jump(reader.back.pop(), "back", remember=False)

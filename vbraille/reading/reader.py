@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from vbraille.translate import Book
 
 _GATHERED = 20  # blocks at a time, for a search to come
-_KEPT_EVERY_S = 0.3
+_KEPT_EVERY_S, _WATCHED_EVERY_S = 0.3, 0.5
 _TRAIL = 100  # places that are kept to go back to
 USUAL_CELLS_S = 8.0  # of autoscroll
 
@@ -61,6 +61,8 @@ class Reader(Explored):
         The figures of the book; None if none is felt.
     save
         Function that saves a style in a profile, and gives a sentence on that.
+    changed
+        Function that gives the book anew if its file has changed; None if it has not.
 
     Attributes
     ----------
@@ -96,12 +98,13 @@ class Reader(Explored):
         echo: str = "none",
         figures: BookFigures | None = None,
         save: Callable[[BrailleStyle], str] | None = None,
+        changed: Callable[[], Book | None] = lambda: None,
     ) -> None:
         super().__init__(device, outputs, key_set)
         self.layout, self.kept, self.save, self.figures = layout, kept, save, figures
         self.first, self.last = lines
         self.attended, self.by_hand = attended, by_hand
-        self._fixed, self._echo = fixed, echo
+        self._fixed, self._echo, self._changed = fixed, echo, changed
         self.back: list[int] = []
         self.undo: list[BrailleStyle] = []
         self.pattern: re.Pattern[str] | None = None  # what is searched for
@@ -111,14 +114,14 @@ class Reader(Explored):
         self.skip_blank = False
         self.scroll_cells_s = 0.0  # cells a second at which lines come by time; 0 for by hand
         self._cells_due = 0.0
-        self._ticked_s = self._kept_s = 0.0
+        self._ticked_s = self._kept_s = self._watched_s = 0.0
         self._unkept: Line | None = None
         self.finished = False  # whether the end was said
         self.has_pages: bool | None = None  # whether the book says where pages begin, once known
         self.note_from: int | None = None  # place of the reference that led to a note
         self.beside_mapping: Mapping | None = None  # that the live view shows beside the array
         self.lines_read = 0
-        self._too_fast_said = False
+        self._too_fast_said = self._figure_due = False
         self.surface = Surface(device, device.model.style, self._neighbour, figures, by_hand=by_hand)
         self.show(self._first_line())
         self.found = None
@@ -250,10 +253,7 @@ class Reader(Explored):
         self.lines_read += 1
         for output in self.outputs:
             output.show(self)
-        if self.figures is not None:
-            below = self.surface.row in self.surface.free
-            for sentence in self.figures.said(line, below=below):
-                self.say(sentence)
+        self._figure_due = self.figures is not None
 
     def announce(self, what: str = "") -> None:
         """Say which line a command has led to, unless that is printed already."""
@@ -400,14 +400,26 @@ class Reader(Explored):
         if self._unkept is not None and now_s - self._kept_s >= _KEPT_EVERY_S:
             self._kept_s = now_s
             self.keep()
+        if now_s - self._watched_s >= _WATCHED_EVERY_S:
+            self._watched_s = now_s
+            self._read_anew()
         if self.figures is not None:
-            self.figures.take(self.surface)
+            self._show_figures(self.figures)
         passed_s, self._ticked_s = now_s - self._ticked_s, now_s
         if self.scroll_cells_s and not (self.device.paused or self.finished):
             self._cells_due -= min(passed_s, 0.25) * self.scroll_cells_s
             if self._cells_due <= 0:
                 self.go_on()
         self.book.source.gather(_GATHERED)
+
+    def _show_figures(self, figures: BookFigures) -> None:
+        """Have figures join the page once they are compiled, and say which one the line has."""
+        figures.take(self.surface)
+        if self._figure_due:
+            self._figure_due = False
+            below = self.surface.row in self.surface.free
+            for sentence in figures.said(self.line, below=below):
+                self.say(sentence)
 
     def keep(self) -> None:
         """Keep the place now."""
@@ -493,15 +505,17 @@ class Reader(Explored):
         self.tune(**{turned.field: turned.nearest(value)})
         return turned.said(turned.nearest(value))
 
-    def exchange(self, book: Book) -> None:
-        """Read a file anew that has changed, at the same place.
-
-        Raises
-        ------
-        InputError
-            If it has no text any more.
-        """
-        words, place = around(self.line), self.line.place
-        before, self.back = self.book.source, []
-        self._lay_out(book, nearest(book.source, words, place), None)
-        before.close()
+    def _read_anew(self) -> None:
+        """Read a file anew that has changed, at the same place."""
+        words, place, before = around(self.line), self.line.place, self.book.source
+        try:
+            book = self._changed()
+            if book is not None:
+                self._lay_out(book, nearest(book.source, words, place), None)
+        except InputError as error:
+            self.refuse(f"the file has changed and is not read anew: {error}")
+            return
+        if book is not None:
+            self.back = []
+            before.close()
+            self.say(f"the file has changed; it is read anew, {self.named()}")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _LOOKED_BACK = 5000  # blocks, for the page and the heading
 
 
-@command("say line, page, percent and heading", "i", "i delete", first=True, also="pins:INFO")
+@command("say line, page, percent and heading", "i", "delete", first=True, also="pins:INFO")
 def info(reader: Reader) -> None:
     here = reader.figure_here
     said = [f"figure: {here[0]}"] if here else []

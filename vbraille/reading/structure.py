@@ -99,14 +99,19 @@ def quotation(reader: Reader, step: int) -> None:
 
 def _go_to_group(reader: Reader, step: int, thing: str, kind: BlockKind) -> None:
     _go(reader, step, thing,
-        lambda block: f"{thing}: {block.words}" if _begins(reader, block, kind) else "")  # fmt: skip
+        lambda block: f"{thing}: {_plain(block)}" if _begins(reader, block, kind) else "")  # fmt: skip
+
+
+def _plain(block: Block) -> str:
+    """Words of a block, without the bullet of an item."""
+    return block.words.removeprefix("• ")
 
 
 @both_ways("item of a list", "I alt-i", "i I")
 def item(reader: Reader, step: int) -> None:
     def said(block: Block) -> str:
         is_item = block.kind is BlockKind.ITEM and not block.continues
-        return f"item: {block.words}" if is_item else ""
+        return f"item: {_plain(block)}" if is_item else ""
 
     _go(reader, step, "item", said)
 

@@ -12,6 +12,8 @@ import click
 from vbraille.cli import options
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from vbraille.reading.places import KeptBook, Places
 
 _OF_TEXT = (
@@ -114,6 +116,7 @@ def read(ctx: click.Context, number: int = 1) -> None:
             echo=echo,
             figures=_figures(ctx, book, device, equipment),
             save=save,
+            changed=_changes(file, lambda: wrapped(build_book(ctx, file))),
         )
         if equipment.keyboard.attached:
             reader.say(f"press {'h' if chosen['keys'] == 'usual' else 'f1'} for the keys")
@@ -132,6 +135,14 @@ def _kept(places: Places, file: str) -> KeptBook:
     with path.open("rb") as opened:
         digest = hashlib.file_digest(opened, "sha256").hexdigest()
     return places.book(digest, path.absolute(), path.stem)
+
+
+def _changes(file: str, open_book: Callable[[], Any]) -> Callable[[], Any]:
+    """Function that gives a book anew if its file has changed."""
+    from vbraille.feeling.loading import FileWatch
+
+    watch = None if file == "-" else FileWatch(Path(file))
+    return lambda: open_book() if watch is not None and watch.changed() else None
 
 
 def _spoken(asked: str | None, book: Any) -> str:
