@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import time
-import webbrowser
 from pathlib import Path
-from threading import Thread
 from typing import TYPE_CHECKING
 
 import click
@@ -27,7 +25,7 @@ _LOOK_S = 0.5
 @options.takes(options.host(group=options.FIRST), options.port(group=options.FIRST))
 def command(file: Path, host: str | None, port: int | None) -> None:
     """FILE is what vbraille render wrote, or a session. Ctrl-C ends it."""
-    from vbraille.live.server import Server, has_desktop
+    from vbraille.live.server import Server, open_browser
 
     source = _opened(file)
     for note in source.notes:
@@ -36,8 +34,7 @@ def command(file: Path, host: str | None, port: int | None) -> None:
         with Server(source, host=host, port=port, steers=False) as server:
             (address,) = server.admission.addresses
             say(f"live view: {address}")
-            if has_desktop():  # some browsers run in the foreground, and are not waited for
-                Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+            open_browser(address)
             while not server.fault:
                 time.sleep(_LOOK_S)
             raise VbrailleError(f"the live view has ended: {server.fault}")
