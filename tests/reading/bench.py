@@ -1,4 +1,4 @@
-"""A reading in this process: a simulated hand, a clock that is turned by hand, keys by their names."""
+"""A reading in this process: a simulated hand, a clock turned by hand, keys by their names."""
 
 import time
 from dataclasses import replace
@@ -29,7 +29,7 @@ class Heard:
             self.said.append(sentence)
         self.cues.append(cue)
 
-    def show(self, what):
+    def show(self, _what):
         self.shown += 1
 
     def close(self):
@@ -47,7 +47,7 @@ class NoKeyboard:
 
     attached, must_stop = True, False
 
-    def pressed(self, wait_s):
+    def pressed(self, _wait_s):
         return []
 
 

@@ -10,6 +10,7 @@ import signal
 import sys
 import time
 from pathlib import Path
+from typing import Self
 
 _PATIENCE_S = 20.0
 PROGRAM = str(Path(sys.executable).with_name("vbraille"))
@@ -36,7 +37,7 @@ class Terminal:
             program = program or [PROGRAM, *arguments]
             os.execvp(program[0], program)
 
-    def __enter__(self) -> Terminal:
+    def __enter__(self) -> Self:
         self.wait("for the keys", 60)
         return self
 

@@ -10,7 +10,10 @@ from vbraille.reading.keys import KeyDecoder
 from vbraille.reading.prompt import Prompt
 
 EVERYWHERE = (Where.BOOK, Where.PICTURE, Where.FIGURE, Where.GAME, Where.TUNING)
-TYPED = "aé\x1b[A\x1b[1;5B\x1bOP\x1b[15~\x1bx\x1b[200~paste\nmore\x1b[201~日\x1b[24;5~\r\x03".encode()
+TYPED = (
+    b"a\xc3\xa9\x1b[A\x1b[1;5B\x1bOP\x1b[15~\x1bx\x1b[200~paste\nmore\x1b[201~"
+    b"\xe6\x97\xa5\x1b[24;5~\r\x03"
+)
 NAMES = ["a", "é", "up", "ctrl-down", "f1", "f5", "alt-x", "paste:paste", "日", "ctrl-f12",
          "enter", "ctrl-c"]  # fmt: skip
 

@@ -1,6 +1,5 @@
 """Places: one table, which damage, other versions and a full disk do not stop."""
 
-import os
 import sqlite3
 import stat
 
@@ -23,7 +22,7 @@ def test_the_place_bookmarks_and_options_come_back(tmp_path):
         reading.reader.kept.set_options(language="fr")
         line = reading.line
         reading.reader.keep()
-    assert stat.S_IMODE(os.stat(path).st_mode) == 0o600
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
     with Reading(TEXT, places=Places(path, said.append), digest="a", hand="sweep:1") as reading:
         assert reading.line == line
         assert reading.press("B") == ["bookmarks: 1"]

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from tests.reading.bench import ONE, TWO, Reading
+from tests.reading.bench import TWO, Reading
 from vbraille.errors import InputError
 from vbraille.reading.outputs import Cue
 
@@ -29,8 +29,9 @@ def test_a_person_at_the_end_may_go_back():
 
 @pytest.mark.parametrize(("first", "last"), [(9, None), (400, 401)])
 def test_a_line_past_the_end_is_refused(first, last):
-    with pytest.raises(InputError, match=f"line {first} is past the end"), Reading(
-        "one two", lines=(first, last)
+    with (
+        pytest.raises(InputError, match=f"line {first} is past the end"),
+        Reading("one two", lines=(first, last)),
     ):
         pass
 

@@ -5,14 +5,16 @@ A function takes the exploration that it works on: a book, a picture, a game or 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Flag, auto
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
 from vbraille.wording import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
 
 
 class Where(Flag):

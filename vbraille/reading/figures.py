@@ -68,9 +68,9 @@ class BookFigures:
     def address(self, line: Line) -> str:
         """Address of the figure that ends on a line; empty if none does."""
         for mark in line.block.marks:
-            if mark.kind is MarkKind.IMAGE and mark.target:
-                if line.place < line.block.start + mark.end <= line.end:
-                    return mark.target
+            ends_here = line.place < line.block.start + mark.end <= line.end
+            if mark.kind is MarkKind.IMAGE and mark.target and ends_here:
+                return mark.target
         return ""
 
     def of(self, line: Line) -> LoadedScene | None:
@@ -120,8 +120,8 @@ class BookFigures:
 
             def make() -> Program:
                 # It loads numba, which a reader who comes to no figure does not need.
-                from vbraille.render.scene.compiling import compile_scene
-                from vbraille.render.scene.figures import FigureAt, page_with_figures
+                from vbraille.render.compiling import compile_scene
+                from vbraille.render.figures import FigureAt, page_with_figures
 
                 figures = [FigureAt(one.scene, (0.0, top), one.assets) for one, top in placed]
                 scene, assets = page_with_figures(masks, style, figures, start_mm=start_mm)
@@ -142,7 +142,9 @@ class BookFigures:
 
     def here(self, surface: Surface, pose: Pose | None) -> tuple[str, str] | None:
         """Titles of the figure at a pose, and of its element there; None if none is there."""
-        for figure, top_mm in self.on(surface) if pose is not None else ():
+        if pose is None:
+            return None
+        for figure, top_mm in self.on(surface):
             canvas = figure.scene.canvas
             if 0 <= pose.x_mm <= canvas.width_mm and 0 <= pose.y_mm - top_mm <= canvas.height_mm:
                 index = self._index(figure)
@@ -168,9 +170,10 @@ class BookFigures:
         from vbraille.feeling.loading import check_fits
         from vbraille.reading.picture import Picture
 
-        address, figure = self.address(reader.line), self.of(reader.line)
-        if address and isinstance(self._found[address], InputError):
-            raise self._found[address]
+        figure = self.of(reader.line)
+        found = self._found.get(self.address(reader.line))
+        if isinstance(found, InputError):
+            raise found
         if figure is None:
             return None
         check_fits(figure.scene, reader.device.display)

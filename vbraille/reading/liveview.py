@@ -81,6 +81,9 @@ class LiveOutput:
     def close(self) -> None:
         """Do nothing: the view has its own end."""
 
+    def rest(self) -> None:
+        """Do nothing: pages show what stands."""
+
     def pressed(self, what: Explored) -> list[str]:
         """Tell pages what has changed, and give what they have asked for, as keys."""
         for note in self._view.notes():

@@ -92,8 +92,9 @@ def skip_blank(reader: Reader) -> None:
     reader.say(f"blank lines: {'skipped' if reader.skip_blank else 'read'}")
 
 
-@both_ways("page of lines on the surface", "] ctrl-pagedown [ ctrl-pageup",
-           also="pins:WINDN pins:WINUP")  # fmt: skip
+@both_ways(
+    "page of lines on the surface", "] ctrl-pagedown [ ctrl-pageup", also="pins:WINDN pins:WINUP"
+)
 def surface_page(reader: Reader, step: int) -> None:
     if not reader.turn_page(step):
         reader.refuse("no next page" if step > 0 else "no previous page")

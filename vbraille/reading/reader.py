@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import unicodedata
 from typing import TYPE_CHECKING, Any
 
+from vbraille.braille.cells import dots_of
 from vbraille.errors import InputError
+from vbraille.knobs import KNOBS
 from vbraille.layout.texts import cells_per_line
 from vbraille.reading.commands import Where
 from vbraille.reading.explored import Explored
@@ -23,7 +26,6 @@ if TYPE_CHECKING:
 
     from vbraille.layout import Line
     from vbraille.reading.device import ReadingDevice
-    from vbraille.reading.figures import BookFigures
     from vbraille.reading.outputs import Output
     from vbraille.reading.places import KeptBook
     from vbraille.render import BrailleStyle
@@ -96,7 +98,7 @@ class Reader(Explored):
         attended: bool = True,
         by_hand: bool = True,
         echo: str = "none",
-        figures: BookFigures | None = None,
+        figures: Any = None,
         save: Callable[[BrailleStyle], str] | None = None,
         changed: Callable[[], Book | None] = lambda: None,
     ) -> None:
@@ -122,7 +124,9 @@ class Reader(Explored):
         self.beside_mapping: Mapping | None = None  # that the live view shows beside the array
         self.lines_read = 0
         self._too_fast_said = self._figure_due = False
-        self.surface = Surface(device, device.model.style, self._neighbour, figures, by_hand=by_hand)
+        self.surface = Surface(
+            device, device.model.style, self._neighbour, figures, by_hand=by_hand
+        )
         self.show(self._first_line())
         self.found = None
 
@@ -412,7 +416,7 @@ class Reader(Explored):
                 self.go_on()
         self.book.source.gather(_GATHERED)
 
-    def _show_figures(self, figures: BookFigures) -> None:
+    def _show_figures(self, figures: Any) -> None:
         """Have figures join the page once they are compiled, and say which one the line has."""
         figures.take(self.surface)
         if self._figure_due:
@@ -440,12 +444,26 @@ class Reader(Explored):
 
     def route(self, cell: int) -> None:
         """Say what is at a cell of the line, and bring it under the finger."""
-        from vbraille.reading.saying import cell_said
-
         if cell < len(self.line):
             self.remember()
             self.bring_under(cell)
-        self.say(cell_said(self, cell))
+        self.say(self.cell_said(cell))
+
+    def cell_said(self, cell: int | None) -> str:
+        """Sentence on a cell of the line: its dots, what it stands for, and its word."""
+        line = self.line
+        if cell is None or not 0 <= cell < len(line):
+            return "nothing under the finger"
+        numbers = "-".join(map(str, dots_of(int(line.masks[cell]))))
+        said = [f"dots {numbers}" if numbers else "no dots"]
+        span = line.source(cell)
+        if span is not None:
+            begin = line.block.start
+            printed = line.block.text[span[0] - begin : span[1] - begin].strip()
+            said += [letter_said(printed)] if printed else []
+            word = line.word(cell)
+            said += [f"in {word}"] if word and word != printed else []
+        return ", ".join(said)
 
     # How it feels
 
@@ -485,9 +503,7 @@ class Reader(Explored):
             for number in (self.first, self.last)
         ]
         self.layout = Layout(book, self.layout.width if self._fixed else self.surface.width)
-        first, last = (
-            None if line is None else self.layout.place(line.place) for line in ends
-        )
+        first, last = (None if line is None else self.layout.place(line.place) for line in ends)
         self.first = self.first if first is None else self.layout.number(first[0])
         self.last = self.last if last is None else self.layout.number(last[0])
         line, cell = self.layout.place(place) or (self.layout.last(), 0)
@@ -497,8 +513,6 @@ class Reader(Explored):
 
     def turn(self, knob: str, value: float) -> str:
         """Give a knob of the style a value; a sentence on it, or empty if it had it before."""
-        from vbraille.reading.feeling import KNOBS
-
         turned = KNOBS[knob]
         if turned.value(self.style) == turned.nearest(value):
             return ""
@@ -519,3 +533,10 @@ class Reader(Explored):
             self.back = []
             before.close()
             self.say(f"the file has changed; it is read anew, {self.named()}")
+
+
+def letter_said(text: str) -> str:
+    """Letters as they are; another character by its name."""
+    if len(text) != 1 or text.isalnum():
+        return text
+    return unicodedata.name(text, f"U+{ord(text):04X}").lower()
