@@ -16,7 +16,6 @@ from vbraille.errors import InputError, check_range
 from vbraille.render import work
 from vbraille.render.braille.mappings import DOT_BITS, Mapping
 from vbraille.render.work import ProgramKind
-from vbraille.typed import check_fields
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
@@ -59,7 +58,6 @@ class Tuning:
     cycles: int = 7
 
     def __post_init__(self) -> None:
-        check_fields(self)
         for name in ("texture", "contrast"):
             check_range(name, getattr(self, name), 0, 1)
         if self.cycles % 2 != 1 or not 1 <= self.cycles <= MOST_TEXTURE_CYCLES:
