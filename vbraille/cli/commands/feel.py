@@ -30,7 +30,7 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     from vbraille.cli.printing import say
     from vbraille.errors import InputError
     from vbraille.feeling.loading import check_fits, load_scene
-    from vbraille.layout.texts import choose_table
+    from vbraille.translate import choose_table
     from vbraille.reading.picture import Picture
     from vbraille.render import MODELS
 

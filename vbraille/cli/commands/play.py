@@ -27,7 +27,7 @@ def command(ctx: click.Context, **chosen: Any) -> None:
 
     from vbraille.cli.exploring import equipped, find_model, refuse_terminal, say_summary
     from vbraille.errors import InputError
-    from vbraille.layout.texts import choose_table
+    from vbraille.translate import choose_table
     from vbraille.reading.game import DECK, Game, load_deck
     from vbraille.render import MODELS
 
