@@ -17,8 +17,8 @@ from vbraille.engine.checkup import ActuatorSwings
 from vbraille.engine.clock import RealClock
 from vbraille.errors import DeviceError, InputError
 from vbraille.files import settings_path
-from vbraille.reading.keyboard import STOPPED, Keyboard
-from vbraille.reading.keys import spoken
+from vbraille.cli.old.reading.keyboard import STOPPED, Keyboard
+from vbraille.cli.old.reading.keys import spoken
 from vbraille.signals import EAR
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from vbraille.config.settings import (
     with_profile,
 )
 from vbraille.files import settings_path
-from vbraille.reading.commands.table import bound_for
+from vbraille.cli.old.reading.commands.table import bound_for
 from vbraille.render import MODELS
 
 if TYPE_CHECKING:
