@@ -9,9 +9,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
-from vbraille.cli.old.terminal import say_line
-from vbraille.devices.registry import opened_device
-from vbraille.engine.host import OPEN_S, OPENING, too_slow
 from vbraille.cli.old.reading.device import OpenDevice
 from vbraille.cli.old.reading.outputs import (
     ConsoleOutput,
@@ -21,6 +18,9 @@ from vbraille.cli.old.reading.outputs import (
     SpeechOutput,
     choose_cues,
 )
+from vbraille.cli.old.terminal import say_line
+from vbraille.devices.registry import opened_device
+from vbraille.engine.host import OPEN_S, OPENING, too_slow
 from vbraille.signals import EAR
 from vbraille.simulation.specs import has_hand
 
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator
 
-    from vbraille.devices.base import Device
-    from vbraille.display import Display
     from vbraille.cli.old.reading.keyboard import Keyboard
     from vbraille.cli.old.reading.liveview import LiveView
+    from vbraille.devices.base import Device
+    from vbraille.display import Display
 
 
 @contextmanager

@@ -12,9 +12,9 @@ from urllib.parse import unquote
 
 import numpy as np
 
+from vbraille.cli.old.reading.commands.scene import BOUND_FROM_TEXT
 from vbraille.errors import InputError
 from vbraille.feeling.loading import LoadedScene, check_fits, load_scene
-from vbraille.cli.old.reading.commands.scene import BOUND_FROM_TEXT
 from vbraille.render.figures import FigureAt, page_with_figures
 from vbraille.translate.documents.epub import EpubBook
 from vbraille.wording import count, printable, spelled
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.feeling.index import SceneIndex
     from vbraille.cli.old.reading.device import OpenDevice
     from vbraille.cli.old.reading.sceneview import SceneView
     from vbraille.cli.old.reading.view import Cue
+    from vbraille.feeling.index import SceneIndex
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
     from vbraille.translate.source import Source
@@ -185,8 +185,8 @@ class BookFigures:
     ) -> SceneView:
         """Put a figure alone under the hand, in place of the text; see `FiguresLike`."""
         # As above.
-        from vbraille.feeling.composing import compose
         from vbraille.cli.old.reading.sceneview import SceneView
+        from vbraille.feeling.composing import compose
 
         device = self._device
         figure = self.find(address)

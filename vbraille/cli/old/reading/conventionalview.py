@@ -6,21 +6,21 @@ import math
 import time
 from typing import TYPE_CHECKING, Any, Final
 
-from vbraille.conventional.brlapi import DisplayAway, DisplayStands, KeyPressed, KeyTyped
-from vbraille.layout.texts import lay_out_text
 from vbraille.cli.old.reading.commands.reporting import say_cell
 from vbraille.cli.old.reading.keys import Context
 from vbraille.cli.old.reading.outputs import Output
 from vbraille.cli.old.reading.speech import TOGETHER_S
+from vbraille.conventional.brlapi import DisplayAway, DisplayStands, KeyPressed, KeyTyped
+from vbraille.layout.texts import lay_out_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from vbraille.cli.old.reading.reader import Reader
+    from vbraille.cli.old.reading.view import View
     from vbraille.conventional.display import ConventionalDisplay
     from vbraille.devices.events import Event
     from vbraille.layout.pages import Line
-    from vbraille.cli.old.reading.reader import Reader
-    from vbraille.cli.old.reading.view import View
     from vbraille.translate import BrailleTable
 
 _ROUTE: Final = "ROUTE"

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from vbraille.errors import InputError
 from vbraille.cli.old.reading.view import Cue, SoundFile
+from vbraille.errors import InputError
 from vbraille.sounds import Bell, Tones
 from vbraille.workers import begin
 

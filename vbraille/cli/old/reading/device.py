@@ -6,6 +6,12 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self, Unpack
 
+from vbraille.cli.old.reading.commands.table import BOUND
+from vbraille.cli.old.reading.keys import TURNED, Context
+from vbraille.cli.old.reading.lineviews import MOST_CELLS
+from vbraille.cli.old.reading.outputs import Echo
+from vbraille.cli.old.reading.reader import Reader
+from vbraille.cli.old.reading.viewport import MOST_LINES
 from vbraille.devices.base import Device, Placing
 from vbraille.devices.events import Button, Knob, NotInTime, told
 from vbraille.devices.registry import check_actuators, check_travel, find_driver
@@ -15,12 +21,6 @@ from vbraille.engine.host import Host
 from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError, InputError
 from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
-from vbraille.cli.old.reading.commands.table import BOUND
-from vbraille.cli.old.reading.keys import TURNED, Context
-from vbraille.cli.old.reading.lineviews import MOST_CELLS
-from vbraille.cli.old.reading.outputs import Echo
-from vbraille.cli.old.reading.reader import Reader
-from vbraille.cli.old.reading.viewport import MOST_LINES
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.simulation.hand import Still
 from vbraille.simulation.specs import (
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from vbraille.cli.old.reading.view import View
     from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
@@ -45,7 +46,6 @@ if TYPE_CHECKING:
     from vbraille.engine.record import Tally
     from vbraille.engine.spawning import Spawned
     from vbraille.layout.pages import Layout, Line
-    from vbraille.cli.old.reading.view import View
     from vbraille.render.braille.style import BrailleStyle, StyleChanges
     from vbraille.simulation.steering import Pointer, Steering
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from vbraille.cli.old.reading.keyboard import POLL_S, STOPPED
+from vbraille.cli.old.reading.keys import Context, spoken
 from vbraille.devices.events import Placing, placing_sentence
 from vbraille.engine.host import HostDiedError
 from vbraille.errors import InputError
-from vbraille.cli.old.reading.keyboard import POLL_S, STOPPED
-from vbraille.cli.old.reading.keys import Context, spoken
 
 if TYPE_CHECKING:
     from vbraille.cli.old.reading.device import OpenDevice

@@ -13,10 +13,10 @@ from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Final
 
+from vbraille.cli.old.reading.view import Cue, View
 from vbraille.errors import InputError
 from vbraille.feeling.composing import compose
 from vbraille.feeling.loading import check_fits, load_scene
-from vbraille.cli.old.reading.view import Cue, View
 from vbraille.scene.scene import Scene
 from vbraille.simulation.steering import ReadPage
 from vbraille.wording import count
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.display import Display
-    from vbraille.feeling.loading import LoadedScene
     from vbraille.cli.old.reading.device import OpenDevice
     from vbraille.cli.old.reading.keys import Bound
+    from vbraille.display import Display
+    from vbraille.feeling.loading import LoadedScene
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
 

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, Self
 
 import msgspec
 
-from vbraille.config.options import BOOK, held_in
-from vbraille.errors import InputError
 from vbraille.cli.old.reading.keptplace import Bookmark, KeptPlace, anchored, place_in, storable
 from vbraille.cli.old.reading.store import Store, usual_path
+from vbraille.config.options import BOOK, held_in
+from vbraille.errors import InputError
 from vbraille.translate.source import Index
 from vbraille.wording import count
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
+from vbraille.cli.old.reading.advancing import LineWatch, PageFoot, too_fast_note
+from vbraille.cli.old.reading.viewport import Surface, below_pitches, rows_on
 from vbraille.engine.engine import EndOfLine
 from vbraille.engine.record import Flag
 from vbraille.layout.texts import cells_per_line
-from vbraille.cli.old.reading.advancing import LineWatch, PageFoot, too_fast_note
-from vbraille.cli.old.reading.viewport import Surface, below_pitches, rows_on
 from vbraille.simulation.steering import ReadLine, ReadPage
 from vbraille.translate.source import MarkKind
 
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from vbraille.cli.old.reading.view import Cue, View
+    from vbraille.cli.old.reading.viewport import Surface, Window
     from vbraille.display import Display
     from vbraille.engine.engine import Engine
     from vbraille.feeling.loading import LoadedScene
     from vbraille.layout.pages import Line
-    from vbraille.cli.old.reading.view import Cue, View
-    from vbraille.cli.old.reading.viewport import Surface, Window
     from vbraille.render import BrailleStyle, Model
     from vbraille.render.program import Program
     from vbraille.simulation.steering import Steering

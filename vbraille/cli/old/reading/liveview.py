@@ -11,6 +11,12 @@ from typing import TYPE_CHECKING, Any, Final, Self, cast
 
 from msgspec.structs import replace
 
+from vbraille.cli.old.reading.commands.turning import turn_to
+from vbraille.cli.old.reading.keys import Context
+from vbraille.cli.old.reading.lineviews import figure_address
+from vbraille.cli.old.reading.outputs import Output
+from vbraille.cli.old.reading.position import line_name, percent
+from vbraille.cli.old.reading.reader import Reader
 from vbraille.config.settings import KNOBS, say_mapping
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Changed, Silent, Stalled, Stranger, Unplugged
@@ -35,12 +41,6 @@ from vbraille.live.states import (
     line_shown,
     rows_shown,
 )
-from vbraille.cli.old.reading.commands.turning import turn_to
-from vbraille.cli.old.reading.keys import Context
-from vbraille.cli.old.reading.lineviews import figure_address
-from vbraille.cli.old.reading.outputs import Output
-from vbraille.cli.old.reading.position import line_name, percent
-from vbraille.cli.old.reading.reader import Reader
 from vbraille.scene.checking import kind_of
 from vbraille.scene.signals import Switch, ordered
 from vbraille.wording import printable, spelled
@@ -49,15 +49,15 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
     from concurrent.futures import Future
 
-    from vbraille.devices.events import Event
-    from vbraille.feeling.loading import LoadedScene
-    from vbraille.layout.pages import Line
-    from vbraille.live.messages import Turn
     from vbraille.cli.old.reading.device import OpenDevice
     from vbraille.cli.old.reading.game import GameView
     from vbraille.cli.old.reading.sceneview import SceneView
     from vbraille.cli.old.reading.view import View
     from vbraille.cli.old.reading.viewport import Window
+    from vbraille.devices.events import Event
+    from vbraille.feeling.loading import LoadedScene
+    from vbraille.layout.pages import Line
+    from vbraille.live.messages import Turn
     from vbraille.render.braille.mappings import Mapping
     from vbraille.scene.scene import Scene
     from vbraille.simulation.steering import Pointer

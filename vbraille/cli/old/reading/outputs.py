@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from vbraille.devices.events import Event
-    from vbraille.layout.pages import Layout, Line
     from vbraille.cli.old.reading.speech import Speech
     from vbraille.cli.old.reading.view import Cue
+    from vbraille.devices.events import Event
+    from vbraille.layout.pages import Layout, Line
     from vbraille.translate import Book
 
 

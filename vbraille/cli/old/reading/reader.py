@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from vbraille.engine.engine import Upright
-from vbraille.errors import InputError
 from vbraille.cli.old.reading.advancing import Scroll
 from vbraille.cli.old.reading.keys import Context
 from vbraille.cli.old.reading.lineviews import TextView
@@ -22,6 +20,8 @@ from vbraille.cli.old.reading.search.questions import CountLines
 from vbraille.cli.old.reading.search.seeker import Search
 from vbraille.cli.old.reading.view import Cue, Prompt, View
 from vbraille.cli.old.reading.viewport import LineRange, Surface, Window, around, turned
+from vbraille.engine.engine import Upright
+from vbraille.errors import InputError
 from vbraille.translate.source import BlockKind
 
 if TYPE_CHECKING:
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.braille.geometry import Geometry
-    from vbraille.engine.engine import Engine
-    from vbraille.layout.pages import Layout, Line
     from vbraille.cli.old.reading.keptplace import Bookmark
     from vbraille.cli.old.reading.keys import Bound
     from vbraille.cli.old.reading.library import KeptBook
     from vbraille.cli.old.reading.lineviews import Figures
     from vbraille.cli.old.reading.search.questions import Counted, Query
     from vbraille.cli.old.reading.search.seeker import Seeker
+    from vbraille.engine.engine import Engine
+    from vbraille.layout.pages import Layout, Line
     from vbraille.render import BrailleStyle, Model
     from vbraille.render.braille.mappings import Mapping
     from vbraille.simulation.steering import Steering

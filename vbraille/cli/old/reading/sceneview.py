@@ -7,13 +7,13 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from vbraille.cli.old.reading.keys import Context
+from vbraille.cli.old.reading.view import Cue, Prompt, View
 from vbraille.errors import InputError
 from vbraille.feeling.aperture import ZOOMS, Aperture
 from vbraille.feeling.composing import compose, viewed
 from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import FileWatch, check_fits, load_scene
-from vbraille.cli.old.reading.keys import Context
-from vbraille.cli.old.reading.view import Cue, Prompt, View
 from vbraille.scene.checking import kind_of
 from vbraille.scene.measures import MOST_MM
 from vbraille.scene.signals import Switch, packed
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from vbraille.cli.old.reading.device import OpenDevice
+    from vbraille.cli.old.reading.keys import Bound
     from vbraille.display import Display
     from vbraille.feeling.index import NamedElement, Spot
     from vbraille.feeling.loading import LoadedScene
-    from vbraille.cli.old.reading.device import OpenDevice
-    from vbraille.cli.old.reading.keys import Bound
     from vbraille.render.program import Program
     from vbraille.scene.patterns import AnyPattern
 

@@ -10,8 +10,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from vbraille.errors import VbrailleError
 from vbraille.cli.old.reading.speech import Spoken
+from vbraille.errors import VbrailleError
 from vbraille.wording import printable
 from vbraille.workers import begin
 

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.engine.engine import Engine
     from vbraille.cli.old.reading.keys import Bound, Command
+    from vbraille.engine.engine import Engine
 
 _MOST_EARLIER = 50  # texts that are kept to be brought again
 

@@ -13,8 +13,8 @@ from vbraille.translate.source import BlockKind
 from vbraille.translate.substitutes import describe
 
 if TYPE_CHECKING:
-    from vbraille.layout.pages import Line
     from vbraille.cli.old.reading.reader import Reader
+    from vbraille.layout.pages import Line
 
 
 def say_place(reader: Reader) -> None:

@@ -6,7 +6,6 @@ import re
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
-from vbraille.errors import InputError
 from vbraille.cli.old.reading.keys import Context
 from vbraille.cli.old.reading.lineviews import figure_of_block
 from vbraille.cli.old.reading.position import LINES_PER_PAGE, block_of, has_pages
@@ -26,13 +25,14 @@ from vbraille.cli.old.reading.search.structure import (
     marks_of,
     within,
 )
+from vbraille.errors import InputError
 from vbraille.translate.source import BlockKind, MarkKind
 from vbraille.wording import count, spelled
 
 if TYPE_CHECKING:
-    from vbraille.layout.pages import Line
     from vbraille.cli.old.reading.reader import Reader
     from vbraille.cli.old.reading.search.questions import ListedHeading
+    from vbraille.layout.pages import Line
     from vbraille.translate.source import Block, Mark, Source
 
     Numbered = dict[int, ListedHeading]

@@ -9,7 +9,6 @@ from functools import partial
 from operator import methodcaller
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec
 
-from vbraille.config.options import knobs
 from vbraille.cli.old.reading.keys import (
     ANY,
     LONGEST,
@@ -21,11 +20,11 @@ from vbraille.cli.old.reading.keys import (
     bind,
     call,
 )
+from vbraille.config.options import knobs
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from vbraille.config.settings import Settings
     from vbraille.cli.old.reading.commands import (
         control,
         marking,
@@ -35,6 +34,7 @@ if TYPE_CHECKING:
         structure,
         turning,
     )
+    from vbraille.config.settings import Settings
 
 Given = ParamSpec("Given")
 

@@ -12,8 +12,8 @@ from vbraille.translate import Book, BrailleTable, find_table
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
-    from vbraille.config.options import StyleKnob
     from vbraille.cli.old.reading.reader import Reader
+    from vbraille.config.options import StyleKnob
     from vbraille.render.braille.style import BrailleStyle, Straying
 
 

@@ -15,10 +15,6 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 import msgspec
 
-from vbraille.errors import VbrailleError
-from vbraille.layout.blocks import LaidBlock
-from vbraille.layout.pages import LaidRun
-from vbraille.layout.texts import choose_table
 from vbraille.cli.old.reading.search.questions import (
     Ask,
     BookOpening,
@@ -50,6 +46,10 @@ from vbraille.cli.old.reading.search.structure import (
     first_place,
     list_headings,
 )
+from vbraille.errors import VbrailleError
+from vbraille.layout.blocks import LaidBlock
+from vbraille.layout.pages import LaidRun
+from vbraille.layout.texts import choose_table
 from vbraille.translate import Book, Undefined
 from vbraille.translate.formats import open_source
 from vbraille.workers import Worker, begin
@@ -57,8 +57,8 @@ from vbraille.workers import Worker, begin
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from vbraille.layout.blocks import Carried
     from vbraille.cli.old.reading.search.questions import Answer, Query
+    from vbraille.layout.blocks import Carried
     from vbraille.translate.source import Source
     from vbraille.workers import Incoming, Outgoing
 
