@@ -79,7 +79,7 @@ def _liblouis_tests() -> Result:
 
     tables: dict[str, BrailleTable] = {}
     right, differ = 0, []
-    for case in json.loads(lzma.open(TESTS).read()):
+    for case in json.loads(lzma.decompress(Path(TESTS).read_bytes())):
         if case.get("typeform") or case["liblouis"] != case["expected"]:
             continue
         if any(unicodedata.category(sign) in ("Cc", "Cf", "Zl", "Zp") for sign in case["text"]):
@@ -131,7 +131,9 @@ def _zipped(members: dict[str, str]) -> bytes:
 def _epub() -> bytes:
     paragraphs = _paragraphs(BOOK_WORDS)
     names = [f"c{number}.xhtml" for number in range(40)]
-    items = "".join(f'<item id="{n}" href="{n}" media-type="application/xhtml+xml"/>' for n in names)
+    items = "".join(
+        f'<item id="{n}" href="{n}" media-type="application/xhtml+xml"/>' for n in names
+    )
     spine = "".join(f'<itemref idref="{name}"/>' for name in names)
     members = {
         "META-INF/container.xml": '<container><rootfile full-path="p.opf"/></container>',
@@ -146,8 +148,8 @@ def _epub() -> bytes:
 
 def _docx() -> bytes:
     body = "".join(
-        f'<w:p><w:r><w:rPr><w:lang w:val="en"/></w:rPr><w:t>{text[:200]}</w:t></w:r><w:r><w:rPr><w:i/>'
-        f'</w:rPr><w:t xml:space="preserve">{text[200:]}</w:t></w:r></w:p>'
+        f'<w:p><w:r><w:rPr><w:lang w:val="en"/></w:rPr><w:t>{text[:200]}</w:t></w:r>'
+        f'<w:r><w:rPr><w:i/></w:rPr><w:t xml:space="preserve">{text[200:]}</w:t></w:r></w:p>'
         for text in _paragraphs(BOOK_WORDS)
     )
     space = "http://schemas.openxmlformats.org/wordprocessingml/2006/main"

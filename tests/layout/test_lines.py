@@ -1,5 +1,6 @@
 """Lines of a page: all the text is on them, in order, and they say where they are."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,23 @@ from vbraille.translate import Book, BrailleTable, choose_table, text_source
 
 TEXTS = Path(__file__).parents[2] / "texts"
 TABLES = {name: BrailleTable(name) for name in ("en-ueb-g2.ctb", "de-g2.ctb", "zh-tw.ctb")}
-PIECES = ["the", " ", "  ", "\u00a0", "people", "123", "-", "(", "É", "10⁶", "☃", "天氣", "，", "\n\n", "unusually"]
+PIECES = [
+    "the",
+    " ",
+    "  ",
+    "\u00a0",
+    "people",
+    "123",
+    "-",
+    "(",
+    "É",
+    "10⁶",
+    "☃",
+    "天氣",
+    "，",
+    "\n\n",
+    "unusually",
+]
 
 
 def layout(text, width, table="en-ueb-g2.ctb", **how):
@@ -47,12 +64,14 @@ def test_lines_hold_all_the_text_once_and_each_leads_to_the_others(text, width, 
     assert [made.number(line) for line in lines] == list(range(1, len(lines) + 1))
     assert [made.line(number).id for number in range(1, len(lines) + 1)] == [x.id for x in lines]
     assert sorted({line.id for line in lines}) == [line.id for line in lines]
-    for line, following in zip(lines, lines[1:], strict=False):
+    for line, following in pairwise(lines):
         assert made.beside(line) == following
         assert made.beside(following, -1) == line
-    assert made.beside(lines[-1]) is None and made.beside(lines[0], -1) is None
+    assert made.beside(lines[-1]) is None
+    assert made.beside(lines[0], -1) is None
     assert (made.first(), made.last(), made.count()) == (lines[0], lines[-1], len(lines))
-    assert made.line(0) is None and made.line(len(lines) + 1) is None
+    assert made.line(0) is None
+    assert made.line(len(lines) + 1) is None
     again = layout(text, width, table, keep_lines=keep_lines)
     assert cells(again.lines(2, 3)) == cells(lines[1:3])
 
@@ -161,7 +180,8 @@ def test_what_cannot_be_shown_or_written_is_said_at_the_end():
     for line in Layout(book, 20).lines():
         remarks.see(line.block)
     unknown, plain, unshown = remarks.sentences()
-    assert "U+E123" in unknown and "‹undefined›" in unknown
+    assert "U+E123" in unknown
+    assert "‹undefined›" in unknown
     assert "2 characters" in plain
     assert "3 things (2 pictures, 1 film)" in unshown
 
@@ -170,7 +190,8 @@ def test_a_script_that_the_table_does_not_know_is_named_once():
     book = Book(text_source("Все люди.\n\nИ равными."), TABLES["de-g2.ctb"])
     list(Layout(book, 20).lines())
     (note,) = book.notes()
-    assert "Cyrillic" in note and "‹language›" in note
+    assert "Cyrillic" in note
+    assert "‹language›" in note
 
 
 def test_a_place_on_the_surface_is_a_cell():

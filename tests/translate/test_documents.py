@@ -43,8 +43,7 @@ def numbering(levels, nums="<w:num w:numId='1'><w:abstractNumId w:val='0'/></w:n
 
 @pytest.mark.parametrize(
     "name",
-    "hand.html harbour.md dtbook.xml libreoffice.docx libreoffice.html libreoffice.odt "
-    "pandoc-2.epub pandoc-3.epub pandoc.docx pandoc.html pandoc.odt word.html".split(),
+    ["hand.html", "harbour.md", "dtbook.xml", "libreoffice.docx", "libreoffice.html", "libreoffice.odt", "pandoc-2.epub", "pandoc-3.epub", "pandoc.docx", "pandoc.html", "pandoc.odt", "word.html"],
 )  # fmt: skip
 def test_one_text_is_the_same_in_all_formats(name):
     source = open_source(str(FILES / name))
@@ -100,7 +99,9 @@ def test_docx_is_read_as_it_is_seen(body, wanted):
 )  # fmt: skip
 def test_docx_lists_have_the_numbers_that_are_seen(items, lists, wanted):
     body = "".join(numbered(text, at) for text, at in items)
-    assert [block.text for block in blocks(docx(body, numbering=numbering(lists)), "a.docx")] == wanted
+    assert [
+        block.text for block in blocks(docx(body, numbering=numbering(lists)), "a.docx")
+    ] == wanted
 
 
 def test_docx_lists_of_one_kind_count_on_unless_they_begin_anew():
@@ -174,10 +175,14 @@ def test_contents_are_the_nav_or_else_the_ncx():
         (1, "One & co", "one"), (2, "Part", "thr"),
     ]  # fmt: skip
     page = f"<html xmlns:epub='x'>{NAV}</html>"
-    source = opened(epub(bodies, items=ncx + nav, **{"OPS/n.ncx": NCX, "OPS/v.xhtml": page}), "b.epub")
+    source = opened(
+        epub(bodies, items=ncx + nav, **{"OPS/n.ncx": NCX, "OPS/v.xhtml": page}), "b.epub"
+    )
     assert [h.title for h in source.headings()] == ["First", "Second"]
     empty = "<html xmlns:epub='x'><nav epub:type='toc'><ol><li>One</ol></nav></html>"
-    source = opened(epub(bodies, items=ncx + nav, **{"OPS/n.ncx": NCX, "OPS/v.xhtml": empty}), "b.epub")
+    source = opened(
+        epub(bodies, items=ncx + nav, **{"OPS/n.ncx": NCX, "OPS/v.xhtml": empty}), "b.epub"
+    )
     assert [h.title for h in source.headings()] == ["One & co", "Part"]
     bodies["a.xhtml"] = "<h1>Own</h1><p>one"
     source = opened(epub(bodies, items=ncx, **{"OPS/n.ncx": NCX}), "b.epub")
@@ -223,7 +228,10 @@ def test_a_book_in_braille_is_not_translated():
     import io
     from zipfile import ZipFile
 
-    members = {name: ZipFile(io.BytesIO(package)).read(name) for name in ZipFile(io.BytesIO(package)).namelist()}
+    members = {
+        name: ZipFile(io.BytesIO(package)).read(name)
+        for name in ZipFile(io.BytesIO(package)).namelist()
+    }
     del members["mimetype"]
     source = opened(packed(members, "application/ebrl+zip"), "b.ebrl")
     assert source.in_cells
@@ -262,7 +270,9 @@ def test_lines_are_kept_if_asked_for():
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-32", "cp1252", "utf-16-le"])
+@pytest.mark.parametrize(
+    "encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-32", "cp1252", "utf-16-le"]
+)
 def test_encodings_that_are_found(encoding):
     source = opened("Größe – naïve “text” of a page".encode(encoding))
     assert source.text == "Größe – naïve “text” of a page"
@@ -273,7 +283,8 @@ def test_texts_of_other_scripts_are_guessed_and_others_named():
     greek = "Όλοι οι άνθρωποι γεννιούνται ελεύθεροι και ίσοι στην αξιοπρέπεια και τα δικαιώματα."
     source = opened(greek.encode("cp1253"))
     assert source.text == greek
-    assert "is not UTF-8" in source.notes()[0] and source.notes() == []
+    assert "is not UTF-8" in source.notes()[0]
+    assert source.notes() == []
     assert opened("dzień".encode("cp1250"), encoding="cp1250").text == "dzień"
     with pytest.raises(InputError, match="no text encoding"):
         opened("a", encoding="utf-99")
@@ -332,7 +343,9 @@ def test_rtf_is_plain_text_where_nothing_better_is(monkeypatch):
 def test_rtf_is_read_as_libreoffice_converts_it(monkeypatch, tmp_path):
     (tmp_path / "made.docx").write_bytes(docx(paragraph(run("One"), "<w:outlineLvl w:val='0'/>")))
     office = tmp_path / "soffice"
-    office.write_text(f'#!/bin/sh\nfor last; do :; done\ncp {tmp_path}/made.docx "${{last%.rtf}}.docx"\n')
+    office.write_text(
+        f'#!/bin/sh\nfor last; do :; done\ncp {tmp_path}/made.docx "${{last%.rtf}}.docx"\n'
+    )
     office.chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:/bin:/usr/bin")
     source = opened(rb"{\rtf1 One\par}", "a.rtf")
@@ -357,7 +370,8 @@ def test_a_place_is_an_index_of_the_text(name):
         assert all(source.anchor(anchor) is not None for anchor in block.anchors)
     assert source.block_at(source.end + 1) is None
     assert (source.progress(0), source.progress(source.end)) == (0.0, 1.0)
-    assert source.block(-1) is None and source.block(len(found)) is None
+    assert source.block(-1) is None
+    assert source.block(len(found)) is None
 
 
 def test_a_long_paragraph_comes_in_pieces():

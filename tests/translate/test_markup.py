@@ -71,7 +71,10 @@ def test_a_row_has_a_text_for_each_column(rows, wanted, headers):
 
 def test_a_table_that_only_lays_out_is_its_text():
     assert said("<html><table><tr><td><h1>A</h1><td>b</table>") == ["heading A", "paragraph b"]
-    assert said("<html><table role=presentation><tr><td>a<td>b</table>") == ["paragraph a", "paragraph b"]
+    assert said("<html><table role=presentation><tr><td>a<td>b</table>") == [
+        "paragraph a",
+        "paragraph b",
+    ]
     assert said("<html><table><tr><td><ol><li>a<li>b</ol><td>x</table>") == ["row 1. a 2. b  x"]
 
 
@@ -81,7 +84,9 @@ def test_two_lists_and_tables_are_told_apart():
 
 
 def test_marks_say_what_is_so_about_a_part():
-    block = blocks("<html lang=en><p>a <b>bold <i>and</i></b> <a href='#x'>link</a> <span lang=fr>où</span>")[0]
+    block = blocks(
+        "<html lang=en><p>a <b>bold <i>and</i></b> <a href='#x'>link</a> <span lang=fr>où</span>"
+    )[0]
     assert marks(block) == [
         ("bold", "bold and", ""), ("italic", "and", ""), ("link", "link", "#x"), ("language", "où", "fr"),
     ]  # fmt: skip
@@ -168,7 +173,7 @@ def test_front_matter_says_title_and_language():
         ("<html><meta charset=latin1><p>Глава".encode(), "Глава"),
         ("<html><meta charset=koi8-r><p>Глава".encode("koi8-r"), "Глава"),
         ("<html><p>it\x92s".encode("latin-1"), "it’s"),
-        ("<?xml version='1.0'?><html><title/><p>a&nbsp;b &eacute;</p></html>".encode(), "a\u00a0b é"),
+        (b"<?xml version='1.0'?><html><title/><p>a&nbsp;b &eacute;</p></html>", "a\u00a0b é"),
         (b"<?xml version='1.0'?><html><p>a & b <br> c</html>", "a & b\nc"),
     ],
 )  # fmt: skip
@@ -178,4 +183,6 @@ def test_markup_is_read_whatever_it_declares(content, text):
 
 def test_a_picture_s_file_is_told():
     block = blocks("<html><img src='figs/map.scene#x' alt=Map>")[0]
-    assert [(mark.kind, mark.target) for mark in block.marks] == [(MarkKind.IMAGE, "figs/map.scene")]
+    assert [(mark.kind, mark.target) for mark in block.marks] == [
+        (MarkKind.IMAGE, "figs/map.scene")
+    ]

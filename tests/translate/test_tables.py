@@ -93,7 +93,9 @@ def test_emphasis_is_that_of_the_table():
     assert table.translate("one", [Mark(MarkKind.LINK, 0, 3, "x")]).to_unicode() == "⠐⠕"
 
 
-@pytest.mark.parametrize("text", ["", "a", "the world", "a\0b", "\ud800x", "\t\n", "☃ ü\u0301", "🇫🇷👍🏽"])
+@pytest.mark.parametrize(
+    "text", ["", "a", "the world", "a\0b", "\ud800x", "\t\n", "☃ ü\u0301", "🇫🇷👍🏽"]
+)
 @pytest.mark.parametrize("table", ["en-ueb-g2.ctb", "de-g2.ctb", "zh-tw.ctb", "ar.tbl"])
 def test_cells_and_text_lead_to_each_other(table, text):
     cells = BrailleTable(table).translate(text, start=100)

@@ -174,7 +174,7 @@ class Page:
         self.layout, self.model = Layout(book, width), model
         self.first, self.last = ctx.params["lines"]
         self._remarks = Remarks(book)
-        self._line = 0
+        self._given = 0  # lines
         if self.layout.line(self.first) is None:
             name, lines = book.source.name, self.layout.count()
             if not lines:
@@ -186,7 +186,8 @@ class Page:
 
     def lines(self) -> Iterator[Line]:
         """Lines that are wanted; notes on the text are printed on standard error."""
-        for self._line, line in enumerate(self.layout.lines(self.first, self.last), self.first):
+        for line in self.layout.lines(self.first, self.last):
+            self._given += 1
             self.say_notes()
             self._remarks.see(line.block)
             yield line
@@ -195,7 +196,7 @@ class Page:
         """Share of the lines that is done with the last of `lines`, 0 to 1."""
         if self.last is None:
             return self.layout.progress(line)
-        return (self._line - self.first + 1) / (self.last - self.first + 1)
+        return self._given / (self.last - self.first + 1)
 
     def say_notes(self) -> None:
         """Print notes on the text that are new."""

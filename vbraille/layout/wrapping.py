@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 _SOLID = 0xFF  # in a search for blanks: a cell at which a line must not break
 _NO_BREAK_SPACE = "\u00a0"
 # Scripts that are written without spaces: Thai, Lao, Tibetan, Burmese, Khmer, kana and Han.
-_SPACELESS = re.compile("[\u0e01-\u0fff\u1000-\u109f\u1780-\u17ff\u3001-\u30ff\u3400-\u9fff\uff01-\uff65]")
+_SPACELESS = re.compile(
+    "[\u0e01-\u0fff\u1000-\u109f\u1780-\u17ff\u3001-\u30ff\u3400-\u9fff\uff01-\uff65]"
+)
 _OPENING = frozenset("([{「『（《〈【〔“‘«เแโใไເແໂໃໄ")
 _CLOSING = frozenset(
     ")]}」』）》〉】〕”’»,.;:!?，。、．；：！？·・ーぁぃぅぇぉっゃゅょゎァィゥェォッャュョヮ々ๆໆ។៕ៗฯ།"

@@ -169,13 +169,16 @@ def page(
         for name in names
     }
     title = (
-        f"{model.title}: line {first + line_index}, left column at {x_mm - array.span_mm / 2:g} mm, "
+        f"{model.title}: line {first + line_index}, "
+        f"left column at {x_mm - array.span_mm / 2:g} mm, "
         f"{style.mapping.name}{tuning_words(style.tuning)}"
     )
     return FigureTable("page", title, columns)
 
 
-def _dots(line: Line, number: int, top_mm: float, geometry: Geometry, six: bool) -> dict[str, NDArray]:
+def _dots(
+    line: Line, number: int, top_mm: float, geometry: Geometry, six: bool
+) -> dict[str, NDArray]:
     """Tell the places of the dots of a line whose first dot row is at `top_mm`."""
     dots = list(PLACES)[: 6 if six else 8]
     bits = [mask_of([dot]) for dot in dots]

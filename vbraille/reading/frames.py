@@ -15,6 +15,7 @@ from vbraille.errors import InputError
 from vbraille.layout import cells_per_line, lay_out_text
 from vbraille.live.states import line_shown
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
+from vbraille.translate import choose_table
 from vbraille.wording import count
 
 if TYPE_CHECKING:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 
-if TYPE_CHECKING:
-    from vbraille.braille.cells import Cells
+from vbraille.braille.cells import Cells
 
 
 class BlockKind(Enum):

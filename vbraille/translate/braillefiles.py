@@ -96,7 +96,7 @@ def _line(text: str) -> Block:
 
 
 def _dialect(table: str) -> dict[str, str]:
-    """Cells of each character of ASCII by a display table of liblouis; capitals as small letters."""
+    """Cells of each ASCII character by a display table of liblouis; capitals as small letters."""
     dots = display_dots(table, _ASCII)
     found = {}
     for character, mask in zip(_ASCII, dots, strict=True):

@@ -45,8 +45,24 @@ _FONTS = ("symbol", "wingdings")
 _OFF = frozenset(("0", "false", "none", "off"))
 # What is not read: deleted text, what is kept for other programs, properties.
 _SKIPPED = frozenset(
-    "del moveFrom delText instrText Fallback pPr rPr sdtPr tblPr trPr tcPr sectPr tblGrid "
-    "footnoteRef endnoteRef annotationRef".split()
+    [
+        "del",
+        "moveFrom",
+        "delText",
+        "instrText",
+        "Fallback",
+        "pPr",
+        "rPr",
+        "sdtPr",
+        "tblPr",
+        "trPr",
+        "tcPr",
+        "sectPr",
+        "tblGrid",
+        "footnoteRef",
+        "endnoteRef",
+        "annotationRef",
+    ]
 )
 _DRAWN = frozenset(("drawing", "pict", "object"))
 

@@ -132,9 +132,9 @@ def binary_kind(sample: bytes) -> str | None:
 
 
 def tidy(text: str) -> str:
-    """Text as blocks have it: accents with their letters, without soft hyphens and C1 controls.
+    r"""Text as blocks have it: accents with their letters, without soft hyphens and C1 controls.
 
-    >>> tidy("e\\u0301te\\u0301 Schiff\\u00adfahrt \\x93x\\x94")
+    >>> tidy("e\u0301te\u0301 Schiff\u00adfahrt \x93x\x94")
     'été Schifffahrt “x”'
     """
     if text.isascii():

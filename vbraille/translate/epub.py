@@ -263,9 +263,7 @@ def _chapter(
         return [_remark(spell(f"[damaged chapter: {member}]"), "chapter")]
     for note in notes:
         source.note(note)
-    walker = Walker(
-        source.language, f"{member}#", lambda path: inside(member, path), spell, groups
-    )
+    walker = Walker(source.language, f"{member}#", lambda path: inside(member, path), spell, groups)
     return walker.read(root)
 
 
@@ -280,9 +278,8 @@ def _with_pages(blocks: list[Block], pages: dict[str, str]) -> list[Block]:
         return blocks
     found = []
     for block in blocks:
-        for anchor in block.anchors:
-            if anchor in pages:
-                found.append(Block(pages[anchor], BlockKind.PAGE))
+        numbers = [pages[anchor] for anchor in block.anchors if anchor in pages]
+        found += [Block(number, BlockKind.PAGE) for number in numbers]
         found.append(block)
     return found
 

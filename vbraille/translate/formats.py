@@ -316,6 +316,6 @@ def _zipped(stream: BinaryIO, name: str) -> str:
         raise InputError(f"{name} is an OpenDocument file, not a text; save it as ODT or HTML")
     if any(member.lower().endswith(".opf") for member in members):
         raise InputError(
-            f"{name} is a zip archive of a DAISY book; unpack it and give the XML file with the text"
+            f"{name} is a zip archive of a DAISY book; unpack it and give its XML file"
         )
     raise InputError(f"{name} is a zip archive, not text; unpack it and give the file in it")

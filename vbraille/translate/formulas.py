@@ -8,8 +8,35 @@ if TYPE_CHECKING:
     from vbraille.translate.trees import Element
 
 _FUNCTIONS = frozenset(
-    "sin cos tan cot sec csc sinh cosh tanh arcsin arccos arctan log ln lg exp lim max min sup inf "
-    "det dim ker gcd mod arg".split()
+    [
+        "sin",
+        "cos",
+        "tan",
+        "cot",
+        "sec",
+        "csc",
+        "sinh",
+        "cosh",
+        "tanh",
+        "arcsin",
+        "arccos",
+        "arctan",
+        "log",
+        "ln",
+        "lg",
+        "exp",
+        "lim",
+        "max",
+        "min",
+        "sup",
+        "inf",
+        "det",
+        "dim",
+        "ker",
+        "gcd",
+        "mod",
+        "arg",
+    ]
 )
 _INVISIBLE = dict.fromkeys(map(ord, "\u2061\u2062\u2063\u2064\u200b"))
 _SIGNS = {"∑": "\\sum", "∏": "\\prod", "∫": "\\int", "⋃": "\\bigcup", "⋂": "\\bigcap"}
@@ -107,7 +134,9 @@ def omml_text(element: Element) -> str:
     inner = [child for child in element.elements if not child.name.endswith("Pr")]
     texts = [omml_text(child) for child in inner]
     parts = _PARTS | {child.name: text for child, text in zip(inner, texts, strict=True)}
-    sign = {each.name: each.get("val") for each in element.iter("begChr", "sepChr", "endChr", "chr")}
+    sign = {
+        each.name: each.get("val") for each in element.iter("begChr", "sepChr", "endChr", "chr")
+    }
     match element.name:
         case "d":
             between = sign.get("sepChr", "|").join(texts)
@@ -121,7 +150,9 @@ def omml_text(element: Element) -> str:
             return f"\\sqrt{degree}{{{parts['e']}}}"
         case "nary":
             own = sign.get("chr", "∫")
-            return f"{_scripts('', [_SIGNS.get(own, own), parts['sub'], parts['sup']])} {parts['e']}"
+            return (
+                f"{_scripts('', [_SIGNS.get(own, own), parts['sub'], parts['sup']])} {parts['e']}"
+            )
         case "acc":
             own = sign.get("chr", "\u0302")
             return f"{_ACCENTS[own]}{{{parts['e']}}}" if own in _ACCENTS else parts["e"] + own

@@ -1,4 +1,4 @@
-"""Tables as full grids: each cell stands in all rows and columns that it covers, with its headers."""
+"""Tables as full grids: each cell stands in all rows and columns that it covers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from vbraille.translate.trees import Element
 
 BETWEEN = "  "  # cells of a row
-EMPTY = "⠐⠐⠐"  # three unspaced dots 5, as the Braille Authority of North America writes an empty cell
+EMPTY = (
+    "⠐⠐⠐"  # three unspaced dots 5, as the Braille Authority of North America writes an empty cell
+)
 _MOST = 1_000  # columns or rows that one cell covers
 _EMPHASES = (MarkKind.BOLD, MarkKind.ITALIC, MarkKind.UNDERLINE)  # of a head, which has them anyway
 _LAYING_OUT = (BlockKind.HEADING, BlockKind.QUOTE, BlockKind.LINE, BlockKind.ROW, BlockKind.NOTE)
@@ -66,7 +68,11 @@ def table_blocks(
             continue
         is_head = is_head or (len(row) > 1 and all(c.is_header or not c.whole.text for c in row))
         told = [
-            " ".join(texts.get(name, "") for name in cell.named if name in texts and name != _row_head(row))
+            " ".join(
+                texts.get(name, "")
+                for name in cell.named
+                if name in texts and name != _row_head(row)
+            )
             if cell is not None and cell.named
             else headers.get(column, "")
             for column, cell in enumerate(shown)
@@ -75,7 +81,9 @@ def table_blocks(
             for column, cell in enumerate(line):
                 text = "" if cell is None else cell.whole.text
                 headers[column] = f"{headers.get(column, '')} {text}".strip()
-        block = joined([_EMPTY if c is None or not c.whole.text else c.whole for c in shown], BETWEEN)
+        block = joined(
+            [_EMPTY if c is None or not c.whole.text else c.whole for c in shown], BETWEEN
+        )
         told = [] if is_head or not any(told) else told
         marks = tuple(m for m in block.marks if not is_head or m.kind not in _EMPHASES)
         yield block.replace(kind=BlockKind.ROW, level=0, headers=tuple(told), marks=marks)

@@ -16,9 +16,7 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 
-def read_html(
-    source: Source, encoding: str | None = None, *, xml: bool = False
-) -> Iterator[Block]:
+def read_html(source: Source, encoding: str | None = None, *, xml: bool = False) -> Iterator[Block]:
     """Read a page of HTML.
 
     Raises

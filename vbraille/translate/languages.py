@@ -40,12 +40,49 @@ _CONTRACTED = frozenset(("da", "de", "en", "ko"))
 # Tags that people write, those of older books (ISO 639-2) among them, and those of liblouis.
 _SAME = dict(
     pair.split("=")
-    for pair in """
-    iw=he ku=kmr nb=no nn=no prs=fa zh=cmn zh-cn=cmn-hans zh-hans=cmn-hans zh-hant=cmn-hant
-    zh-hk=yue zh-mo=yue zh-sg=cmn-hans zh-tw=cmn-hant ara=ar cze=cs ces=cs dan=da ger=de deu=de
-    gre=el ell=el eng=en spa=es fin=fi fre=fr fra=fr heb=he hun=hu ita=it dut=nl nld=nl nor=no
-    nob=no nno=no pol=pl por=pt rus=ru swe=sv tur=tr chi=cmn zho=cmn
-    """.split()
+    for pair in [
+        "iw=he",
+        "ku=kmr",
+        "nb=no",
+        "nn=no",
+        "prs=fa",
+        "zh=cmn",
+        "zh-cn=cmn-hans",
+        "zh-hans=cmn-hans",
+        "zh-hant=cmn-hant",
+        "zh-hk=yue",
+        "zh-mo=yue",
+        "zh-sg=cmn-hans",
+        "zh-tw=cmn-hant",
+        "ara=ar",
+        "cze=cs",
+        "ces=cs",
+        "dan=da",
+        "ger=de",
+        "deu=de",
+        "gre=el",
+        "ell=el",
+        "eng=en",
+        "spa=es",
+        "fin=fi",
+        "fre=fr",
+        "fra=fr",
+        "heb=he",
+        "hun=hu",
+        "ita=it",
+        "dut=nl",
+        "nld=nl",
+        "nor=no",
+        "nob=no",
+        "nno=no",
+        "pol=pl",
+        "por=pt",
+        "rus=ru",
+        "swe=sv",
+        "tur=tr",
+        "chi=cmn",
+        "zho=cmn",
+    ]
 )
 # Tables of a standard that is no longer in force, or with signs that books leave out.
 _DATED = re.compile(r"_\d{4}\b|-\d{4}[-.]|-detailed\b")

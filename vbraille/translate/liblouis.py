@@ -141,7 +141,8 @@ class Louis:
 
     def _exchange(self, question: tuple[Any, ...]) -> Any:
         child = self._child or self._start()
-        assert child.stdin is not None and child.stdout is not None
+        assert child.stdin is not None
+        assert child.stdout is not None
         try:
             child.stdin.write(pickle.dumps(question))
             child.stdin.flush()

@@ -7,11 +7,11 @@ each question; when that runs out the system ends it, as a crash does.
 from __future__ import annotations
 
 import ctypes
-import os
 import pickle
 import signal
 import sys
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import louis
@@ -56,13 +56,13 @@ def list_tables() -> list[dict[str, str]]:
         if path is None:
             break
         said = {key: text_at(LIBRARY.lou_getTableInfo(path, key.encode())) for key in KEYS}
-        found.append({"name": os.path.basename(path.decode()), **said})
+        found.append({"name": Path(path.decode()).name, **said})
     return found
 
 
 def find_table(query: str) -> str:
     """File name of the table that liblouis finds for a query, or nothing."""
-    return os.path.basename(text_at(LIBRARY.lou_findTable(query.encode())))
+    return Path(text_at(LIBRARY.lou_findTable(query.encode()))).name
 
 
 def emphasis_bit(table: str, name: str) -> int:

@@ -21,16 +21,104 @@ if TYPE_CHECKING:
     from vbraille.translate.trees import Element
 
 _SKIPPED = frozenset(
-    "script style template noscript head rp datalist colgroup col source track frames smilref "
-    "linkgroup metadata title".split()
+    [
+        "script",
+        "style",
+        "template",
+        "noscript",
+        "head",
+        "rp",
+        "datalist",
+        "colgroup",
+        "col",
+        "source",
+        "track",
+        "frames",
+        "smilref",
+        "linkgroup",
+        "metadata",
+        "title",
+    ]
 )
 _BLOCKS = frozenset(
-    "address article aside blockquote body caption center dd details dialog div dl dt fieldset "
-    "figcaption figure footer form h1 h2 h3 h4 h5 h6 header hgroup hr html legend li main menu nav "
-    "ol optgroup p pre section summary table tbody tfoot thead td th tr ul annotation author "
-    "bodymatter book bridgehead byline covertitle dateline docauthor doctitle epigraph frontmatter "
-    "hd imggroup level level1 level2 level3 level4 level5 level6 line linegroup list note poem "
-    "prodnote rearmatter sidebar".split()
+    [
+        "address",
+        "article",
+        "aside",
+        "blockquote",
+        "body",
+        "caption",
+        "center",
+        "dd",
+        "details",
+        "dialog",
+        "div",
+        "dl",
+        "dt",
+        "fieldset",
+        "figcaption",
+        "figure",
+        "footer",
+        "form",
+        "h1",
+        "h2",
+        "h3",
+        "h4",
+        "h5",
+        "h6",
+        "header",
+        "hgroup",
+        "hr",
+        "html",
+        "legend",
+        "li",
+        "main",
+        "menu",
+        "nav",
+        "ol",
+        "optgroup",
+        "p",
+        "pre",
+        "section",
+        "summary",
+        "table",
+        "tbody",
+        "tfoot",
+        "thead",
+        "td",
+        "th",
+        "tr",
+        "ul",
+        "annotation",
+        "author",
+        "bodymatter",
+        "book",
+        "bridgehead",
+        "byline",
+        "covertitle",
+        "dateline",
+        "docauthor",
+        "doctitle",
+        "epigraph",
+        "frontmatter",
+        "hd",
+        "imggroup",
+        "level",
+        "level1",
+        "level2",
+        "level3",
+        "level4",
+        "level5",
+        "level6",
+        "line",
+        "linegroup",
+        "list",
+        "note",
+        "poem",
+        "prodnote",
+        "rearmatter",
+        "sidebar",
+    ]
 )
 _EMPHASES = {
     **dict.fromkeys(("em", "i", "cite", "dfn", "var"), MarkKind.ITALIC),
@@ -59,12 +147,21 @@ _UNSHOWN = {
     "textarea": "form field",
 }
 _NOTES = frozenset(
-    "footnote endnote rearnote doc-footnote doc-endnote sdfootnote sdendnote MsoFootnoteText "
-    "MsoEndnoteText".split()
+    [
+        "footnote",
+        "endnote",
+        "rearnote",
+        "doc-footnote",
+        "doc-endnote",
+        "sdfootnote",
+        "sdendnote",
+        "MsoFootnoteText",
+        "MsoEndnoteText",
+    ]
 )
-_NOTE_LISTS = frozenset("footnotes endnotes rearnotes doc-endnotes".split())
-_REFERENCES = frozenset("noteref doc-noteref footnote-ref sdfootnoteanc sdendnoteanc".split())
-_BACK = frozenset("backlink doc-backlink footnote-back footnote-backref".split())
+_NOTE_LISTS = frozenset(["footnotes", "endnotes", "rearnotes", "doc-endnotes"])
+_REFERENCES = frozenset(["noteref", "doc-noteref", "footnote-ref", "sdfootnoteanc", "sdendnoteanc"])
+_BACK = frozenset(["backlink", "doc-backlink", "footnote-back", "footnote-backref"])
 _WORD_NOTE = re.compile(r"#_(?:ftn|edn)\d+$")
 _PAGE_BREAKS = frozenset(("pagebreak", "doc-pagebreak"))
 # Quotation marks of quotations and of those in them, by language; English ones elsewhere.
@@ -201,7 +298,11 @@ class Walker:
                 block = _clipped(piece, start, marks, inner)
                 self._put(block.replace(continues=written and piece is not text and inner is role))
                 written = True
-            if piece == _NEW_LINE and role.kind in (BlockKind.PARAGRAPH, BlockKind.ITEM) and written:
+            if (
+                piece == _NEW_LINE
+                and role.kind in (BlockKind.PARAGRAPH, BlockKind.ITEM)
+                and written
+            ):
                 inner = role._replace(kind=BlockKind.LINE, level=0)
             start += len(piece)
 
@@ -420,7 +521,9 @@ class Walker:
         start = self._next
         self._inside(element)
         self._marks = [
-            mark for mark in self._marks if mark.kind is not MarkKind.UNDERLINE or mark.start < start
+            mark
+            for mark in self._marks
+            if mark.kind is not MarkKind.UNDERLINE or mark.start < start
         ]
         text = "".join(self._parts)
         if address == "#" or self._length <= start:
@@ -555,7 +658,9 @@ def _emphases(element: Element, words: set[str]) -> list[MarkKind]:
     if element.name in _EMPHASES:
         kinds.insert(0, _EMPHASES[element.name])
     elif element.name == "span":
-        kinds += [_EMPHASES[word] for word in words if word[:3] in ("sup", "sub") and word in _EMPHASES]
+        kinds += [
+            _EMPHASES[word] for word in words if word[:3] in ("sup", "sub") and word in _EMPHASES
+        ]
     return kinds
 
 

@@ -11,7 +11,21 @@ if TYPE_CHECKING:
     from vbraille.translate.trees import Element
 
 BULLET = "• "
-_ROMAN = "m1000 cm900 d500 cd400 c100 xc90 l50 xl40 x10 ix9 v5 iv4 i1".split()
+_ROMAN = [
+    "m1000",
+    "cm900",
+    "d500",
+    "cd400",
+    "c100",
+    "xc90",
+    "l50",
+    "xl40",
+    "x10",
+    "ix9",
+    "v5",
+    "iv4",
+    "i1",
+]
 
 
 def numeral(number: int, form: str) -> str:
@@ -46,9 +60,9 @@ def list_markers(element: Element) -> Callable[[Element], str]:
     style = element.get("style") + element.get("list-style-type")
     is_daisy = element.name == "list"
     if "none" in style.replace(" ", "") or (is_daisy and element.get("type", "pl") == "pl"):
-        return lambda item: ""
+        return lambda _: ""
     if element.name in ("ul", "menu") or (is_daisy and element.get("type") == "ul"):
-        return lambda item: BULLET
+        return lambda _: BULLET
     form = element.get("enum", "1") if is_daisy else element.get("type", "1")
     step = -1 if "reversed" in element.attributes else 1
     items = sum(child.name == "li" for child in element.elements)

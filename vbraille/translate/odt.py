@@ -35,12 +35,36 @@ _DRAWN = frozenset(("custom-shape", "rect", "ellipse", "line", "path", "polygon"
 _BLOCKS = _DRAWN | {"p", "h", "list", "table", "soft-page-break", "frame"}
 # What is not read: comments, deleted text, what only programs need.
 _SKIPPED = frozenset(
-    "annotation annotation-end tracked-changes forms sequence-decls variable-decls "
-    "user-field-decls dde-connection-decls alphabetical-index-auto-mark-file bookmark-end "
-    "reference-mark-end note-citation hidden-text hidden-paragraph toc-mark-start toc-mark-end "
-    "desc script index-source table-of-content-source illustration-index-source "
-    "table-index-source object-index-source user-index-source alphabetical-index-source "
-    "bibliography-source list-header-source event-listeners".split()
+    [
+        "annotation",
+        "annotation-end",
+        "tracked-changes",
+        "forms",
+        "sequence-decls",
+        "variable-decls",
+        "user-field-decls",
+        "dde-connection-decls",
+        "alphabetical-index-auto-mark-file",
+        "bookmark-end",
+        "reference-mark-end",
+        "note-citation",
+        "hidden-text",
+        "hidden-paragraph",
+        "toc-mark-start",
+        "toc-mark-end",
+        "desc",
+        "script",
+        "index-source",
+        "table-of-content-source",
+        "illustration-index-source",
+        "table-index-source",
+        "object-index-source",
+        "user-index-source",
+        "alphabetical-index-source",
+        "bibliography-source",
+        "list-header-source",
+        "event-listeners",
+    ]
 )
 _MOST_REPEATED = 1_000  # columns, rows or blanks
 _NUMBERED = ("list-level-style-number", "outline-level-style")
@@ -101,7 +125,9 @@ class _Reader:
             if style.get("family") == "paragraph":
                 self._usual = _look_of(style).within(self._usual)
         for style in part.iter("list-style", "outline-style"):
-            levels = {whole(e.get("level")) - 1: _level_of(e) for e in style.elements if e.get("level")}
+            levels = {
+                whole(e.get("level")) - 1: _level_of(e) for e in style.elements if e.get("level")
+            }
             self._lists[style.get("name")] = Numbering(levels)
         for style in part.iter("style"):
             name = style.get("name")

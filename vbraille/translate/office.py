@@ -135,8 +135,18 @@ def heading_level(styles: list[Style]) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """A level of a list: its form ("1", "01", "a", "A", "i", "I", "bullet", "none"), the text
-    around its number, such as "%1.%2)", its first number, and whether all numbers are plain.
+    """A level of a list.
+
+    Parameters
+    ----------
+    form
+        Form of its numbers, as of `numeral`, or "bullet", or "none".
+    text
+        Text around its number, such as "%1.%2)".
+    start
+        Its first number.
+    legal
+        Whether the numbers of all levels are plain in it.
     """
 
     form: str

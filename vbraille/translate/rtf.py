@@ -57,9 +57,7 @@ def _converted(office: str, content: bytes) -> bytes:
         profile = f"-env:UserInstallation={Path(folder, 'profile').as_uri()}"
         command = [office, profile, "--headless", "--convert-to", "docx", "--outdir", folder]
         try:
-            subprocess.run(
-                [*command, str(book)], capture_output=True, timeout=_MOST_S, check=False
-            )
+            subprocess.run([*command, str(book)], capture_output=True, timeout=_MOST_S, check=False)
             return book.with_suffix(".docx").read_bytes()
         except (OSError, subprocess.TimeoutExpired):
             return b""

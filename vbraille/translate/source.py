@@ -1,4 +1,4 @@
-"""The text of a book, whatever file it comes from: its blocks, read as far as they are asked for."""
+"""The text of a book, whatever file it comes from: blocks, read as far as they are asked for."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ _SIGNS = {
     "-‐‑‒–−־": "- ‐ – — ⠤",
     "—―": "— – -- - ⠤⠤",
     "'‘’‚‛‹›ʼʻ`´׳": "' ’ ⠄",
-    "\"“”„‟«»〝〞「」『』《》〈〉״": "\" “ ” '' ⠶",
+    '"“”„‟«»〝〞「」『』《》〈〉״': "\" “ ” '' ⠶",
     "′": "' ’ ⠄",
     "″": "\" ” '' ’’ ⠄⠄",
     "‴": "''' ’’’ ⠄⠄⠄",
@@ -154,7 +154,7 @@ def lowered(text: str) -> str:
 
 def _small(text: str, forms: dict[str, str]) -> str:
     small = {sign: form for form, sign in forms.items()} | {"\u2212": "⁻" if "⁻" in forms else "₋"}
-    if text.isalpha() and len(text) > 1 or not all(sign in small for sign in text):
+    if (text.isalpha() and len(text) > 1) or not all(sign in small for sign in text):
         return text
     return "".join(small[sign] for sign in text)
 
@@ -226,7 +226,9 @@ def _marked(part: str, undefined: set[str], how: Undefined) -> Iterator[tuple[Ki
     if how is Undefined.DROP:
         yield Kind.MARKED, ""
     elif how is Undefined.CODE:
-        yield from ((Kind.MARKED, text) for text in (f"[U+{ord(part[0]):04X}]", f"({ord(part[0])})"))
+        yield from (
+            (Kind.MARKED, text) for text in (f"[U+{ord(part[0]):04X}]", f"({ord(part[0])})")
+        )
     elif how is Undefined.NAME or is_emoji(part):
         kind = Kind.NAME if is_emoji(part) else Kind.MARKED
         yield from ((kind, text) for text in (f"[{name}]", f"({name})"))
@@ -238,7 +240,9 @@ def _marked(part: str, undefined: set[str], how: Undefined) -> Iterator[tuple[Ki
 def is_emoji(part: str) -> bool:
     """Tell whether a part is a picture or a symbol that has a name people know."""
     category = unicodedata.category(part[0])
-    return category in ("So", "Sk") and ord(part[0]) >= 0x2300 and unicodedata.name(part[0], "") != ""
+    return (
+        category in ("So", "Sk") and ord(part[0]) >= 0x2300 and unicodedata.name(part[0], "") != ""
+    )
 
 
 def _equivalents(part: str) -> Iterator[str]:
@@ -284,7 +288,10 @@ def _indicator(forms: dict[str, str], cells_of: Callable[[str], bytes]) -> tuple
     found = set()
     for small, digit in forms.items():
         own, on_line = cells_of(small) if digit in "23" else b"", cells_of(digit)
-        for cells, low in ((on_line, False), (bytes([low_dots(on_line[-1])]) if on_line else b"", True)):
+        for cells, low in (
+            (on_line, False),
+            (bytes([low_dots(on_line[-1])]) if on_line else b"", True),
+        ):
             if own and cells and len(own) > len(cells) and own.endswith(cells):
                 found.add(("".join(chr(0x2800 | mask) for mask in own[: -len(cells)]), low))
                 break

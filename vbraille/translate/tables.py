@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -104,7 +103,7 @@ class BrailleTable:
             return _UEB_CONTINUATION, b""
         hyphen = self.cells_of("-")
         ending = hyphen if len(hyphen) == 1 and any(hyphen) else _HYPHEN
-        alike = before.isdecimal() and after.isdecimal() or before.isupper() and after.isupper()
+        alike = (before.isdecimal() and after.isdecimal()) or (before.isupper() and after.isupper())
         whole = self.cells_of(text[place:].split(None, 1)[0]) if alike else b""
         sign = whole.removesuffix(rest)
         return ending, sign if len(sign) < len(whole) else b""

@@ -72,9 +72,7 @@ class Element:
     @property
     def text(self) -> str:
         """All text in it."""
-        return "".join(
-            child if isinstance(child, str) else child.text for child in self.children
-        )
+        return "".join(child if isinstance(child, str) else child.text for child in self.children)
 
     def iter(self, *names: str) -> Iterator[Element]:
         """Elements of some names in it, in order, itself among them; of all without a name."""
@@ -147,7 +145,13 @@ def parse_xml(content: bytes, name: str) -> Element:
     try:
         parser.feed(content)
         return parser.close().root.elements[0]
-    except (etree.XMLSyntaxError, etree.ParserError, ValueError, AssertionError, IndexError) as error:
+    except (
+        etree.XMLSyntaxError,
+        etree.ParserError,
+        ValueError,
+        AssertionError,
+        IndexError,
+    ) as error:
         raise InputError(f"{name} is damaged ({error}); get the book again") from None
 
 
