@@ -197,7 +197,7 @@ def _translate(reader: Reader, language: str, grade: int | None = None) -> None:
         if name == before.table.name:
             reader.say(f"braille: {before.table.said}, as before")
             return
-        table = BrailleTable(name, before.table.how)
+        table = BrailleTable(name, before.table.undefined)
         book = Book(before.source, table, language=language, grade=grade, switch=before.switch)
         reader.lay_out(book)
     except InputError as error:
