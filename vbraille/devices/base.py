@@ -76,10 +76,12 @@ class Device(ABC):
     acknowledges : bool
         Whether the device tells which frames it has received.
     acknowledged_ns : int or None
-        How long after the last frame was written the device told that it had received it; None as
-        long as it did not.
+        How long after a frame was written the device told that it had received it, of the last
+        frame of which that is known; None until it is known of a new one.
     watchdog_trips : int or None
         How often the device's watchdog brought the actuators to rest; None if it does not tell.
+    tripped_ms : float or None
+        How long after the last frame reached it the watchdog last tripped, by the device's clock.
     particulars : Particulars or None
         What else the device says of itself.
     serial_number : str
@@ -98,6 +100,7 @@ class Device(ABC):
     acknowledges = False
     acknowledged_ns: int | None = None
     watchdog_trips: int | None = None
+    tripped_ms: float | None = None
     particulars: Particulars | None = None
     serial_number = ""
     calibration: Calibration | None = None

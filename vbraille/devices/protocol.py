@@ -296,8 +296,11 @@ class Conversation:
         STATEs that came twice or late.
     sent_ns : int or None
         When the last FRAME was sent; None since the device rests.
+    tripped_ms : float or None
+        How long after the last FRAME the watchdog last tripped, by the device's clock.
     acknowledged_ns : int or None
-        How long after the last FRAME was sent a STATE said that it was taken; None until then.
+        How long after a FRAME was sent a STATE said that it was taken, of the last one of which
+        that was measured; None while it is measured anew.
     """
 
     def __init__(self, now_ns: int, number: int | None = None) -> None:
@@ -311,8 +314,11 @@ class Conversation:
         self.acknowledged_ns: int | None = None
         self._number = random.randrange(0x10000) if number is None else number
         self._taken = 0  # number of the last FRAME or REST that was taken
+        self._probe: tuple[int, int] | None = None  # a FRAME that is not taken yet, and its time
         self._due_ns = self._heard_ns = now_ns
+        self.tripped_ms: float | None = None
         self._time_us = 0  # of the newest STATE, without wraps
+        self._took_us = 0  # of the STATE that first told of the last FRAME taken
         self._pieces: dict[int, bytes] = {}
         self._of_pieces = 0
         self._silent = False
@@ -390,20 +396,22 @@ class Conversation:
     def sent(self, now_ns: int) -> None:
         """Note that the line that `frame` made has gone out."""
         self._number = (self._number + 1) & 0xFFFF
-        self.sent_ns, self.acknowledged_ns = now_ns, None
+        self.sent_ns = now_ns
+        if self._probe is None:
+            self._probe, self.acknowledged_ns = (self._number, now_ns), None
 
     def rest(self, now_ns: int) -> None:
         """Have the device rest, and be sent FRAMEs again once it does."""
         self.rests += self.stage is Stage.LIVE
         self.stage, self._due_ns = Stage.RESTING, now_ns
         self._number = (self._number + 1) & 0xFFFF
-        self.sent_ns = None
+        self.sent_ns = self._probe = None
 
     def greet(self, now_ns: int) -> None:
         """Greet the device anew: it was silent, or its port was opened again."""
         self.rests += self.stage is Stage.LIVE
         self.stage, self._due_ns = Stage.GREETING, now_ns
-        self.sent_ns = None
+        self.sent_ns = self._probe = None
         self._press(0, now_ns)  # no hand holds the buttons of a device that is not there
         self._pieces, self._of_pieces = {}, 0
         self.lines.clear()
@@ -494,6 +502,8 @@ class Conversation:
         if self._silent:
             self._silent = False
             self.events.append(Back())
+        if last is None or state.taken != last.taken:
+            self._took_us = self._time_us
         if last is None or state.others != last.others:
             self._note_changes(state, last or state, now_ns)
         if self._zero_ns:
@@ -518,6 +528,7 @@ class Conversation:
         self.dropped += (state.dropped - before.dropped) & 0xFF
         if tripped := (state.trips - before.trips) & 0xFF:
             self.trips += tripped
+            self.tripped_ms = (self._time_us - self._took_us) / 1000
             self.events.append(WatchdogTripped(self.trips))
 
     def _mind_zero(self, state: State) -> None:
@@ -554,8 +565,8 @@ class Conversation:
             self.rest(now_ns)
         else:
             self._taken = state.taken
-            if state.taken == self._number and self.acknowledged_ns is None and self.sent_ns:
-                self.acknowledged_ns = now_ns - self.sent_ns
+            if self._probe is not None and ahead(state.taken, self._probe[0]) < 0x8000:
+                self.acknowledged_ns, self._probe = now_ns - self._probe[1], None
 
     def _meet_other(self, now_ns: int) -> None:
         """Rest, since the device answers what this host did not say; or leave it to the other."""

@@ -52,7 +52,6 @@ class SerialDevice(Device):
     """
 
     acknowledges = True
-    watchdog_trips: int | None
 
     def __init__(
         self,
@@ -136,6 +135,11 @@ class SerialDevice(Device):
     def watchdog_trips(self) -> int | None:  # type: ignore[override]
         """How often the device's watchdog brought the actuators to rest."""
         return self._talk.trips
+
+    @property
+    def tripped_ms(self) -> float | None:  # type: ignore[override]
+        """How long after the last frame the watchdog last tripped, by the device's clock."""
+        return self._talk.tripped_ms
 
     @property
     def analog(self) -> Mapping[str, int]:
