@@ -1,52 +1,57 @@
-"""``vbraille monitor``: a recording or a session, played back in the live view."""
+"""``vbraille monitor``."""
 
 from __future__ import annotations
 
-import asyncio
-import sys
-import threading
-import webbrowser
+import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli.terminal import say_line
-from vbraille.errors import InputError
-from vbraille.live.monitor import has_desktop
-from vbraille.live.server import LiveServer
-from vbraille.playback import open_recording
-from vbraille.signals import EAR
+import click
+
+from vbraille.cli import options
+from vbraille.cli.printing import say
+from vbraille.errors import InputError, VbrailleError
+from vbraille.signals import Stopped
 
 if TYPE_CHECKING:
-    import argparse
-
     from vbraille.playback.recorded import Playback
 
-# So long a signal may wait to be heard.
-_HEED_S = 0.1
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+_LOOK_S = 0.5
 
 
-def run(arguments: argparse.Namespace) -> int:
-    """Serve a recording until a signal says to stop."""
-    if arguments.file is None:
-        raise InputError(
-            "nothing is to be played; give a recording or a session, as in vbraille monitor "
-            "reading.h5: what is read now is shown by vbraille read FILE --monitor"
-        )
-    source = open_recording(arguments.file)
+@click.command(cls=options.Command, epilog="Example: vbraille monitor reading.h5")
+@click.argument("file", type=click.Path(path_type=Path))
+@options.takes(options.host(group=options.FIRST), options.port(group=options.FIRST))
+def command(file: Path, host: str | None, port: int | None) -> None:
+    """FILE is what vbraille render wrote, or a session. Ctrl-C ends it."""
+    from vbraille.live.server import Server, open_browser
+
+    source = _opened(file)
     for note in source.notes:
-        print(f"note: {note}", file=sys.stderr)
-    with EAR.deferred():
-        asyncio.run(_serve(source, arguments.host, arguments.port))
-    say_line("live view: ended")
-    return 0
+        say(f"note: {note}", aside=True)
+    try:
+        with Server(source, host=host, port=port, steers=False) as server:
+            (address,) = server.admission.addresses
+            say(f"live view: {address}")
+            open_browser(address)
+            while not server.fault:
+                time.sleep(_LOOK_S)
+            raise VbrailleError(f"the live view has ended: {server.fault}")
+    except Stopped:
+        say("live view: ended")
 
 
-async def _serve(source: Playback, host: str | None, port: int | None) -> None:
-    server = LiveServer(source, host=host, port=port, steers=False)
-    async with server:
-        address = server.admission.watching_address
-        say_line(f"live view: {address}")
-        if has_desktop():
-            # Some browsers run in the foreground, and are not waited for.
-            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
-        while not EAR.heard:
-            await asyncio.sleep(_HEED_S)
+def _opened(path: Path) -> Playback:
+    """Open a recording or a session, told by what it is."""
+    try:
+        is_hdf5 = path.is_file() and path.open("rb").read(len(_HDF5)) == _HDF5
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path} cannot be read: {error}") from None
+    if is_hdf5 or not path.exists():
+        from vbraille.playback.rendered import open_recording
+
+        return open_recording(path)
+    from vbraille.sessions.playback import open_session
+
+    return open_session(path)
