@@ -77,7 +77,7 @@ class Device(ABC):
         Whether the device tells which frames it has received.
     acknowledged_ns : int or None
         How long after a frame was written the device told that it had received it, of the last
-        frame of which that is known; None until it is known of a new one.
+        frame of which that is known; None before.
     watchdog_trips : int or None
         How often the device's watchdog brought the actuators to rest; None if it does not tell.
     tripped_ms : float or None

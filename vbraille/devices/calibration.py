@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from vbraille.devices.base import Device
 
 Gain = Annotated[float, msgspec.Meta(ge=-1, le=1)]
+_Row = Annotated[list[Gain], msgspec.Meta(min_length=1)]
 _TURN_S: Final = 0.1  # in which an actuator goes over to another gain
 _MOST_NAME: Final = 150
 
@@ -41,7 +42,9 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     device: str
-    gain: Annotated[list[Annotated[list[Gain], msgspec.Meta(min_length=1)]], msgspec.Meta(min_length=1)]
+    gain: Annotated[
+        list[Annotated[list[Gain], msgspec.Meta(min_length=1)]], msgspec.Meta(min_length=1)
+    ]
 
     def __post_init__(self) -> None:
         if len({len(row) for row in self.gain}) > 1:

@@ -244,7 +244,7 @@ class Turned(Event):
 
 
 KINDS: Final = tuple(Event.__subclasses__())
-_decoder = msgspec.json.Decoder(type=Union[KINDS])
+_decoder = msgspec.json.Decoder(type=Union[KINDS])  # noqa: UP007
 
 
 def to_json(event: Event) -> bytes:
@@ -327,5 +327,7 @@ class Throttle:
                 self._told_ns[key] = now_ns
                 due.append(event)
         if len(self._told_ns) > _MOST:
-            self._told_ns = {key: at for key, at in self._told_ns.items() if now_ns - at < _NS_PER_S}
+            self._told_ns = {
+                key: at for key, at in self._told_ns.items() if now_ns - at < _NS_PER_S
+            }
         return due

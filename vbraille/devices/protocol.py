@@ -300,7 +300,7 @@ class Conversation:
         How long after the last FRAME the watchdog last tripped, by the device's clock.
     acknowledged_ns : int or None
         How long after a FRAME was sent a STATE said that it was taken, of the last one of which
-        that was measured; None while it is measured anew.
+        that was measured; None before.
     """
 
     def __init__(self, now_ns: int, number: int | None = None) -> None:
@@ -361,9 +361,9 @@ class Conversation:
     def due(self, now_ns: int) -> bytes:
         """Give what is to be sent besides FRAMEs; to be called every millisecond or so."""
         silent_ns = now_ns - self._heard_ns
-        if self.stage is Stage.LIVE:
-            if silent_ns > SILENT_NS or now_ns - (self.sent_ns or now_ns) > STALL_NS:
-                self.rest(now_ns)
+        stalled = silent_ns > SILENT_NS or now_ns - (self.sent_ns or now_ns) > STALL_NS
+        if self.stage is Stage.LIVE and stalled:
+            self.rest(now_ns)
         if self.stage is not Stage.GREETING:
             if silent_ns > SILENT_NS and not self._silent:
                 self._silent = True
@@ -398,7 +398,7 @@ class Conversation:
         self._number = (self._number + 1) & 0xFFFF
         self.sent_ns = now_ns
         if self._probe is None:
-            self._probe, self.acknowledged_ns = (self._number, now_ns), None
+            self._probe = self._number, now_ns
 
     def rest(self, now_ns: int) -> None:
         """Have the device rest, and be sent FRAMEs again once it does."""

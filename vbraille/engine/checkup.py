@@ -177,7 +177,8 @@ class Watch:
             return None
         if self._device.placing is not Placing.DONE:
             self._find(
-                "placing", "its read gives a place while it waits to be shown one; it must give None"
+                "placing",
+                "its read gives a place while it waits to be shown one; it must give None",
             )
         if sample.theta_rad and not self._device.display.turns:
             self._find(
@@ -444,6 +445,8 @@ def check(
     DeviceError
         If the device is gone, or gives no place within a minute.
     """
+    warm_up(device.display)
+    device.read()  # what came meanwhile
     with Watch(device, clock) as watch:
         return _Check(device, clock, say, watch).run(rate_s)
 
@@ -457,6 +460,7 @@ class _Check:
         self._device, self._clock, self._say, self._watch = device, clock, say, watch
         self._period_ns = round(NS_PER_S / device.display.rate_hz)
         self._rest = np.zeros(device.display.shape)
+        self._counted = dict(device.counts())  # before
         self._shown = False  # whether its place was chosen here, and says nothing
         self._found = Checkup()
 
@@ -469,7 +473,9 @@ class _Check:
         _hold_rate(device, self._clock, rate_s, found)
         missed = device.counts().get("states missed", 0) - missed
         found.wrong += [*self._rate(missed), *self._time(), *self._place(), *self._round_trips()]
-        found.counts = dict(device.counts())
+        found.counts = {
+            name: count - self._counted.get(name, 0) for name, count in device.counts().items()
+        }
         for name, count in found.counts.items():
             self._say(f"{name}: {count}")
             found.wrong += [f"{name}: {count}"] * (count > _MOST_FAULTS)
@@ -531,7 +537,7 @@ class _Check:
         return []
 
     def _computer_ms(self) -> float:
-        """Greatest lateness of this computer alone, in half a second of ticks without the device."""
+        """Greatest lateness of this computer alone, in half a second of ticks."""
         clock, latest_ns = self._clock, 0
         due_ns = clock.now_ns()
         for tick in range(500):
@@ -612,7 +618,7 @@ class _Check:
         known = device.acknowledged_ns
         for _ in self._frames(0.0, 0.0, _ROUND_TRIPS_S):
             now = device.acknowledged_ns
-            if now is not None and now != known:
+            if now is not None and now != known:  # in ns, no two are alike
                 taken.append(now / 1e6)
             known = now
             if len(taken) >= _ROUND_TRIPS:
@@ -648,7 +654,9 @@ class _Check:
         if not early and after_ms + RAMP_MS <= REST_MS + _REPORT_MS:
             return []
         how = "early" if early else "late"
-        return [f"its watchdog trips after {after_ms:.0f} ms, too {how}; {WATCHDOG_MS} ms are right"]
+        return [
+            f"its watchdog trips after {after_ms:.0f} ms, too {how}; {WATCHDOG_MS} ms are right"
+        ]
 
     def _trip_ms(self) -> float | None:
         """Send nothing, with the actuators off their rest, until the device's watchdog trips."""

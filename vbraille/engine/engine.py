@@ -254,7 +254,7 @@ class Watcher:
         self.newest = ticks[-1]
 
     def _watch_feeling(self, ticks: NDArray[np.void]) -> None:
-        """Tell where what is shown begins or ceases to be felt, and which way the array is turned."""
+        """Tell where what is shown is felt no more, or again, and whether the array is turned."""
         before = ticks[0]["tick"] - 1 if self.newest is None else self.newest["tick"]
         lost = np.diff(ticks["tick"], prepend=before) != 1
         unfelt = (ticks["flags"] & _UNFELT != 0) | lost
@@ -281,3 +281,11 @@ def _why(tick: np.void, lost: bool) -> str:
     flags = int(tick["flags"])
     said = (why for flag, why in _WHY.items() if flags & int(flag))
     return "ticks were lost" if lost else next(said, "the array is at rest")
+
+
+class Upright:
+    """Which way the array is turned, as readings and sessions watched it; `Turned` tells it."""
+
+    def watch(self, _tick: np.void) -> list[str]:
+        """Give nothing."""
+        return []

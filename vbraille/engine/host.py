@@ -17,8 +17,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final, Self
 from urllib.parse import parse_qs
 
-
-from vbraille.devices.events import Back, Stalled, from_json
+from vbraille.devices.events import Back, HandDone, Stalled, from_json
 from vbraille.devices.registry import find_driver
 from vbraille.display import Display
 from vbraille.engine.engine import Watcher
@@ -89,12 +88,21 @@ class Host:
         self,
         spec: str,
         wanted: Display,
+        room: int | None = None,
         *,
         hand: str | None = None,
         seed: int = 1,
-        fits: bool = True,
+        fits: bool | None = None,
         often: bool = True,
+        pass_fds: Sequence[Any] | None = None,
+        spawned: object = None,  # noqa: ARG002
     ) -> None:
+        # Until readings and sessions call this as it is described: `room`, and steering by memory.
+        for each in pass_fds or ():
+            each.bind(self)
+        fits = (room is not None or pass_fds is None) if fits is None else fits
+        self.on_share: Any = None
+        self.hand_done_ns: int | None = None
         self.counts: dict[str, int] = {}
         self.lost = 0
         self.calibration: dict[str, Any] | None = None
@@ -117,6 +125,7 @@ class Host:
         self._before, self._lost_before = Tally(), 0  # of earlier starts
         self._paused = False
         self._switches = 0
+        self._opened = False
         self._started = self._at_driver = self._ended = self._stalled = False
         self._ticked_s = 0.0  # when a poll last found a tick
 
@@ -168,6 +177,9 @@ class Host:
             If the device cannot be opened, or not in time, or is another than at the first start.
         """
         first = self._display
+        if self._opened and self._started and not self._ended:  # `open` has started it
+            self._opened = False
+            return self.display
         if self._process is None or self._started or self._ended:
             self.launch()
         until_s = None
@@ -180,10 +192,7 @@ class Host:
             if until_s is not None and time.monotonic() > until_s:
                 assert self._process is not None
                 self._process.kill()
-                self._fault = DeviceError(
-                    f"the driver {self._driver} did not open its device within {OPEN_S:g} s; see "
-                    f"whether the device is there and switched on, or tell the driver's author"
-                )
+                self._fault = too_slow(self._spec)
                 raise self._end()
         if first not in (None, self._display):
             self.close()
@@ -211,12 +220,6 @@ class Host:
     def _channel(self) -> int:
         assert self._socket is not None
         return self._socket.fileno()
-
-    def reader(self) -> RingReader:
-        """Make another reader of the records, for a live view."""
-        if self._ring is None:
-            raise DeviceError("no device is open; start the host first")
-        return self._ring.another()
 
     @property
     def process_id(self) -> int | None:
@@ -294,6 +297,15 @@ class Host:
         if self.steered:
             self._order = order
             self._tell(hand=to_json(order).decode())
+
+    def open(self) -> Display:
+        """Start the host, as readings do that fit a page to the device."""
+        display = self.start()
+        self._opened = True
+        return display
+
+    def fit(self, *_: object) -> None:
+        """Do nothing: a picture of any size goes to the host."""
 
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""
@@ -434,8 +446,13 @@ class Host:
             self._ring = RingReader(*self._ring_of)
             self._watcher = Watcher(display)
             self._started = True
+            if self.on_share is not None:
+                self.on_share(self.reader())
         if told.get("event"):
-            self._events.append(from_json(json.dumps(told["event"])))
+            event = from_json(json.dumps(told["event"]))
+            if isinstance(event, HandDone):
+                self.hand_done_ns = event.at_ns
+            self._events.append(event)
         if "fault" in told:
             kind = InputError if told["code"] == InputError.exit_code else DeviceError
             self._fault = kind(told["fault"])
@@ -466,6 +483,14 @@ class Host:
             return fault
         how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
         return HostDiedError(f"the process that drives the device has ended ({how})")
+
+
+def too_slow(spec: str) -> DeviceError:
+    """Fault of a driver that has not opened its device in `OPEN_S`."""
+    return DeviceError(
+        f"the driver {spec.partition(':')[0]} did not open its device within {OPEN_S:g} s; see "
+        f"whether the device is there and switched on, or tell the driver's author"
+    )
 
 
 def _write(descriptor: int, content: bytes, at: int) -> None:

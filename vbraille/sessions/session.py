@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from vbraille.display import Display
-    from vbraille.engine.spawning import Spawned
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.running.conventional import OnConventional
     from vbraille.sessions.running.liveview import SessionView
@@ -202,7 +201,7 @@ class Session:
         conditions: Conditions,
         progress: Progress,
         engine: MakeEngine | None = None,
-        begun: tuple[Spawned, Steering] | None = None,
+        begun: Any = None,
     ) -> None:
         self.folder = folder
         self.protocol = protocol
@@ -258,7 +257,7 @@ class Session:
         fields: Mapping[str, str] | None = None,
         conditions: Conditions = USUAL,
         engine: MakeEngine | None = None,
-        begun: tuple[Spawned, Steering] | None = None,
+        begun: Any = None,
     ) -> Session:
         """Plan a new session; nothing is written to the disk before `run`.
 
@@ -308,7 +307,7 @@ class Session:
         folder: str | Path,
         *,
         engine: MakeEngine | None = None,
-        begun: tuple[Spawned, Steering] | None = None,
+        begun: Any = None,
         **changed: Any,
     ) -> Session:
         """Go on with a session that was begun earlier.
@@ -522,7 +521,7 @@ def usual_engine(
     channels: Sequence[Steering | Pointer],
     *,
     fast: bool,
-    spawned: Spawned | None = None,
+    spawned: Any = None,
 ) -> RunEngine:
     """Make the usual engine: a process of its own, or a loop in this one if it runs fast.
 

@@ -53,7 +53,9 @@ def info_of(display: Display, *, buttons: int = 8, knobs: int = 4) -> dict[str, 
     if display.rows * display.columns > 255 or not 1 <= top <= 1023:
         raise ValueError("a device has at most 255 actuators and 1024 levels")
     if rate < 50 or 1000 % rate or rate != display.rate_hz:
-        raise ValueError(f"its rate is {display.rate_hz:g} Hz; it must divide 1000 and be 50 Hz or more")
+        raise ValueError(
+            f"its rate is {display.rate_hz:g} Hz; it must divide 1000 and be 50 Hz or more"
+        )
     axes = 2 if display.height_mm else 1
     return {
         "name": display.name,

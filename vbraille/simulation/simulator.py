@@ -278,9 +278,9 @@ class Simulator:
             self._port.send(message)
         if controller.trips != self._trips and controller.at_rest:
             self._trips = controller.trips
+            after_ms = (now_us - self._last_frame_us) / 1000
             self._say(
-                f"watchdog: trip {self._trips}, at rest {(now_us - self._last_frame_us) / 1000:.1f} "
-                f"ms after the last frame"
+                f"watchdog: trip {self._trips}, at rest {after_ms:.1f} ms after the last frame"
             )
         if self._faults.stall_s and now_us >= self._turn_us:
             self._stalled = not self._stalled
@@ -332,5 +332,3 @@ class Simulator:
             self._out.clear()
             self._say("unplugged")
             self._plug_us = now_us + round(UNPLUGGED_S * 1e6)
-
-

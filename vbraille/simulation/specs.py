@@ -8,6 +8,7 @@ from urllib.parse import urlencode
 from vbraille.errors import InputError
 from vbraille.simulation.hand import DEVICE, FLUENT, HumanHand, Still, Sweep
 from vbraille.simulation.motion import SPEED_BOUNDS_MM_S
+from vbraille.simulation.steering import Steering
 from vbraille.typed import typed
 from vbraille.wording import setting
 
@@ -26,7 +27,8 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
     Parameters
     ----------
     spec
-        ``sweep:SPEED`` in mm/s, ``slow`` (or ``device``), ``fluent``, ``recorded:FILE``, ``wide``, ``wide:SPACING``, ``spot:X,Y`` in mm, or ``still``.
+        ``sweep:SPEED`` in mm/s, ``slow`` (or ``device``), ``fluent``, ``recorded:FILE``,
+        ``wide``, ``wide:SPACING``, ``spot:X,Y`` in mm, or ``still``.
     seed
         Seed of a hand that is drawn at random.
     pointed
@@ -98,7 +100,12 @@ def refuse_hand(device: str, **given: object) -> None:
             )
 
 
-def device_spec(device: str, hand: str | None, seed: int) -> str:
+def steering_of(device: str) -> Steering | None:
+    """Steering for the hand of a simulated device; None for a device that a person moves."""
+    return Steering() if has_hand(device) else None
+
+
+def device_spec(device: str, hand: str | None, seed: int, *_: object) -> str:
     """Spec of a device; that of the simulated one has its hand added."""
     if not is_simulated(device) or hand is None:
         return device

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from vbraille.caching import compiling_note
 from vbraille.cli.old.terminal import say_line
 from vbraille.devices.registry import opened_device
-from vbraille.engine.host import OPEN_S, OPENING, too_slow
+from vbraille.engine.host import OPEN_S, too_slow
 from vbraille.reading.device import OpenDevice
 from vbraille.reading.outputs import ConsoleOutput, Cues, Echo, Outputs, SpeechOutput, choose_cues
 from vbraille.signals import EAR
@@ -38,7 +38,7 @@ def opened_in_time(spec: str, wanted: Display | None) -> Iterator[Device]:
     """
 
     def late(*_: object) -> None:
-        raise too_slow(spec, OPENING)
+        raise too_slow(spec)
 
     before = signal.signal(signal.SIGALRM, late)
     try:
