@@ -43,8 +43,9 @@ def way(frame: Any) -> Iterator[tuple[str, str]]:
 
 def profile(report: int) -> None:
     """Read a text as `vbraille read` does; after the key "n" write what was on its way."""
-    from vbraille.cli.app import main
     from vbraille.engine.mailbox import Mailbox
+
+    from vbraille.cli.app import main
     from vbraille.reading.keyboard import Keyboard
 
     pressed, post = Keyboard.pressed, Mailbox.post

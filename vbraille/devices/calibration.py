@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import tomllib
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final, Protocol
 from urllib.parse import quote
 
 import msgspec
@@ -22,7 +22,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.devices.base import Device
+    from vbraille.display import Display
+
+    class _Device(Protocol):
+        """What is asked of a device here."""
+
+        display: Display
+        serial_number: str
+
 
 Gain = Annotated[float, msgspec.Meta(ge=-1, le=1)]
 _Row = Annotated[list[Gain], msgspec.Meta(min_length=1)]
@@ -70,13 +77,13 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         )
 
 
-def even_gains(device: Device) -> Calibration:
+def even_gains(device: _Device) -> Calibration:
     """Calibration in which every actuator is well."""
     rows, columns = device.display.shape
     return Calibration(name_of(device), [[1.0] * columns] * rows)
 
 
-def name_of(device: Device) -> str:
+def name_of(device: _Device) -> str:
     """Name by which a calibration knows a device: its own, and its serial number if it has one."""
     return f"{device.display.name} {device.serial_number}".strip()
 
@@ -87,7 +94,7 @@ def path_of(settings: Path, device: str) -> Path:
     return settings.with_name(f"{settings.stem}-calibration-{kept}.toml")
 
 
-def load(settings: Path, device: Device) -> Calibration | None:
+def load(settings: Path, device: _Device) -> Calibration | None:
     """Read what is kept of a device; None if nothing is.
 
     Raises
