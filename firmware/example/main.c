@@ -17,6 +17,8 @@
 #ifndef VB_ROWS
 #define VB_ROWS 6
 #define VB_COLUMNS 10
+#endif
+#ifndef VB_TOP
 #define VB_TOP 255
 #define VB_FAST 166
 #endif

@@ -11,7 +11,13 @@ from tests.devices.firmware import FIRMWARE, Header
 from vbraille.devices.protocol import line_of
 from vbraille.simulation.controller import Controller
 
-ABOUT = {"name": "H", "pitch_mm": [1, 1], "rest": "left", "counts_per_mm": [200], "travel_mm": [100]}
+ABOUT = {
+    "name": "H",
+    "pitch_mm": [1, 1],
+    "rest": "left",
+    "counts_per_mm": [200],
+    "travel_mm": [100],
+}
 
 
 def frame(number, levels=b""):

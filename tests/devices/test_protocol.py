@@ -62,7 +62,9 @@ class Bench:
 def examples():
     """The bodies and lines of the page's examples."""
     text = PAGE.read_text().partition("## Bytes")[2]
-    found = re.findall(r"\b([0-9A-F]{2}(?: [0-9A-F]{2})*)(?:\s{2,}|\n\s*)([0-9A-F]{2}(?: [0-9A-F]{2})*)", text)
+    found = re.findall(
+        r"\b([0-9A-F]{2}(?: [0-9A-F]{2})*)(?:\s{2,}|\n\s*)([0-9A-F]{2}(?: [0-9A-F]{2})*)", text
+    )
     return [(bytes.fromhex(body), bytes.fromhex(line)) for body, line in found]
 
 
@@ -276,7 +278,9 @@ def test_nothing_grows_in_a_week():
             bench.talk.events.clear()
     assert bench.run(200).talk.live
     state = vars(bench.talk)
-    assert all(len(value) < 100 for value in state.values() if isinstance(value, (list, dict, bytes)))
+    assert all(
+        len(value) < 100 for value in state.values() if isinstance(value, (list, dict, bytes))
+    )
 
 
 def test_levels_are_packed_as_the_page_says():
@@ -289,4 +293,3 @@ def test_levels_are_packed_as_the_page_says():
     assert out.tobytes() == bytes.fromhex("00FC0F6000")
     pack(np.array([[0.0, 128 / 255], [1.0, 1 / 255]]), 255, out)
     assert out[:4].tobytes() == bytes.fromhex("0080FF01")
-

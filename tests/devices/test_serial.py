@@ -46,8 +46,6 @@ def test_a_controller_is_found_and_read_and_takes_frames():
         assert all(after.time_ns > before.time_ns for before, after in zip(poses, poses[1:]))
 
 
-
-
 def test_a_board_that_starts_when_its_port_is_opened_is_waited_for():
     with simulated_controller(VBD, faults=Faults(boot_s=1.5)) as spec:
         with open_device(spec, None) as device:
