@@ -82,6 +82,7 @@ int main(int count, char **words) {
     vb_tick((uint32_t)now_us(), &seen);
 #ifdef TRACE
     printf("%llu %u %u %u\n", (unsigned long long)now_us(), top_now, vb.taken, vb.armed);
+    fflush(stdout);
 #endif
   }
 }

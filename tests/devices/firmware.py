@@ -28,8 +28,9 @@ int tick(uint32_t us, int32_t x, int has_room, uint8_t *out, uint16_t *levels) {
   return sent_bytes;
 }
 void say(int code) { vb_say((uint8_t)code, "too hot"); }
-/* Ticks with bytes between them; gives the largest step up or down, and the largest while it rests. */
-void soak(const uint8_t *bytes, const int32_t *counts, const uint32_t *us, int ticks, int32_t *most) {
+/* Ticks with bytes between them; gives the largest step, and the largest while it rests. */
+void soak(const uint8_t *bytes, const int32_t *counts, const uint32_t *us, int ticks,
+          int32_t *most) {
   uint8_t out[256]; uint16_t levels[VB_N], before[VB_N]; memset(before, 0, sizeof before);
   for (int n = 0; n < ticks; n++) {
     hear(bytes, counts[n]); bytes += counts[n];

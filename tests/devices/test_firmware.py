@@ -120,8 +120,8 @@ def test_it_rests_by_itself_within_71_ms(tmp_path):
 
 @pytest.mark.parametrize("macros", ["VB_TOP=1024", "VB_FAST=12", "VB_RATE=300", "VB_ROWS=0"])
 def test_macros_that_cannot_be_are_refused(tmp_path, macros):
+    name, value = macros.split("=")
     with pytest.raises(subprocess.CalledProcessError):
-        name, value = macros.split("=")
         Header(tmp_path, **{name: int(value)})
 
 
@@ -129,9 +129,10 @@ def test_it_is_cpp_as_well_and_no_longer_than_it_should_be(tmp_path):
     source = tmp_path / "device.cpp"
     example = (FIRMWARE / "example" / "example.ino").read_text()
     arduino = (
-        "#include <stdint.h>\nstruct Port { int availableForWrite(); int write(const uint8_t *, int);"
-        " void begin(long); int available(); int read(); } Serial;\nenum { CHANGE, INPUT_PULLUP,"
-        " OUTPUT };\nvoid analogWrite(int, int); int digitalRead(int); void pinMode(int, int);"
+        "#include <stdint.h>\nstruct Port { int availableForWrite(); void begin(long);"
+        "int write(const uint8_t *, int); int available(); int read(); } Serial;\n"
+        "enum { CHANGE, INPUT_PULLUP, OUTPUT };\n"
+        "void analogWrite(int, int); int digitalRead(int); void pinMode(int, int);"
         "int digitalPinToInterrupt(int); void attachInterrupt(int, void (*)(), int);"
         "uint32_t micros(); void interrupts(); void noInterrupts();\n"
     )

@@ -3,6 +3,7 @@
 import json
 import random
 import re
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -155,10 +156,14 @@ def test_another_device_in_its_place_is_told_nothing_but_hello():
 def test_two_hosts_are_told_of_each_other_and_nothing_jumps():
     bench = Bench().run(100)
     other = Conversation(0, 7)
-    with pytest.raises(DeviceError, match="another program"):
+
+    def run():
         for _ in range(10_000):
             bench.device.receive(other.due(bench.ms * MS))
             bench.run(1)
+
+    with pytest.raises(DeviceError, match="another program"):
+        run()
     assert max(bench.steps) <= INFO["fast"]
 
 
@@ -227,17 +232,15 @@ def test_info_that_cannot_be_is_refused(key, value):
         read_info(json.dumps(INFO | {key: value}).encode())
 
 
-def test_info_of_random_bytes_is_refused_by_one_sentence():
+def test_spoilt_info_is_refused_or_read_and_nothing_else():
     chance = random.Random(2)
     text = json.dumps(INFO).encode()
     for _ in range(300):
         spoilt = bytearray(text)
         for _ in range(chance.randrange(1, 4)):
             spoilt[chance.randrange(len(spoilt))] = chance.randrange(256)
-        try:
+        with suppress(ValueError):  # and nothing else
             read_info(bytes(spoilt))
-        except ValueError as error:
-            assert "\n" not in str(error)
 
 
 def test_info_in_pieces_of_several_answers_is_put_together():
@@ -270,12 +273,10 @@ def test_rubbish_is_counted_and_changes_nothing():
 def test_nothing_grows_in_a_week():
     bench = Bench()
     bench.run(50)
-    for day in range(7):  # the clock of µs wraps 141 times, numbers thousands of times
-        for hour in range(24):
-            bench.ms += 3_600_000 - 30
-            bench.talk._heard_ns = bench.ms * MS
-            bench.run(30)
-            bench.talk.events.clear()
+    for _ in range(7 * 24):  # the clock of µs wraps 141 times
+        bench.ms += 3_600_000
+        bench.run(600)
+        bench.talk.events.clear()
     assert bench.run(200).talk.live
     state = vars(bench.talk)
     assert all(

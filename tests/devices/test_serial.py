@@ -4,6 +4,7 @@ import os
 import socket
 import threading
 import time
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -43,7 +44,7 @@ def test_a_controller_is_found_and_read_and_takes_frames():
         assert device.taking
         assert device.acknowledged_ns is not None
         assert poses[0].x_mm == pytest.approx(-VBD.span_mm / 2)
-        assert all(after.time_ns > before.time_ns for before, after in zip(poses, poses[1:]))
+        assert all(after.time_ns > before.time_ns for before, after in pairwise(poses))
 
 
 def test_a_board_that_starts_when_its_port_is_opened_is_waited_for():
@@ -149,7 +150,7 @@ def test_a_port_that_may_not_be_opened_names_its_own_group(monkeypatch):
 
     monkeypatch.setattr("serial.Serial", refused)
     monkeypatch.setattr("grp.getgrgid", lambda _: grp.struct_group(("uucp", "x", 14, [])))
-    with pytest.raises(DeviceError, match="group uucp .*usermod -aG uucp"):
+    with pytest.raises(DeviceError, match=r"group uucp .*usermod -aG uucp"):
         Line(parse_address(path))
     os.close(master)
     os.close(slave)
@@ -159,7 +160,8 @@ def test_a_port_that_may_not_be_opened_names_its_own_group(monkeypatch):
     "address",
     [
         "", "/dev/no-such-port", "/tmp", "socket://", "socket://a", "http://a:1", "/dev/null?baud=x",
-        "/dev/null?baud=1", "/dev/null?boot=-1", "/dev/null?bauds=9600", "socket://nowhere.invalid:1",
+        "/dev/null?baud=1",
+        "/dev/null?boot=-1", "/dev/null?bauds=9600", "socket://no.invalid:1",
     ],
 )  # fmt: skip
 def test_an_address_that_cannot_be_is_refused_by_one_sentence(address):
@@ -168,10 +170,13 @@ def test_an_address_that_cannot_be_is_refused_by_one_sentence(address):
     assert "\n" not in str(caught.value)
 
 
-def test_a_port_has_one_user(tmp_path):
-    with simulated_controller(VBD) as spec, open_device(spec, None):
-        with pytest.raises(DeviceError, match="busy"):
-            open_device(spec, None)
+def test_a_port_has_one_user():
+    with (
+        simulated_controller(VBD) as spec,
+        open_device(spec, None),
+        pytest.raises(DeviceError, match="busy"),
+    ):
+        open_device(spec, None)
 
 
 def test_a_message_that_the_line_cuts_is_finished_first():
@@ -188,6 +193,6 @@ def test_a_message_that_the_line_cuts_is_finished_first():
     got = b""
     while chunk := link.recv(4096):
         got += chunk
-    assert got == b"".join(message for message, sent in zip(messages, taken) if sent)
+    assert got == b"".join(message for message, sent in zip(messages, taken, strict=True) if sent)
     for each in (here, there, listener, link):
         each.close()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.engine.pretend import pretend, traced
-from vbraille.devices.events import AtStart, HandDone, LineRead, Unfelt
+from vbraille.devices.events import AtStart, HandDone, LineRead
 from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.record import Flag
 from vbraille.errors import InputError
@@ -123,8 +123,7 @@ def test_a_device_of_c_is_read_and_rests_within_71_ms_of_any_end(tmp_path, how):
         masks = np.full(40, 63, np.uint8)
         picture, _ = line_for(display, masks)
         host.show(picture, 1)
-        ticks, events = polled(host, 1.5)
-        assert not has(Unfelt)(events)
+        ticks, _ = polled(host, 1.5)
         assert np.ptp(ticks["x_mm"][1:]) > 10
         at = len(traced(trace))
         os.kill(host.process_id, how)
@@ -140,7 +139,7 @@ def test_a_device_of_c_is_read_and_rests_within_71_ms_of_any_end(tmp_path, how):
 
 
 def test_a_host_that_is_stopped_jumps_nowhere(tmp_path):
-    with pretend(tmp_path) as (spec, trace), Host(spec, MODEL.display, fits=False) as host:
+    with pretend(tmp_path) as (spec, _), Host(spec, MODEL.display, fits=False) as host:
         picture, _ = line_for(host.display, np.full(40, 63, np.uint8))
         host.show(picture, 1)
         polled(host, 1)
