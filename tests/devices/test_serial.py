@@ -159,7 +159,8 @@ def test_a_port_that_may_not_be_opened_names_its_own_group(monkeypatch):
 @pytest.mark.parametrize(
     "address",
     [
-        "", "/dev/no-such-port", "/tmp", "socket://", "socket://a", "http://a:1", "/dev/null?baud=x",
+        "", "/dev/no-such-port", "/tmp", "socket://", "socket://a", "http://a:1",
+        "/dev/null?baud=x",
         "/dev/null?baud=1",
         "/dev/null?boot=-1", "/dev/null?bauds=9600", "socket://no.invalid:1",
     ],
