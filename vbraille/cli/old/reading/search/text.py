@@ -15,7 +15,7 @@ from vbraille.cli.old.reading.search.structure import extend
 
 Document = None
 TextDecoder = None
-TYPED = {}
+TYPED = {0x2070: "0"}
 to_codes = None
 to_text = None
 
