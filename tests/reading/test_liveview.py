@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.render.braille.reference import deflections
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Silent
 from vbraille.engine.clock import ManualClock
@@ -16,7 +17,6 @@ from vbraille.live.messages import PagePress
 from vbraille.reading.device import OpenDevice
 from vbraille.reading.liveview import MOST_SAID, LastSentences, ReadState
 from vbraille.render import STRESS2, VBD
-from vbraille.render.braille.reference import deflections
 from vbraille.simulation.steering import BeAt, Pointer
 from vbraille.testing import simulated_device
 from vbraille.translate import Book, BrailleTable, Document
