@@ -11,6 +11,7 @@ PARTS = (
     "opening",
     "lines",
     "engine",
+    "tick",
     "sessions",
     "adaptive",
     "power",
