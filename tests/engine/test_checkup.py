@@ -60,7 +60,7 @@ class Driver(Device):
     def read(self):
         return Pose(self.clock.now_ns(), 0.0)
 
-    def _send(self, frame):
+    def _send(self, _frame):
         return None
 
     def _release(self):
@@ -81,7 +81,7 @@ def test_a_driver_that_leaves_a_message_cut_is_told_of():
     class Cutting(Driver):
         sent = 0
 
-        def _send(self, frame):
+        def _send(self, _frame):
             self.sent += 1
             here.send(bytes([self.sent % 256]) * 20)
             there.recv(4096)

@@ -53,7 +53,7 @@ def test_a_gap_under_a_moving_hand_is_faded_in(gap_ms):
 
 
 def test_a_frame_that_was_not_sent_is_not_taken_for_one_that_was():
-    engine, clock, _ = moving()
+    engine, _, _ = moving()
     stood = engine.output.copy()
     engine.device._send = lambda _: False
     for _ in range(20):
@@ -79,7 +79,7 @@ class Piped(Device):
             return None
         return Pose(self.clock.now_ns(), 0.0)
 
-    def _send(self, frame):
+    def _send(self, _frame):
         return None
 
     def _release(self):
