@@ -1,171 +1,181 @@
-"""The plan of a session: all that will be shown, in order, fixed before the first trial."""
+"""The plan of a session: the same for the same protocol, participant and seed."""
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, fields
-from typing import Any
+import re
+from functools import partial
+from itertools import cycle
+from random import Random
 
-import msgspec
-from msgspec import Struct, field
+from msgspec import Struct, structs
 
-from vbraille.braille.geometry import Geometry
-from vbraille.braille.spelling import spell, to_braille
+from vbraille.braille.cells import UNICODE_BLANK
 from vbraille.errors import InputError
-from vbraille.render import Tuning
-from vbraille.sessions.planning.analysis import PlannedAnalysis
-from vbraille.sessions.planning.stimuli import (
-    Stimuli,
-    Stimulus,
-    Trial,
-    check_participant,
-    check_seed,
-)
-from vbraille.sessions.planning.style import mapping_named
+from vbraille.sessions.planning.design import Catch, practice_items
+from vbraille.sessions.planning.order import Limit, balanced_orders, ordered
+from vbraille.sessions.planning.protocol import Condition, Protocol
+from vbraille.sessions.planning.trial import Trial
 
-VERSION = 2  # of the making of plans; what a seed makes may change with a higher one alone
-_OF_STIMULUS = {"cells", "value_mm", *(f.name for f in (*fields(Tuning), *fields(Geometry)))}
-# Left out where the display's mapping is used, where a protocol gives cells, on the device, and
-# where no picture is shown.
-_OPTIONAL = ("mapping", "text", "table", "on", "scene", "picture", "answer")
+_Shown = tuple[str, Condition]  # an item, and the condition in which it is shown
 
 
-class _Version(msgspec.Struct):
-    """The one key that plans of every version have."""
-
-    format: int
-
-
-def stimulus_to_json(stimulus: Stimulus) -> dict[str, Any]:
-    """Describe a stimulus completely by strings, numbers and None, as in plan.json."""
-    written = {
-        "cells": to_braille(stimulus.masks),
-        "value_mm": stimulus.value,
-        **asdict(stimulus.tuning),
-        **asdict(stimulus.geometry),
-    }
-    given = {name: getattr(stimulus, name) for name in _OPTIONAL}
-    return written | {name: value for name, value in given.items() if value is not None}
-
-
-def stimulus_from_json(written: dict[str, Any]) -> Stimulus:
-    """Make a stimulus from the description that `stimulus_to_json` gives.
-
-    Raises
-    ------
-    ValueError
-        If a value is missing, has the wrong type or is out of range.
-    """
-    if set(written) - set(_OPTIONAL) != _OF_STIMULUS:
-        raise ValueError(f"a stimulus must have {', '.join(sorted(_OF_STIMULUS))}, nothing else")
-    optional = {name: msgspec.convert(written.get(name), str | None) for name in _OPTIONAL}
-    mapping = optional["mapping"]
-    if mapping is not None:
-        mapping_named(mapping)
-    return Stimulus(
-        spell(msgspec.convert(written["cells"], str), {}),
-        msgspec.convert(written, Tuning),
-        msgspec.convert(written, Geometry),
-        msgspec.convert(written["value_mm"], float | None),
-        **optional,
-    )
-
-
-def _trial(trial: Trial) -> str:
-    stimuli = list(map(stimulus_to_json, trial.stimuli))
-    written = msgspec.structs.asdict(trial) | {"stimuli": stimuli}
-    if not trial.catch:
-        del written["catch"]
-    return _json(written)
-
-
-def _read_stimuli(_kind: type, written: list[dict[str, Any]]) -> Stimuli:
-    return Stimuli(map(stimulus_from_json, msgspec.convert(written, list[dict[str, Any]])))
-
-
-def _json(value: object) -> str:
-    # The standard library writes 1e-05, which the sums of plans are of; msgspec writes 0.00001.
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
-
-
-class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """All trials of a session, in order. The plan's file has the fields in the order given here.
+class Plan(Struct, frozen=True):
+    """All trials of a session.
 
     Parameters
     ----------
-    version
-        Version of the rules that the plan was made by.
-    protocol
-        Name of the protocol.
-    participant
-        Pseudonym of the participant.
-    seed
-        Number that all random choices followed from.
+    participant, seed
+        Pseudonym, and the number that all chance follows from.
     order
-        Number of the balanced order of conditions, or the row of the table of orders, from 1; 0 if
-        there is only one order.
+        Which of the balanced orders of conditions it has, from 1; 0 if there are none.
     group
-        Name of the participant's group; empty if there are no groups.
-    analysis
-        Analysis that answers what the session is for.
-    practice, trials
-        Practice trials and trials of the test, each in the order in which they are shown.
-
-    Raises
-    ------
-    ValueError
-        If the participant, the seed or the order cannot be used.
+        Group of the participant; empty if there are none.
+    trials
+        Practice, and then the trials of the blocks.
     """
 
-    version: int = field(name="format", default=VERSION)
-    protocol: str
     participant: str
     seed: int
     order: int
-    group: str = ""
-    analysis: PlannedAnalysis
-    practice: tuple[Trial, ...]
+    group: str
     trials: tuple[Trial, ...]
 
-    def __post_init__(self) -> None:
-        check_participant(self.participant)
-        check_seed(self.seed)
-        if self.order < 0:
-            raise ValueError(f"order is {self.order}; it must be 0 or more")
 
-    def stimuli(self) -> list[Stimulus]:
-        """All stimuli of all trials, practice included."""
-        return [stimulus for trial in (*self.practice, *self.trials) for stimulus in trial.stimuli]
+def make_plan(protocol: Protocol, participant: str, seed: int, order: int | None = None) -> Plan:
+    """Plan a session.
 
-    def to_json(self) -> str:
-        """Plan as JSON with one trial on each line; the bytes are the same on every machine."""
-        head = {n: getattr(self, n) for n in ("protocol", "participant", "seed", "order")}
-        head |= {"group": self.group} if self.group else {}
-        head |= {"analysis": msgspec.structs.asdict(self.analysis)}
-        lines = [f"{_json(n)}: {_json(v)}" for n, v in {"format": self.version, **head}.items()]
-        for name in ("practice", "trials"):
-            written = ",\n".join(map(_trial, getattr(self, name)))
-            lines.append(f"{_json(name)}: " + (f"[\n{written}\n]" if written else "[]"))
-        return "{\n" + ",\n".join(lines) + "\n}\n"
+    Parameters
+    ----------
+    order
+        Which of the balanced orders it has, from 1; None goes by the number in the pseudonym.
 
-    @classmethod
-    def from_json(cls, text: str) -> Plan:
-        """Read a plan that `to_json` wrote.
+    Raises
+    ------
+    InputError
+        If no order keeps the rules, or nothing says which balanced order is wanted.
+    """
+    drawn = f"{protocol.name} {participant} {seed}"
+    group = _choose_group(protocol, participant)
+    protocol = protocol.of_group(group)
+    order = _choose_order(protocol, participant, order)
+    random = Random(drawn)
+    try:
+        blocks = ordered(_deal(protocol, order, random), *_rules(protocol), random)
+    except ValueError as error:
+        raise InputError(f"{protocol.name}: {error}") from None
+    trials = [
+        _trial(protocol, item, condition, block, random)
+        for block, shown in enumerate(blocks, 1)
+        for item, condition in shown
+    ]
+    if protocol.design.catch is not None:
+        trials = _with_catch(trials, protocol.design.catch, random)
+    # Practice has chance of its own, so that another number of its trials changes nothing else.
+    practice = _practice(protocol, Random(f"{drawn} practice"))
+    return Plan(participant, seed, order, group, tuple(_numbered(practice) + _numbered(trials)))
 
-        Raises
-        ------
-        InputError
-            If the text is damaged, or the plan is of another version.
-        """
-        try:
-            version = msgspec.json.decode(text, type=_Version).format
-            if version == VERSION:
-                return msgspec.json.decode(text, type=cls, dec_hook=_read_stimuli)
-        except RecursionError:
-            raise InputError("the plan is damaged: its brackets nest too deep") from None
-        except ValueError as error:
-            raise InputError(f"the plan is damaged: {error}; put it back as it was") from None
-        raise InputError(
-            f"the plan is of version {version}, and this vbraille knows version {VERSION}; use the "
-            f"vbraille that made it"
+
+def _choose_group(protocol: Protocol, participant: str) -> str:
+    """Return the group that the participant's number gives; empty if there are none."""
+    groups = protocol.groups
+    return groups[(_number(participant) - 1) % len(groups)] if groups else ""
+
+
+def _number(participant: str) -> int:
+    """Return the last number in a pseudonym, which chooses the group and the order."""
+    numbers = re.findall(r"\d+", participant)
+    if not numbers:
+        raise InputError(f"{participant} has no number to choose the order by; give --order")
+    return int(numbers[-1])
+
+
+def _choose_order(protocol: Protocol, participant: str, order: int | None) -> int:
+    """Return the number of the balanced order, from 1; 0 if there are none."""
+    if protocol.design.order != "balanced":
+        return 0
+    if order is None:  # groups take turns, so that each of them has all orders
+        order = (_number(participant) - 1) // max(1, len(protocol.groups)) + 1
+    return (order - 1) % len(balanced_orders(len(protocol.conditions))) + 1
+
+
+def _deal(protocol: Protocol, order: int, random: Random) -> list[list[_Shown]]:
+    """Return the items and conditions of each block, not in order yet."""
+    design, conditions = protocol.design, list(protocol.conditions)
+    items = design.items(protocol.masks) * design.repeats
+    if design.blocks == "conditions":
+        if order:
+            conditions = [conditions[n] for n in balanced_orders(len(conditions))[order - 1]]
+        elif design.order == "shuffled":
+            random.shuffle(conditions)
+        return [[(item, condition) for item in items] for condition in conditions]
+    blocks: list[list[_Shown]] = [[] for _ in range(design.blocks)]
+    # Dealt like cards, so that two blocks differ by one trial at most, of a condition and in all.
+    into = cycle(blocks)
+    for condition in conditions:
+        for item in random.sample(items, len(items)):
+            next(into).append((item, condition))
+    return blocks
+
+
+def _rules(protocol: Protocol) -> tuple[list[Limit], object]:
+    """Return the limits of the rules, and the level that quarters share evenly, if any."""
+    rules, limits = protocol.rules, []
+    if rules.never_twice_running:
+        limits.append(Limit(lambda shown: shown[0], 1))
+    for name, most in rules.at_most_running.items():
+        limits.append(Limit(partial(_level, protocol, name), most))
+    return limits, (lambda shown: shown[1].name) if rules.balanced_quarters else None
+
+
+def _level(protocol: Protocol, name: str, shown: _Shown) -> str:
+    """Return the condition of a trial, or its level of a factor."""
+    condition = shown[1].name
+    return condition if name == "condition" else protocol.levels(condition, "")[name]
+
+
+def _practice(protocol: Protocol, random: Random) -> list[Trial]:
+    """Return the trials of practice; all that there may be, if a criterion ends it."""
+    practice = protocol.practice
+    count = practice.until.most if practice.until else practice.trials
+    items = practice_items(practice.strings, protocol.design, protocol.masks)
+    shown = list(zip((next(items) for _ in range(count)), cycle(protocol.conditions)))
+    limits, _ = _rules(protocol)
+    (shown,) = ordered([shown], limits, None, random)
+    return [_trial(protocol, item, condition, 0, random) for item, condition in shown]
+
+
+def _trial(
+    protocol: Protocol, item: str, condition: Condition, block: int, random: Random
+) -> Trial:
+    """Return a trial, which gets its number later."""
+    look = condition.over(protocol.display)
+    stimuli = protocol.design.stimuli(item, look, protocol.masks, random)
+    gap_s = protocol.trial.gap_s
+    if isinstance(gap_s, tuple):
+        gap_s = round(random.uniform(*gap_s), 3)
+    return Trial(block == 0, 0, block, condition.name, item, stimuli, gap_s)
+
+
+def _with_catch(trials: list[Trial], catch: Catch, random: Random) -> list[Trial]:
+    """Put a catch trial after a random trial of each stretch; so none is the first."""
+    found: list[Trial] = []
+    stretch = catch.every - 1
+    for first in range(0, len(trials), stretch):
+        part = trials[first : first + stretch]
+        after = random.randrange(len(part)) + 1
+        found += [*part[:after], _caught(part[after - 1], catch), *part[after:]]
+    return found
+
+
+def _caught(trial: Trial, catch: Catch) -> Trial:
+    """Return the catch trial that comes after a trial."""
+    stimuli = trial.stimuli
+    if catch.show == "blank":
+        stimuli = tuple(
+            structs.replace(each, cells=chr(UNICODE_BLANK) * len(each.cells)) for each in stimuli
         )
+    return structs.replace(trial, stimuli=stimuli, catch=catch.show)
+
+
+def _numbered(trials: list[Trial]) -> list[Trial]:
+    return [structs.replace(trial, number=number) for number, trial in enumerate(trials, 1)]
