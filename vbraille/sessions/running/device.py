@@ -13,8 +13,8 @@ from vbraille.engine.batch import BatchEngine
 from vbraille.engine.engine import HOME_MM, EndOfLine
 from vbraille.engine.host import Host
 from vbraille.engine.record import Flag
-from vbraille.sessions.planning.shown import Shown
 from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.planning.shown import Shown
 from vbraille.sessions.simulated.skin import FeltFrames
 from vbraille.simulation.specs import device_spec, steering_of
 from vbraille.simulation.steering import ReadLine

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from typing import Any
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.shown import make_shown
 from vbraille.sessions.planning.questionnaire import Item
 from vbraille.sessions.planning.questions import Spelling
+from vbraille.sessions.planning.shown import make_shown
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Record
