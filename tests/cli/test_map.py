@@ -412,7 +412,7 @@ def test_rulers_that_nobody_could_read_are_refused(scene, call, tmp_path):
 MEASURED = """
 import sys
 from pathlib import Path
-from vbraille.cli.main import main
+from vbraille.cli.app import main
 assert main(sys.argv[1:]) == 0
 print(Path("/proc/self/status").read_text().partition("VmHWM:")[2].split()[0])
 """

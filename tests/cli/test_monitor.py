@@ -89,7 +89,7 @@ def test_what_cannot_be_played_is_said_in_a_sentence(call, tmp_path):
 
 def test_help_loads_none_of_it():
     code = (
-        "import sys; from vbraille.cli.main import main; main(['monitor', '--help']); "
+        "import sys; from vbraille.cli.app import main; main(['monitor', '--help']); "
         "print(*sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -140,7 +140,7 @@ def test_options_that_cannot_be_are_refused_before_anything_is_opened(
 
 
 def test_a_reading_without_a_live_view_loads_nothing_of_it():
-    code = "import sys, vbraille.cli.commands.read; print(*sys.modules)"
+    code = "import sys, vbraille.cli.old.commands.read; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True).stdout
     names = set(loaded.decode().split())
     assert "vbraille.reading.reader" in names

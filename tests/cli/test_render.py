@@ -17,7 +17,7 @@ from tests.shown import rendered, twin
 from tests.tiers import by_tier, heavy
 from vbraille import __version__
 from vbraille.braille.geometry import PRESETS, Geometry
-from vbraille.cli.terminal import WorkProgress
+from vbraille.cli.old.terminal import WorkProgress
 from vbraille.layout.pages import Layout
 from vbraille.recording import print_in
 from vbraille.render import MAPPINGS, MODELS, Tuning, single_row

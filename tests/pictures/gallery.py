@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from vbraille.cli.main import main
+from vbraille.cli.app import main
 
 ROOT = Path(__file__).parents[2]
 SCENES = ROOT / "texts/scenes/gallery"

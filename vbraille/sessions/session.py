@@ -1,121 +1,505 @@
-"""A session, from the plan to the table: `create`, `run`, `resume`, `check`, `export`."""
+"""A session from its plan to its table: it is created, run, resumed, and read as rows."""
 
 from __future__ import annotations
 
-from contextlib import closing
+import re
+import secrets
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack, closing
+from dataclasses import asdict
+from datetime import UTC, datetime
+from importlib.metadata import version
+from itertools import count
 from pathlib import Path
-from typing import Any
+from platform import python_version
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self
 
-from msgspec import Struct, structs
+from msgspec import Meta, Struct, ValidationError, convert, structs
 
-from vbraille.errors import InputError
+from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.planning.plan import Plan, make_plan
 from vbraille.sessions.planning.protocol import Protocol, load_protocol, parse_protocol
 from vbraille.sessions.record import record
 from vbraille.sessions.record.progress import Progress
-from vbraille.sessions.record.record import Record
-from vbraille.sessions.running.answers import answers_of
-from vbraille.sessions.running.device import SessionDevice
-from vbraille.sessions.running.paper import Paper
-from vbraille.sessions.running.runner import Runner, Say
+from vbraille.sessions.record.record import Content, Record
+from vbraille.simulation.specs import is_simulated
+
+if TYPE_CHECKING:
+    from vbraille.sessions.running.answers import Answers
+    from vbraille.sessions.running.device import MakeEngine, SessionDevice
+    from vbraille.sessions.running.liveview import SessionView
+    from vbraille.sessions.running.markers import Markers
+    from vbraille.sessions.running.paper import Paper, Pins
+
+Say = Callable[[str], None]
+_MOST_DRAWN = 1_000_000  # a seed that is drawn is short enough to be written down by hand
 
 
-class Conditions(Struct, frozen=True):
-    """What a session is run with: device, simulated hand, source of answers, and pace."""
+def _nothing(*_: object) -> None:
+    """Do nothing."""
+
+
+class Conditions(Struct, frozen=True, kw_only=True):
+    """What a session is run with; the record keeps it, and the next run has the same.
+
+    Parameters
+    ----------
+    device, hand
+        Spec of the device, such as "serial:/dev/ttyACM0", and the hand of a simulated one.
+    answers
+        Source of the answers: "typed", "simulated:NOISE" or the name of a file.
+    rate_hz
+        Frames per second.
+    fast
+        Whether a simulated device runs as fast as the machine can.
+    sound
+        How the participant hears signals.
+    markers
+        Recorder that is sent markers: "lsl", "lsl:NAME", "serial:PORT" or "serial:PORT:BAUD".
+    also
+        Conventional display, such as "brlapi".
+    """
 
     device: str = "sim"
     hand: str = "slow"
     answers: str = "typed"
+    rate_hz: Annotated[float, Meta(ge=1, le=10_000)] = 1000.0
     fast: bool = False
+    sound: Literal["auto", "tones", "bell", "none"] = "auto"
+    markers: str = ""
+    also: str = "brlapi"
+
+    def changed(self, changes: Mapping[str, Any]) -> Conditions:
+        """Return conditions with other values.
+
+        Raises
+        ------
+        InputError
+            If a value is out of range, or there is no such condition.
+        """
+        if changes.get("answers", self.answers) != self.answers:
+            changes = {"fast": False, **changes}
+        if unknown := set(changes) - set(self.__struct_fields__):
+            raise InputError(f"unknown condition {min(unknown)!r}")
+        try:
+            return convert(structs.asdict(self) | dict(changes), Conditions)
+        except ValidationError as error:
+            raise InputError(f"conditions: {error}") from None
 
 
-def create(
-    path: Path,
-    protocol_name: str,
-    participant: str,
-    seed: int,
-    *,
-    order: int | None = None,
-    fields: dict[str, str] | None = None,
-) -> Plan:
-    """Plan a session, and write its record.
-
-    Raises
-    ------
-    InputError
-        If the protocol or a field cannot be used.
-    RecordError
-        If the record cannot be written.
-    """
-    protocol, content = load_protocol(protocol_name)
-    plan = make_plan(protocol, participant, seed, order)
-    head = {
-        "protocol": protocol.name,
-        "participant": participant,
-        "seed": seed,
-        "order": plan.order,
-        "group": plan.group,
-        "fields": _checked(protocol, fields or {}),
-    }
-    record.create(path, head, {"protocol.toml": content}, plan)
-    return plan
-
-
-def run(path: Path, say: Say, **changed: Any) -> None:
-    """Run a session from where it is: from its start, or from where it was stopped or killed.
+class Session:
+    r"""A session, which is one file.
 
     Parameters
     ----------
     path
         File of the session.
-    say
-        Is called with each sentence for the experimenter.
-    changed
-        Fields of the `Conditions` that differ from those of the last run.
+
+    Examples
+    --------
+    Two trials, felt by a simulated reader on a simulated device as fast as the machine can:
+
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> from vbraille import Session
+    >>> folder = Path(mkdtemp())
+    >>> _ = Path(folder, "two.toml").write_text(
+    ...     'name = "two"\ntitle = "Two"\nmodel = "vbd"\n'
+    ...     '[design]\nkind = "combinations"\ncharacters = ["a", "c"]\nlength = 1\n'
+    ... )
+    >>> session = Session.create(folder / "two.toml", "P01", path=folder / "P01.session", seed=1)
+    >>> _ = session.run("simulated", fast=True, hand="sweep:150")
+    >>> [row["answered"] == row["presented"] for row in session.trials]
+    [True, True]
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+
+    @classmethod
+    def create(
+        cls,
+        protocol: str | Path,
+        participant: str,
+        *,
+        path: str | Path | None = None,
+        seed: int | None = None,
+        order: int | None = None,
+        group: str | None = None,
+        session: int | None = None,
+        best_from: str | Path | None = None,
+        fields: Mapping[str, str] | None = None,
+    ) -> Self:
+        """Plan a session, and write its file.
+
+        Parameters
+        ----------
+        protocol
+            Name of a protocol that comes with the program, or a TOML file.
+        participant
+            Pseudonym of the participant.
+        path
+            New file; PARTICIPANT-PROTOCOL.session, with a number if that is there, by default.
+        seed
+            Number that all random choices follow from; drawn by default.
+        order, group, session
+            These are described at `make_plan`; the number of the session is found by default.
+        best_from
+            Session of the participant that tells the best texture.
+        fields
+            Answers to the protocol's questions about the participant, by their names.
+
+        Raises
+        ------
+        InputError
+            If an argument cannot be used.
+        RecordError
+            If the file is there already, or cannot be written.
+        """
+        loaded = load_protocol(str(protocol))[0]
+        path = free_path(participant, loaded.name) if path is None else Path(path)
+        loaded, files, plan = plan_session(
+            protocol, participant, seed, order, group, session or next_number(path, participant), best_from
+        )
+        head = {
+            "protocol": loaded.name,
+            "participant": participant,
+            "seed": plan.seed,
+            "order": plan.order,
+            "group": plan.group,
+            "session": plan.session,
+            "fields": check_fields(loaded, fields or {}),
+            "made": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}",
+        }
+        record.create(path, head, files, plan)
+        return cls(path)
+
+    @property
+    def content(self) -> Content:
+        """Content of the file: its head, plan and events."""
+        return record.read(self.path)
+
+    @property
+    def last_conditions(self) -> Conditions:
+        """What the session was run with last."""
+        return _conditions_now(self.content, {})
+
+    @property
+    def trials(self) -> list[dict[str, Any]]:
+        """A row for each planned trial, as `vbraille session export` writes them."""
+        from vbraille.sessions.record.trials import rows  # loads compiled code
+
+        return rows(self.path)
+
+    def run(
+        self,
+        answers: Any = None,
+        *,
+        say: Say = _nothing,
+        make_engine: MakeEngine | None = None,
+        monitor: tuple[str | None, int | None] | None = None,
+        before_rest: Callable[[], None] = _nothing,
+        **changed: Any,
+    ) -> Self:
+        """Run the session from where it is: from its start, or from where it was stopped or killed.
+
+        Parameters
+        ----------
+        answers
+            Source of the answers: a spec as in `Conditions`, a source, the lines themselves, or a
+            function that returns the line for a trial; by default that of the last run.
+        say
+            Function that is called with each sentence for the experimenter.
+        make_engine
+            Function that makes another engine than the usual one.
+        monitor
+            Host and port of a live view; None for no live view.
+        before_rest
+            Function that is called before the device is closed, which nothing may interrupt.
+        changed
+            Fields of the `Conditions` that differ from those of the last run.
+
+        Raises
+        ------
+        InputError
+            If the session has ended, or an argument cannot be used.
+        VbrailleError
+            If the device or the disk fails.
+        """
+        if isinstance(answers, str):
+            changed["answers"] = answers
+        with closing(Record(self.path)) as opened:
+            content = opened.read()
+            protocol = parse_protocol(content.files, f"protocol of {self.path}")
+            protocol = protocol.of_group(content.plan.group)
+            progress = Progress(protocol, content.plan, content.events)
+            if progress.ended:
+                raise InputError(f"{self.path} has ended; session export makes a table of it")
+            conditions = _conditions_now(content, changed)
+            source = _open_answers(answers, conditions, progress)
+            conditions = structs.replace(conditions, answers=source.name)
+            if progress.runs:
+                say(f"resume: device {conditions.device}, answers {conditions.answers}")
+                _say_clock(content, say)
+            with ExitStack() as stack:
+                apparatus = _open_apparatus(
+                    stack, progress, conditions, source, say, make_engine, monitor, before_rest
+                )
+                _run(opened, progress, source, conditions, apparatus)
+            say(f"record: {opened.sum.hex()}")
+        return self
+
+
+def plan_session(
+    protocol: str | Path,
+    participant: str,
+    seed: int | None = None,
+    order: int | None = None,
+    group: str | None = None,
+    session: int | None = None,
+    best_from: str | Path | None = None,
+) -> tuple[Protocol, dict[str, bytes], Plan]:
+    """Plan a session; the arguments are those of `Session.create`.
+
+    Returns
+    -------
+    Protocol, dict[str, bytes], Plan
+        The protocol as the participant's group has it, its files by their names, and the plan.
+    """
+    loaded, files = load_protocol(str(protocol))
+    if seed is None:
+        seed = secrets.randbelow(_MOST_DRAWN)
+    plan = make_plan(loaded, participant, seed, order, session=session or 1, group=group)
+    return loaded.of_group(plan.group), files, plan
+
+
+def nearly_same(folder: Path, participant: str) -> str | None:
+    """Return a pseudonym with sessions in a folder that differs in case, zeros or signs alone.
+
+    None if there is no such pseudonym, or the participant has sessions there.
+    """
+    known = {_participant_of(path) for path in folder.glob("*.session")} - {""}
+    if participant in known:
+        return None
+    return next((each for each in sorted(known) if _plain(each) == _plain(participant)), None)
+
+
+def next_number(path: Path, participant: str) -> int:
+    """Return the number of a participant's next session in the folder of a new file."""
+    return 1 + sum(
+        _participant_of(each) == participant for each in path.absolute().parent.glob("*.session")
+    )
+
+
+def _participant_of(path: Path) -> str:
+    try:
+        with record.reading(path) as db:
+            return db.execute("SELECT participant FROM session").fetchone()[0]
+    except (VbrailleError, OSError):
+        return ""
+
+
+def _plain(participant: str) -> str:
+    return re.sub(r"(?<![0-9])0+(?=[0-9])", "", re.sub("[^0-9a-z]", "", participant.lower()))
+
+
+def free_path(participant: str, protocol: str) -> Path:
+    """Return the name of a new session in this folder: P01-letters.session, or P01-letters-2."""
+    for number in count(1):
+        ending = "" if number == 1 else f"-{number}"
+        path = Path(f"{participant}-{protocol}{ending}.session")
+        if not path.exists():
+            return path
+    raise AssertionError
+
+
+def check_fields(protocol: Protocol, given: Mapping[str, str]) -> dict[str, str]:
+    """Return the answers to the protocol's fields; those that were not given are empty.
 
     Raises
     ------
-    InputError, VbrailleError
-        If the session has ended, or the device or the disk fails.
+    InputError
+        If there is no such field, or an answer is none of its choices.
     """
-    with closing(Record(path)) as opened:
-        content = opened.read()
-        protocol = parse_protocol(content.files["protocol.toml"], f"protocol of {path}")
-        protocol = protocol.of_group(content.plan.group)
-        progress = Progress(protocol, content.plan, content.events)
-        if progress.ended:
-            raise InputError(f"{path} has ended; session export makes a table of it")
-        last = [event.data["conditions"] for event in content.events if event.kind == "run"]
-        conditions = structs.replace(Conditions(**(last[-1] if last else {})), **changed)
-        if last:
-            say(f"resume: {conditions.device}, answers {conditions.answers}")
-        answers = answers_of(conditions.answers, protocol, content.plan, progress.script_line)
-        device: SessionDevice | Paper
-        if protocol.medium == "paper":
-            device = Paper(progress.line, at_once=not answers.typed)
-        else:
-            device = SessionDevice(
-                protocol,
-                conditions.device,
-                conditions.hand,
-                seed=content.plan.seed + progress.runs,
-                fast=conditions.fast,
-                line=progress.line,
-            )
-        with closing(device):
-            device.start()
-            runner = Runner(opened, progress, answers, device, say)
-            runner.run(conditions=structs.asdict(conditions))
-        say(f"record: {opened.sum.hex()}")
-
-
-def _checked(protocol: Protocol, given: dict[str, str]) -> dict[str, str]:
-    """Return the answers to the protocol's fields; those that were not given are empty."""
     known = {field.name: field for field in protocol.fields}
     for name, value in given.items():
         if name not in known:
-            raise InputError(f"there is no field {name!r}; there are {', '.join(known)}")
+            names = ", ".join(known) or "none"
+            raise InputError(f"{protocol.name} has no field {name!r}; known: {names}")
         choices = known[name].choices
         if choices and value not in choices:
             raise InputError(f"{name} is {value!r}; give {' or '.join(choices)}")
+        if not value.isprintable():
+            raise InputError(f"{name} is {value!r}; give one line of text")
     return {name: given.get(name, "") for name in known}
+
+
+class _Apparatus(NamedTuple):
+    """What a run needs beside the record: all is open, and closed by the stack that opened it."""
+
+    device: SessionDevice | Paper
+    pins: Pins | None
+    view: SessionView | None
+    markers: Markers
+    play: Callable[[Any], None]
+    say: Say
+
+
+def _conditions_now(content: Content, changed: Mapping[str, Any]) -> Conditions:
+    """Return the conditions of the last run, with changes."""
+    runs = [e.data["conditions"] for e in content.events if "conditions" in e.data]
+    return (convert(runs[-1], Conditions) if runs else Conditions()).changed(changed)
+
+
+def _open_answers(given: Any, conditions: Conditions, progress: Progress) -> Answers:
+    """Return the source of the answers.
+
+    Raises
+    ------
+    InputError
+        If it cannot be used with this session.
+    """
+    from vbraille.sessions.running.answers import answers_of
+
+    spec = conditions.answers if given is None or isinstance(given, str) else given
+    source = answers_of(spec, progress.protocol, progress.plan, progress.script_line)
+    if conditions.fast and source.typed:
+        raise InputError("--fast is for answers that are not typed; give --answers simulated")
+    if conditions.fast and not is_simulated(conditions.device):
+        raise InputError("--fast is for the simulated device; leave --device out")
+    return source
+
+
+def _open_apparatus(
+    stack: ExitStack,
+    progress: Progress,
+    conditions: Conditions,
+    source: Answers,
+    say: Say,
+    make_engine: MakeEngine | None,
+    monitor: tuple[str | None, int | None] | None,
+    before_rest: Callable[[], None],
+) -> _Apparatus:
+    """Open the device and all that stands beside it."""
+    # Imported here: compiled code takes long to load, and not every use of a session needs it.
+    from vbraille.sessions.running.device import SessionDevice, check_room
+    from vbraille.sessions.running.markers import Markers
+    from vbraille.sessions.running.paper import Paper, Pins
+
+    protocol, plan = progress.protocol, progress.plan
+    markers = Markers(conditions.markers, protocol.marker_codes, say)
+    stack.callback(markers.close)
+    view = None
+    if monitor is not None:
+        from vbraille.sessions.running.liveview import SessionView
+
+        view = stack.enter_context(SessionView(protocol, conditions, *monitor, say=say))
+        say = view.say
+    pins = None
+    if protocol.needs_pins and not source.felt and not conditions.fast:
+        pins = Pins(protocol, plan, conditions.also)
+        stack.callback(pins.close)
+    device: SessionDevice | Paper = Paper()
+    if protocol.medium == "device":
+        device = SessionDevice(
+            protocol,
+            plan,
+            conditions.device,
+            conditions.hand,
+            seed=_hand_seed(progress),
+            fast=conditions.fast,
+            rate_hz=conditions.rate_hz,
+            line=progress.line,
+            keeps=source.felt,
+            by_hand=not source.typed or protocol.trial.end is None,
+            make_engine=make_engine,
+            pointer=None if view is None else view.pointer,
+        )
+    stack.callback(device.close)
+    stack.callback(before_rest)
+    if view is not None:
+        view.watch(device)
+    device.start()
+    if isinstance(device, SessionDevice):
+        check_room(protocol, plan, device.display)
+    if pins is not None:
+        pins.start()
+    play = _open_sound(conditions.sound, source, say)
+    return _Apparatus(device, pins, view, markers, play, say)
+
+
+def _run(
+    opened: Record,
+    progress: Progress,
+    source: Answers,
+    conditions: Conditions,
+    apparatus: _Apparatus,
+) -> None:
+    """Run a session, and write what went wrong with its device."""
+    from vbraille.sessions.running.device import SessionDevice
+    from vbraille.sessions.running.runner import Runner
+
+    device, pins, view, markers, play, say = apparatus
+    runner = Runner(
+        opened,
+        progress,
+        source,
+        device,
+        pins=pins,
+        real=not conditions.fast,
+        say=say,
+        play=play,
+        mark=markers.mark,
+        look=_nothing if view is None else view.look,
+    )
+    told: dict[str, Any] = {"conditions": structs.asdict(conditions), "versions": _versions()}
+    if isinstance(device, SessionDevice):
+        told |= {"display": asdict(device.display), "calibration": device.engine.calibration}
+    if view is not None:
+        told["monitor"] = view.described
+    runner.run(**told)
+    device.close()
+    if isinstance(device, SessionDevice):
+        counts = {name: number for name, number in device.engine.counts.items() if number}
+        runner.log("closed", lost=device.engine.lost, counts=counts)
+
+
+def _hand_seed(progress: Progress) -> int:
+    """Return the seed of the simulated hand, which differs between participants and runs."""
+    from vbraille.sessions.running.reader import random_of
+
+    plan = progress.plan
+    drawn = f"{progress.protocol.name} {plan.participant} {plan.seed} hand {progress.runs}"
+    return int(random_of(drawn).integers(2**63))
+
+
+def _open_sound(wanted: str, source: Answers, say: Say) -> Callable[[Any], None]:
+    """Return what plays the participant's signals.
+
+    Raises
+    ------
+    InputError
+        If tones are asked for and there is no audio output.
+    """
+    from vbraille.sounds import Bell, Tones
+
+    if wanted == "none" or (wanted == "auto" and not source.typed):
+        return _nothing
+    if wanted != "bell":
+        try:
+            return Tones().play
+        except OSError as error:
+            if wanted == "tones":
+                raise InputError(f"{error}; give --cues bell or none") from None
+        say("sound: the terminal's bell, since there is no audio output")
+    return Bell().play
+
+
+def _say_clock(content: Content, say: Say) -> None:
+    """Say if the time of day has gone back since the last event."""
+    if content.events and datetime.fromisoformat(content.events[-1].wall) > datetime.now(UTC):
+        say("clock: set back since the last run; times of day go back in the record, t_s does not")
+
+
+def _versions() -> dict[str, str]:
+    return {"vbraille": version("vbraille"), "python": python_version(), "numpy": version("numpy")}

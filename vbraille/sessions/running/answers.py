@@ -1,28 +1,22 @@
-"""Where answers come from: an experimenter who types, a file, or a simulated reader."""
+"""Where answers come from: an experimenter who types, a file, or a program."""
 
 from __future__ import annotations
 
 import os
 import select
 import sys
-from collections.abc import Callable
-from dataclasses import replace
-from hashlib import sha256
+import time
+from collections.abc import Callable, Iterable
+from difflib import get_close_matches
 from pathlib import Path
-from typing import Literal, NamedTuple, Protocol
-
-import numpy as np
+from typing import Any, Literal, NamedTuple, Protocol
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocol import Protocol as Study
 from vbraille.sessions.planning.questionnaire import Item
 from vbraille.sessions.planning.trial import Trial
-from vbraille.sessions.simulated.feeling import FeltTrial
-from vbraille.sessions.simulated.observer import Observer
 from vbraille.sessions.simulated.skin import FeltFrames
-
-WAIT_S = 0.02
 
 
 class Asked(NamedTuple):
@@ -31,7 +25,8 @@ class Asked(NamedTuple):
     Parameters
     ----------
     what
-        The answer of a trial, how sure it is, or whether to go on after a break.
+        The answer of a trial, how sure it is, a reply to the questionnaire, or whether to go on
+        after a break.
     trial, attempt
         The trial, and how often it was shown.
     felt
@@ -40,14 +35,28 @@ class Asked(NamedTuple):
         The answer, where it is asked how sure it is.
     item
         What is asked of the questionnaire.
+    columns
+        Columns of the item of the trial that the questionnaire asks about.
     """
 
     what: Literal["answer", "confidence", "reply", "go"]
-    trial: Trial | None
-    attempt: int
-    felt: Callable[[], list[FeltFrames]]
+    trial: Trial | None = None
+    attempt: int = 0
+    felt: Callable[[], list[FeltFrames]] = list
     answer: str = ""
     item: Item | None = None
+    columns: dict[str, str] = {}  # noqa: RUF012  (never changed)
+
+
+class Line(NamedTuple):
+    """A line that was given, and its number in a file; 0 if it is in none."""
+
+    text: str
+    number: int = 0
+
+
+class Press(NamedTuple):
+    """The participant's key, where a line might have come."""
 
 
 class NoMoreAnswers(Exception):
@@ -63,13 +72,16 @@ class Answers(Protocol):
         Name in the record.
     typed : bool
         Whether a person types, who is waited for at breaks and gives commands at any time.
+    felt : bool
+        Whether it needs what was felt.
     """
 
     name: str
     typed: bool
+    felt: bool
 
-    def line(self, asked: Asked | None) -> tuple[str, int] | None:
-        """Return a line and its number in a file (or 0), or None if there is none now.
+    def line(self, asked: Asked | None, wait_s: float) -> Line | Press | None:
+        """Return a line, or None if there is none within some time.
 
         A person's line may come at any time, others only if something is asked.
 
@@ -82,37 +94,80 @@ class Answers(Protocol):
 
 
 class Typed:
-    """Lines from standard input."""
+    """Lines from standard input.
+
+    Attributes
+    ----------
+    awaits_key : bool
+        Whether the participant's key would end reading now.
+    """
 
     name = "typed"
     typed = True
+    felt = False
+    awaits_key = False
 
     def __init__(self) -> None:
-        self._descriptor = sys.stdin.fileno()
+        self._descriptor = sys.stdin.fileno() if sys.stdin else -1
         self._partial = b""
-        self._lines: list[bytes] = []
-        self._over = False
+        self._given: list[Line | Press] = []
+        self._over = self._descriptor < 0
 
-    def line(self, asked: Asked | None) -> tuple[str, int] | None:
+    def watch(self, key: str) -> bool:  # noqa: ARG002  (one that reads keys does)
+        """Look out for the participant's key; return whether that is possible."""
+        return False
+
+    def line(self, asked: Asked | None, wait_s: float) -> Line | Press | None:  # noqa: ARG002
         """Return a line that was typed."""
-        if not self._lines and not self._over:
-            self._read()
-        if self._lines:
-            return self._lines.pop(0).decode("utf-8", "replace"), 0
+        if not self._given and not self._over:
+            self._read(wait_s)
+        if self._given:
+            return self._given.pop(0)
         if self._over:
             raise NoMoreAnswers
         return None
 
-    def _read(self) -> None:
-        if not select.select([self._descriptor], [], [], WAIT_S)[0]:
+    def _read(self, wait_s: float) -> None:
+        """Take what was typed within some time."""
+        if not select.select([self._descriptor], [], [], wait_s)[0]:
             return
-        said = os.read(self._descriptor, 1 << 16)
+        try:
+            said = os.read(self._descriptor, 1 << 16)
+        except OSError:  # the terminal was closed
+            said = b""
         self._over = not said
         *lines, self._partial = (self._partial + said).split(b"\n")
-        self._lines += lines
+        if self._over and self._partial:
+            lines.append(self._partial)
+        self._given += [Line(line.decode("utf-8", "replace")) for line in lines]
+
+    def release(self) -> None:
+        """Leave the terminal to another program."""
+
+    def take(self) -> None:
+        """Take the terminal again."""
 
 
-class Scripted:
+class InTurn:
+    """A source that is asked for each answer in turn."""
+
+    name = "program"
+    typed = False
+    felt = False
+
+    def line(self, asked: Asked | None, wait_s: float) -> Line | None:
+        """Return the line for what is asked; wait if nothing is."""
+        if asked is None:
+            time.sleep(wait_s)
+            return None
+        return Line("") if asked.what == "go" else self.give(asked)
+
+    def give(self, asked: Asked) -> Line:
+        """Return the line for what is asked."""
+        raise NotImplementedError
+
+
+class Scripted(InTurn):
     """Lines of a file. Empty lines, and lines that begin with #, are left out.
 
     Parameters
@@ -123,117 +178,86 @@ class Scripted:
         Number of the last line that was used in earlier runs.
     """
 
-    typed = False
-
     def __init__(self, path: Path, after: int) -> None:
         try:
             text = path.read_text("utf-8-sig")
-        except (OSError, UnicodeDecodeError) as error:
-            raise InputError(f"{path} cannot be read: {error}") from None
+        except OSError as error:
+            raise InputError(f"{path} cannot be read: {error.strerror}") from None
+        except UnicodeDecodeError:
+            raise InputError(f"{path} is not UTF-8; save it as UTF-8") from None
         self.name = str(path)
         self._left = [
-            (line.strip(), number)
+            Line(line.strip(), number)
             for number, line in enumerate(text.splitlines(), 1)
             if number > after and line.strip() and not line.lstrip().startswith("#")
         ]
 
-    def line(self, asked: Asked | None) -> tuple[str, int] | None:
-        """Return the next line, if something is asked."""
-        if asked is None:
-            return None
-        if asked.what == "go":
-            return "", 0
+    def give(self, asked: Asked) -> Line:
+        """Return the next line."""
         if not self._left:
             raise NoMoreAnswers
         return self._left.pop(0)
 
 
-class Simulated:
-    """A simulated reader. It is given frames and places, and knows how braille is laid out.
+class Programmed(InTurn):
+    """Answers of a program.
 
     Parameters
     ----------
-    protocol, plan
-        What the reader was told: distances, and where a string begins. Nothing of a trial is told.
-    noise
-        Standard deviation of the noise, in units of a perfect dot.
+    given
+        The lines, or a function that returns the line for a `Trial` or for an `Item` of the
+        questionnaire. The session stops if the lines end, or the function returns None.
     """
 
-    typed = False
+    def __init__(self, given: Iterable[str] | Callable[[Any], str | None]) -> None:
+        if callable(given):
+            self._give = given
+        else:
+            lines = iter(given)
+            self._give = lambda _asked: next(lines, None)
 
-    def __init__(self, protocol: Study, plan: Plan, noise: float) -> None:
-        self.name = f"simulated:{noise:g}"
-        self._noise = noise
-        self._study = protocol
-        self._drawn = f"{protocol.name} {plan.participant} {plan.seed}"
-        usual = protocol.display_model.style
-        display = protocol.display_model.display
-        self._observers = {}
-        for condition in protocol.conditions:
-            style = protocol.style(condition.over(protocol.display))
-            told = replace(usual, mapping=style.mapping, geometry=style.geometry)
-            self._observers[condition.name] = Observer(display, told, noise=noise)
-
-    def line(self, asked: Asked | None) -> tuple[str, int] | None:
-        """Return the answer to what is asked."""
-        if asked is None:
-            return None
-        if asked.what == "go":
-            return "", 0
-        if asked.item is not None:
-            item = asked.item
-            known = item.choices or ("nothing",)
-            return str(item.scale.least) if item.scale else item.right or known[0], 0
-        assert asked.trial is not None, "a trial is asked about"
-        drawn = f"{self._drawn} {asked.trial.practice} {asked.trial.number} {asked.attempt}"
-        if asked.what == "answer":
-            return self._answer(asked, random_of(drawn)), 0
-        scale = self._study.asks.confidence
-        assert scale is not None, "it is asked how sure the answer is"
-        # The reader is surer of an answer that it would give again. After a crash between an answer
-        # and its confidence there is nothing left to think of.
-        habits = random_of(f"{drawn} habits")
-        habits.random(2)
-        is_sure = bool(asked.felt()) and self._answer(asked, habits) == asked.answer
-        quarters = 3 if is_sure else 1
-        return str(scale.least + round(quarters * (scale.most - scale.least) / 4)), 0
-
-    def _answer(self, asked: Asked, random: np.random.Generator) -> str:
-        trial, lead = asked.trial, self._study.display.lead_cells
-        first = trial.stimuli[0]
-        start = lead + len(first.before)
-        felt, count = asked.felt(), len(trial.stimuli)
-        sensed = FeltTrial(
-            self._observers[trial.condition],
-            [*felt[: count - 1], felt[-1]],  # of what was turned only the newest counts
-            [len(stimulus.masks(lead)) for stimulus in trial.stimuli],
-            slice(start, start + len(first.cells)),
-            getattr(self._study.design, "parameter", ""),
-            None,
-            len(felt) - count,
-        )
-        return self._study.asks.simulate(sensed, self._noise, random)
+    def give(self, asked: Asked) -> Line:
+        """Return what the program says to a trial or a question."""
+        line = self._give(asked.item or asked.trial)
+        if line is None:
+            raise NoMoreAnswers
+        if not isinstance(line, str):
+            raise InputError(f"an answer is {line!r}; give a line of text, or None to stop")
+        return Line(line)
 
 
-def random_of(text: str) -> np.random.Generator:
-    """Return a generator that is seeded by a text."""
-    return np.random.default_rng(int.from_bytes(sha256(text.encode()).digest()[:8], "big"))
+def answers_of(spec: Any, protocol: Study, plan: Plan, after: int) -> Answers:
+    """Return the source of a spec.
 
-
-def answers_of(spec: str, protocol: Study, plan: Plan, after: int) -> Answers:
-    """Return the source of a spec: "typed", "simulated", "simulated:NOISE" or a file.
+    Parameters
+    ----------
+    spec
+        "typed", "simulated:NOISE", the name of a file, lines, a function, or a source itself.
+    protocol, plan
+        What the session shows.
+    after
+        Number of the last line of the file that was used in earlier runs.
 
     Raises
     ------
     InputError
         If there is no such source.
     """
-    kind, _, noise = spec.partition(":")
-    if kind == "typed":
+    if hasattr(spec, "line"):
+        return spec
+    if not isinstance(spec, str):
+        return Programmed(spec)
+    kind, _, habits = spec.partition(":")
+    if spec == "typed":
         return Typed()
-    if kind != "simulated":
-        return Scripted(Path(spec), after)
-    try:
-        return Simulated(protocol, plan, float(noise or 0))
-    except ValueError:
-        raise InputError(f"noise is {noise!r}; give a number, 0 or more") from None
+    if spec == "program":
+        raise InputError("the answers came from a program; give --answers typed")
+    if kind == "simulated":
+        from vbraille.sessions.running.reader import simulated_answers  # loads the simulated reader
+
+        return simulated_answers(protocol, plan, habits)
+    if not Path(spec).exists():
+        near = get_close_matches(kind, ("typed", "simulated"), 1)
+        hint = f"did you mean {near[0]}?" if near else "give typed, simulated:NOISE or a file"
+        raise InputError(f"there is no file {spec}; {hint}")
+    return Scripted(Path(spec), after)

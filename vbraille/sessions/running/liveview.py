@@ -1,0 +1,209 @@
+"""The live view of a session: what its pages are told, which may have to be blind.
+
+A blind state is made of nothing from which a stimulus or an answer could be read: neither cells nor
+condition nor distances, no answers, no sentence that may hold one of these, and not the
+participant, whose number chooses the order of the conditions.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+from msgspec import structs
+
+from vbraille.braille.spelling import ordinal, say_cells
+from vbraille.devices.base import Placing
+from vbraille.engine.engine import placing_of
+from vbraille.engine.record import Flag
+from vbraille.errors import InputError
+from vbraille.live.messages import LetGo, Point, ViewState
+from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
+from vbraille.live.view import LiveView
+from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.running.device import SessionDevice
+
+if TYPE_CHECKING:
+    from vbraille.sessions.running.runner import Runner
+    from vbraille.sessions.session import Conditions
+
+# Sentences begin with a word for their kind. Those of these kinds hold no stimulus and no answer.
+SAFE = frozenset(
+    "begin break cue device display ended fault go hand last late missed pause place read ready "
+    "repeat stop turned upright warning".split()
+)
+# The address of the live view has its token in it.
+NEVER = frozenset(("live view", "record", "resume"))
+MOST_SAID = 20
+
+
+class SessionView:
+    """Pages that watch a session; whatever goes wrong with them, the session goes on.
+
+    Parameters
+    ----------
+    protocol
+        Protocol of the session, which may have to be blind.
+    conditions
+        What the session is run with.
+    host, port
+        Where the pages are served.
+    say
+        Function that is called with each sentence for the experimenter.
+
+    Raises
+    ------
+    InputError
+        If there is no device whose ticks could be shown.
+    """
+
+    def __init__(
+        self,
+        protocol: Protocol,
+        conditions: Conditions,
+        host: str | None,
+        port: int | None,
+        say: Callable[[str], None],
+    ) -> None:
+        if protocol.medium != "device" or conditions.fast:
+            raise InputError(
+                f"--monitor shows a device in real time; {protocol.name} is on paper, or --fast is "
+                f"given; leave one of them out"
+            )
+        self.blind = protocol.session.blind
+        self._view = LiveView(host=host, port=port, blind=self.blind)
+        self._host = host or "127.0.0.1"
+        self._say = say
+        self._device: SessionDevice | None = None
+        self._said: deque[str] = deque(maxlen=MOST_SAID)
+        self._count = 0
+        self._is_held = False
+
+    def __enter__(self) -> Self:
+        self._view.__enter__()
+        for sentence in self._view.addresses:
+            self._say(sentence)
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self._view.__exit__(*exception)
+
+    @property
+    def described(self) -> dict[str, Any]:
+        """What the record says of it."""
+        return {"blind": self.blind, "host": self._host}
+
+    def say(self, sentence: str) -> None:
+        """Say a sentence to the experimenter, and to the pages if they may hear it."""
+        self._say(sentence)
+        kind = sentence.partition(":")[0]
+        if kind in SAFE or not (self.blind or kind in NEVER):
+            self._said.append(sentence)
+            self._count += 1
+
+    def watch(self, device: SessionDevice) -> None:
+        """Show the ticks of a device from now on; called after each start of it."""
+        self._view.watch(device.engine.reader())
+
+    def look(self, runner: Runner) -> None:
+        """Tell the pages what has changed, and lead the simulated hand as they ask."""
+        assert isinstance(runner.device, SessionDevice)
+        for asked in self._view.take():
+            if isinstance(asked, Point | LetGo):
+                runner.device.lead(asked if isinstance(asked, Point) else None)
+        for note in self._view.notes():
+            self._say(note)
+        self._view.tell(state_of(runner, runner.device, list(self._said), self._count, self.blind))
+
+
+def state_of(
+    runner: Runner, device: SessionDevice, said: list[str], count: int, blind: bool
+) -> ViewState:
+    """Return the state that pages show.
+
+    Parameters
+    ----------
+    runner, device
+        The session, and what it runs on.
+    said, count
+        The last sentences that pages may be told, oldest first, and how many there were in all.
+    blind
+        Whether the state may tell nothing of stimuli and answers.
+    """
+    protocol = runner.protocol
+    style = protocol.style(protocol.display)
+    state = ViewState(
+        title=protocol.title,
+        array=array_shown(device.display),
+        geometry=geometry_shown(style.geometry),
+        rows_shown=rows_shown(style, device.display),
+        place=f"waits for {runner.waits_for}" if runner.waits_for else "",
+        paused=runner.paused,
+        simulated=device.steered,
+        device=_say_device(device.newest),
+        said=said,
+        said_before=count - len(said),
+        facts=_facts(runner),
+        blind=blind,
+        done=runner.is_over,
+    )
+    return state if blind else _unhidden(state, runner, device)
+
+
+def _unhidden(state: ViewState, runner: Runner, device: SessionDevice) -> ViewState:
+    """Return the state with all that a blind one keeps back."""
+    protocol, trial = runner.protocol, runner.trial
+    if trial is None:
+        return state
+    facts = [*state.facts, ("condition", trial.condition)]
+    if not runner.is_shown or runner.presenter.by_key:
+        return structs.replace(state, facts=facts)
+    stimulus = trial.stimuli[runner.stimulus]
+    style = protocol.style(stimulus.look)
+    facts += [("contrast", f"{style.tuning.contrast:g}"), ("texture", f"{style.tuning.texture:g}")]
+    lines = []
+    if stimulus.picture:
+        facts.append(("asked for", stimulus.picture))
+    else:
+        facts.append(("asked for", say_cells(stimulus.cells, protocol.masks)))
+        masks = stimulus.masks(protocol.display.lead_cells)
+        lines.append(cells_shown(device.line, masks, stimulus.text, under=True))
+    return structs.replace(
+        state,
+        facts=facts,
+        geometry=geometry_shown(style.geometry),
+        mapping=f"mapping: {style.mapping.name}",
+        rows_shown=rows_shown(style, device.display),
+        lines=lines,
+    )
+
+
+def _facts(runner: Runner) -> list[tuple[str, str]]:
+    """Return how far the session is; nothing here depends on stimuli or answers."""
+    progress, trial = runner.progress, runner.trial
+    facts: list[tuple[str, str]] = []
+    if trial is not None:
+        facts.append(("trial", runner.name))
+        if len(trial.stimuli) > 1 and runner.is_shown:
+            facts.append(("stimulus", f"{ordinal(runner.stimulus)} of {len(trial.stimuli)}"))
+        if runner.attempt > 1:
+            facts.append(("attempt", str(runner.attempt)))
+    minutes, seconds = divmod(int(runner.elapsed_s), 60)
+    facts += [("answered", str(progress.done)), ("time", f"{minutes} min {seconds:02} s")]
+    return facts
+
+
+def _say_device(newest: np.void | None) -> str:
+    """Return a sentence on the state of the device, by its newest tick."""
+    if newest is None:
+        return "device: starts"
+    flags = int(newest["flags"])
+    if flags & int(Flag.SILENT):
+        return "device: silent"
+    if placing_of(newest) is not Placing.DONE:
+        return "device: its place is not known"
+    if flags & int(Flag.HELD):
+        return "device: at rest by itself"
+    return "device: turned too far" if flags & int(Flag.TURNED) else "device: in use"

@@ -1,0 +1,240 @@
+"""The simulated reader as a source of answers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from hashlib import sha256
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from vbraille.errors import InputError
+from vbraille.sessions.planning.plan import Plan
+from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.planning.questionnaire import Item
+from vbraille.sessions.planning.shown import make_shown
+from vbraille.sessions.planning.trial import Stimulus, Trial
+from vbraille.sessions.running.answers import Asked, InTurn, Line
+from vbraille.sessions.simulated.feeling import CELL_GAP, LENGTHS, DotPair, FeltTrial
+from vbraille.sessions.simulated.matching import PictureFrames, differences, name_one
+from vbraille.sessions.simulated.observer import Observer
+
+MOST_NOISE = 100.0
+INSTEAD = "type the answers, or give a file of them"
+
+
+class Habits(NamedTuple):
+    """Habits of a simulated reader.
+
+    Parameters
+    ----------
+    noise
+        Standard deviation of the noise, in units of a perfect dot or of the nominal length.
+    lapses
+        Share of the trials that are answered by chance alone.
+    false_alarms
+        Share of the other trials that are answered "yes" or "different" whatever was felt.
+    """
+
+    noise: float = 0.0
+    lapses: float = 0.0
+    false_alarms: float = 0.0
+
+    @classmethod
+    def parse(cls, text: str) -> Habits:
+        """Read what follows "simulated:", such as "0.4,lapses=0.05,false-alarms=0.1".
+
+        Raises
+        ------
+        InputError
+            If it cannot be read, or is out of range.
+        """
+        most = {"noise": MOST_NOISE, "lapses": 1.0, "false-alarms": 1.0}
+        found = {}
+        for part in filter(None, text.split(",")):
+            name, _, number = part.rpartition("=")
+            name = name or "noise"
+            try:
+                value = float(number)
+            except ValueError:
+                value = -1.0
+            if name not in most or not 0 <= value <= most[name]:
+                raise InputError(
+                    f"{part!r} is no habit of a simulated reader; give noise from 0 to "
+                    f"{MOST_NOISE:g}, lapses and false-alarms from 0 to 1, such as "
+                    f"simulated:0.2,lapses=0.05"
+                )
+            found[name.replace("-", "_")] = value
+        return cls(**found)
+
+
+def simulated_answers(protocol: Protocol, plan: Plan, habits: str) -> Simulated:
+    """Return the simulated reader for a protocol.
+
+    Raises
+    ------
+    InputError
+        If the habits cannot be read, or the reader cannot feel what the protocol shows.
+    """
+    conditions = {trial.condition for trial in plan.trials}
+    on_pins = any(s.on == "pins" for trial in plan.trials for s in trial.stimuli)
+    if protocol.medium == "paper" or on_pins:
+        where = "paper" if protocol.medium == "paper" else "a conventional display"
+        raise InputError(
+            f"{protocol.name} is read on {where}, which the simulated reader cannot feel; {INSTEAD}"
+        )
+    assert conditions, "a plan has trials"
+    kind = SimulatedNaming if plan.trials[0].stimuli[0].picture else Simulated
+    return kind(protocol, plan, Habits.parse(habits))
+
+
+class Simulated(InTurn):
+    """A simulated reader, which is given the frames that were sent and where the array was.
+
+    Like a person, it was told the task: where a string begins, how many characters it has, and by
+    which length two stimuli are compared. It is told nothing of a trial. It is surer of an answer
+    that it would give again; after a lapse it is least sure.
+
+    Parameters
+    ----------
+    protocol, plan
+        What the reader was told, and what its noise is drawn by: name, participant and seed.
+    habits
+        Noise, lapses and false alarms.
+
+    Raises
+    ------
+    InputError
+        If the reader cannot answer the question.
+    """
+
+    felt = True
+
+    def __init__(self, protocol: Protocol, plan: Plan, habits: Habits) -> None:
+        shares = {"lapses": habits.lapses, "false-alarms": habits.false_alarms}
+        given = [f"{name}={share:g}" for name, share in shares.items() if share]
+        self.name = ",".join([f"simulated:{habits.noise:g}", *given])
+        self._habits = habits
+        self._study = protocol
+        self._question = protocol.asks
+        self._drawn = f"{protocol.name} {plan.participant} {plan.seed}"
+        self._parameter = getattr(protocol.design, "parameter", "")
+        self._replied = 0
+        if habits.false_alarms and not self._question.alarm:
+            raise InputError(
+                f"{protocol.name} asks {self._question.kind}, to which no answer is a false alarm; "
+                f"leave false-alarms out"
+            )
+        if why := self._question.unfelt(protocol.design):
+            raise InputError(f"{protocol.name}: {why}; {INSTEAD}")
+        self._learn(plan)
+
+    def give(self, asked: Asked) -> Line:
+        """Return the answer to what is asked."""
+        if asked.item is not None:
+            return Line(self._reply(asked.item, asked.columns))
+        assert asked.trial is not None, "a trial is asked about"
+        drawn = f"{self._drawn} {asked.trial.practice} {asked.trial.number} {asked.attempt}"
+        habits = random_of(f"{drawn} habits")
+        lapsed = habits.random() < self._habits.lapses
+        alarmed = habits.random() < self._habits.false_alarms
+        scale = self._question.confidence
+        if asked.what == "confidence" and scale is not None:
+            # After a crash between an answer and its confidence there is nothing left to think of.
+            is_sure = asked.felt() and self._answer(asked, habits) == asked.answer
+            quarters = 0 if lapsed else 3 if is_sure else 1
+            return Line(str(scale.least + round(quarters * (scale.most - scale.least) / 4)))
+        if lapsed:
+            return Line(self._question.guess(asked.trial, habits))
+        if alarmed:
+            return Line(self._question.alarm)
+        return Line(self._answer(asked, random_of(drawn)))
+
+    def _reply(self, item: Item, columns: dict[str, str]) -> str:
+        """Answer a question of the questionnaire: as is right, or anyhow."""
+        self._replied += 1
+        random = random_of(f"{self._drawn} {item.name} {self._replied}")
+        return item.simulate(columns, self._habits.noise, random)
+
+    def _learn(self, plan: Plan) -> None:
+        """Learn what a reader is told before the session."""
+        self._observers: dict[str, Observer] = {}
+        self._pairs: dict[str, DotPair | None] = {}
+        usual, display = self._study.display_model.style, self._study.display_model.display
+        for trial in plan.trials:
+            if trial.condition in self._observers:
+                continue
+            condition = next(c for c in self._study.conditions if c.name == trial.condition)
+            style = self._study.style(condition.over(self._study.display))
+            told = replace(usual, mapping=style.mapping, geometry=style.geometry)
+            self._observers[trial.condition] = Observer(display, told, noise=self._habits.noise)
+            self._pairs[trial.condition] = self._pair_of(trial.stimuli[0], condition)
+
+    def _pair_of(self, stimulus: Stimulus, condition: object) -> DotPair | None:
+        """Return two dot columns by which a distance is told; None if it has none, or needs none.
+
+        The cells are the same in all trials of a comparison, and known to the reader.
+        """
+        if self._parameter not in LENGTHS:
+            return None
+        look = condition.over(self._study.display)  # type: ignore[attr-defined]
+        nominal = Stimulus(stimulus.cells, look, stimulus.before, stimulus.after)
+        edges = make_shown(self._study, nominal).edges_mm
+        pitch_mm = self._study.style(look).geometry.cell_pitch_mm
+        for number, (one, two) in enumerate(pairwise(edges)):
+            cells = int(two // pitch_mm) - int(one // pitch_mm)
+            if (cells > 0) is (self._parameter == CELL_GAP):
+                return DotPair(len(edges), number, two - one, cells)
+        return None
+
+    def _answer(self, asked: Asked, random: np.random.Generator) -> str:
+        trial, lead = asked.trial, self._study.display.lead_cells
+        assert trial is not None
+        first, count = trial.stimuli[0], len(trial.stimuli)
+        start, felt = lead + len(first.before), asked.felt()
+        sensed = FeltTrial(
+            self._observers[trial.condition],
+            [*felt[: count - 1], felt[-1]],  # of what was turned only the newest counts
+            [len(stimulus.masks(lead)) for stimulus in trial.stimuli],
+            slice(start, start + len(first.cells)),
+            self._parameter,
+            self._pairs[trial.condition],
+            len(felt) - count,
+        )
+        return self._question.simulate(sensed, self._habits.noise, random)
+
+
+class SimulatedNaming(Simulated):
+    """A simulated person who has learnt the pictures of each condition, and names the one felt.
+
+    It is told nothing of a trial but its condition; `vbraille.sessions.simulated.matching` says
+    what it does with the frames.
+    """
+
+    def _learn(self, plan: Plan) -> None:
+        self._known: dict[str, dict[str, Trial]] = {}
+        self._thought: dict[str, list[PictureFrames]] = {}
+        for trial in plan.trials:
+            self._known.setdefault(trial.condition, {}).setdefault(trial.item, trial)
+
+    def _answer(self, asked: Asked, random: np.random.Generator) -> str:
+        assert asked.trial is not None
+        condition = asked.trial.condition
+        known = self._known[condition].values()
+        if condition not in self._thought:
+            self._thought[condition] = [_frames_of(self._study, t.stimuli[0]) for t in known]
+        apart = differences(asked.felt()[-1], self._thought[condition])
+        chosen = list(known)[name_one(apart, self._habits.noise, random)]
+        return self._question.right_answer(chosen)
+
+
+def _frames_of(protocol: Protocol, stimulus: Stimulus) -> Callable[..., np.ndarray]:
+    program = make_shown(protocol, stimulus).program
+    return lambda *poses: program.poses(*poses)[1]
+
+
+def random_of(text: str) -> np.random.Generator:
+    """Return a generator that is seeded by the SHA-256 of a text."""
+    return np.random.default_rng(int.from_bytes(sha256(text.encode()).digest()[:8], "big"))
