@@ -234,7 +234,8 @@ class Record:
         ticks = np.concatenate(self._waiting)
         fields = pack(ticks)
         sum_ = sha256(self.sum + fields).digest()
-        lines = int(ticks["line"][0]), int(ticks["line"][-1])
+        shown = ticks["line"][ticks["line"] > 0]  # before its first showing a run has line 0
+        lines = (int(shown.min()), int(shown.max())) if shown.size else (0, 0)
         row = (self._n, int(ticks["tick"][0]), ticks.size, *lines, fields, sum_)
         self._db.execute("INSERT INTO ticks VALUES (?, ?, ?, ?, ?, ?, ?)", row)
         return sum_

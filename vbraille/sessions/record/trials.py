@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vbraille.braille.spelling import UNREAD
+from vbraille.files import no_formula
 from vbraille.sessions.planning.loading import parse_protocol
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import edges_mm
@@ -146,8 +147,9 @@ def to_csv(table: Sequence[dict[str, Any]], separator: str = ",", nothing: str =
     writer = csv.writer(text, delimiter=separator, lineterminator="\n")
     writer.writerow(columns)
     for row in table:
-        cells = (row.get(name, "") for name in columns)
-        writer.writerow([nothing if cell in ("", None) else cell for cell in cells])
+        cells = [row.get(name, "") for name in columns]
+        cells = [no_formula(cell) if isinstance(cell, str) else cell for cell in cells]
+        writer.writerow([nothing if cell == "" else cell for cell in cells])
     return text.getvalue()
 
 

@@ -1,0 +1,245 @@
+"""Sessions in the Brain Imaging Data Structure: trials as behaviour, ticks as recordings.
+
+The files follow BIDS 1.9, "Behavioral experiments (with no neural recordings)" and "Physiological
+recordings". Sessions are added to a dataset one by one.
+"""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import io
+import json
+import re
+from collections.abc import Iterable
+from importlib.metadata import version
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vbraille.errors import InputError
+from vbraille.files import write_files
+from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.record.record import Content, Event, read, reading
+from vbraille.sessions.record.ticks import read_all
+from vbraille.sessions.record.trials import codebook, protocol_of, rows, to_csv
+
+DATASET, README = "dataset_description.json", "README"
+PEOPLE, PSEUDONYM = "participants.tsv", "pseudonym"
+SUM = "SessionSum"  # key that tells which session a file of a dataset is of
+README_TEXT = """\
+Sessions of vbraille, as behavioural data.
+
+Each sub- is a participant, by the pseudonym that participants.tsv has. Each ses- is one session. A
+session that was stopped and gone on with has several runs. *_beh.tsv has a row a trial,
+*_events.tsv what happened in a run, and *_recording-carriage_physio.tsv.gz where the array was at
+each moment. The file of the same name that ends in .json says what each column holds.
+"""
+EVENTS = {
+    "onset": {"Description": "from the first row of the run's recording", "Units": "s"},
+    "duration": {"Description": "no event has one that is known", "Units": "s"},
+    "trial_type": {"Description": "what happened, by the kinds of docs/session-format.md"},
+    "practice": {"Description": "1 in a trial of practice, else 0"},
+    "trial": {"Description": "number of the trial that it happened in"},
+    "value": {"Description": "answer, reply, note, or what else the event says"},
+}
+# Columns of a recording: field of the ticks, format, unit and description.
+RECORDED = {
+    "x_mm": ("x_mm", "%.6g", "mm", "place of the array's centre along the line"),
+    "y_mm": ("y_mm", "%.6g", "mm", "place across the lines, to the reader; 0 if not measured"),
+    "speed_mm_s": ("vx_mm_s", "%.6g", "mm/s", "of the hand, to the right"),
+    "frame": ("tick", "%d", "", "number of the frame, from 0"),
+    "line": ("line", "%d", "", "number of what was shown last; 0 before the first"),
+    "flags": ("flags", "%d", "", "bits, as docs/session-format.md has them"),
+}
+SAID = ("answer", "confidence", "reply", "text", "what", "why", "by")
+WORDS = ("reply", "text", "why", "what")  # what anonymous datasets leave out
+
+
+def export_bids(
+    paths: Iterable[Path], folder: Path, *, anonymous: bool = False, session_by: str = ""
+) -> list[Path]:
+    """Add sessions to a dataset, which is begun if there is none, and return the files written.
+
+    Parameters
+    ----------
+    anonymous
+        Whether times of day, notes, words and names of files are left out.
+    session_by
+        Field whose answer is the label of the session; by default they are numbered.
+
+    Raises
+    ------
+    InputError
+        If the dataset has a session already, two participants could not be told apart, or a file
+        cannot be written. The sessions before it are whole in the dataset.
+    """
+    written: list[Path] = []
+    contents = [(path, read(path)) for path in paths]
+    for path, content in sorted(contents, key=lambda each: (each[1].plan.participant, each[0])):
+        written += _add(path, content, folder, anonymous, session_by)
+    return written
+
+
+def label_of(name: str) -> str:
+    """Return the label that BIDS takes for a name: its letters and digits alone."""
+    return re.sub(r"[^A-Za-z0-9]", "", name)
+
+
+def _add(
+    path: Path, content: Content, folder: Path, anonymous: bool, session_by: str
+) -> list[Path]:
+    people = _read_people(folder)
+    pseudonym, number = content.plan.participant, content.events[0].data["plan"]
+    label = label_of(pseudonym)
+    for other in people.values():
+        if other != pseudonym and _plain(other) == _plain(pseudonym):
+            raise InputError(
+                f"{folder} has a participant {other}, who is hard to tell from {label}"
+            )
+    for told in folder.glob("sub-*/ses-*/beh/*_beh.json"):
+        if json.loads(told.read_text("utf-8")).get(SUM) == number:
+            raise InputError(f"{path} is there already, as {told.with_suffix('.tsv')}")
+    session = label_of(str(content.head["fields"].get(session_by, "")))
+    if session_by and not session:
+        raise InputError(f"{path} has no answer to {session_by!r} that could name its session")
+    if not session:
+        known = [path.name[4:] for path in (folder / f"sub-{label}").glob("ses-*")]
+        session = f"{max((int(n) for n in known if n.isdecimal()), default=0) + 1:02}"
+    task = label_of(content.head["protocol"])
+    home = folder / f"sub-{label}" / f"ses-{session}" / "beh"
+    stem = f"sub-{label}_ses-{session}_task-{task}"
+    files = {home / name: made for name, made in _files(path, content, stem, anonymous).items()}
+    about = {
+        "Name": "vbraille sessions", "BIDSVersion": "1.9.0", "DatasetType": "raw",
+        "GeneratedBy": [{"Name": "vbraille", "Version": version("vbraille")}],
+    }  # fmt: skip
+    column = {PSEUDONYM: {"Description": "as the laboratory has it"}}
+    for name, made in (
+        (DATASET, _json(about)), (README, README_TEXT.encode()), ("participants.json", _json(column))
+    ):  # fmt: skip
+        if not (folder / name).exists():
+            files[folder / name] = made
+    table = [{"participant_id": f"sub-{of}", PSEUDONYM: who} for of, who in people.items()]
+    if label not in people:
+        table.append({"participant_id": f"sub-{label}", PSEUDONYM: pseudonym})
+    try:
+        home.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{home} cannot be made: {error.strerror}") from None
+    write_files(files.items())
+    write_files([(folder / PEOPLE, to_csv(table, "\t", "n/a").encode())], replace=True)
+    return [*files, folder / PEOPLE]
+
+
+def _plain(pseudonym: str) -> str:
+    return re.sub(r"(?<!\d)0+(?=\d)", "", label_of(pseudonym).lower())
+
+
+def _read_people(folder: Path) -> dict[str, str]:
+    """Return the pseudonyms of a dataset's participants, by their labels."""
+    path = folder / PEOPLE
+    if not path.exists():
+        return {}
+    found = list(csv.reader(io.StringIO(path.read_text("utf-8")), delimiter="\t"))
+    if not found or found[0] != ["participant_id", PSEUDONYM]:
+        raise InputError(f"{path} has other columns; give another directory, and join the tables")
+    return {label.removeprefix("sub-"): who for label, who in found[1:]}
+
+
+def _files(path: Path, content: Content, stem: str, anonymous: bool) -> dict[str, bytes]:
+    """Return the files of a session by their names."""
+    protocol, table = protocol_of(content), rows(path, anonymous=anonymous)
+    made = {
+        f"{stem}_beh.tsv": to_csv(table, "\t", "n/a").encode(),
+        f"{stem}_beh.json": _json(_described(content, protocol, table)),
+    }
+    starts = [event.n for event in content.events if event.kind == "run"]
+    with reading(path) as db:
+        for number, (first, end) in enumerate(pairwise([*starts, content.events[-1].n + 1]), 1):
+            events = [event for event in content.events if first <= event.n < end]
+            name = f"{stem}_run-{number:02}"
+            ticks = read_all(db, first - 1, end)
+            made[f"{name}_events.tsv"] = _events(events, ticks, anonymous)
+            made[f"{name}_events.json"] = _json(EVENTS)
+            if ticks.size:
+                conditions = events[0].data.get("conditions", {})
+                name += "_recording-carriage_physio"
+                made[f"{name}.tsv.gz"] = _recording(ticks)
+                made[f"{name}.json"] = _json(_recording_described(conditions))
+    return made
+
+
+def _json(content: dict[str, Any]) -> bytes:
+    return (json.dumps(content, ensure_ascii=False, indent=2) + "\n").encode()
+
+
+def _described(content: Content, protocol: Protocol, table: list[dict[str, Any]]) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        SUM: content.events[0].data["plan"],
+        "TaskName": protocol.name,
+        "TaskDescription": f"{protocol.title} ({protocol.source})",
+    }
+    for name, column in codebook(table[0], protocol).items():
+        found[name] = {"Description": column.meaning or name}
+        if column.unit:
+            found[name]["Units"] = column.unit
+        if column.values:
+            found[name]["Levels"] = {value: value for value in column.values.split(", ")}
+    return found
+
+
+def _recording_described(conditions: dict[str, Any]) -> dict[str, Any]:
+    columns = {}
+    for name, (_, _, unit, what) in RECORDED.items():
+        columns[name] = {"Description": what} | ({"Units": unit} if unit else {})
+    rate_hz = conditions.get("rate_hz", 1000.0)
+    return {
+        "SamplingFrequency": rate_hz, "StartTime": 0.0, "Columns": list(RECORDED), **columns
+    }  # fmt: skip
+
+
+def _events(events: list[Event], ticks: NDArray[np.void], anonymous: bool) -> bytes:
+    """Return the events of a run, whose times count from its first tick."""
+    began_s = events[0].t_s
+    for event in events:
+        if "tick" in event.data and ticks.size:
+            (at,) = np.flatnonzero(ticks["tick"] == event.data["tick"])[:1] or (0,)
+            began_s = event.t_s - float(ticks["time_ns"][at] - ticks["time_ns"][0]) / 1e9
+            break
+    table = []
+    for event in events[1:]:
+        said = [str(event.data[name]) for name in SAID if event.data.get(name) not in (None, "")]
+        if anonymous and any(name in event.data for name in WORDS):
+            said = []
+        table.append(
+            {
+                "onset": round(event.t_s - began_s, 6),
+                "duration": "",
+                "trial_type": event.kind,
+                "practice": int(bool(event.practice)),
+                "trial": event.trial or "",
+                "value": "; ".join(said),
+            }
+        )
+    table.sort(key=lambda row: row["onset"])
+    return to_csv(table or [dict.fromkeys(EVENTS, "")], "\t", "n/a").encode()
+
+
+def _recording(ticks: NDArray[np.void]) -> bytes:
+    """Return ticks as a table with a row for each deadline; n/a where one was missed."""
+    due = ticks["tick"] + ticks["late"]
+    form = "\t".join(form for _, form, _, _ in RECORDED.values()) + "\n"
+    missing = "\t".join(["n/a"] * len(RECORDED)) + "\n"
+    packed = io.BytesIO()
+    with gzip.GzipFile(fileobj=packed, mode="wb", compresslevel=3, mtime=0) as file:
+        after = int(due[0])
+        columns = [ticks[field].tolist() for field, _, _, _ in RECORDED.values()]
+        for number, values in enumerate(zip(*columns, strict=True)):
+            file.write((missing * max(int(due[number]) - after, 0)).encode())
+            file.write((form % values).replace("nan", "n/a").encode())
+            after = int(due[number]) + 1
+    return packed.getvalue()
