@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import difflib
+import math
 import re
 import tomllib
 from collections import Counter
+from collections.abc import Iterable, Iterator
 from typing import TypeVar
 
 import msgspec
@@ -60,15 +62,47 @@ def read_toml(text: str, kind: type[Kind], where: str) -> Kind:
     """
     try:
         tree = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f"{where} is not TOML: {error}") from None
+    for path, value in _leaves(tree, []):
+        if isinstance(value, float) and not math.isfinite(value):
+            raise _refused(text, where, path, f"is {value}; it must be a number")
+        if isinstance(value, str) and not value.replace("\n", " ").isprintable():
+            raise _refused(text, where, path, "has control characters; leave them out")
     try:
         return msgspec.convert(tree, kind)
     except msgspec.ValidationError as error:
-        path, problem = _explain(error, kind)
-        keys = [step for step in path if isinstance(step, str)]
-        key = f"{keys[-1]}: " if keys else ""
-        raise InputError(f"{where} line {line_of(text, path)}: {key}{problem}") from None
+        raise _refused(text, where, *_explain(error, kind)) from None
+
+
+def located(text: str, where: str, error: WrongValue) -> InputError:
+    """Return the error of a wrong value with the file and the line."""
+    return _refused(text, where, error.path, error.problem)
+
+
+def which(name: str, names: Iterable[str]) -> str:
+    """Return the end of a sentence on an unknown name: the nearest one, and all that there are."""
+    known = sorted(names)
+    near = difflib.get_close_matches(name, known, 1)
+    return f"; did you mean {near[0]}?" if near else f"; known: {', '.join(known)}"
+
+
+def _refused(text: str, where: str, path: Path, problem: str) -> InputError:
+    keys = [step for step in path if isinstance(step, str)]
+    key = f"{keys[-1]}: " if keys else ""
+    return InputError(f"{where} line {line_of(text, path)}: {key}{problem}")
+
+
+def _leaves(value: object, path: Path) -> Iterator[tuple[Path, object]]:
+    """Go through all values that hold no others, with their paths."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from _leaves(inner, [*path, key])
+    elif isinstance(value, list):
+        for number, inner in enumerate(value):
+            yield from _leaves(inner, [*path, number])
+    else:
+        yield path, value
 
 
 def line_of(text: str, path: Path) -> int:
@@ -99,14 +133,12 @@ def _explain(error: msgspec.ValidationError, kind: type) -> tuple[Path, str]:
     if isinstance(error.__cause__, WrongValue):
         return path + error.__cause__.path, error.__cause__.problem
     if match := re.match(r"Object contains unknown field `(.*)`", message):
-        near = difflib.get_close_matches(match[1], _known_keys(kind, path), 1)
-        hint = f"; did you mean {near[0]}?" if near else ""
-        return [*path, match[1]], f"there is no such key{hint}"
+        return [*path, match[1]], f"there is no such key{which(match[1], _known_keys(kind, path))}"
     if match := re.match(r"Object missing required field `(.*)`", message):
         return path, f"{match[1]} is missing"
     if match := re.match(r"Invalid (?:enum )?value (.*)", message):
-        known = ", ".join(map(repr, _known_values(kind, path)))
-        return path, f"is {match[1]}; known: {known}"
+        known = [str(each) for each in _known_values(kind, path)]
+        return path, f"is {match[1]}" + which(match[1].strip("'"), known)
     message = message.replace(" | null", "")
     for word, plain in _WORDS.items():
         message = message.replace(word, plain)

@@ -1,30 +1,62 @@
 """Designs: which items a study has, and what each shows.
 
-An item is a text: cells in Unicode braille, or the values that are compared.
+An item is a text: cells in Unicode braille, a text in print, a picture's name, or the values that
+are compared.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Callable
 from random import Random
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
 from msgspec import Meta
 
-from vbraille.braille.spelling import spell, to_braille
+from vbraille.braille.cells import UNICODE_BLANK
+from vbraille.braille.spelling import spell, spell_string, to_braille
+from vbraille.sessions.planning.spellings import cells_of
 from vbraille.sessions.planning.trial import Stimulus
-from vbraille.sessions.planning.values import Count, Look
+from vbraille.sessions.planning.values import Count, Look, Number, Parameter
 from vbraille.toml import Table, WrongValue
 
-Keys = dict[str, int]
+MOST_INTERVALS = 5
+BLANK = chr(UNICODE_BLANK)
+
+
+class Setting(NamedTuple):
+    """What an item is shown by.
+
+    Parameters
+    ----------
+    keys
+        Dot masks of the keys of the protocol.
+    room
+        Returns how many cells a line of a look has room for.
+    random
+        Generator that reordered cells are drawn from.
+    """
+
+    keys: dict[str, int]
+    room: Callable[[Look], int]
+    random: Random
 
 
 class Catch(Table, kw_only=True):
-    """Trials that only keep watch: one of so many, and what it shows."""
+    """Trials that only keep watch: one of so many, or a share of all; and what they show."""
 
-    every: Annotated[int, Meta(ge=2)]
-    show: Literal["blank", "repeat"]
+    every: Annotated[int, Meta(ge=2, le=10_000)] | None = None
+    share: Annotated[float, Meta(gt=0, le=0.5)] | None = None
+    show: Literal["blank", "repeat"] = "blank"
+
+    def __post_init__(self) -> None:
+        if (self.every is None) == (self.share is None):
+            raise WrongValue("every", "or share says how many there are; give one of the two")
+
+    @property
+    def stretch(self) -> int:
+        """How many trials stand between one catch trial and the next."""
+        return (self.every or round(1 / (self.share or 1))) - 1
 
 
 class Repeated(Table, kw_only=True, tag_field="kind"):
@@ -40,28 +72,35 @@ class Repeated(Table, kw_only=True, tag_field="kind"):
         Order of the blocks of conditions: balanced over participants, as listed, or shuffled.
     catch
         Catch trials; None for none.
+    counterbalanced
+        Whether each item is shown in one condition only, and participants differ in which.
     """
 
     repeats: Count = 1
-    blocks: Count | Literal["conditions"] = 1
+    blocks: Annotated[int, Meta(ge=1, le=1000)] | Literal["conditions"] = "conditions"
     order: Literal["balanced", "listed", "shuffled"] | None = None
     catch: Catch | None = None
+    counterbalanced: bool = False
+
+    passage: ClassVar[bool] = False
+    parameter: ClassVar[str] = ""
+    form: ClassVar[str] = "strings"
 
     def spellings(self) -> dict[str, tuple[str, ...]]:
         """Return the spellings of cells in the table, by the path of their key."""
         raise NotImplementedError
 
-    def items(self, keys: Keys) -> list[str]:
+    def items(self, keys: dict[str, int]) -> list[str]:
         """Return the items, each once."""
         raise NotImplementedError
 
-    def stimuli(self, item: str, look: Look, keys: Keys, random: Random) -> tuple[Stimulus, ...]:
+    def stimuli(self, item: str, look: Look, setting: Setting) -> tuple[Stimulus, ...]:
         """Return what a trial with an item shows."""
         raise NotImplementedError
 
 
 class StringList(Repeated, kw_only=True, tag="list"):
-    """The strings of a list.
+    """The strings of a list, which are cells, texts or names of pictures.
 
     Parameters
     ----------
@@ -69,23 +108,47 @@ class StringList(Repeated, kw_only=True, tag="list"):
         The strings.
     reorder
         Whether the cells of a string are shuffled in each trial.
+    passage
+        Whether each string is a text that is broken into lines, which are read one after the other.
     """
 
     strings: Annotated[tuple[str, ...], Meta(min_length=1)]
     reorder: bool = False
+    passage: bool = False
 
     def spellings(self) -> dict[str, tuple[str, ...]]:
         """Return the strings."""
         return {"design.strings": self.strings}
 
-    def items(self, keys: Keys) -> list[str]:
-        """Return the strings as cells."""
-        return [to_braille(spell(text, keys)) for text in self.strings]
+    def items(self, keys: dict[str, int] | None) -> list[str]:
+        """Return the strings as cells; as they are without keys, for texts and pictures."""
+        if keys is None:
+            return list(self.strings)
+        return [to_braille(spell_string(text, keys)) for text in self.strings]
 
-    def stimuli(self, item: str, look: Look, keys: Keys, random: Random) -> tuple[Stimulus, ...]:
-        """Return the string, its cells shuffled if the design says so."""
-        cells = "".join(random.sample(item, len(item))) if self.reorder else item
-        return (Stimulus(cells, look),)
+    def stimuli(self, item: str, look: Look, setting: Setting) -> tuple[Stimulus, ...]:
+        """Return the string, in another order if the design says so; or its lines."""
+        if look.scene is not None:
+            return (Stimulus("", look, picture=item),)
+        if look.table is None:
+            cells = "".join(setting.random.sample(item, len(item))) if self.reorder else item
+            return (Stimulus(cells, look),)
+        cells = cells_of(item, look.table)
+        if not self.passage:
+            return (Stimulus(cells, look, text=item),)
+        return tuple(Stimulus(line, look, text=item) for line in broken(cells, setting.room(look)))
+
+
+class ItemList(Repeated, kw_only=True, tag="items"):
+    """The strings of the table [items], which `listed` puts in."""
+
+    reorder: bool = False
+    passage: bool = False
+
+    def listed(self, strings: list[str]) -> StringList:
+        """Return the design that shows some strings as this one shows its items."""
+        fields = {name: getattr(self, name) for name in self.__struct_fields__}
+        return StringList(strings=tuple(strings), **fields)
 
 
 class Combinations(Repeated, kw_only=True, tag="combinations"):
@@ -99,7 +162,7 @@ class Combinations(Repeated, kw_only=True, tag="combinations"):
         Delimiters, which are shown and not asked for.
     """
 
-    characters: Annotated[tuple[str, ...], Meta(min_length=1)]
+    characters: Annotated[tuple[str, ...], Meta(min_length=1, max_length=256)]
     length: Annotated[int, Meta(ge=1, le=6)]
     before: str = ""
     after: str = ""
@@ -112,91 +175,123 @@ class Combinations(Repeated, kw_only=True, tag="combinations"):
             "design.after": (self.after,),
         }
 
-    def items(self, keys: Keys) -> list[str]:
+    def items(self, keys: dict[str, int]) -> list[str]:
         """Return the combinations as cells."""
         cells = [to_braille(spell(text, keys)) for text in self.characters]
         return ["".join(chosen) for chosen in itertools.product(cells, repeat=self.length)]
 
-    def stimuli(self, item: str, look: Look, keys: Keys, random: Random) -> tuple[Stimulus, ...]:
+    def stimuli(self, item: str, look: Look, setting: Setting) -> tuple[Stimulus, ...]:
         """Return the combination between the delimiters."""
-        before, after = (to_braille(spell(text, keys)) for text in (self.before, self.after))
+        around = (self.before, self.after)
+        before, after = (to_braille(spell_string(text, setting.keys)) for text in around)
         return (Stimulus(item, look, before, after),)
 
 
-class Pairs(Repeated, kw_only=True, tag="pairs"):
-    """A string at two values of a number of its look, each pair of different values in both orders.
+class Compared(Repeated, kw_only=True, tag="choice"):
+    """One string at several values of a parameter.
 
     Parameters
     ----------
-    string
-        What is shown.
     parameter, values
-        Name of the number, and its values.
+        What is compared, and its values.
+    string
+        What is shown at all of them.
+    reference
+        The standard, which each value is compared with; None for none.
+    form
+        Stimuli of a trial. "pairs": each value and each other one, or the standard if there is one,
+        in both orders. "single": each value alone. "standard": the standard, and then a value.
+        "one": a value at each place among standards. "triangle": three, one of which differs.
+        "abx": the standard and a value in either order, and one of the two again.
+    intervals
+        Stimuli in a trial of the form "one".
+    same
+        How often each value is compared with itself, in each of the repeats.
     """
 
+    parameter: Parameter
+    values: Annotated[tuple[Number, ...], Meta(min_length=1)]
     string: str
-    parameter: Literal["texture", "contrast", "dot_width_mm", "dot_spacing_mm", "cell_gap_mm"]
-    values: Annotated[tuple[float, ...], Meta(min_length=2)]
+    reference: Number | None = None
+    form: Literal["pairs", "single", "standard", "one", "triangle", "abx"] = "pairs"
+    intervals: Annotated[int, Meta(ge=2, le=MOST_INTERVALS)] = 2
+    same: Annotated[int, Meta(ge=0, le=10_000)] = 0
 
     def __post_init__(self) -> None:
         if len(set(self.values)) < len(self.values):
-            raise WrongValue("values", "a value is there twice")
+            raise WrongValue("values", "one is there twice")
+        if self.reference is None and self.form not in ("pairs", "single"):
+            raise WrongValue("form", f"is {self.form!r}, which needs a reference")
+        if self.reference is not None and self.form == "single":
+            raise WrongValue("reference", "is compared, and form is 'single'; leave one out")
+        if self.reference is None and self.form == "pairs" and len(self.values) < 2:
+            raise WrongValue("values", "are fewer than two, of which none can be compared")
+        if self.reference in self.values and self.form != "standard":
+            raise WrongValue("reference", "is one of values; leave it out there")
+        if self.form != "pairs" and self.same:
+            raise WrongValue("same", "is of form = 'pairs'; leave it out")
+        if self.form != "one" and self.intervals != 2:
+            raise WrongValue("intervals", "are of form = 'one'; leave them out")
 
     def spellings(self) -> dict[str, tuple[str, ...]]:
         """Return the string."""
         return {"design.string": (self.string,)}
 
-    def items(self, keys: Keys) -> list[str]:
-        """Return the pairs of values."""
-        return [f"{one:g} {other:g}" for one, other in itertools.permutations(self.values, 2)]
+    def items(self, keys: dict[str, int]) -> list[str]:
+        """Return the values of the stimuli of each trial, with blanks between them."""
+        alike = [(value, value) for value in self.values] * self.same
+        return [" ".join(f"{v:.9g}" for v in each) for each in [*self.of(self.values), *alike]]
 
-    def stimuli(self, item: str, look: Look, keys: Keys, random: Random) -> tuple[Stimulus, ...]:
-        """Return the string at each value of the pair."""
-        return _compared(self.string, self.parameter, item, look, keys)
+    def of(self, values: tuple[float, ...]) -> list[tuple[float, ...]]:
+        """Return the values of the stimuli of each trial in which some values are shown."""
+        standard = self.reference
+        if standard is None:
+            alone = self.form == "single"
+            return [(v,) for v in values] if alone else list(itertools.permutations(values, 2))
+        pairs = [(standard, value) for value in values]
+        both = [*pairs, *((value, standard) for value in values)]
+        match self.form:
+            case "standard":
+                return pairs
+            case "one":
+                return _placed(pairs, self.intervals)
+            case "triangle":
+                return _placed(both, 3)
+            case "abx":
+                return [(*pair, again) for pair in both for again in pair]
+        return both
+
+    def stimuli(self, item: str, look: Look, setting: Setting) -> tuple[Stimulus, ...]:
+        """Return the string at each value of an item."""
+        cells = to_braille(spell_string(self.string, setting.keys))
+        return tuple(
+            Stimulus(cells, look.changed(self.parameter, value), value=value)
+            for value in map(float, item.split())
+        )
 
 
-class Standard(Repeated, kw_only=True, tag="standard"):
-    """A string at a standard value of a number of its look, and then at another value.
+def _placed(pairs: list[tuple[float, float]], count: int) -> list[tuple[float, ...]]:
+    """Return the second of each pair at each place among so many of the first."""
+    return [
+        tuple(odd if place == at else one for place in range(count))
+        for at in range(count)
+        for one, odd in pairs
+    ]
 
-    Parameters
-    ----------
-    string
-        What is shown.
-    parameter, reference, values
-        Name of the number, its standard value, and the other values.
+
+def broken(cells: str, room: int) -> list[str]:
+    """Return the lines of a text, broken at blank cells; words that are too long are cut.
+
+    >>> broken("⠁⠀⠃⠃⠀⠉⠉⠉⠉⠉", 4)
+    ['⠁⠀⠃⠃', '⠉⠉⠉⠉', '⠉']
     """
-
-    string: str
-    parameter: Literal["texture", "contrast", "dot_width_mm", "dot_spacing_mm", "cell_gap_mm"]
-    reference: float
-    values: Annotated[tuple[float, ...], Meta(min_length=1)]
-
-    def spellings(self) -> dict[str, tuple[str, ...]]:
-        """Return the string."""
-        return {"design.string": (self.string,)}
-
-    def items(self, keys: Keys) -> list[str]:
-        """Return the standard with each value."""
-        return [f"{self.reference:g} {value:g}" for value in self.values]
-
-    def stimuli(self, item: str, look: Look, keys: Keys, random: Random) -> tuple[Stimulus, ...]:
-        """Return the string at both values."""
-        return _compared(self.string, self.parameter, item, look, keys)
+    lines = [""]
+    for word in filter(None, cells.split(BLANK)):
+        if lines[-1] and len(lines[-1]) + 1 + len(word) <= room:
+            lines[-1] += BLANK + word
+        else:
+            lines += [word[at : at + room] for at in range(0, len(word), room)]
+    return lines[1:]
 
 
-def _compared(
-    string: str, parameter: str, item: str, look: Look, keys: Keys
-) -> tuple[Stimulus, ...]:
-    """Return a string at each value of an item."""
-    cells = to_braille(spell(string, keys))
-    values = map(float, item.split())
-    return tuple(Stimulus(cells, look.changed(parameter, value), value=value) for value in values)
-
-
-AnyDesign = StringList | Combinations | Pairs | Standard
-
-
-def practice_items(strings: tuple[str, ...], design: AnyDesign, keys: Keys) -> Iterator[str]:
-    """Go round the items of practice without end."""
-    own = [to_braille(spell(text, keys)) for text in strings]
-    return itertools.cycle(own or design.items(keys))
+AnyDesign = StringList | ItemList | Combinations | Compared

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import itertools
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import Meta
 
 from vbraille.sessions.planning.values import Label, Look
 from vbraille.toml import Table
+
+Cross = Literal["all"] | tuple[tuple[str, ...], ...]
 
 
 class Level(Look, kw_only=True):
@@ -43,14 +45,28 @@ class Cell(Table, kw_only=True):
     levels: dict[str, str]
 
 
-def crossed(factors: tuple[Factor, ...], *, between: bool) -> list[Cell]:
-    """Return all combinations of the factors within participants, or between them."""
+def crossed(factors: tuple[Factor, ...], cross: Cross, *, between: bool) -> list[Cell]:
+    """Return the combinations of the factors within participants, or between them.
+
+    Parameters
+    ----------
+    cross
+        "all", or the combinations that are shown, each as levels of all factors in their order.
+    """
     own = [factor for factor in factors if factor.between == between]
     cells = []
     for levels in itertools.product(*(factor.levels for factor in own)):
+        names = {factor.name: level.name for factor, level in zip(own, levels, strict=True)}
+        if cross != "all" and not any(_holds(names, listed, factors) for listed in cross):
+            continue
         look = Look()
         for level in levels:
             look = level.over(look)
-        names = {factor.name: level.name for factor, level in zip(own, levels, strict=True)}
         cells.append(Cell(name="-".join(names.values()), look=look, levels=names))
     return cells
+
+
+def _holds(names: dict[str, str], listed: tuple[str, ...], factors: tuple[Factor, ...]) -> bool:
+    """Tell whether a listed combination has these levels."""
+    levels = dict(zip((factor.name for factor in factors), listed, strict=False))
+    return names.items() <= levels.items()

@@ -1,8 +1,11 @@
-"""Procedures that choose what is shown by the answers so far.
+"""Procedures that choose by the answers what is shown.
 
-The plan has all trials that there may be. A procedure gives each one a value when it comes, and the
-event of its cue keeps the value. The same answers give the same values, so that a session which is
+The plan has all trials that there may be. A procedure gives each one a level when it comes, and the
+event of its cue keeps the values. The same answers give the same levels, so that a session that is
 resumed goes on as it would have.
+
+A *level* is a value of the procedure's parameter for strings; the difference from the standard
+where a design has one; or the two values, the lower first, of which one is preferred.
 """
 
 from __future__ import annotations
@@ -12,118 +15,273 @@ from typing import Annotated, Literal, NamedTuple
 
 from msgspec import Meta
 
-from vbraille.adaptive.questplus import GridAxis, GridQuest, detection_quest
-from vbraille.adaptive.staircase import Asked, StaircaseRule, Staircases
-from vbraille.sessions.planning.values import Count
+from vbraille.adaptive.observer import Estimate, Grid, Quest, nearer, psychometric, steps
+from vbraille.adaptive.staircase import Asked, Rule, Staircases
+from vbraille.sessions.planning.design import AnyDesign, Compared
+from vbraille.sessions.planning.questions import Question
+from vbraille.sessions.planning.trial import Trial
+from vbraille.sessions.planning.values import Count, Number, Parameter, Positive, Seconds, Share
 from vbraille.toml import Table, WrongValue
+
+THRESHOLD, CENTRE = "threshold", "centre"
+PLACES = 9
+
+Level = tuple[float, ...]
+Chances = Annotated[tuple[Share, ...], Meta(min_length=1)]
 
 
 class Outcome(NamedTuple):
-    """A value that was shown, and whether the answer was positive: right, or yes."""
+    """A level that was shown, whether the answer was positive, and when it was given.
 
-    value: float
+    An answer is positive if it is right or yes; of two that are preferred, if it is the lower.
+    """
+
+    level: Level
     positive: bool
+    t_s: float
 
 
-class ByAnswers(Table, kw_only=True, tag_field="kind"):
+class Procedure(Table, kw_only=True, tag_field="kind"):
     """What all procedures have.
 
     Parameters
     ----------
     parameter
-        Number of the look that is varied.
+        Number of the look of strings that is varied; None if the design compares one.
     least, most
-        Bounds of its values.
+        Bounds of its values; None if the design has them.
+    harder
+        Whether strings are harder to read with less or with more of it.
+    trials
+        Most trials of a condition; None for as many as the design has.
+    seconds
+        Time of the session after which no further trial is chosen.
     """
 
-    parameter: Literal["texture", "contrast", "dot_width_mm"]
-    least: float
-    most: float
+    parameter: Parameter | None = None
+    least: Number | None = None
+    most: Number | None = None
+    harder: Literal["less", "more"] = "less"
+    trials: Count | None = None
+    seconds: Seconds | None = None
 
-    def __post_init__(self) -> None:
-        if not self.least < self.most:
-            raise WrongValue("most", f"must be more than least, {self.least:g}")
+    def bounds(self, design: AnyDesign) -> tuple[float, float]:
+        """Return the lowest and the highest level, or value of which one is preferred."""
+        if not isinstance(design, Compared):
+            return self.least or 0.0, self.most or 0.0
+        values = [abs(value - (design.reference or 0.0)) for value in design.values]
+        return round(min(values), PLACES), round(max(values), PLACES)
 
-    def next(self, history: list[Outcome], seed: str) -> float | None:
-        """Return the next value after the answers of a condition; None if enough was asked."""
+    def next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
+        """Return the next level after the answers of a condition; None if enough was asked."""
+        out_of_time = self.seconds and history and history[-1].t_s >= self.seconds
+        if out_of_time or len(history) >= (self.trials or len(history) + 1):
+            return None
+        return self._next(design, history, seed)
+
+    def _next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
+        raise NotImplementedError
+
+    def found(self, design: AnyDesign, history: list[Outcome], seed: str) -> str:
+        """Say what is known after the answers of a condition; empty if nothing is."""
         raise NotImplementedError
 
 
-class StaircaseTable(ByAnswers, kw_only=True, tag="staircase"):
+class Staircase(Procedure, kw_only=True, tag="staircase"):
     """Staircases: harder after right answers, easier after wrong ones.
 
     Parameters
     ----------
-    starts
+    start
         Where each staircase begins; several are interleaved.
     steps
-        Sizes of the steps, until the first reversal, the second, and so on.
-    right
-        How many right answers running make it harder.
+        Sizes of the step before the first reversal, before the second, and so on.
+    right, wrong
+        How many right answers running make it harder, and how many wrong ones easier.
+    target
+        Share of right answers that steps of two sizes converge to, with right = wrong = 1.
     reversals
         After how many reversals a staircase is over.
     """
 
-    starts: Annotated[tuple[float, ...], Meta(min_length=1)]
-    steps: Annotated[tuple[float, ...], Meta(min_length=1)]
+    start: Annotated[tuple[Number, ...], Meta(min_length=1, max_length=20)]
+    steps: Annotated[tuple[Positive, ...], Meta(min_length=1)]
     right: Count = 2
-    reversals: Count = 10
+    wrong: Count = 1
+    target: Annotated[float, Meta(ge=0.05, le=0.95)] | None = None
+    reversals: Count | None = None
 
-    def next(self, history: list[Outcome], seed: str) -> float | None:
-        """Return the level of the staircase that is drawn next."""
-        rules = tuple(
-            StaircaseRule(
-                start, self.least, self.most, self.steps, self.right, reversals=self.reversals
+    def __post_init__(self) -> None:
+        if self.target is not None and (self.right, self.wrong) != (1, 1):
+            raise WrongValue("target", "is of steps up and down; give right = 1 and wrong = 1")
+
+    def _staircases(self, design: AnyDesign, seed: str) -> Staircases:
+        least, most = self.bounds(design)
+        easier = 1.0 if self.target is None else self.target / (1 - self.target)
+        less = self.harder == "less" or isinstance(design, Compared)
+        rules = [
+            Rule(
+                start, least, most, self.steps, self.right, self.wrong, easier, less, self.reversals
             )
-            for start in self.starts
-        )
-        asked = [Asked((value,), int(positive)) for value, positive in history]
-        return Staircases(rules, seed).next(asked)
+            for start in self.start
+        ]
+        return Staircases(rules, seed)
+
+    def _next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
+        level = self._staircases(design, seed).next(_asked(history))
+        return None if level is None else (level,)
+
+    def found(self, design: AnyDesign, history: list[Outcome], seed: str) -> str:
+        """Say the mean of the reversals."""
+        found = self._staircases(design, seed).estimate(_asked(history))
+        return "" if found is None else f"{found[0]:.3g}, the mean of {found[1]} reversals"
 
 
-class QuestTable(ByAnswers, kw_only=True, tag="quest"):
-    """QUEST+: the value that is expected to tell most about the threshold.
+def _asked(history: list[Outcome]) -> list[Asked]:
+    return [Asked(outcome.level[0], outcome.positive) for outcome in history]
+
+
+class QuestPlus(Procedure, kw_only=True, tag="quest"):
+    """QUEST+: what is expected to tell most about the threshold, or the preferred value.
 
     Parameters
     ----------
     step
-        From one value to the next.
+        From one value to the next; None for those of the design alone.
+    furthest
+        Largest difference of two values of which one is preferred.
+    scale
+        Scale on which their distances are judged.
+    shape
+        Shape of the psychometric function.
     spread, guess, lapse
-        Possible values of the other parameters of the psychometric function.
-    trials, sd
-        After how many trials, or at which standard deviation of the threshold, it is over.
+        Possible values of its other parameters. Without guess, strings are not guessed, and of
+        several stimuli each is guessed as often.
+    sd, width
+        Standard deviation, and width of the interval of 95 %, that are precise enough.
+    at_least
+        Trials of a condition before precision counts.
     """
 
-    step: Annotated[float, Meta(gt=0)]
-    spread: Annotated[tuple[float, ...], Meta(min_length=1)]
-    guess: tuple[float, ...] = (0.0,)
-    lapse: tuple[float, ...] = (0.03,)
-    trials: Count = 40
-    sd: float = 0.0
+    step: Positive | None = None
+    furthest: Positive | None = None
+    scale: Literal["linear", "log"] = "linear"
+    shape: Literal["normal", "logistic", "weibull"] = "normal"
+    spread: Annotated[tuple[Positive, ...], Meta(min_length=1)]
+    guess: Chances | None = None
+    lapse: Chances = (0.03,)
+    sd: Positive | None = None
+    width: Positive | None = None
+    at_least: Count = 10
 
-    def next(self, history: list[Outcome], seed: str) -> float | None:
-        """Return the value that is expected to tell most."""
-        grid = _grid(self)
-        asked = [((value,), int(positive)) for value, positive in history]
-        if len(asked) >= self.trials or grid.estimate(asked, "threshold").sd <= self.sd:
+    def _next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
+        quest = quest_of(self, design)
+        found = self._estimate(design, history)
+        precise = (self.sd is not None and found.sd <= self.sd) or (
+            self.width is not None and found.high - found.low <= self.width
+        )
+        if precise and len(history) >= self.at_least:
             return None
-        (value,) = grid.next(asked)
-        return value
+        return quest.next(_levels(history))
+
+    def _estimate(self, design: AnyDesign, history: list[Outcome]) -> Estimate:
+        quest = quest_of(self, design)
+        return quest.estimate(next(iter(quest.grid.axes)), _levels(history))
+
+    def found(self, design: AnyDesign, history: list[Outcome], seed: str) -> str:
+        """Say the estimate and its interval."""
+        if not history:
+            return ""
+        found = self._estimate(design, history)
+        return f"{found.mean:.3g}, 95 % between {found.low:.3g} and {found.high:.3g}"
+
+
+def _levels(history: list[Outcome]) -> list[tuple[Level, bool]]:
+    return [(outcome.level, outcome.positive) for outcome in history]
 
 
 @lru_cache(maxsize=8)
-def _grid(table: QuestTable) -> GridQuest:
-    """Return the grid of a table, which takes a while to make."""
-    count = round((table.most - table.least) / table.step)
-    values = tuple(round(table.least + n * table.step, 9) for n in range(count + 1))
-    return detection_quest(
-        "normal",
-        values,
-        GridAxis("threshold", values),
-        GridAxis("spread", table.spread),
-        GridAxis("guess", table.guess),
-        GridAxis("lapse", table.lapse),
-    )
+def quest_of(table: QuestPlus, design: AnyDesign) -> Quest:
+    """Return the QUEST+ of a table, which takes a while to make.
+
+    Raises
+    ------
+    WrongValue
+        If the values do not make a grid.
+    """
+    least, most = table.bounds(design)
+    try:
+        values = steps(least, most, table.step) if table.step else _of_design(table, design)
+        if isinstance(design, Compared) and design.reference is None:
+            furthest = table.furthest or most
+            pairs = [(a, b) for a in values for b in values if a < b and b - a <= furthest + 1e-9]
+            axes = {CENTRE: values, "spread": table.spread, "lapse": table.lapse}
+            return Quest(Grid(nearer(log=table.scale == "log"), axes), pairs, CENTRE)
+        guess = table.guess
+        if guess is None:
+            guess = (1 / alternatives(design),) if isinstance(design, Compared) else (0.0,)
+        axes = {THRESHOLD: values, "spread": table.spread, "guess": guess, "lapse": table.lapse}
+        falls = table.harder == "more" and not isinstance(design, Compared)
+        return Quest(
+            Grid(psychometric(table.shape, falls=falls), axes), [(v,) for v in values], THRESHOLD
+        )
+    except ValueError as error:
+        if isinstance(error, WrongValue):
+            raise
+        raise WrongValue("procedure.step", str(error)) from None
 
 
-AnyProcedure = StaircaseTable | QuestTable
+def _of_design(table: QuestPlus, design: AnyDesign) -> tuple[float, ...]:
+    """Return the levels that the design's own values are."""
+    if not isinstance(design, Compared):
+        raise WrongValue("procedure.step", "is missing; give the step from value to value")
+    reference = design.reference or 0.0
+    return tuple(sorted(round(abs(value - reference), PLACES) for value in design.values))
+
+
+def alternatives(design: Compared) -> int:
+    """Return how many answers there are to a trial, of which one is right."""
+    return 2 if design.form == "abx" else len(design.items({})[0].split())
+
+
+def put(table: Procedure, design: AnyDesign, trial: Trial, level: Level) -> Trial:
+    """Return a trial of the plan at a level."""
+    if not isinstance(design, Compared):
+        assert table.parameter is not None, "it is checked"
+        return trial.at(table.parameter, level[0])
+    if design.reference is None:
+        low, high = level
+        values = (low, high) if trial.values[0] < trial.values[1] else (high, low)
+        return trial.with_values(design.parameter, values)
+    away = level[0] if design.values[0] > design.reference else -level[0]
+    other = round(design.reference + away, PLACES)
+    standard = design.reference
+    values = tuple(standard if value == standard else other for value in trial.values)
+    return trial.with_values(design.parameter, values)
+
+
+def outcome_of(
+    design: AnyDesign, question: Question, trial: Trial, level: float, answer: str, t_s: float
+) -> Outcome:
+    """Return what an answer tells a procedure.
+
+    Parameters
+    ----------
+    trial
+        The trial as it was shown.
+    level
+        Value that a string was shown at.
+    answer, t_s
+        The answer, and when it was given.
+    """
+    positive = question.positive(trial, answer)
+    if not isinstance(design, Compared):
+        return Outcome((level,), positive, t_s)
+    if design.reference is None:
+        chosen = trial.values[int(answer) - 1]
+        return Outcome(tuple(sorted(trial.values)), chosen == min(trial.values), t_s)
+    apart = max(abs(value - design.reference) for value in trial.values)
+    return Outcome((round(apart, PLACES),), positive, t_s)
+
+
+AnyProcedure = Staircase | QuestPlus

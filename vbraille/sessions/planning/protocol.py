@@ -1,47 +1,84 @@
-"""A protocol: what a study shows, asks and keeps to, as a TOML file has it.
+"""A protocol: what a study shows, asks and keeps to. Its tables are those of a TOML file.
 
-Ranges of values stand in the types. What only two tables together can get wrong is checked in
-`Protocol.__post_init__`.
+Ranges of values stand in the types. What several tables together can get wrong is checked in
+`vbraille.sessions.planning.loading`, which also reads the files beside a protocol.
 """
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated, Literal
+import re
+from typing import Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
 
-from vbraille.braille.spelling import LETTERS, spell
-from vbraille.errors import InputError
+from vbraille.braille.spelling import spell, spell_string, to_braille
+from vbraille.display import Display
 from vbraille.render import MODELS, BrailleStyle, Model
-from vbraille.sessions.planning.design import AnyDesign, Pairs, Standard, StringList
-from vbraille.sessions.planning.factors import Factor, crossed
+from vbraille.sessions.planning.analysis import Analysis
+from vbraille.sessions.planning.design import AnyDesign, Compared
+from vbraille.sessions.planning.factors import Cross, Factor, crossed
+from vbraille.sessions.planning.items import Items, OrderRow
 from vbraille.sessions.planning.procedures import AnyProcedure
 from vbraille.sessions.planning.questionnaire import Item
-from vbraille.sessions.planning.questions import AnyQuestion, Choose, Identify
-from vbraille.sessions.planning.values import Count, Label, Look, Name, Seconds, Sentence
-from vbraille.toml import Table, WrongValue, read_toml
+from vbraille.sessions.planning.questions import AnyQuestion, Identify, Spelling, Which
+from vbraille.sessions.planning.trial import Stimulus
+from vbraille.sessions.planning.values import (
+    Count,
+    Duration,
+    FileName,
+    Label,
+    Look,
+    Name,
+    Number,
+    Seconds,
+    Sentence,
+)
+from vbraille.toml import Table, WrongValue
 
-FOLDER = Path(__file__).parents[1] / "protocols"
+MOST_LEAD_CELLS = 20
+MOST_PIN_CELLS = 200
+FIRST_CODE, LEAST_CODE, MOST_CODE = 101, 40, 254  # bytes of markers; lower ones are of events
+KEYS = {"enter": "\n", "space": " ", "tab": "\t"}
 
 
-class Display(Look, kw_only=True):
-    """How strings are shown where no condition says it.
+class Shown(Look, kw_only=True):
+    """How strings are shown where no condition says it: the table [display].
 
     Parameters
     ----------
     lead_cells
         Blank cells before each string, which keep it clear of the left stop.
+    travel_mm
+        Length of the carriage's travel.
     """
 
-    lead_cells: Annotated[int, Meta(ge=0, le=20)] = 1
+    lead_cells: Annotated[int, Meta(ge=0, le=MOST_LEAD_CELLS)] = 1
+    travel_mm: Annotated[float, Meta(gt=0, le=5000)] | None = None
 
 
 class Condition(Look, kw_only=True):
     """A condition: its name, and what it changes of the display."""
 
     name: Label
+
+
+class Order(Table, kw_only=True):
+    """Order of the blocks of conditions: the table [order].
+
+    Parameters
+    ----------
+    kind
+        "williams" or "balanced" for Williams squares over participants, "listed" for that of the
+        file, "random" for one of each participant's own, "table" for that of a file of orders.
+    """
+
+    kind: Literal["williams", "balanced", "listed", "random", "table"]
+    file: FileName | None = None
+
+    def __post_init__(self) -> None:
+        if (self.kind == "table") != (self.file is not None):
+            raise WrongValue("file", "and kind = 'table' go together; give both or neither")
 
 
 class Rules(Table, kw_only=True):
@@ -52,7 +89,8 @@ class Rules(Table, kw_only=True):
     never_twice_running
         Whether two neighbouring trials may not show the same item.
     at_most_running
-        How many neighbouring trials may have the same condition, or level of a factor.
+        How many neighbouring trials may have the same condition, level of a factor, or cell of a
+        column of the file of items.
     balanced_quarters
         Whether each quarter of the session has an even share of each condition.
     each_letter, each_letter_at_least
@@ -71,11 +109,11 @@ class Until(Table, kw_only=True):
 
     right: Count
     of: Count
-    most: Count
+    most: Annotated[int, Meta(ge=1, le=1000)]
 
     def __post_init__(self) -> None:
         if not self.right <= self.of <= self.most:
-            raise WrongValue("right", "must not be more than of, and of not more than most")
+            raise WrongValue("right", "must not be more than of, nor of more than most")
 
 
 class Practice(Table, kw_only=True):
@@ -85,19 +123,33 @@ class Practice(Table, kw_only=True):
     ----------
     trials
         How many there are, unless a criterion ends them.
-    strings
-        What is shown; nothing for the items of the design.
+    strings, values, file
+        What is shown: strings, or values that are compared, or a file of strings. Pictures may be
+        those of the test.
+    order
+        Whether it is shuffled, or goes through what is listed, such as from easy to hard.
+    feedback
+        Whether the participant is told after each answer if it is right.
     until
         Criterion that ends practice.
     """
 
-    trials: Annotated[int, Meta(ge=0, le=200)] = 0
+    trials: Annotated[int, Meta(ge=0, le=1000)] = 0
     strings: tuple[str, ...] = ()
+    values: tuple[Number, ...] = ()
+    file: FileName | None = None
+    order: Literal["shuffled", "listed"] = "shuffled"
+    feedback: bool = True
     until: Until | None = None
+
+    @property
+    def most(self) -> int:
+        """How many trials there may be."""
+        return self.until.most if self.until else self.trials
 
 
 class Pace(Table, kw_only=True):
-    """The pace of each trial.
+    """The pace of each trial: the table [trial].
 
     Parameters
     ----------
@@ -105,24 +157,62 @@ class Pace(Table, kw_only=True):
         Time from the answer to the next cue, or the two ends of a range from which it is drawn.
     warning_s
         Time after the cue at which the participant is warned.
-    exposure_s
-        Time after the cue at which the stimulus is taken away.
+    end
+        What ends reading, if not the hand: "button:1" and so on of the device, "key:enter",
+        "key:space", "key:tab", or another key by its character, such as "key:+".
+    exposure_s, exposure_from
+        Time after which the stimulus is taken away, from the cue or from the first touch.
+    answer_s, late
+        Time for an answer, from the end of the exposure or from the cue; and whether a later one is
+        kept and marked, or the trial is over without one.
     feedback
-        Whether the participant is told after each answer if it is right. In practice it always is.
+        Whether the participant is told after each answer of the test if it is right.
     """
 
     # A fixed tuple beside a number with bounds crashes msgspec 0.22.
     gap_s: Seconds | Annotated[tuple[Seconds, ...], Meta(min_length=2, max_length=2)] = 0.5
     warning_s: Seconds | None = None
-    exposure_s: Seconds | None = None
+    end: Annotated[str, Meta(pattern=r"^(button:[1-8]|key:(enter|space|tab|[^\s]))$")] | None = None
+    exposure_s: Duration | None = None
+    exposure_from: Literal["cue", "contact"] = "cue"
+    answer_s: Duration | None = None
+    late: Literal["kept", "missed"] = "kept"
     feedback: bool = False
+
+    def __post_init__(self) -> None:
+        if isinstance(self.gap_s, tuple) and self.gap_s[0] > self.gap_s[1]:
+            raise WrongValue("gap_s", "must have the shorter time first")
+
+    @property
+    def key(self) -> str:
+        """The character that ends reading; empty if no key does."""
+        _, _, name = (self.end or "").partition("key:")
+        return KEYS.get(name, name)
+
+    @property
+    def button(self) -> int | None:
+        """Number of the button that ends reading; None if none does."""
+        found = re.fullmatch(r"button:(\d)", self.end or "")
+        return int(found[1]) if found else None
 
 
 class SessionPace(Table, kw_only=True):
-    """The pace of the session: after how many trials of a block there is a break, and the limit."""
+    """The pace of the session.
 
-    break_every: Count | None = None
+    Parameters
+    ----------
+    limit_s
+        Time after which no further trial begins.
+    break_every, break_s
+        After how many trials of a block there is a break, and how long it is planned to be.
+    blind
+        Whether the live view keeps back all from which a stimulus or an answer could be read.
+    """
+
     limit_s: Seconds | None = None
+    break_every: Count | None = None
+    break_s: Seconds | None = None
+    blind: bool = True
 
 
 class Faults(Table, kw_only=True):
@@ -131,11 +221,28 @@ class Faults(Table, kw_only=True):
     repeat: bool = True
 
 
+Hertz = Annotated[float, Meta(ge=20, le=20_000)]
+Tone = Annotated[tuple[Hertz, ...], Meta(min_length=2, max_length=2)]
+
+
 class Sound(Table, kw_only=True):
     """Tones that the participant hears, by their frequency in Hz and their duration in ms."""
 
-    cue: tuple[int, int] = (880, 150)
-    warning: tuple[int, int] = (440, 400)
+    cue: Tone = (880, 150)
+    warning: Tone = (440, 400)
+
+
+class Markers(Table, kw_only=True):
+    """Bytes that tell other recorders which condition is shown, by the condition's name."""
+
+    codes: dict[str, Annotated[int, Meta(ge=LEAST_CODE, le=MOST_CODE)]] = {}
+
+
+class Pins(Table, kw_only=True):
+    """What stands on a conventional display: where it begins, and what is compared with."""
+
+    cell: Annotated[int, Meta(ge=1, le=MOST_PIN_CELLS)] = 1
+    reference: str = ""
 
 
 class Field(Table, kw_only=True):
@@ -143,20 +250,11 @@ class Field(Table, kw_only=True):
 
     name: Label
     ask: Sentence
-    choices: tuple[str, ...] = ()
+    choices: tuple[Sentence, ...] = ()
 
 
-class Analysis(Table, kw_only=True):
-    """What the sessions are for, fixed before the first of them."""
-
-    measure: Literal["legibility", "threshold", "preferred", "time"]
-    correction: Literal["holm", "bonferroni", "fdr", "none"] = "holm"
-    participants: Count = 12
-    stop: str = ""
-
-
-class Protocol(Table, kw_only=True):
-    """A whole protocol.
+class ProtocolFile(Table, kw_only=True):
+    """A protocol as its file has it.
 
     Parameters
     ----------
@@ -168,85 +266,105 @@ class Protocol(Table, kw_only=True):
         Whether strings are felt on the device or on paper.
     keys
         Spellings of cells beside the letters a to z: one character each, and its dots.
+    cross
+        Which combinations of the factors' levels are shown.
     """
 
+    format: Literal[1] = 1
     name: Name
     title: Sentence
     source: Sentence = "ours"
-    model: Literal["vbd", "stress2"]
+    model: Literal[tuple(MODELS)]
     medium: Literal["device", "paper"] = "device"
-    display: Display = Display()
+    display: Shown = Shown()
     keys: dict[str, str] = {}
+    cross: Cross = "all"
     question: AnyQuestion | None = None
     design: AnyDesign
+    items: Items | None = None
     procedure: AnyProcedure | None = None
     listed: tuple[Condition, ...] = msgspec.field(name="conditions", default=())
     factors: tuple[Factor, ...] = ()
+    order: Order | None = None
     rules: Rules = Rules()
     practice: Practice = Practice()
     trial: Pace = Pace()
     session: SessionPace = SessionPace()
     faults: Faults = Faults()
     sound: Sound = Sound()
+    markers: Markers = Markers()
+    pins: Pins = Pins()
     fields: tuple[Field, ...] = ()
     questionnaire: tuple[Item, ...] = ()
-    analysis: Analysis | None = None
+    analysis: Analysis = Analysis()
 
-    def __post_init__(self) -> None:
-        self._check_spellings()
-        self._check_names()
-        self._check_letters()
-        varied = ["condition", *(factor.name for factor in self.factors if not factor.between)]
-        for name in self.rules.at_most_running:
-            if name not in varied:
-                known = ", ".join(varied)
-                raise WrongValue(f"rules.at_most_running.{name}", f"does not vary; known: {known}")
-        form = self.design.__struct_config__.tag
-        if self.asks.designs and form not in self.asks.designs:
-            raise WrongValue("question.kind", f"{self.asks.kind} is not asked of {form}")
-        if self.design.blocks != "conditions" and self.design.order is not None:
-            raise WrongValue("design.order", "is for blocks = 'conditions'; leave it out")
-        for number, condition in enumerate(self.conditions):
-            try:
-                self.style(condition.over(self.display))
-            except ValueError as error:
-                raise WrongValue(f"conditions.{number}", str(error)) from None
+
+class Protocol(ProtocolFile, kw_only=True):
+    """A protocol with what the files beside it say.
+
+    Parameters
+    ----------
+    files
+        Content of the protocol's file, and of those beside it, by their names.
+    columns
+        Other columns of the file of items, by the item.
+    orders
+        What a file of orders says, by the participant.
+    group
+        Group that it is for; empty for all.
+    """
+
+    files: dict[str, bytes] = {}
+    columns: dict[str, dict[str, str]] = {}
+    orders: dict[str, OrderRow] = {}
+    group: str = ""
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
         """Conditions: those that are listed, or all combinations of factors; at least one."""
-        if not any(not factor.between for factor in self.factors):
-            return self.listed or (Condition(name="only"),)
-        cells = crossed(self.factors, between=False)
+        if all(factor.between for factor in self.factors):
+            return self.listed or (Condition(name="all"),)
+        cells = crossed(self.factors, self.cross, between=False)
         return tuple(Condition(name=cell.name, **cell.look.given) for cell in cells)
 
     @property
     def groups(self) -> tuple[str, ...]:
         """Names of the groups of participants; none if all do the same."""
-        return tuple(cell.name for cell in crossed(self.factors, between=True) if cell.name)
+        cells = crossed(self.factors, self.cross, between=True)
+        return tuple(cell.name for cell in cells if cell.name)
 
     def of_group(self, group: str) -> Protocol:
         """Return the protocol as a group has it."""
-        looks = {cell.name: cell.look for cell in crossed(self.factors, between=True)}
-        display = Display(
-            **(self.display.given | looks[group].given), lead_cells=self.display.lead_cells
-        )
-        return msgspec.structs.replace(self, display=display)
+        cells = crossed(self.factors, self.cross, between=True)
+        look = next(cell.look for cell in cells if cell.name == group)
+        display = msgspec.structs.replace(self.display, **look.given)
+        return msgspec.structs.replace(self, display=display, group=group)
 
     def levels(self, condition: str, group: str) -> dict[str, str]:
         """Return the level of each factor in a condition of a group."""
-        found = {}
+        found: dict[str, str] = {}
         for between, name in ((False, condition), (True, group)):
-            cells = crossed(self.factors, between=between)
+            cells = crossed(self.factors, self.cross, between=between)
             found |= next((cell.levels for cell in cells if cell.name == name), {})
         return found
 
+    def look(self, condition: str) -> Look:
+        """Return how a condition shows what has no value of its own."""
+        own = next(each for each in self.conditions if each.name == condition)
+        return own.over(self.display)
+
     @property
-    def asks(self) -> AnyQuestion:
+    def asks(self) -> Any:
         """The question of each trial; without a table it is which cells, or which of two."""
         if self.question is not None:
             return self.question
-        return Choose() if isinstance(self.design, Pairs | Standard) else Identify()
+        return Which() if isinstance(self.design, Compared) else Identify()
+
+    @property
+    def block_order(self) -> str:
+        """How conditions in blocks are ordered: listed, shuffled, balanced or table."""
+        kind = self.order.kind if self.order else self.design.order or "listed"
+        return {"williams": "balanced", "random": "shuffled"}.get(kind, kind)
 
     @property
     def masks(self) -> dict[str, int]:
@@ -258,80 +376,72 @@ class Protocol(Table, kw_only=True):
         """Model of the display."""
         return MODELS[self.model]
 
+    @property
+    def wanted(self) -> Display:
+        """The display that a session needs, with its travel."""
+        return self.display_model.on(self.style(self.display).geometry)
+
     def style(self, look: Look) -> BrailleStyle:
         """Return the style in which the model shows a look."""
-        return look.style(self.display_model)
+        style = look.style(self.display_model)
+        travel_mm = self.display.travel_mm
+        return style if travel_mm is None else style.replace(travel_mm=travel_mm)
 
-    def _check_spellings(self) -> None:
-        for key, dots in self.keys.items():
-            if len(key) != 1 or len(_spelled(f"keys.{key}", dots, {})) != 1:
-                raise WrongValue(f"keys.{key}", "a key is one character, and stands for one cell")
-        strings = {"practice.strings": self.practice.strings, **self.design.spellings()}
-        for path, spellings in strings.items():
-            for spelling in spellings:
-                _spelled(path, spelling, self.masks)
+    def room(self, look: Look) -> int:
+        """Return how many cells of a string a line has room for."""
+        geometry = self.style(look).geometry
+        return geometry.cells_per_line(self.wanted.span_mm) - self.display.lead_cells
 
-    def _check_names(self) -> None:
-        if self.listed and self.factors:
-            raise WrongValue("conditions", "are made by [[factors]]; leave one of the two out")
-        for path, tables in (
-            ("conditions", self.listed),
-            ("factors", self.factors),
-            ("fields", self.fields),
-            ("questionnaire", self.questionnaire),
-        ):
-            names = [table.name for table in tables]
-            for number, name in enumerate(names):
-                if name in names[:number]:
-                    raise WrongValue(f"{path}.{number}.name", f"{name!r} is there twice")
+    def spelling(self, stimulus: Stimulus) -> Spelling:
+        """Return how answers about a stimulus are spelled."""
+        return Spelling(self.masks, self.style(stimulus.look).mapping.shown_dots())
 
-    def _check_letters(self) -> None:
-        exactly, least = self.rules.each_letter, self.rules.each_letter_at_least or 0
-        if not isinstance(self.design, StringList) or (exactly is None and not least):
-            return
-        shown = "".join(self.design.strings) * self.design.repeats
-        for letter in LETTERS:
-            count = shown.count(letter)
-            if exactly not in (None, count) or count < least:
-                key = "each_letter" if exactly is not None else "each_letter_at_least"
-                raise WrongValue(f"rules.{key}", f"{letter} is shown {count} times")
+    @property
+    def shows_pictures(self) -> bool:
+        """Tell whether strings are names of pictures."""
+        return any(look.scene for look in self.looks)
 
+    @property
+    def has_texts(self) -> bool:
+        """Tell whether strings are texts in print, or names of pictures, and not cells."""
+        return any(look.scene or look.table for look in self.looks)
 
-def _spelled(path: str, text: str, keys: dict[str, int]) -> tuple[int, ...]:
-    """Return the dot masks of a spelling."""
-    try:
-        return spell(text, keys)
-    except ValueError as error:
-        raise WrongValue(path, str(error)) from None
+    @property
+    def looks(self) -> list[Look]:
+        """All looks that the tables name."""
+        levels = [level for factor in self.factors for level in factor.levels]
+        return [self.display, *self.listed, *levels]
 
+    @property
+    def items_shown(self) -> list[str]:
+        """The items of the design, each once."""
+        return self.design.items(None if self.has_texts else self.masks)
 
-def load_protocol(name: str) -> tuple[Protocol, bytes]:
-    """Read a protocol that comes with the program, or a TOML file; return it with the file's bytes.
+    @property
+    def practised(self) -> list[str]:
+        """The items of practice, each once."""
+        if isinstance(self.design, Compared):
+            return [
+                " ".join(f"{v:.9g}" for v in each) for each in self.design.of(self.practice.values)
+            ]
+        if self.has_texts:
+            return list(self.practice.strings)
+        return [to_braille(spell_string(text, self.masks)) for text in self.practice.strings]
 
-    Raises
-    ------
-    InputError
-        If there is no such protocol, or it cannot be used.
-    """
-    path = FOLDER / f"{name}.toml" if "." not in name else Path(name)
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        known = ", ".join(sorted(each.stem for each in FOLDER.glob("*.toml")))
-        raise InputError(f"{name}: {error.strerror}; known: {known}") from None
-    return parse_protocol(content, str(path)), content
+    @property
+    def item_columns(self) -> tuple[str, ...]:
+        """Columns that the file of items has beside the strings."""
+        return tuple(next(iter(self.columns.values()), ()))
 
+    @property
+    def marker_codes(self) -> dict[str, int]:
+        """Byte of each condition."""
+        return {
+            condition.name: self.markers.codes.get(condition.name, min(FIRST_CODE + n, MOST_CODE))
+            for n, condition in enumerate(self.conditions)
+        }
 
-def parse_protocol(content: bytes, where: str) -> Protocol:
-    """Read the protocol of a file's bytes.
-
-    Raises
-    ------
-    InputError
-        If it cannot be used; the line is named.
-    """
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError(f"{where} is not UTF-8; save it as UTF-8") from None
-    return read_toml(text, Protocol, where)
+    @property
+    def needs_pins(self) -> bool:
+        """Tell whether a conventional display is needed."""
+        return bool(self.pins.reference) or any(look.on == "pins" for look in self.looks)

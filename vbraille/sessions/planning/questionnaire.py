@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Iterator
 from typing import Literal
 
 from vbraille.sessions.planning.questions import Scale
 from vbraille.sessions.planning.trial import Trial
-from vbraille.sessions.planning.values import Label, Sentence
+from vbraille.sessions.planning.values import Label, Number, Sentence
 from vbraille.toml import Table, WrongValue
+
+COLUMN = re.compile(r"\{(\w[\w-]*)\}")
 
 
 class Item(Table, kw_only=True):
@@ -16,43 +20,90 @@ class Item(Table, kw_only=True):
 
     Parameters
     ----------
+    kind
+        Whether the answer is one of the choices, a number, a step of a scale, or any words.
     name
         Name of its column.
-    ask
-        The question in words.
     when
         When it is asked: at the "begin", after each "trial" or "block", or at the "end".
-    choices, scale
-        Answers to choose from, or the scale; neither for any text.
+    ask
+        The question in words. In it, in choices and in right, {NAME} stands for that column of the
+        file of items, if it is asked after a trial.
+    choices
+        Answers to choose from.
+    least, most
+        Bounds of a number, or ends of a scale.
+    labels
+        Words for the steps of a scale, or for its two ends.
     right
         The right answer; empty if none is.
     """
 
+    kind: Literal["choice", "number", "rating", "text"]
     name: Label
-    ask: Sentence
     when: Literal["begin", "trial", "block", "end"]
-    choices: tuple[str, ...] = ()
-    scale: Scale | None = None
+    ask: Sentence
+    choices: tuple[Sentence, ...] = ()
+    least: Number | None = None
+    most: Number | None = None
+    labels: tuple[Sentence, ...] = ()
     right: str = ""
 
     def __post_init__(self) -> None:
-        if self.choices and self.scale is not None:
-            raise WrongValue("scale", "there are choices; give one of the two")
-        if self.right and self.choices and self.right not in self.choices:
+        if (self.kind == "choice") != (len(self.choices) > 1):
+            raise WrongValue("choices", "two or more are for kind = 'choice', which needs them")
+        if self.kind == "rating":
+            if self.least is None or self.most is None:
+                raise WrongValue("kind", "is 'rating'; give the ends of the scale, least and most")
+            self._scale  # noqa: B018  (it checks itself)
+        elif self.labels:
+            raise WrongValue("labels", "are for kind = 'rating'; leave them out")
+        fixed = not any(COLUMN.search(each) for each in (self.right, *self.choices))
+        if self.right and fixed and self.choices and self.right not in self.choices:
             raise WrongValue("right", f"{self.right!r} is not one of choices")
+
+    @property
+    def _scale(self) -> Scale:
+        return Scale(least=int(self.least or 0), most=int(self.most or 0), labels=self.labels)
+
+    @property
+    def columns(self) -> set[str]:
+        """Columns of the file of items that it names."""
+        return {
+            name for each in (self.ask, self.right, *self.choices) for name in COLUMN.findall(each)
+        }
+
+    def of(self, columns: dict[str, str]) -> Item:
+        """Return the question about an item, with its columns filled in."""
+
+        def filled(text: str) -> str:
+            return COLUMN.sub(lambda found: columns.get(found[1], ""), text)
+
+        choices = tuple(map(filled, self.choices))
+        fields = {name: getattr(self, name) for name in self.__struct_fields__}
+        fields |= {"ask": filled(self.ask), "choices": choices, "right": filled(self.right)}
+        return Item(**fields)
 
     @property
     def typed(self) -> str:
         """What may be typed."""
-        if self.scale is not None:
-            return f"{self.scale.least} to {self.scale.most}"
-        return " or ".join(self.choices) or "an answer"
+        match self.kind:
+            case "choice":
+                return " or ".join(self.choices)
+            case "rating":
+                return self._scale.typed
+            case "number":
+                least = "" if self.least is None else f" from {self.least:g}"
+                return f"a number{least}" + ("" if self.most is None else f" to {self.most:g}")
+        return "an answer"
 
     def parse(self, text: str) -> str:
         """Read a reply; ValueError if the text is none."""
-        if self.scale is not None:
-            return str(self.scale.parse(text))
         word = text.strip()
+        if self.kind == "rating":
+            return str(self._scale.parse(word))
+        if self.kind == "number":
+            return self._number(word)
         for choice in self.choices:
             if word.casefold() == choice.casefold():
                 return choice
@@ -60,28 +111,47 @@ class Item(Table, kw_only=True):
             raise ValueError(f"{word!r} is not an answer; type {self.typed}")
         return word
 
+    def _number(self, word: str) -> str:
+        try:
+            number = float(word.replace(",", "."))
+        except ValueError:
+            number = math.nan
+        least = -math.inf if self.least is None else self.least
+        most = math.inf if self.most is None else self.most
+        if not (least <= number <= most and math.isfinite(number)):
+            raise ValueError(f"{word!r} is not an answer; type {self.typed}")
+        return f"{number:.15g}"
 
-def due(items: tuple[Item, ...], trials: list[Trial], done: int) -> Iterator[tuple[Item, int]]:
+    def simulate(self) -> str:
+        """Give the right answer, or the first that there may be."""
+        if self.right:
+            return self.right
+        if self.kind in ("number", "rating"):
+            return f"{self.least if self.least is not None else self.most or 0:g}"
+        return self.choices[0] if self.choices else "nothing"
+
+
+def due(
+    items: tuple[Item, ...], last: Trial | None, coming: Trial | None
+) -> Iterator[tuple[Item, int]]:
     """Go through what is asked now, each with the number of its trial or block.
 
     Parameters
     ----------
     items
         The questionnaire.
-    trials
-        All trials but practice.
-    done
-        How many of them have answers.
+    last, coming
+        The last trial that is over, practice left out, and the next one; None if there is none.
     """
     whens = {"begin": 0}
-    if done:
-        last = trials[done - 1]
+    if last is not None:
         if not last.catch:
             whens["trial"] = last.number
-        if done == len(trials) or trials[done].block != last.block:
+        if coming is None or coming.block != last.block:
             whens["block"] = last.block
-    if done == len(trials):
+    if coming is None:
         whens["end"] = 0
     for item in items:
         if item.when in whens:
-            yield item, whens[item.when]
+            of_trial = item.when == "trial" and last is not None
+            yield (item.of(last.columns) if of_trial else item), whens[item.when]

@@ -2,6 +2,11 @@
 
 A class knows everything about its kind: what may be typed, how that is read and scored, how an
 answer is said, what stands in the table, and how the simulated reader answers.
+
+The simulated reader goes by the cells that it feels, or by one number of a stimulus: a length in
+mm, or the strength of its strongest dot in units of E₀. Noise is normal. It says yes, or different,
+beyond one standard deviation of its noise. All this is for trying out protocols, and claims nothing
+about people.
 """
 
 from __future__ import annotations
@@ -12,7 +17,6 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 import numpy as np
 from msgspec import Meta
 
-from vbraille.braille.cells import UNICODE_BLANK
 from vbraille.braille.spelling import (
     ORDINALS,
     UNREAD,
@@ -22,9 +26,10 @@ from vbraille.braille.spelling import (
     to_answer,
     to_braille,
 )
+from vbraille.sessions.planning.spellings import parse_text
 from vbraille.sessions.planning.trial import Trial
-from vbraille.sessions.planning.values import Label, Sentence
-from vbraille.sessions.simulated.feeling import FeltTrial, nearer
+from vbraille.sessions.planning.values import Button, Label, Number, Positive, Sentence
+from vbraille.sessions.simulated.feeling import LENGTHS, FeltTrial, nearer
 from vbraille.sessions.simulated.observer import LEAST_FELT, TIE
 from vbraille.toml import Table, WrongValue
 
@@ -32,6 +37,7 @@ RIGHT, WRONG = "right", "wrong"
 HIT, MISS, FALSE_ALARM, REJECTION = "hit", "miss", "false alarm", "correct rejection"
 GOOD = frozenset((RIGHT, HIT, REJECTION))
 LEAST_SHARE = 1e-3  # a magnitude may not be 0
+MOST_STEPS = 100
 
 
 class Spelling(NamedTuple):
@@ -42,20 +48,41 @@ class Spelling(NamedTuple):
 
 
 class Scale(Table, kw_only=True):
-    """A scale of whole numbers."""
+    """A scale of whole numbers, with words for all its steps, for its two ends, or for none."""
 
     least: int
     most: int
+    labels: tuple[Sentence, ...] = ()
 
     def __post_init__(self) -> None:
-        if not self.least < self.most <= self.least + 100:
-            raise WrongValue("most", f"must be more than least, {self.least}, by 100 at most")
+        if not self.least < self.most <= self.least + MOST_STEPS:
+            raise WrongValue("most", f"must be more than least, by {MOST_STEPS} at most")
+        if len(self.labels) not in (0, 2, self.most - self.least + 1):
+            raise WrongValue("labels", "must be two, for the ends, or one for each step")
+
+    @property
+    def names(self) -> dict[int, str]:
+        """The labels, by their steps."""
+        if len(self.labels) == 2:
+            return {self.least: self.labels[0], self.most: self.labels[1]}
+        return dict(enumerate(self.labels, self.least))
+
+    @property
+    def typed(self) -> str:
+        """What may be typed."""
+        ends = (self.least, self.most)
+        return " to ".join(f"{n} ({self.names[n]})" if n in self.names else str(n) for n in ends)
 
     def parse(self, text: str) -> int:
-        """Read a number of the scale; ValueError if the text is none."""
+        """Read a number of the scale, or its label; ValueError if the text is neither."""
         word = text.strip()
-        if not word.removeprefix("-").isdecimal() or not self.least <= int(word) <= self.most:
-            raise ValueError(f"{word!r} is not on the scale; type {self.least} to {self.most}")
+        for number, label in self.names.items():
+            if word.casefold() == label.casefold():
+                return number
+        digits = word.removeprefix("-")
+        known = digits.isascii() and digits.isdecimal() and len(digits) < 9
+        if not known or not self.least <= int(word) <= self.most:
+            raise ValueError(f"{word!r} is not on the scale; type {self.typed}")
         return int(word)
 
 
@@ -70,11 +97,13 @@ class Question(Table, kw_only=True, tag_field="kind"):
         Scale on which it is asked how sure the answer is; None if it is not asked.
     """
 
-    typed: ClassVar[str] = "the answer"  # what may be typed
-    designs: ClassVar[tuple[str, ...]] = ()  # kinds of design that it is asked of; none for all
+    asks_of: ClassVar[tuple[str, ...]] = ("strings", "pictures", "single")
     counts_catch: ClassVar[bool] = False  # whether catch trials are what is asked about
+    scores: ClassVar[bool] = False  # whether a procedure can go by its answers
+    alarm: ClassVar[str] = ""  # answer that a false alarm is
+    confirms: ClassVar[bool] = False  # whether a typed answer is said back before it counts
 
-    ask: Sentence = "What was it?"
+    ask: str = ""
     confidence: Scale | None = None
 
     @property
@@ -82,17 +111,35 @@ class Question(Table, kw_only=True, tag_field="kind"):
         """Name of the kind in protocols and tables."""
         return str(self.__struct_config__.tag)
 
+    @property
+    def typed(self) -> str:
+        """What may be typed."""
+        return "the answer"
+
     def steps(self, line: str) -> int | None:
         """Return by how many steps a line turns what is shown; None if it turns nothing."""
+        return None
+
+    def by_button(self, number: int) -> str:
+        """Return the line that a button of the device stands for; empty for none."""
+        return ""
+
+    def by_knob(self, number: int, share: float) -> float | None:
+        """Return the value at a place of a knob of the device; None if it turns nothing."""
         return None
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
         """Return an answer in the spelling in which it is kept; ValueError if the text is none."""
         raise NotImplementedError
 
+    def right_answer(self, trial: Trial) -> str:
+        """Return the right answer as it is kept; empty if there is none."""
+        return ""
+
     def outcome(self, trial: Trial, answer: str) -> str:
         """Return how an answer is scored; empty if nothing is right or wrong."""
-        return ""
+        right = self.right_answer(trial)
+        return "" if not right else RIGHT if answer == right else WRONG
 
     def correct(self, trial: Trial, answer: str) -> bool | None:
         """Tell whether an answer is right; None if nothing is."""
@@ -109,204 +156,261 @@ class Question(Table, kw_only=True, tag_field="kind"):
 
     def was(self, trial: Trial, spelling: Spelling) -> str:
         """Return the right answer as it is spoken, for feedback; empty if there is none."""
-        return ""
+        right = self.right_answer(trial)
+        return self.said(right, spelling) if right else ""
 
     def cell(self, trial: Trial, answer: str) -> str:
         """Return an answer as it stands in the table."""
         return answer
 
+    def unfelt(self, parameter: str) -> str:
+        """Return why the simulated reader cannot answer about a parameter; empty if it can."""
+        return ""
+
     def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
         """Answer by what was felt."""
         raise NotImplementedError
 
+    def guess(self, trial: Trial, random: np.random.Generator) -> str:
+        """Answer without having felt anything."""
+        raise NotImplementedError
+
 
 class Identify(Question, kw_only=True, tag="identify"):
-    """Which cells were shown?"""
+    """Asks which cells were shown."""
 
-    designs = ("list", "combinations")
-    typed = "letters, keys or dot numbers; ? for a cell that was not read"
+    asks_of = ("strings",)
+    scores = True
+
+    @property
+    def typed(self) -> str:
+        """What may be typed."""
+        return "what was read: letters, keys or dot numbers, or a text in print; ? if not read"
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
-        """Read cells."""
-        places = len(trial.stimuli[0].cells)
+        """Read cells, or a text."""
+        first, cells = trial.stimuli[0], trial.cells
+        if first.look.table is not None:
+            return parse_text(text, first.text, cells, first.look.table)
         keys, shown_dots = spelling
-        return parse_answer(text, places=places, keys=keys, shown_dots=shown_dots)
+        return parse_answer(text, places=len(cells), keys=keys, shown_dots=shown_dots)
+
+    def right_answer(self, trial: Trial) -> str:
+        """Return the cells."""
+        return trial.cells
 
     def outcome(self, trial: Trial, answer: str) -> str:
         """Return right if all cells are; of a blank catch trial, if no dot was felt."""
         if trial.catch == "blank":
             return RIGHT if set(answer) <= {UNREAD, to_braille((0,))} else WRONG
-        return RIGHT if answer == trial.stimuli[0].cells else WRONG
+        return super().outcome(trial, answer)
 
     def said(self, answer: str, spelling: Spelling) -> str:
         """Return the cells by their letters and keys."""
         return say_cells(answer, spelling.keys)
 
     def was(self, trial: Trial, spelling: Spelling) -> str:
-        """Return the cells."""
-        return self.said(trial.stimuli[0].cells, spelling)
+        """Return the cells, or the text that they stand for."""
+        return trial.stimuli[0].text or self.said(trial.cells, spelling)
 
     def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
         """Give the cells as they were felt."""
         return to_answer(felt.cells(random))
 
+    def guess(self, trial: Trial, random: np.random.Generator) -> str:
+        """Say that no cell was read."""
+        return UNREAD * len(trial.cells)
 
-class Choose(Question, kw_only=True, tag="which"):
-    """Which of the stimuli was it?
 
-    Parameters
-    ----------
-    right
-        Which value is right: the one with more, or with less; None if it is a preference.
-    """
+class Chosen(Question, kw_only=True):
+    """Asks for the number of a stimulus."""
 
-    designs = ("pairs", "standard")
-    typed = "1 or 2, for the first or the second"
+    scores = True
+    among: ClassVar[int] = 0  # of how many one is chosen; 0 for all
 
-    right: Literal["more", "less"] | None = None
+    @property
+    def typed(self) -> str:
+        """What may be typed."""
+        return "the number of one: 1, 2 and so on, or first, second"
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
         """Read a choice."""
-        return parse_choice(text, len(trial.stimuli))
-
-    def outcome(self, trial: Trial, answer: str) -> str:
-        """Return right if the chosen value is the most, or the least."""
-        if self.right is None:
-            return ""
-        values = [stimulus.value for stimulus in trial.stimuli]
-        best = max(values) if self.right == "more" else min(values)
-        return RIGHT if values[int(answer) - 1] == best else WRONG
+        return parse_choice(text, self.among or len(trial.stimuli))
 
     def said(self, answer: str, spelling: Spelling) -> str:
         """Return the ordinal."""
         return ORDINALS[int(answer) - 1]
 
+    def guess(self, trial: Trial, random: np.random.Generator) -> str:
+        """Choose any."""
+        return str(random.integers(self.among or len(trial.stimuli)) + 1)
+
+
+class Which(Chosen, kw_only=True, tag="which"):
+    """Asks which of two to five stimuli it was.
+
+    Parameters
+    ----------
+    right
+        Which value is right: the one with more, with less, or nearest to the reference; None if it
+        is a preference.
+    reference
+        Value that the nearest one is nearest to.
+    """
+
+    asks_of = ("pairs", "standard", "one")
+
+    right: Literal["more", "less", "nearest"] | None = None
+    reference: Number | None = None
+
+    def __post_init__(self) -> None:
+        if (self.right == "nearest") != (self.reference is not None):
+            raise WrongValue("right", "'nearest' and reference go together; give both or neither")
+
+    def worth(self, value: float) -> float:
+        """Return a number that is the higher, the more right a value is."""
+        if self.reference is not None:
+            return -abs(value - self.reference)
+        return -value if self.right == "less" else value
+
+    def right_answer(self, trial: Trial) -> str:
+        """Return the number of the value that is right, if it is one."""
+        worth = [self.worth(value) for value in trial.values]
+        if self.right is None or worth.count(max(worth)) > 1:
+            return ""
+        return str(worth.index(max(worth)) + 1)
+
     def cell(self, trial: Trial, answer: str) -> str:
         """Return the value that was chosen."""
-        return f"{trial.stimuli[int(answer) - 1].value:g}"
+        return f"{trial.values[int(answer) - 1]:g}"
+
+    def unfelt(self, parameter: str) -> str:
+        """Return why the simulated reader cannot choose."""
+        if parameter == "texture_cycles":
+            return "the simulated reader does not feel which texture is finer"
+        if self.right == "nearest" and parameter not in LENGTHS:
+            return f"the simulated reader feels how strong a dot is, and not its {parameter}"
+        return ""
 
     def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
         """Choose what is nearest to the usual length, or what is right, or the strongest."""
         values, unit = felt.values()
         if self.right is None and felt.by_length:
             return str(nearer(values, unit, noise, random))
-        worth = [-value if self.right == "less" else value for value in values]
-        drawn = np.array(worth) + noise * unit * random.standard_normal(len(worth))
+        drawn = np.array([self.worth(value) for value in values])
+        drawn += noise * unit * random.standard_normal(len(values))
         return str(int(np.nan_to_num(drawn, nan=-math.inf).argmax()) + 1)
 
 
-class Same(Question, kw_only=True, tag="same-different"):
-    """Were the two the same, or different?"""
+class Odd(Chosen, kw_only=True, tag="odd"):
+    """Asks which of three or more stimuli differed from the others."""
 
-    designs = ("pairs", "standard")
-    typed = "same or different"
+    asks_of = ("one", "triangle")
+
+    def right_answer(self, trial: Trial) -> str:
+        """Return the number of the value that is there once."""
+        return next(str(n) for n, v in enumerate(trial.values, 1) if trial.values.count(v) == 1)
+
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+        """Choose the one that is felt furthest from the middle one."""
+        drawn = _drawn(felt, noise, random)
+        return str(int(np.abs(drawn - np.median(drawn)).argmax()) + 1)
+
+
+class Match(Chosen, kw_only=True, tag="match"):
+    """Asks which of the first two stimuli the third one was (ABX)."""
+
+    asks_of = ("abx",)
+    among = 2
+
+    def right_answer(self, trial: Trial) -> str:
+        """Return the number of the first that has the value of the third."""
+        return str(trial.values.index(trial.values[2]) + 1)
+
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+        """Choose the one that is felt nearer to the third."""
+        first, second, third = _drawn(felt, noise, random)
+        return "2" if abs(second - third) < abs(first - third) else "1"
+
+
+def _drawn(felt: FeltTrial, noise: float, random: np.random.Generator) -> np.ndarray:
+    """Return the values that are felt, with noise; 0 for one not felt."""
+    values, unit = felt.values()
+    return np.nan_to_num(values + noise * unit * random.standard_normal(len(values)))
+
+
+class OneOfTwo(Question, kw_only=True):
+    """Asks for one of two words; the first is right where there is a signal."""
+
+    words: ClassVar[tuple[str, str]]
+
+    @property
+    def typed(self) -> str:
+        """What may be typed."""
+        return f"{self.words[0]} or {self.words[1]}"
+
+    def has_signal(self, trial: Trial) -> bool:
+        """Tell whether a trial has a signal."""
+        raise NotImplementedError
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
-        """Read same or different, or the first letter."""
-        for word in ("same", "different"):
-            if text.strip().lower() in (word, word[0]):
+        """Read one of the words, or its first letter."""
+        for word in self.words:
+            if text.strip().casefold() in (word, word[0]):
                 return word
-        raise ValueError(f"{text.strip()!r} is not an answer; type same or different")
+        raise ValueError(f"{text.strip()!r} is not an answer; type {self.typed}")
 
-    def outcome(self, trial: Trial, answer: str) -> str:
-        """Return hit, miss, false alarm or correct rejection; different ones are the signal."""
-        first, second = trial.stimuli
-        if first == second:
-            return FALSE_ALARM if answer == "different" else REJECTION
-        return HIT if answer == "different" else MISS
-
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
-        """Say different of what is felt to differ by more than the noise."""
-        (one, two), unit = felt.values()
-        apart = abs(one - two) / unit + noise * math.sqrt(2) * float(random.standard_normal())
-        return "different" if abs(apart) > max(noise * math.sqrt(2), TIE) else "same"
-
-
-class Adjust(Question, kw_only=True, tag="adjust"):
-    """Make it equal.
-
-    Parameters
-    ----------
-    step
-        Smallest turn of the value.
-    least, most
-        Bounds of the value.
-    """
-
-    designs = ("standard",)
-    typed = "+ or - to turn it (++ twice), equal when it is"
-
-    step: Annotated[float, Meta(gt=0)]
-    least: float
-    most: float
-
-    def __post_init__(self) -> None:
-        if self.least + self.step > self.most:
-            raise WrongValue("most", "must be a step above least, or more")
-
-    def steps(self, line: str) -> int | None:
-        """Return by how many steps a line turns the value; None if it is an answer."""
-        word = line.strip()
-        if not word or set(word) - {"+", "-"}:
-            return None
-        return word.count("+") - word.count("-")
-
-    def turned(self, value: float, steps: int) -> float:
-        """Return a value turned by some steps."""
-        return round(min(max(value + steps * self.step, self.least), self.most), 9)
-
-    def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
-        """Return the value that is shown, if it is equal."""
-        if text.strip().lower() not in ("equal", "="):
-            raise ValueError(f"{text.strip()!r} is not an answer; type {self.typed}")
-        return f"{trial.stimuli[-1].value:.9g}"
-
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
-        """Turn by as many steps as the two are felt to differ."""
-        values, unit = felt.values()
-        drawn = noise * unit * random.standard_normal(2)
-        apart = values[-1] + drawn[1] - (values[0] + drawn[0])
-        steps = round(abs(apart) / self.step) if math.isfinite(apart) else 0
-        if not steps or felt.turns > (self.most - self.least) / self.step:
-            return "equal"
-        return ("-" if apart > 0 else "+") * steps
-
-
-class Free(Question, kw_only=True, tag="free"):
-    """What was it, in any words?"""
-
-    def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
-        """Return the words."""
-        if not text.strip():
-            raise ValueError("nothing was typed; type any words")
-        return text.strip()
-
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
-        """Say how strong it was."""
-        return f"strength {felt.strength():.2f}"
-
-
-class Detect(Question, kw_only=True, tag="detect"):
-    """Was there anything?"""
-
-    designs = ("list", "combinations")
-    typed = "yes or no"
-    counts_catch = True
-
-    def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
-        """Read yes or no, or the first letter."""
-        for word in ("yes", "no"):
-            if text.strip().lower() in (word, word[0]):
-                return word
-        raise ValueError(f"{text.strip()!r} is not an answer; type yes or no")
+    def right_answer(self, trial: Trial) -> str:
+        """Return the word that is right."""
+        return self.words[0] if self.has_signal(trial) else self.words[1]
 
     def outcome(self, trial: Trial, answer: str) -> str:
         """Return hit, miss, false alarm or correct rejection."""
-        (stimulus,) = trial.stimuli
-        blank = set(stimulus.cells) == {chr(UNICODE_BLANK)} or stimulus.look.contrast == 0
-        if blank:
-            return FALSE_ALARM if answer == "yes" else REJECTION
-        return HIT if answer == "yes" else MISS
+        if self.has_signal(trial):
+            return HIT if answer == self.words[0] else MISS
+        return FALSE_ALARM if answer == self.words[0] else REJECTION
+
+    def guess(self, trial: Trial, random: np.random.Generator) -> str:
+        """Say either word."""
+        return self.words[random.integers(2)]
+
+
+class Same(OneOfTwo, kw_only=True, tag="same-different"):
+    """Asks whether two stimuli were the same or different."""
+
+    asks_of = ("pairs",)
+    words = ("different", "same")
+    alarm = "different"
+
+    def has_signal(self, trial: Trial) -> bool:
+        """Tell whether the two differ."""
+        return trial.stimuli[0] != trial.stimuli[1]
+
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+        """Say different of what is felt to differ by more than the noise of both."""
+        (one, two), unit = felt.values()
+        if math.isnan(one) or math.isnan(two):
+            return "different" if math.isnan(one) != math.isnan(two) else "same"
+        apart = (one - two) / unit + noise * math.sqrt(2) * float(random.standard_normal())
+        return "different" if abs(apart) > max(noise * math.sqrt(2), TIE) else "same"
+
+
+class Detect(OneOfTwo, kw_only=True, tag="detect"):
+    """Asks whether there was anything."""
+
+    asks_of = ("strings",)
+    counts_catch = True
+    scores = True
+    words = ("yes", "no")
+    alarm = "yes"
+
+    def has_signal(self, trial: Trial) -> bool:
+        """Tell whether there was anything to feel."""
+        return not trial.stimuli[0].is_blank
+
+    def was(self, trial: Trial, spelling: Spelling) -> str:
+        """Return what there was."""
+        return "something" if self.has_signal(trial) else "nothing"
 
     def positive(self, trial: Trial, answer: str) -> bool:
         """Tell whether the answer is yes."""
@@ -319,27 +423,57 @@ class Detect(Question, kw_only=True, tag="detect"):
 
 
 class Rate(Question, kw_only=True, tag="rating"):
-    """How much of something was there, on a scale?"""
+    """Asks where on a scale something is.
 
-    scale: Label
-    least: int = 1
-    most: int = 7
+    Parameters
+    ----------
+    scale
+        Name of what is rated, such as roughness.
+    least, most, labels
+        The scale, as at `Scale`.
+    """
+
+    asks_of = ("strings", "pictures", "single", "pairs", "standard")
+
+    scale: Sentence
+    least: int
+    most: int
+    labels: tuple[Sentence, ...] = ()
 
     def __post_init__(self) -> None:
-        Scale(least=self.least, most=self.most)
+        self._steps  # noqa: B018  (it checks itself)
+
+    @property
+    def _steps(self) -> Scale:
+        """The scale."""
+        return Scale(least=self.least, most=self.most, labels=self.labels)
+
+    @property
+    def typed(self) -> str:
+        """What may be typed."""
+        return f"{self._steps.typed}, for {self.scale}"
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
-        """Read a number of the scale."""
-        return str(Scale(least=self.least, most=self.most).parse(text))
+        """Read a step of the scale."""
+        return str(self._steps.parse(text))
+
+    def said(self, answer: str, spelling: Spelling) -> str:
+        """Return the number, and its label if it has one."""
+        label = self._steps.names.get(int(answer))
+        return f"{answer}, {label}" if label else answer
 
     def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
         """Put the strength, from 0 to 1, on the scale."""
         share = felt.strength(-1) + noise * float(random.standard_normal())
         return str(self.least + round(min(max(share, 0.0), 1.0) * (self.most - self.least)))
 
+    def guess(self, trial: Trial, random: np.random.Generator) -> str:
+        """Give any step."""
+        return str(random.integers(self.least, self.most + 1))
+
 
 class Magnitude(Question, kw_only=True, tag="magnitude"):
-    """How strong was it, as any number above 0?
+    """Asks how strong something was, as any number above 0.
 
     Parameters
     ----------
@@ -347,9 +481,15 @@ class Magnitude(Question, kw_only=True, tag="magnitude"):
         Number that participants are told for a standard; None if they choose one.
     """
 
-    typed = "a number above 0"
+    asks_of = ("strings", "pictures", "single", "pairs", "standard")
 
-    modulus: Annotated[float, Meta(gt=0)] | None = None
+    modulus: Positive | None = None
+
+    @property
+    def typed(self) -> str:
+        """What may be typed."""
+        told = "" if self.modulus is None else f"; the standard is {self.modulus:g}"
+        return f"a number above 0{told}"
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
         """Read a number with a point or a comma."""
@@ -366,54 +506,240 @@ class Magnitude(Question, kw_only=True, tag="magnitude"):
         share = max(felt.share(), LEAST_SHARE) * math.exp(noise * float(random.standard_normal()))
         return f"{(self.modulus or 1.0) * max(share, LEAST_SHARE):.3g}"
 
+    def guess(self, trial: Trial, random: np.random.Generator) -> str:
+        """Give any number around the modulus."""
+        return f"{(self.modulus or 1.0) * math.exp(random.standard_normal()):.3g}"
 
-class Pick(Question, kw_only=True, tag="name"):
-    """Which of some names does it have?
+
+class Names(Table, kw_only=True):
+    """Names of which a picture has one.
 
     Parameters
     ----------
     names
         The names, by the keys that may be typed for them.
-    right
-        Right name of each item, by the item as the protocol spells it.
+    of
+        Column of the file of items that has the right one; None if it is the picture's own name.
     """
 
-    names: Annotated[dict[str, Label], Meta(min_length=2)]
-    right: dict[str, str] = {}
+    names: Annotated[
+        dict[Annotated[str, Meta(pattern=r"^[^\s,]$")], Label], Meta(min_length=2, max_length=40)
+    ]
+    of: str | None = None
+
+    @property
+    def typed(self) -> str:
+        """The keys and their names."""
+        return ", ".join(f"{key} {name}" for key, name in self.names.items())
+
+
+class Pick(Question, kw_only=True, tag="name"):
+    """Asks which names a picture has, such as its shape and its size.
+
+    Parameters
+    ----------
+    choices
+        The names to choose from, in the order in which answers keep them.
+    confirm
+        Whether a typed answer is said back, and counts only when it is typed again, or by Enter.
+    buttons
+        Whether the buttons of the device stand for the keys, in their order.
+    """
+
+    asks_of = ("pictures",)
+
+    choices: Annotated[tuple[Names, ...], Meta(min_length=1)]
+    confirm: bool = True
+    buttons: bool = False
 
     def __post_init__(self) -> None:
-        for key, name in self.names.items():
-            if list(self.names.values()).count(name) > 1:
-                raise WrongValue(f"names.{key}", f"{name!r} is there twice")
-        for item, name in self.right.items():
-            if name not in self.names.values():
-                raise WrongValue(f"right.{item}", f"{name!r} is not one of the names")
+        words = [word for each in self.choices for word in (*each.names, *each.names.values())]
+        for word in words:
+            if words.count(word) > 1:
+                raise WrongValue("choices", f"{word!r} is there twice")
+
+    @property
+    def confirms(self) -> bool:
+        """Whether a typed answer is said back before it counts."""
+        return self.confirm
+
+    @property
+    def typed(self) -> str:
+        """The keys of each choice, and their names."""
+        return "; ".join(each.typed for each in self.choices)
+
+    def by_button(self, number: int) -> str:
+        """Return the key that a button stands for."""
+        keys = [key for each in self.choices for key in each.names]
+        return keys[number - 1] if self.buttons and number <= len(keys) else ""
+
+    def marked(self, text: str, before: tuple[str, ...] = ()) -> tuple[str, ...]:
+        """Return the names that a line gives, over those given before; empty where none is yet."""
+        found = list(before) or [""] * len(self.choices)
+        words = text.replace(",", " ").split()
+        known = {w for each in self.choices for w in (*each.names, *each.names.values())}
+        marks = [mark for word in words for mark in ((word,) if word in known else word)]
+        for mark in marks:
+            for number, each in enumerate(self.choices):
+                name = each.names.get(mark, mark)
+                if name in each.names.values():
+                    found[number] = name
+                    break
+            else:
+                raise ValueError(f"{mark!r} is not an answer; type {self.typed}")
+        return tuple(found)
+
+    def missing(self, names: tuple[str, ...]) -> str:
+        """Return the keys of the first choice without a name; empty if all have one."""
+        pairs = zip(self.choices, names, strict=True)
+        return next((each.typed for each, name in pairs if not name), "")
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
-        """Read a key or a name."""
-        word = text.strip()
-        name = self.names.get(word, word)
-        if name not in self.names.values():
-            known = ", ".join(f"{key} {name}" for key, name in self.names.items())
-            raise ValueError(f"{word!r} is not an answer; type {known}")
-        return name
+        """Read keys or names, one for each choice, in any order."""
+        names = self.marked(text)
+        if missing := self.missing(names):
+            raise ValueError(f"a name is missing; type one of {missing}")
+        return " ".join(names)
 
-    def outcome(self, trial: Trial, answer: str) -> str:
-        """Return right if the item has the name."""
-        right = self.was(trial, Spelling({}, 0))
-        return "" if not right else RIGHT if answer == right else WRONG
-
-    def was(self, trial: Trial, spelling: Spelling) -> str:
-        """Return the right name."""
-        return self.right.get(say_cells(trial.item, {}).replace(" ", ""), "")
+    def right_answer(self, trial: Trial) -> str:
+        """Return the right names."""
+        named = (trial.columns.get(each.of) if each.of else trial.item for each in self.choices)
+        return " ".join(filter(None, named))
 
     def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
-        """Name what the cells spell, or any."""
-        letters = say_cells(to_answer(felt.cells(random)), {}).replace(" ", "")
-        names = list(self.names.values())
-        return self.right.get(letters, names[random.integers(len(names))])
+        """Give the names of the picture that is felt most like it."""
+        return felt.named(noise, random)
+
+    def guess(self, trial: Trial, random: np.random.Generator) -> str:
+        """Give any names."""
+        named = ([*each.names.values()] for each in self.choices)
+        return " ".join(names[random.integers(len(names))] for names in named)
+
+
+class Read(Question, kw_only=True, tag="read"):
+    """Says whether a passage was read to its end."""
+
+    asks_of = ("passages",)
+
+    @property
+    def typed(self) -> str:
+        """What may be typed."""
+        return "read, or broken off"
+
+    def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
+        """Read one of the two, or its first letter."""
+        for word in ("read", "broken off"):
+            if text.strip().casefold() in (word, word[0]):
+                return word
+        raise ValueError(f"{text.strip()!r} is not an answer; type {self.typed}")
+
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+        """Say that it was read."""
+        return "read"
+
+    def guess(self, trial: Trial, random: np.random.Generator) -> str:
+        """Say that it was broken off."""
+        return "broken off"
+
+
+class Adjust(Question, kw_only=True, tag="adjust"):
+    """Asks to turn the last stimulus until it is equal to the standard, or as it should be.
+
+    Parameters
+    ----------
+    step, least, most
+        Smallest turn of the value, and its bounds.
+    knob
+        Number of the device's knob whose way from end to end is that from least to most.
+    buttons
+        Numbers of three buttons of the device: for less, for more, and for equal.
+    """
+
+    asks_of = ("single", "standard")
+
+    step: Positive
+    least: Number
+    most: Number
+    knob: Button | None = None
+    buttons: Annotated[tuple[Button, ...], Meta(max_length=3)] = ()
+
+    def __post_init__(self) -> None:
+        if self.least + self.step > self.most:
+            raise WrongValue("most", "must be a step above least, or more")
+        if len(set(self.buttons)) not in (0, 3):
+            raise WrongValue("buttons", "must be three, for less, for more and for equal")
+
+    @property
+    def typed(self) -> str:
+        """What may be typed."""
+        return "+ or - to turn it (++ twice), equal when it is; standard shows both again"
+
+    def steps(self, line: str) -> int | None:
+        """Return the steps of a line; 0 shows both again; None if it is an answer."""
+        word = line.strip().casefold()
+        if word == "standard":
+            return 0
+        return word.count("+") - word.count("-") if word and not set(word) - {"+", "-"} else None
+
+    def by_button(self, number: int) -> str:
+        """Return the line that a button stands for."""
+        lines = zip(self.buttons, ("-", "+", "equal"), strict=False)
+        return dict(lines).get(number, "")
+
+    def by_knob(self, number: int, share: float) -> float | None:
+        """Return the value at a place of the knob, on a step."""
+        if number != self.knob:
+            return None
+        steps = round(share * (self.most - self.least) / self.step)
+        return self.turned(self.least, steps)
+
+    def turned(self, value: float, steps: int) -> float:
+        """Return a value turned by some steps."""
+        return round(min(max(value + steps * self.step, self.least), self.most), 9)
+
+    def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
+        """Return the value that is shown, if it is equal."""
+        if text.strip().casefold() not in ("equal", "="):
+            raise ValueError(f"{text.strip()!r} is not an answer; type {self.typed}")
+        return f"{trial.values[-1]:.9g}"
+
+    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+        """Turn by as many steps as the two, or it and the usual value, are felt to differ."""
+        values, unit = felt.values()
+        standard = values[0] if len(values) > 1 else unit
+        first, last = noise * unit * random.standard_normal(2)
+        apart = values[-1] + last - (standard + first)
+        steps = round(abs(apart) / self.step) if math.isfinite(apart) else 0
+        if not steps or felt.turns > (self.most - self.least) / self.step:
+            return "equal"
+        return ("-" if apart > 0 else "+") * steps
+
+    def guess(self, trial: Trial, random: np.random.Generator) -> str:
+        """Leave it as it is."""
+        return trial.presented.split()[-1]
+
+
+class Free(Question, kw_only=True, tag="free"):
+    """Asks for any words."""
+
+    asks_of = ("strings", "pictures", "single", "pairs", "standard")
+
+    @property
+    def typed(self) -> str:
+        """What may be typed."""
+        return "any words"
+
+    def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
+        """Return the words."""
+        if not text.strip():
+            raise ValueError("nothing was typed; type any words")
+        return text.strip()
+
+    def unfelt(self, parameter: str) -> str:
+        """Return why the simulated reader cannot answer."""
+        return "the simulated reader has no words"
 
 
 AnyQuestion = (
-    Identify | Choose | Same | Adjust | Free | Detect | Rate | Magnitude | Pick
-)  # fmt: skip
+    Identify | Which | Odd | Match | Same | Detect | Rate | Magnitude | Pick | Read | Adjust | Free
+)

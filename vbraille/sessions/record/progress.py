@@ -10,13 +10,14 @@ from collections import defaultdict
 from collections.abc import Iterable
 
 from vbraille.sessions.planning.plan import Plan
-from vbraille.sessions.planning.procedures import Outcome
+from vbraille.sessions.planning.procedures import Outcome, outcome_of, put
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.questionnaire import Item, due
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.record.record import Event
 
 Key = tuple[bool, int]
+DECIDING = ("answer", "undo", "missed")
 
 
 class Progress:
@@ -28,8 +29,10 @@ class Progress:
         Events of each trial, by its key.
     answers, confidences : dict
         Events of the answers that stand, and of their confidences, by the trials' keys.
+    missed : set
+        Keys of the trials that are over without an answer.
     replies : dict
-        Replies to the questionnaire, by the name and the number of the trial or block.
+        Events of the replies that stand, by the name and the number of the trial or block.
     last : Event or None
         The newest event.
     runs : int
@@ -38,6 +41,8 @@ class Progress:
         Number of the last showing.
     script_line : int
         Line of the file of answers that was used last.
+    ended : bool
+        Whether the session is over.
     """
 
     def __init__(self, protocol: Protocol, plan: Plan, events: Iterable[Event] = ()) -> None:
@@ -46,79 +51,158 @@ class Progress:
         self.events: defaultdict[Key, list[Event]] = defaultdict(list)
         self.answers: dict[Key, Event] = {}
         self.confidences: dict[Key, Event] = {}
-        self.replies: dict[tuple[str, int], str] = {}
+        self.missed: set[Key] = set()
+        self.replies: dict[tuple[str, int], Event] = {}
         self.last: Event | None = None
         self.runs = self.line = self.script_line = 0
-        self.ended = self._broken = False
+        self.ended = self._broken = self._practised = False
+        self._trials = [trial for trial in plan.trials if not trial.practice]
+        self._in_conditions: defaultdict[str, list[Trial]] = defaultdict(list)
+        for trial in self._trials:
+            self._in_conditions[trial.condition].append(trial)
+        self._first = 0  # no trial before that place of the plan is open
+        self._outcomes: dict[str, list[Outcome]] = {}
         for event in events:
             self.take(event)
 
     def take(self, event: Event) -> None:
         """Take another event."""
         self.last = event
-        self.line = event.data.get("line", self.line)
-        self.script_line = event.data.get("script_line", self.script_line)
+        data = event.data
+        self.line = data.get("line", self.line)
+        self.script_line = data.get("script_line", self.script_line)
         self.runs += event.kind == "run"
         self.ended |= event.kind == "end"
+        self._practised |= event.kind == "begin"
         if event.kind == "reply":
-            self.replies[event.data["name"], event.data["number"]] = event.data["reply"]
-        if event.kind == "break":
+            self.replies[data["name"], data["number"]] = event
+        elif event.kind == "undo" and "name" in data:
+            self.replies.pop((data["name"], data["number"]), None)
+        elif event.kind == "break":
             self._broken = True
-        if (key := event.key) is None:
+        key = event.key
+        if key is None:
             return
+        self._practised |= not key[0]
         self.events[key].append(event)
+        if event.kind in DECIDING:
+            self._decide(event, key)
+        elif event.kind == "confidence":
+            self.confidences[key] = event
+
+    def _decide(self, event: Event, key: Key) -> None:
+        """Take an event after which a trial has an answer, or has none any more."""
+        self.answers.pop(key, None)
+        self.confidences.pop(key, None)
+        self.missed.discard(key)
+        self._outcomes.clear()
         if event.kind == "answer":
             self.answers[key] = event
             self._broken = False
-        elif event.kind == "confidence":
-            self.confidences[key] = event
-        elif event.kind == "undo":
-            self.answers.pop(key, None)
-            self.confidences.pop(key, None)
+        elif event.kind == "missed":
+            self.missed.add(key)
+            self._broken = False
+        else:
+            self._first = 0
 
     @property
     def t_s(self) -> float:
         """Time that the session has run for, up to the newest event."""
         return 0.0 if self.last is None else self.last.t_s
 
+    def _is_over(self, trial: Trial) -> bool:
+        if trial.key in self.missed:
+            return True
+        return trial.key in self.answers and not self.lacks_confidence(trial)
+
     @property
     def next_trial(self) -> Trial | None:
-        """The first trial that lacks an answer or its confidence; None after the last."""
-        for trial in self.plan.trials:
-            if trial.practice and self.practice_is_over:
-                continue
-            if trial.key in self.answers and not self.lacks_confidence(trial):
-                continue
-            if (shown := self.shown(trial)) is not None:
-                return shown
+        """The first trial that is not over, as it is shown; None after the last."""
+        for place in range(self._first, len(self.plan.trials)):
+            trial = self.plan.trials[place]
+            if self._is_over(trial):
+                self._first += place == self._first
+            elif not (trial.practice and self.practice_is_over):
+                if (shown := self.shown(trial)) is not None:
+                    return shown
         return None
 
     @property
     def next_item(self) -> tuple[Item, int] | None:
         """What the questionnaire asks now, and of which trial or block; None for nothing."""
-        trials = [trial for trial in self.plan.trials if not trial.practice]
-        asked = due(self.protocol.questionnaire, trials, self.done)
+        if not self.protocol.questionnaire:
+            return None
+        last = next((trial for trial in reversed(self._trials) if self._is_over(trial)), None)
+        asked = due(self.protocol.questionnaire, last, self.next_trial)
         return next((each for each in asked if (each[0].name, each[1]) not in self.replies), None)
 
     def shown(self, trial: Trial) -> Trial | None:
         """Return a trial of the plan as it is shown; None if a procedure leaves it out."""
-        procedure = self.protocol.procedure
-        if procedure is None or trial.practice:
+        procedure, design = self.protocol.procedure, self.protocol.design
+        if self._was_decided(trial):
+            cues = self._cues(trial)
+            if trial.values and cues:
+                return trial.with_values(design.parameter, tuple(self._values(trial, cues)))
+            if procedure is not None and cues and cues[-1].data.get("value") is not None:
+                return trial.at(procedure.parameter, cues[-1].data["value"])
             return trial
-        cues = [e.data["value"] for e in self.events[trial.key] if e.kind == "cue"]
-        seed = f"{self.protocol.name} {self.plan.participant} {self.plan.seed} {trial.condition}"
-        value = cues[-1] if cues else procedure.next(self._outcomes(trial.condition), seed)
-        return None if value is None else trial.at(procedure.parameter, value)
+        if procedure is None or trial.practice or trial.catch:
+            return trial
+        history = self._history(trial.condition)
+        level = procedure.next(design, history, self._seed(trial.condition))
+        return None if level is None else put(procedure, design, trial, level)
 
-    def _outcomes(self, condition: str) -> list[Outcome]:
-        """Return the values that were shown in a condition, with their answers."""
-        found = []
-        for trial in self.plan.trials:
-            if trial.condition == condition and not trial.practice and trial.key in self.answers:
-                answer = self.answers[trial.key].data["answer"]
-                value = next(e.data["value"] for e in self.events[trial.key] if e.kind == "cue")
-                found.append(Outcome(value, self.protocol.asks.positive(trial, answer)))
+    def _was_decided(self, trial: Trial) -> bool:
+        return any(event.kind in DECIDING for event in self.events.get(trial.key, ()))
+
+    def _cues(self, trial: Trial) -> list[Event]:
+        """Return the cues of the newest attempt at a trial."""
+        events = self.events.get(trial.key, ())
+        newest = max((event.attempt or 0 for event in events), default=0)
+        return [event for event in events if event.kind == "cue" and event.attempt == newest]
+
+    def _values(self, trial: Trial, cues: list[Event]) -> list[float]:
+        """Return the values that the stimuli of a trial were shown at last."""
+        values = trial.values
+        for cue in cues:
+            values[cue.data["stimulus"]] = cue.data["value"]
+        return values
+
+    def _seed(self, condition: str) -> str:
+        return f"{self.protocol.name} {self.plan.participant} {self.plan.seed} {condition}"
+
+    def _history(self, condition: str) -> list[Outcome]:
+        """Return what the answers of a condition tell a procedure."""
+        found = self._outcomes.get(condition)
+        if found is None:
+            found = self._outcomes[condition] = []
+            for trial in self._in_conditions[condition]:
+                event = self.answers.get(trial.key)
+                shown = self.shown(trial) if event is not None and not trial.catch else None
+                if event is not None and shown is not None:
+                    level = self._cues(trial)[-1].data["value"]
+                    asks, answer = self.protocol.asks, event.data["answer"]
+                    found.append(
+                        outcome_of(self.protocol.design, asks, shown, level, answer, event.t_s)
+                    )
         return found
+
+    @property
+    def found(self) -> list[str]:
+        """What a procedure has found in each condition."""
+        procedure = self.protocol.procedure
+        sentences = []
+        for condition in self._in_conditions if procedure is not None else ():
+            history, seed = self._history(condition), self._seed(condition)
+            if said := procedure.found(self.protocol.design, history, seed):
+                sentences.append(f"{condition}: {said}")
+        return sentences
+
+    @property
+    def newest_given(self) -> Event | None:
+        """The newest answer or reply that stands; None if there is none."""
+        given = [*self.answers.values(), *self.replies.values()]
+        return max(given, key=lambda event: event.n, default=None)
 
     @property
     def last_answered(self) -> Trial | None:
@@ -130,19 +214,17 @@ class Progress:
 
     @property
     def done(self) -> int:
-        """Number of trials with an answer, practice left out."""
-        return sum(not practice for practice, _ in self.answers)
+        """Number of trials that are over, practice left out."""
+        return sum(not practice for practice, _ in (*self.answers, *self.missed))
 
     @property
     def practice_is_over(self) -> bool:
-        """Tell whether a trial of a block was shown, or practice has come to its criterion."""
-        if any(not practice for practice, _ in self.events):
-            return True
+        """Tell whether a trial of a block was shown, or practice has come to its end."""
         until = self.protocol.practice.until
-        if until is None:
-            return False
-        last = [trial for trial in self.plan.trials if trial.practice and trial.key in self.answers]
+        if self._practised or until is None:
+            return self._practised
         asks = self.protocol.asks
+        last = [trial for trial in self.plan.trials if trial.practice and trial.key in self.answers]
         right = [asks.correct(t, self.answers[t.key].data["answer"]) for t in last[-until.of :]]
         return len(right) == until.of and right.count(True) >= until.right
 
@@ -153,19 +235,17 @@ class Progress:
 
     def is_taken_back(self, trial: Trial) -> bool:
         """Tell whether the answer of a trial was taken back, and no other one was given."""
-        kinds = [e.kind for e in self.events[trial.key] if e.kind in ("answer", "undo")]
+        kinds = [e.kind for e in self.events.get(trial.key, ()) if e.kind in DECIDING]
         return kinds[-1:] == ["undo"]
 
     def attempts(self, trial: Trial) -> int:
         """Tell how often a trial was shown."""
-        return max((event.attempt or 0 for event in self.events[trial.key]), default=0)
+        return max((event.attempt or 0 for event in self.events.get(trial.key, ())), default=0)
 
     def is_break_due(self, trial: Trial) -> bool:
         """Tell whether there is a break before a trial."""
         if trial.practice or self._broken or not self.done:
             return False
         every = self.protocol.session.break_every
-        in_block = sum(
-            each.block == trial.block and each.key in self.answers for each in self.plan.trials
-        )
+        in_block = sum(each.block == trial.block and self._is_over(each) for each in self._trials)
         return in_block == 0 or (every is not None and in_block % every == 0)

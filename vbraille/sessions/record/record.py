@@ -9,9 +9,8 @@ from __future__ import annotations
 import json
 import os
 import sqlite3
-import zlib
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from datetime import UTC, datetime
 from hashlib import sha256
 from pathlib import Path
@@ -25,10 +24,11 @@ from numpy.typing import NDArray
 from vbraille.errors import VbrailleError
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.trial import Trial
+from vbraille.sessions.record.ticks import pack
 
-FORMAT = 9
+FORMAT = 1
 SCHEMA = """
-CREATE TABLE session (          -- one row: who, what, and with which equipment
+CREATE TABLE session (          -- one row: who, what, and all that does not change
     id INTEGER PRIMARY KEY CHECK (id = 1), format INTEGER NOT NULL, participant TEXT NOT NULL,
     protocol TEXT NOT NULL, seed INTEGER NOT NULL, head TEXT NOT NULL CHECK (json_valid(head))
 ) STRICT;
@@ -38,8 +38,8 @@ CREATE TABLE file (             -- the protocol and what stands beside it, byte 
 CREATE TABLE trial (            -- the plan
     practice INTEGER NOT NULL, number INTEGER NOT NULL, block INTEGER NOT NULL,
     condition TEXT NOT NULL, item TEXT NOT NULL, gap_s REAL NOT NULL, catch TEXT NOT NULL,
-    stimuli TEXT NOT NULL CHECK (json_valid(stimuli)),
-    PRIMARY KEY (practice, number)
+    columns TEXT NOT NULL CHECK (json_valid(columns)),
+    stimuli TEXT NOT NULL CHECK (json_valid(stimuli)), PRIMARY KEY (practice, number)
 ) STRICT;
 CREATE TABLE event (            -- what happened, in order
     n INTEGER PRIMARY KEY, kind TEXT NOT NULL, t_s REAL NOT NULL, wall TEXT NOT NULL,
@@ -52,7 +52,7 @@ CREATE TABLE ticks (            -- a second or less of the device's ticks; see `
     sum BLOB NOT NULL, PRIMARY KEY (after, first)
 ) STRICT;
 CREATE INDEX ticks_of_line ON ticks (first_line);
-CREATE INDEX event_of_trial ON event (kind, practice, trial);
+CREATE INDEX event_of_trial ON event (trial, practice, kind);
 CREATE TRIGGER events_do_not_change BEFORE UPDATE ON event
     BEGIN SELECT RAISE(ABORT, 'events do not change'); END;
 CREATE TRIGGER events_do_not_go BEFORE DELETE ON event
@@ -62,40 +62,45 @@ CREATE VIEW answers AS          -- the answer of each trial that counts
         json_extract(e.data, '$.answer') AS answer, e.t_s, e.wall
     FROM trial t LEFT JOIN event e ON e.kind = 'answer' AND e.n = (
         SELECT max(n) FROM event
-        WHERE kind IN ('answer', 'undo') AND trial = t.number AND practice = t.practice);
+        WHERE trial = t.number AND practice = t.practice AND kind IN ('answer', 'undo', 'missed'));
 """
 # Kinds of events, and what each says. The codebook has these words.
 KINDS = {
     "session": "the plan was made",
     "run": "a console began to run the session, or went on with it",
-    "cue": "a stimulus was put under the hand",
+    "cue": "a stimulus was put under the hand, or on the pins",
     "contact": "the array came to the first dot",
     "read": "the hand was at the end of the line and back",
-    "ended": "reading was ended by a key or by time",
+    "ended": "reading was ended by a key, a button, the answer or time",
     "warning": "the participant was warned that time is over soon",
     "answer": "an answer was given",
     "confidence": "it was said how sure the last answer is",
+    "missed": "there was no answer in time",
     "reply": "a question of the questionnaire was answered",
-    "undo": "the answer of the trial was taken back",
+    "undo": "the answer of the trial, or a reply, was taken back",
     "repeat": "the trial is shown again",
     "fault": "the stimulus could not be felt",
+    "well": "the stimulus could be felt again",
+    "device": "the device reported something",
+    "display": "a conventional display is ready",
+    "pins": "cells were put on the conventional display",
+    "hand": "a page of the live view took the simulated hand, or gave it back",
+    "begin": "practice was ended",
     "pause": "the array was brought to rest",
     "go": "a pause or a break ended",
     "break": "a break began",
     "note": "the experimenter noted something",
+    "closed": "the device was closed",
     "stop": "the console stopped; the session can be resumed",
     "end": "the session is over",
 }
-TICK = np.dtype(
-    [(name, "<i8") for name in ("tick", "time_ns", "device_ns", "line", "part", "flags", "late")]
-    + [(name, "<f8") for name in ("x_mm", "y_mm", "theta_rad", "vx_mm_s", "vy_mm_s")]
-    + [(name, "<f8") for name in ("shown_s", "share")]
-)
 TICKS_A_BLOB = 1000
 LAST = """
     SELECT event.n, ifnull(ticks.sum, event.sum) FROM event LEFT JOIN ticks ON after = n
     ORDER BY n DESC, first DESC LIMIT 1
 """
+TRIAL = ("practice", "number", "block", "condition", "item", "gap_s", "catch", "columns", "stimuli")
+START = bytes(32)  # what the first event's sum goes on from
 
 
 class RecordError(VbrailleError):
@@ -139,15 +144,21 @@ class Event(Struct, frozen=True):
 def create(path: Path, head: dict[str, Any], files: dict[str, bytes], plan: Plan) -> None:
     """Write a new record; it is on the disk whole, or not at all.
 
+    Parameters
+    ----------
+    head
+        All that is known of the session before it begins; protocol, order, group and fields at
+        least.
+
     Raises
     ------
     RecordError
         If there is such a file, or it cannot be written.
     """
     partial = path.with_name(f".{path.name}.new")
-    partial.unlink(missing_ok=True)  # of a console that was killed
     try:
-        with told(path), closing(sqlite3.connect(partial, isolation_level=None)) as db:
+        partial.unlink(missing_ok=True)  # of a console that was killed
+        with told(path), closing(connect(partial, "rwc")) as db:
             partial.chmod(0o600)
             db.execute("PRAGMA synchronous = EXTRA")
             db.executescript(f"BEGIN; {SCHEMA}")
@@ -155,33 +166,39 @@ def create(path: Path, head: dict[str, Any], files: dict[str, bytes], plan: Plan
             db.execute("INSERT INTO session VALUES (1, ?, ?, ?, ?, ?)", row)
             db.executemany("INSERT INTO file VALUES (?, ?)", files.items())
             rows = map(_trial_row, plan.trials)
-            db.executemany("INSERT INTO trial VALUES (?, ?, ?, ?, ?, ?, ?, ?)", rows)
-            _insert(db, _event(1, "session", 0.0, None, None, {"plan": _plan_sum(db)}), bytes(32))
+            db.executemany("INSERT INTO trial VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", rows)
+            _insert(db, _event(1, "session", 0.0, None, None, {"plan": plan_sum(db)}), START)
             db.execute("COMMIT")
         os.link(partial, path)
+        folder = os.open(path.parent, os.O_RDONLY)
+        os.fsync(folder)
+        os.close(folder)
     except FileExistsError:
         raise RecordError(f"{path} is there already; choose another name") from None
     except OSError as error:
         raise RecordError(f"{path}: {error.strerror}") from None
     finally:
-        partial.unlink(missing_ok=True)
-    folder = os.open(path.parent, os.O_RDONLY)
-    os.fsync(folder)
-    os.close(folder)
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
 
 
 class Record:
-    """A record that is open to be added to. No other console can open it meanwhile."""
+    """A record that is open to be added to. No other console can open it meanwhile.
+
+    Attributes
+    ----------
+    sum : bytes
+        Sum of the newest event or blob of ticks, which stands for the whole record.
+    """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         with told(path):
-            uri = f"file:{path}?mode=rw"
-            self._db = sqlite3.connect(uri, uri=True, isolation_level=None, timeout=0)
+            self._db = connect(path, "rw")
             self._db.execute("PRAGMA locking_mode = EXCLUSIVE")
             self._db.execute("PRAGMA journal_mode = TRUNCATE")
             self._db.execute("PRAGMA synchronous = FULL")
-            self._db.executescript("BEGIN IMMEDIATE; COMMIT")
+            self._db.executescript("BEGIN EXCLUSIVE; COMMIT")
             self._n, self.sum = self._db.execute(LAST).fetchone()
         self._waiting: list[NDArray[np.void]] = []
 
@@ -194,6 +211,7 @@ class Record:
         with self._transaction():
             before = self._insert_ticks() if kind == "answer" else self.sum
             sum_ = _insert(self._db, event, before)
+        self._waiting = [] if kind == "answer" else self._waiting
         self._n, self.sum = event.n, sum_
         return event
 
@@ -207,29 +225,26 @@ class Record:
         """Write the ticks that wait."""
         with self._transaction():
             sum_ = self._insert_ticks()
-        self.sum = sum_
+        self._waiting, self.sum = [], sum_
 
     def _insert_ticks(self) -> bytes:
         """Insert the ticks that wait, and return the newest sum."""
         if not self._waiting:
             return self.sum
         ticks = np.concatenate(self._waiting)
-        self._waiting = []
-        kept = np.empty(ticks.size, TICK)
-        for name in TICK.names or ():
-            kept[name] = ticks[name]
-        fields = _pack(kept)
+        fields = pack(ticks)
         sum_ = sha256(self.sum + fields).digest()
-        lines = int(kept["line"][0]), int(kept["line"][-1])
-        row = (self._n, int(kept["tick"][0]), kept.size, *lines, fields, sum_)
+        lines = int(ticks["line"][0]), int(ticks["line"][-1])
+        row = (self._n, int(ticks["tick"][0]), ticks.size, *lines, fields, sum_)
         self._db.execute("INSERT INTO ticks VALUES (?, ?, ?, ?, ?, ?, ?)", row)
         return sum_
 
     def close(self) -> None:
         """Write the ticks that wait, and close the file, which then stands alone."""
-        self.write_ticks()
-        with closing(self._db), told(self.path):
-            self._db.execute("PRAGMA journal_mode = DELETE")
+        with closing(self._db):
+            self.write_ticks()
+            with told(self.path):
+                self._db.execute("PRAGMA journal_mode = DELETE")
 
     def read(self) -> Content:
         """Read everything but the ticks."""
@@ -260,12 +275,12 @@ class Content(Struct, frozen=True):
 
 
 def read(path: Path) -> Content:
-    """Read a record, which may be in use.
+    """Read a record.
 
     Raises
     ------
     RecordError
-        If it cannot be read.
+        If it cannot be read, or a console runs the session.
     """
     with reading(path) as db:
         return _read(path, db)
@@ -275,39 +290,39 @@ def read(path: Path) -> Content:
 def reading(path: Path) -> Iterator[sqlite3.Connection]:
     """Open a record to read it. What a crash left half done is first taken back, if that can be."""
     writable = os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)
-    uri = f"file:{path}?mode={'rw' if writable else 'ro'}"
-    with told(path), closing(sqlite3.connect(uri, uri=True)) as db:
+    with told(path), closing(connect(path, "rw" if writable else "ro")) as db:
         db.execute("PRAGMA query_only = ON")
         yield db
 
 
+def connect(path: Path, mode: str) -> sqlite3.Connection:
+    """Open a file of SQLite, which does not wait for another console."""
+    uri = f"{path.absolute().as_uri()}?mode={mode}"
+    return sqlite3.connect(uri, uri=True, isolation_level=None, timeout=0)
+
+
 def _read(path: Path, db: sqlite3.Connection) -> Content:
-    participant, seed, head = db.execute("SELECT participant, seed, head FROM session").fetchone()
+    query = "SELECT format, participant, seed, head FROM session"
+    version, participant, seed, head = db.execute(query).fetchone()
+    if version != FORMAT:
+        raise RecordError(f"{path} has format {version}; use a vbraille that knows it")
     head = json.loads(head)
-    trials = tuple(
-        msgspec.convert(dict(zip(_TRIAL, row, strict=True)), Trial, strict=False)
-        for row in _with_json(db.execute("SELECT * FROM trial ORDER BY practice DESC, number"))
-    )
+    trials = []
+    for row in db.execute("SELECT * FROM trial ORDER BY practice DESC, number"):
+        fields = dict(zip(TRIAL, row, strict=True))
+        fields |= {name: json.loads(fields[name]) for name in ("columns", "stimuli")}
+        trials.append(msgspec.convert(fields, Trial, strict=False))
     query = "SELECT n, kind, t_s, wall, practice, trial, attempt, data FROM event ORDER BY n"
-    events = tuple(Event(*row) for row in _with_json(db.execute(query)))
+    events = tuple(Event(*row, json.loads(data)) for *row, data in db.execute(query))
     files = dict(db.execute("SELECT name, content FROM file"))
-    return Content(
-        path, head, files, Plan(participant, seed, head["order"], head["group"], trials), events
-    )
-
-
-_TRIAL = ("practice", "number", "block", "condition", "item", "gap_s", "catch", "stimuli")
+    plan = Plan(participant, seed, head["order"], head["group"], tuple(trials), head["session"])
+    return Content(path, head, files, plan, events)
 
 
 def _trial_row(trial: Trial) -> tuple[Any, ...]:
-    *values, stimuli = (getattr(trial, name) for name in _TRIAL)
-    return *values, msgspec.json.encode(stimuli).decode()
-
-
-def _with_json(rows: Iterator[tuple[Any, ...]]) -> Iterator[tuple[Any, ...]]:
-    """Decode the last column of each row."""
-    for *row, data in rows:
-        yield *row, msgspec.json.decode(data)
+    values = (getattr(trial, name) for name in TRIAL)
+    coded = (str, int, float)
+    return tuple(v if isinstance(v, coded) else msgspec.json.encode(v).decode() for v in values)
 
 
 def _event(
@@ -322,16 +337,17 @@ def _event(
 def _insert(db: sqlite3.Connection, event: Event, before: bytes) -> bytes:
     """Insert an event, and return its sum."""
     row = [*msgspec.structs.astuple(event)[:-1], json.dumps(event.data, ensure_ascii=False)]
-    sum_ = _sum_of(row, before)
+    sum_ = sum_of_row(row, before)
     db.execute("INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", (*row, sum_))
     return sum_
 
 
-def _sum_of(row: list[Any], before: bytes) -> bytes:
+def sum_of_row(row: list[Any], before: bytes) -> bytes:
+    """Return the sum of an event: SHA-256 of the sum before it and of its columns as JSON."""
     return sha256(before + json.dumps(row, ensure_ascii=False).encode()).digest()
 
 
-def _plan_sum(db: sqlite3.Connection) -> str:
+def plan_sum(db: sqlite3.Connection) -> str:
     """Return the SHA-256 of everything that does not change after the session was planned."""
     total = sha256()
     for query in (
@@ -344,59 +360,6 @@ def _plan_sum(db: sqlite3.Connection) -> str:
     return total.hexdigest()
 
 
-def _pack(ticks: NDArray[np.void]) -> bytes:
-    """Compress each field's differences from tick to tick."""
-    words = np.ascontiguousarray(ticks).view("<i8").reshape(-1, len(TICK)).T
-    return zlib.compress(np.diff(words, axis=1, prepend=0).tobytes(), 1)
-
-
-def _unpack(fields: bytes) -> NDArray[np.void]:
-    words = np.frombuffer(zlib.decompress(fields), "<i8").reshape(len(TICK), -1).cumsum(axis=1)
-    return np.ascontiguousarray(words.T).view(TICK).ravel()
-
-
-def read_ticks(db: sqlite3.Connection, first_line: int, last_line: int) -> NDArray[np.void]:
-    """Return the ticks of some showings."""
-    # Showings are numbered in the order of time, so that the ticks of one stand together.
-    query = """
-        SELECT fields FROM ticks WHERE last_line >= :first AND first_line BETWEEN
-            ifnull((SELECT max(first_line) FROM ticks WHERE first_line < :first), 0) AND :last
-        ORDER BY after, first
-    """
-    found = db.execute(query, {"first": first_line, "last": last_line})
-    blobs = [_unpack(fields) for (fields,) in found]
-    ticks = np.concatenate([np.empty(0, TICK), *blobs])
-    return ticks[(ticks["line"] >= first_line) & (ticks["line"] <= last_line)]
-
-
-def check(path: Path) -> list[str]:
-    """Return a sentence for everything that is wrong with a record.
-
-    What was taken off the end of a session that has not ended cannot be seen, nor can a change by
-    somebody who has computed all sums anew.
-    """
-    faults: list[str] = []
-    try:
-        with reading(path) as db:
-            result = [said for (said,) in db.execute("PRAGMA integrity_check")]
-            faults += [f"file: {said}" for said in result if said != "ok"]
-            (data,) = db.execute("SELECT data FROM event WHERE n = 1").fetchone()
-            if json.loads(data)["plan"] != _plan_sum(db):
-                faults.append("the protocol or the plan was changed")
-            before, ticks = bytes(32), "SELECT first, fields, sum FROM ticks WHERE after = ?"
-            for number, (*row, sum_) in enumerate(db.execute("SELECT * FROM event ORDER BY n"), 1):
-                if row[0] != number or sum_ != _sum_of(row, before):
-                    faults.append(f"event {row[0]}, or what stands before it, was changed")
-                before = sum_
-                for first, fields, sum_ in db.execute(f"{ticks} ORDER BY first", (number,)):
-                    if sum_ != sha256(before + fields).digest():
-                        faults.append(f"ticks after event {number}, from {first} on, were changed")
-                    before = sum_
-    except (RecordError, sqlite3.Error, TypeError) as error:
-        faults.append(f"file: {error}")
-    return faults
-
-
 @contextmanager
 def told(path: Path) -> Iterator[None]:
     """Raise errors of SQLite as a `RecordError` that says what to do."""
@@ -404,11 +367,20 @@ def told(path: Path) -> Iterator[None]:
         yield
     except sqlite3.Error as error:
         name = getattr(error, "sqlite_errorname", "")
-        what = {
-            "SQLITE_FULL": "the disk is full; make room, then resume",
-            "SQLITE_BUSY": "it is open in another console; end that one first",
-            "SQLITE_READONLY": "it may not be written; mend its permissions",
-            "SQLITE_NOTADB": "it is not a session",
-            "SQLITE_CANTOPEN": "there is no such file, or it may not be read",
-        }.get(name, f"{error}; session check says what is whole")
+        if "no such table" in str(error):
+            name = "SQLITE_NOTADB"
+        what = next((words for begin, words in SAID.items() if name.startswith(begin)), None)
+        what = what or f"{error}; session check says what is whole"
         raise RecordError(f"{path}: {what}") from error
+
+
+# What is said of errors, by the beginnings of their names.
+SAID = {
+    "SQLITE_FULL": "the disk is full; make room, then resume",
+    "SQLITE_IOERR": "the disk failed; mend it, then resume",
+    "SQLITE_BUSY": "it is open in another console; end that one first",
+    "SQLITE_READONLY_ROLLBACK": "a crash left it half done, and it may not be written; copy it",
+    "SQLITE_READONLY": "it may not be written; mend its permissions",
+    "SQLITE_NOTADB": "it is not a session",
+    "SQLITE_CANTOPEN": "there is no such file, or it may not be read",
+}

@@ -1,0 +1,82 @@
+"""The analysis that a protocol plans before its first session."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, NamedTuple
+
+from msgspec import Meta
+
+from vbraille.sessions.planning.values import Seconds, Share
+from vbraille.toml import Table, WrongValue
+
+
+class Measure(NamedTuple):
+    """A measure that may be the primary one: its name in sentences, and the questions it is of."""
+
+    words: str
+    questions: tuple[str, ...]
+
+
+APART = ("which", "odd", "match", "same-different", "detect")
+MEASURES = {
+    "legibility": Measure("legibility of strings", ("identify",)),
+    "characters": Measure("legibility of characters", ("identify",)),
+    "duration": Measure("duration of right answers", ("identify",)),
+    "right": Measure("right answers", (*APART, "name")),
+    "threshold": Measure("threshold", ("detect", "which", "odd", "match", "identify")),
+    "d_prime": Measure("d′", ("detect", "same-different", "which")),
+    "preferred": Measure("preferred value", ("which",)),
+    "rating": Measure("rating", ("rating",)),
+    "magnitude": Measure("magnitude", ("magnitude",)),
+    "adjusted": Measure("adjusted value", ("adjust",)),
+    "reading_speed": Measure("reading speed in words a minute", ("read",)),
+}
+
+
+class Analysis(Table, kw_only=True):
+    """What the sessions are for, fixed before the first of them.
+
+    Parameters
+    ----------
+    measure
+        Primary measure, a key of `MEASURES`; None for the usual one of the question.
+    factors
+        Factors that it is compared by, "condition" for conditions that are listed, or columns of the
+        file of items, such as "item_size"; None for all factors.
+    correction
+        How the p of several tests are corrected together.
+    too_fast_s, too_slow_s
+        Trials that took less, or more, are left out.
+    catch_right
+        A participant with a smaller share of catch trials right is left out.
+    participants, stop
+        How many people are planned, and in words when no more are asked.
+    """
+
+    measure: Literal[tuple(MEASURES)] | None = None
+    factors: tuple[str, ...] | None = None
+    correction: Literal["holm", "none"] = "holm"
+    too_fast_s: Seconds | None = None
+    too_slow_s: Seconds | None = None
+    catch_right: Share | None = None
+    participants: Annotated[int, Meta(ge=1, le=10_000)] | None = None
+    stop: Annotated[str, Meta(max_length=300)] = ""
+
+    def __post_init__(self) -> None:
+        if (self.too_fast_s or 0.0) >= (self.too_slow_s or float("inf")):
+            raise WrongValue("too_fast_s", "must be below too_slow_s")
+
+    def said(self) -> str:
+        """Describe it in a line."""
+        if self.measure is None:
+            return "none, as answers are words"
+        told = [MEASURES[self.measure].words]
+        told[0] += " by " + " × ".join(self.factors) if self.factors else ""
+        for limit, words in ((self.too_fast_s, "below"), (self.too_slow_s, "above")):
+            told += [] if limit is None else [f"without trials {words} {limit:g} s"]
+        if self.catch_right is not None:
+            told.append(
+                f"without people with less than {self.catch_right:.0%} of catch trials right"
+            )
+        told += [] if self.participants is None else [f"{self.participants} participants"]
+        return "; ".join(filter(None, (*told, self.stop)))

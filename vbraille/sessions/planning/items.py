@@ -1,0 +1,175 @@
+"""Items: strings from a file, or drawn by a rule; and files of orders."""
+
+from __future__ import annotations
+
+from random import Random
+from typing import Annotated, Literal, NamedTuple
+
+from msgspec import Meta
+
+from vbraille.csvfiles import Sheet, parse_csv
+from vbraille.errors import InputError
+from vbraille.sessions.planning.values import Count, FileName, Seed
+from vbraille.toml import Table, WrongValue, which
+
+TRIES = 2000  # for each string that is drawn
+STRING, PARTICIPANT, GROUP = "string", "participant", "group"
+
+
+class Items(Table, kw_only=True):
+    """Where the strings of a design of items come from.
+
+    Parameters
+    ----------
+    file
+        CSV file with the column "string" and any others; for the rule "words" a text with a word on
+        each line.
+    rule
+        "strings" for random strings, "words" for words drawn from the file; None for all rows.
+    length
+        Cells of each string that is drawn; of characters, if strings are texts.
+    count
+        How many are drawn; None for all words of the length.
+    characters
+        Cells that drawn strings may have; empty, for words, for all.
+    distinct
+        Whether no cell may be twice in a string.
+    differ_by
+        In how many places any two strings must differ.
+    seed
+        Number that the draw follows from, so that all participants have the same strings.
+    """
+
+    file: FileName | None = None
+    rule: Literal["strings", "words"] | None = None
+    length: Annotated[int, Meta(ge=1, le=100)] | None = None
+    count: Count | None = None
+    characters: tuple[str, ...] = ()
+    distinct: bool = False
+    differ_by: Annotated[int, Meta(ge=1, le=100)] = 1
+    seed: Seed = 1
+
+    def __post_init__(self) -> None:
+        if (self.file is None) != (self.rule == "strings"):
+            raise WrongValue("file", "is needed, but for rule = 'strings'")
+        if self.rule is None and (self.length or self.count or self.characters):
+            raise WrongValue("rule", "is missing, and length, count and characters are of a rule")
+        if self.rule is not None and self.length is None:
+            raise WrongValue("length", "is missing; give the number of cells of each string")
+        if self.rule == "strings" and not (self.count and self.characters):
+            raise WrongValue("count", "and characters are needed for rule = 'strings'")
+
+    def draw(self, strings: list[str], cells: list[str]) -> list[str]:
+        """Return the strings that the rule draws.
+
+        Parameters
+        ----------
+        strings
+            Words of the file, as cells or texts.
+        cells
+            The characters, as cells.
+        """
+        random = Random(f"items {self.rule} {self.seed}")
+        wanted = self.count or len(strings)
+        if self.rule == "words":
+            tried = iter(random.sample(strings, len(strings)))
+        else:
+            tried = (self._drawn(cells, random) for _ in range(wanted * TRIES))
+        found: list[str] = []
+        for string in tried:
+            if len(found) == wanted:
+                break
+            if self._fits(string, cells) and all(
+                _apart(string, o) >= self.differ_by for o in found
+            ):
+                found.append(string)
+        if not found or (self.count and len(found) < self.count):
+            raise WrongValue("count", f"only {len(found)} strings keep the rule; make it weaker")
+        return found
+
+    def _drawn(self, cells: list[str], random: Random) -> str:
+        length = self.length or 1
+        if self.distinct:
+            return "".join(random.sample(cells, min(length, len(cells))))
+        return "".join(random.choices(cells, k=length))
+
+    def _fits(self, string: str, cells: list[str]) -> bool:
+        allowed = not cells or set(string) <= set(cells)
+        repeats = self.distinct and len(set(string)) < len(string)
+        return len(string) == self.length and allowed and not repeats and string.strip("⠀ ") != ""
+
+
+def _apart(one: str, other: str) -> int:
+    return sum(a != b for a, b in zip(one, other, strict=True))
+
+
+class OrderRow(NamedTuple):
+    """Order of conditions, and the group, that a file gives a participant."""
+
+    conditions: tuple[str, ...]
+    group: str
+
+
+def read_items(content: bytes, name: str) -> dict[str, dict[str, str]]:
+    """Return the other columns of each string of a file of items.
+
+    Raises
+    ------
+    InputError
+        If the column "string" is missing, or a string is empty or there twice.
+    """
+    sheet = _sheet(content, name, STRING)
+    found: dict[str, dict[str, str]] = {}
+    for line, row in zip(sheet.lines, sheet.records(), strict=True):
+        string = row.pop(STRING)
+        if not string or string in found:
+            why = (
+                f"{string!r} is there twice; repeats shows items more often"
+                if string
+                else "is empty"
+            )
+            raise InputError(f"{name} line {line}: {STRING} {why}")
+        found[string] = row
+    return found
+
+
+def read_words(content: bytes) -> list[str]:
+    """Return the words of a text, one on each line; lines that begin with # are left out."""
+    lines = (line.strip() for line in content.decode("utf-8-sig", "replace").splitlines())
+    return list(dict.fromkeys(line for line in lines if line and not line.startswith("#")))
+
+
+def read_orders(
+    content: bytes, name: str, conditions: list[str], groups: tuple[str, ...]
+) -> dict[str, OrderRow]:
+    """Return the order of each participant of a file.
+
+    Raises
+    ------
+    InputError
+        If a column is missing, or a row has not each condition once, or an unknown group.
+    """
+    sheet = _sheet(content, name, *((PARTICIPANT, GROUP) if groups else (PARTICIPANT,)))
+    found: dict[str, OrderRow] = {}
+    for line, row in zip(sheet.lines, sheet.records(), strict=True):
+        who, group = row.pop(PARTICIPANT), row.pop(GROUP, "")
+        names = tuple(filter(None, row.values()))
+        if groups and group not in groups:
+            raise InputError(f"{name} line {line}: group is {group!r}{which(group, groups)}")
+        if sorted(names) != sorted(conditions) or who in found or not who:
+            each = ", ".join(conditions)
+            raise InputError(
+                f"{name} line {line}: give each participant once, with each of {each} once"
+            )
+        found[who] = OrderRow(names, group)
+    return found
+
+
+def _sheet(content: bytes, name: str, *needed: str) -> Sheet:
+    sheet = parse_csv(content, name)
+    for column in needed:
+        if column not in sheet.columns:
+            raise InputError(f"{name} has no column {column!r}{which(column, sheet.columns)}")
+    if not sheet.rows:
+        raise InputError(f"{name} has no rows; give one for each item or participant")
+    return sheet

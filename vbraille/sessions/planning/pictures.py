@@ -1,0 +1,81 @@
+"""Pictures as stimuli: elements of a scene whose file stands beside the protocol.
+
+A picture is named by the ids of its elements, with blanks between them. Elements without an id
+belong to every picture of their scene.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+
+from msgspec import structs
+
+from vbraille.errors import InputError
+from vbraille.feeling.composing import compose
+from vbraille.feeling.loading import check_fits, shown_at
+from vbraille.render.program import Program
+from vbraille.render.scene.labels import Assets
+from vbraille.scene.locations import OpenedScene
+from vbraille.scene.patterns import Image, ImageDots, Label
+from vbraille.scene.reading import open_text
+from vbraille.scene.traversal import each
+from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.planning.trial import Stimulus
+from vbraille.toml import which
+
+
+def check_picture(protocol: Protocol, stimulus: Stimulus) -> None:
+    """Check that there is a picture, and that the display has room for it.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    InputError
+        If the scene or its canvas cannot be used.
+    """
+    if not protocol.display_model.display.height_mm:
+        raise ValueError("the model's carriage goes along one line only; give 'pantograph'")
+    check_fits(_picture(protocol, stimulus).resolved, protocol.display_model.display)
+
+
+def compile_picture(protocol: Protocol, stimulus: Stimulus) -> Program:
+    """Compile a picture for the protocol's display."""
+    display = protocol.display_model.display
+    loaded = shown_at(_picture(protocol, stimulus), Assets())
+    contrast = protocol.style(stimulus.look).tuning.contrast
+    return compose(loaded, display, rate_hz=display.rate_hz, contrast=contrast)
+
+
+def canvas_mm(protocol: Protocol, stimulus: Stimulus) -> tuple[float, float]:
+    """Return the width and the height of a picture's canvas."""
+    canvas = _picture(protocol, stimulus).resolved.canvas
+    return canvas.width_mm, canvas.height_mm
+
+
+def _picture(protocol: Protocol, stimulus: Stimulus) -> OpenedScene:
+    """Return the scene with the elements of a picture alone."""
+    name = stimulus.look.scene
+    assert name is not None, "a picture is of a scene"
+    opened, names = _scene(protocol.files[name], name), stimulus.picture.split()
+    known = [element.id for element in opened.written.elements]
+    for wanted in names:
+        if wanted not in known:
+            raise ValueError(
+                f"{name} has no element {wanted!r}{which(wanted, filter(None, known))}"
+            )
+    elements = tuple(
+        element
+        for element, own in zip(opened.resolved.elements, known, strict=True)
+        if not own or own in names
+    )
+    return replace(opened, resolved=structs.replace(opened.resolved, elements=elements))
+
+
+@lru_cache(maxsize=16)
+def _scene(content: bytes, name: str) -> OpenedScene:
+    opened = open_text(content.decode("utf-8"), name)
+    if any(isinstance(one, Image | ImageDots | Label) for one in each(*opened.written.elements)):
+        raise InputError(f"{name} has images or labels; pictures of a protocol are shapes and dots")
+    return opened

@@ -1,0 +1,79 @@
+"""Texts in cells: those of a protocol, and those that are typed as answers."""
+
+from __future__ import annotations
+
+import unicodedata
+from functools import cache
+
+from vbraille.braille.spelling import UNREAD, to_answer, to_braille
+
+
+def cells_of(text: str, table: str) -> str:
+    """Return the cells that a braille table of liblouis makes of a text, in Unicode braille.
+
+    Raises
+    ------
+    InputError
+        If there is no such table.
+    ValueError
+        If the table lacks a character of the text, or writes no dots.
+    """
+    masks, unknown = _translated(text, table)
+    if unknown:
+        raise ValueError(f"{text!r} has {unknown!r}, which the table {table} does not know")
+    if not any(masks):
+        raise ValueError(f"{text!r} has no dots in the table {table}")
+    return to_braille(masks)
+
+
+def parse_text(line: str, text: str, cells: str, table: str) -> str:
+    """Return an answer to a text, in Unicode braille; ``?`` is a cell that was not read.
+
+    Parameters
+    ----------
+    line
+        What was typed: the text in print, or cells in Unicode braille. A lone ``?`` means that
+        nothing was read.
+    text, cells, table
+        What was shown, its cells, and the table that made them and makes those of the answer.
+
+    Raises
+    ------
+    ValueError
+        If nothing was typed, or the table does not know a character.
+    """
+    typed = unicodedata.normalize("NFC", " ".join(line.split()))
+    if not typed:
+        raise ValueError("nothing was typed; type what was read, or ? if nothing was")
+    if typed.casefold() == " ".join(text.split()).casefold():
+        return cells
+    if typed == UNREAD:
+        return UNREAD * len(cells)
+    if all("⠀" <= character <= "⣿" or character in f"{UNREAD} " for character in typed):
+        return "".join(typed.split())
+    return UNREAD.join(_read(part.strip(), table) for part in typed.split(UNREAD))
+
+
+def _read(part: str, table: str) -> str:
+    """Return the cells of a part of an answer, between cells that were not read."""
+    masks, unknown = _translated(part, table) if part else ((), "")
+    if unknown:
+        raise ValueError(f"{part!r} has {unknown!r}, which the table {table} does not know")
+    return to_answer(masks)
+
+
+@cache
+def _translated(text: str, table: str) -> tuple[tuple[int, ...], str]:
+    """Return the dot masks of a text, and the first character that the table does not know."""
+    # liblouis takes a while to load, and few protocols need it.
+    import numpy as np
+
+    from vbraille.translate.liblouis import BrailleTable
+    from vbraille.translate.source import Text, to_codes
+
+    braille, codes = BrailleTable(table), to_codes(text)
+    cells = braille.translate(
+        Text(codes, np.arange(codes.size), codes.size, frozenset(codes.tolist()))
+    )
+    unknown = next((character for character in text if ord(character) in braille.undefined), "")
+    return tuple(cells.masks.tolist()), unknown
