@@ -68,7 +68,7 @@ lint: .venv/tests
 	$(BIN)/ruff format --check
 	$(BIN)/lint-imports --no-logo
 	@$(TYPES)
-	@PATH="$$(echo $(CURDIR)/$(NODE)):$$PATH" $(TSC) -p tests/live/page/jsconfig.json
+	@PATH="$$(echo $(CURDIR)/$(NODE)):$$PATH" $(TSC) -p tests/live/jsconfig.json
 
 bench: .venv/tests
 	@command -v cyclictest >/dev/null || { set -e; \

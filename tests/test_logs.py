@@ -2,11 +2,9 @@
 
 import logging
 import re
-from pathlib import Path
 
 import pytest
 
-import vbraille
 from tests.devices.bench import Bench
 from vbraille import logs
 from vbraille.errors import InputError
@@ -90,14 +88,3 @@ def test_without_being_asked_nothing_is_kept_and_nothing_said(capfd):
     device.close()
     assert logs.kept() is None
     assert capfd.readouterr() == ("", "")
-
-
-def test_only_programs_keep_a_log():
-    folder = Path(vbraille.__file__).parent
-    keepers = {
-        str(path.relative_to(folder))
-        for path in folder.rglob("*.py")
-        if re.search(r"vbraille\.logs import (.*, )?keep\b", path.read_text())
-        or "addHandler(handler)" in path.read_text()
-    }
-    assert keepers == {"logs.py", "cli/main.py", "engine/hostprocess.py", "live/serving.py"}

@@ -5,7 +5,7 @@ import pytest
 
 import vbraille
 from vbraille.errors import InputError
-from vbraille.playback import open_recording
+from vbraille.playback.rendered import open_recording
 
 PAGE = "one\ntwo"
 

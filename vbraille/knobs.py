@@ -6,8 +6,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from vbraille.render.braille.style import BrailleStyle
-
 _PLACES = 6  # decimal places, so that ten steps of 0.1 are 1
 
 
@@ -46,7 +44,7 @@ class Knob:
         """Name in sentences, such as "dot width"."""
         return self.name.replace("_", " ")
 
-    def value(self, style: BrailleStyle) -> float:
+    def value(self, style: Any) -> float:
         """Value that a style has."""
         return getattr(style.geometry if self.unit else style.tuning, self.field)
 
@@ -65,7 +63,7 @@ class Knob:
             return round(self.low + self.step * round((within - self.low) / self.step))
         return round(within, _PLACES)
 
-    def fits(self, style: BrailleStyle) -> bool:
+    def fits(self, style: Any) -> bool:
         """Tell whether the knob changes anything in a style; the VBD's texture has one period."""
         return self.name != "texture_cycles" or style.profile != 0
 
@@ -84,7 +82,7 @@ KNOBS = {
 }
 
 
-def profile_values(style: BrailleStyle) -> dict[str, Any]:
+def profile_values(style: Any) -> dict[str, Any]:
     """Values of a style that a profile keeps, by the names of their options."""
     values: dict[str, Any] = {
         name: knob.value(style) for name, knob in KNOBS.items() if knob.fits(style)

@@ -24,7 +24,6 @@ PARTS = (
     "trials_coverage",
     "reader",
     "turning",
-    "live",
     "conventional",
     "straying",
     "figure",

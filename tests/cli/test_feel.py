@@ -9,7 +9,6 @@ import pytest
 
 from tests.cli import program
 from tests.cli.test_read_serial import host_of
-from tests.cli.watcher import ADDRESS, Watcher
 from tests.reading.felt import SCENE
 from tests.tiers import heavy
 
@@ -99,47 +98,6 @@ def test_on_a_slider_one_line_of_the_picture_is_felt_and_keys_choose_it(scene):
         terminal.until("height: 56 mm from the top")
         terminal.type("gwall\n")
         terminal.until("going to: wall")
-        terminal.type("q")
-        assert terminal.end() == 0
-
-
-@heavy  # a host and a live view
-def test_a_page_is_the_hand_and_has_the_picture_behind_the_array(scene):
-    with program.start("feel", scene, "--monitor", "--say-entering") as process:
-        try:
-            printed = ""
-            while not re.search(ADDRESS, printed):
-                printed += process.stdout.readline().decode()
-            with Watcher(printed) as page:
-                page.until(lambda _, state: state.get("scene") is not None)
-                shown = page.state["scene"]
-                assert (shown["width_mm"], shown["height_mm"]) == (120, 90)
-                assert shown["image"].startswith("data:image/png;base64,")
-                assert page.state["title"] == "A house"
-                page.ask(ask="point", x_mm=90.0, y_mm=20.0)
-                page.until(lambda header, _: header["x_mm"] > 89)
-                page.until(lambda _, state: state["place"] == "here: Sun")
-        finally:
-            process.kill()
-
-
-@heavy  # a host is started twice
-def test_while_the_host_is_gone_pages_are_told_what_is_said(scene):
-    arguments = ("feel", scene, "--monitor", "--cues", "none")
-    with (
-        program.Terminal(*arguments) as terminal,
-        Watcher(terminal.until(ADDRESS + r"\s")) as page,
-    ):
-        page.hold(30.0)
-        os.kill(host_of(terminal), signal.SIGKILL)
-        terminal.until("fault: .*space begins again")
-        page.until(lambda _, state: "space begins again, q stops" in state["said"][-1])
-        terminal.type("x")
-        page.until(lambda _, state: "nothing drives the device" in state["said"][-1])
-        page.ask(ask="press", command="PAUSE")
-        terminal.type(" ")
-        page.until(lambda _, state: state["device"] == "feeling")
-        page.hold(40.0)
         terminal.type("q")
         assert terminal.end() == 0
 

@@ -1,173 +1,169 @@
-"""The server's door: files, headers, names, origins, and how many come in."""
+"""Who may watch and steer, by which names, and how many; frames and states as a page has them."""
 
 import os
 import socket
-import subprocess
-import sys
 from contextlib import ExitStack
 
+import numpy as np
 import pytest
-from websockets.exceptions import InvalidStatus
+from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from tests.live.canned import CannedSource
-from tests.live.pages import get, page, parts_of, served
-from tests.tiers import by_tier
+from tests.live.showing import MASKS, Client, Reading, get, split
 from vbraille.errors import InputError
-from vbraille.live.server import HEADERS, MOST_CONNECTIONS, MOST_PAGES, page_files
+from vbraille.live.admission import owner_of
+from vbraille.live.messages import LetGo, PagePress, Point
+from vbraille.live.server import MOST_CONNECTIONS, MOST_PAGES
+from vbraille.live.view import LiveView
 
 
 @pytest.fixture(scope="module")
-def server():
-    with served(CannedSource()) as running:
-        yield running
+def reading():
+    with Reading() as reading:
+        yield reading
 
 
 @pytest.fixture
-def address(server):
-    return server.admission.steering_address
+def address(reading):
+    return reading.address
 
 
-def test_every_file_of_the_page_is_served_as_it_is(address):
-    files = page_files()
-    for path, (kind, content) in files.items():
-        status, body, headers = get(address, path)
-        assert (status, headers["Content-Type"]) == (200, kind)
-        assert body.encode() == content or kind == "image/png"
+def refusal(client):
+    """The sentence with which a page is not let in."""
+    with client as opened:
+        assert opened.welcome["tell"] == "refused"
+        with pytest.raises(ConnectionClosed):
+            opened.hear()
+        return opened.welcome["why"]
 
 
-@pytest.mark.parametrize("path", ["/", "/nothing", "/../server.py", "/%2e%2e/server.py", "/live"])
-def test_every_answer_has_the_headers_of_safety(address, path):
-    _, _, headers = get(address, path)
-    for name, value in HEADERS:
-        assert headers[name] == value
-    assert "Server" not in headers
+def test_frames_are_the_engines_and_samples_the_ticks_between(reading, address):
+    with Client(address) as page:
+        assert page.welcome == {
+            "tell": "welcome", "steers": True, "playback": False, "length_s": 0.0, "moments": [],
+        }  # fmt: skip
+        header, deflections, _ = page.frame(row=0, column=3)
+        assert page.state["title"] == "A story"
+        assert page.state["lines"][1]["cells"] == MASKS.tolist()
+        np.testing.assert_array_equal(deflections, reading.frame())
+        after, _, samples = page.frame(row=0, column=3)
+        assert after["tick"] - header["tick"] == len(samples)
+        assert after["state"] == page.state["number"]
+        assert (samples[-1, 0], samples[-1, 1]) == (0, np.float32(reading.x_mm))
+        assert samples[-1, 2] == deflections[0, 3]
+        assert np.isnan(page.frame(row=6)[2][:, 2]).all()
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root can be another user for a while")
-def test_another_user_of_this_machine_is_shown_nothing_even_with_the_token(server, address):
-    script = (
-        "import json, os, sys\n"
-        "from websockets.sync.client import connect\n"
-        "from websockets.exceptions import InvalidStatus\n"
-        "os.setuid(65534)\n"
-        "try:\n"
-        "    with connect(sys.argv[1], origin=sys.argv[2], compression=None) as page:\n"
-        "        page.send(json.dumps({'ask': 'hello', 'token': sys.argv[3]}))\n"
-        "        print(page.recv(20))\n"
-        "except InvalidStatus as refused:\n"
-        "    print(refused.response.status_code, refused.response.body.decode())\n"
-    )
-    origin, token = address.split("/#")
-    live = f"{origin.replace('http', 'ws', 1)}/live"
-    for given in ("", token):
-        asked = [sys.executable, "-c", script, live, origin, given]
-        said = subprocess.run(asked, check=True, capture_output=True, text=True).stdout
-        assert said.startswith("403 another user of this machine reads here")
-    with page(server.admission.watching_address) as opened:
-        assert opened.frame().header["rows"] == 6
+def test_a_page_steers_and_what_it_holds_is_let_go_when_it_goes(reading, address):
+    with Client(address) as page:
+        page.ask(ask="point", x_mm=12.5)
+        page.until(lambda header, _: header["x_mm"] == 12.5)
+        page.ask(ask="press", command="LNDN")
+        page.until(lambda _, state: state["said"][-1] == "line: 3")
+        assert page.state["held"]
+        page.ask(ask="point", x_mm=float("inf"))
+    with Client(address) as page:
+        page.until(lambda _, state: not state["held"])
+    assert reading.asked[0] == Point(12.5)
+    assert PagePress("LNDN") in reading.asked
+    assert reading.asked[-1] == LetGo()
 
 
-def test_the_policy_lets_nothing_in_from_outside():
-    policy = dict(HEADERS)["Content-Security-Policy"]
-    assert policy == (
-        "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
-        "img-src 'self' blob: data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
-    )
-    assert dict(HEADERS)["Cache-Control"] == "no-store"
-    assert dict(HEADERS)["Referrer-Policy"] == "no-referrer"
-    assert dict(HEADERS)["X-Content-Type-Options"] == "nosniff"
+def test_rights_follow_the_token(address):
+    name, port, _ = split(address)
+    base = f"http://{name}:{port}/"
+    with Client(base) as page:  # the same user, by a page of this server
+        assert not page.welcome["steers"]
+        page.ask(ask="turn", knob="texture", value=0.3)
+        assert "only watch" in page.hear()["why"]
+        assert page.frame()[0]["rows"] == 6
+    assert "token" in refusal(Client(base, token="another"))
+    assert "token" in refusal(Client(base, origin=None))  # a program that is no page
+    with Client(address, origin=None) as page:
+        assert page.welcome["steers"]
 
 
-@pytest.mark.parametrize("path", ["/nothing", "/../server.py", "/server.py", "//", "/index.html?x"])
-def test_there_are_no_other_files(address, path):
-    assert get(address, path)[0] == 404
+def test_other_names_and_other_sites_are_refused(address):
+    _, port, _ = split(address)
+    assert get(address, Host=f"evil.example:{port}")[0] == 421
+    assert get(address, Host=f"localhost:{port}")[0] == 200
+    for origin in ("http://evil.example", f"https://127.0.0.1:{port}", "null"):
+        with pytest.raises(InvalidStatus) as refused, Client(address, origin=origin):
+            pass
+        assert refused.value.response.status_code == 403
 
 
-@pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "OPTIONS", "HEAD"])
-def test_nothing_but_get(address, method):
-    assert get(address, method=method)[0] == 405
+def test_answers_have_the_headers_of_safety(address):
+    for path, status in (("/", 200), ("/main.js", 200), ("/none", 404), ("/../view.py", 404)):
+        code, _, headers = get(address, path)
+        assert code == status
+        assert headers["Content-Security-Policy"].startswith("default-src 'none'; script-src 's")
+        assert headers["X-Content-Type-Options"] == "nosniff"
+        assert headers["Cache-Control"] == "no-store"
+    assert get(address, method="POST")[0] == 405
 
 
-@pytest.mark.parametrize("host", ["evil.example", "evil.example:80", "127.0.0.1"])
-def test_another_name_is_refused_for_files_and_pages(address, host):
-    status, body, _ = get(address, Host=host)
-    assert status == 421
-    assert "open the address that vbraille said" in body
-    with pytest.raises(InvalidStatus) as refused, page(address, host=host):
-        pass
-    assert refused.value.response.status_code == 421
+def test_the_owner_of_a_connection_is_known():
+    with (
+        socket.create_server(("127.0.0.1", 0)) as server,
+        socket.create_connection(server.getsockname()),
+    ):
+        accepted, peer = server.accept()
+        with accepted:
+            assert owner_of(peer, accepted.getsockname()) == os.getuid()
+        assert owner_of((peer[0], 1), ("127.0.0.1", 1)) is None
 
 
-@pytest.mark.parametrize(
-    "origin", ["http://evil.example", "null", "https://127.0.0.1", "http://127.0.0.1:1"]
-)
-def test_a_page_of_another_origin_is_refused_even_with_the_token(address, origin):
-    with pytest.raises(InvalidStatus) as refused, page(address, origin=origin):
-        pass
-    assert refused.value.response.status_code == 403
+def test_another_user_is_refused(address, monkeypatch):
+    monkeypatch.setattr("vbraille.live.server.owner_of", lambda *_: 4711)
+    assert get(address)[0] == 403
 
 
-def test_the_origin_is_that_of_the_name_it_was_called_by(address):
-    _, port, _ = parts_of(address)
-    name = f"localhost:{port}"
-    with page(address, host=name, origin=f"http://{name}") as opened:
-        assert opened.frame().header["rows"] == 6
-    with pytest.raises(InvalidStatus), page(address, host=name):
-        pass
+@pytest.mark.parametrize("said", ["{", '{"ask": "map"}', '{"ask": "next", "row": "x"}', "[" * 4000])
+def test_what_is_no_request_ends_the_talk_with_a_sentence(address, said):
+    with Client(address) as page:
+        page._socket.send(said)
+        assert page.hear()["tell"] == "refused"
+        with pytest.raises(ConnectionClosed):
+            page.hear()
 
 
-def test_a_page_too_many_is_told_a_sentence():
-    with served(CannedSource()) as server, ExitStack() as stack:
-        address = server.admission.steering_address
-        first = stack.enter_context(page(address))
-        for _ in range(MOST_PAGES - 1):
-            stack.enter_context(page(address))
-        with pytest.raises(InvalidStatus) as refused, page(address):
+def test_a_blind_view_hides_what_is_felt_for_good():
+    with Reading(blind=True) as reading, Client(reading.address) as page:
+        header, deflections, samples = page.frame(row=0, column=0)
+        assert deflections.size == 0
+        assert np.isnan(samples[:, 2]).all()
+        assert header["x_mm"] == 40.0
+        assert page.state["blind"]
+        assert page.state["lines"] == page.state["rows_shown"] == []
+
+
+def test_too_many_pages_and_connections_do_not_keep_the_others_waiting(address):
+    name, port, _ = split(address)
+    with ExitStack() as stack:
+        pages = [stack.enter_context(Client(address)) for _ in range(MOST_PAGES)]
+        with pytest.raises(InvalidStatus) as refused, Client(address):
             pass
         assert refused.value.response.status_code == 503
-        assert b"32 pages are open" in refused.value.response.body
-        assert first.frame().header["columns"] == 10
-
-
-def test_very_many_connections_that_say_nothing():
-    with served(CannedSource()) as server, ExitStack() as stack:
-        address = server.admission.steering_address
-        host, port, _ = parts_of(address)
-        watching = stack.enter_context(page(address))
-        silent, told = [], 0
-        for _ in range(by_tier(300, 1000, 1000)):
-            silent.append(stack.enter_context(socket.create_connection((host, port))))
-            if len(silent) > MOST_CONNECTIONS:  # of those the server thinks no more
-                one = silent.pop()
-                # On a busy machine the first were sent away by now, and this one comes in.
-                told += b"503" in one.recv(100)
-                one.close()
-        assert told
-        assert watching.frame().header["columns"] == 10
-        for one in silent[:10]:
-            one.close()
-        assert get(address)[0] in (200, 404, 503)
-
-
-def test_a_port_in_use_is_one_sentence():
-    with served(CannedSource()) as server:
-        port = server.admission.port
-        said = rf"^port {port} is in use; give .port. another"
-        with pytest.raises(InputError, match=said), served(CannedSource(), port=port):
-            pass
+        for _ in range(MOST_CONNECTIONS):
+            stack.enter_context(socket.create_connection((name, port)))
+        assert pages[0].frame()[0]["rows"] == 6
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "names"),
     [
-        ({"host": "192.0.2.1"}, "192.0.2.1 is not an address of this machine"),
-        ({"host": "nowhere.invalid"}, "'nowhere.invalid' is no name or address of this machine"),
-        ({"host": ""}, "'' is no name or address"),
-        ({"port": 70000}, "there is no port 70000"),
-        ({"host": "a" * 70 + ".example"}, "is no name or address"),
+        ({"host": "192.0.2.1"}, "192.0.2.1"),
+        ({"host": "nowhere.invalid"}, "nowhere.invalid"),
+        ({"host": ""}, "''"),
+        ({"port": 70000}, "70000"),
     ],
-    ids=["elsewhere", "unknown", "empty", "port", "long"],
 )
-def test_where_nobody_can_listen_is_one_sentence(options, said):
-    with pytest.raises(InputError, match=said), served(CannedSource(), **options):
+def test_where_it_cannot_listen_is_one_sentence(options, names):
+    with pytest.raises(InputError, match=names), LiveView(**options):
+        pass
+
+
+def test_a_port_in_use_is_one_sentence(address):
+    _, port, _ = split(address)
+    with pytest.raises(InputError, match=f"port {port} is in use"), LiveView(port=port):
         pass

@@ -35,7 +35,7 @@ GALLERY = [
         Shown(path.stem, options=("--resolution", LARGE.get(path.stem, "4")))
         for path in sorted(SCENES.glob("*.scene"))
     ),
-    Shown("pictured", "-sequence", ("--vibration", "sequence", "--frames", "4", *COARSE), "gif"),
+    Shown("pictured", "-sequence", ("--frames", "4", *COARSE), "gif"),
     Shown("pictured", "-array", ("--array", "14,27", "--resolution", "4", "--rulers")),
     Shown("pictured", "-outline", ("--outline", "--resolution", "5")),
     Shown("joints", "-outline", ("--outline", *FINE)),
@@ -43,7 +43,6 @@ GALLERY = [
     Shown("dotted", "-outline", ("--outline", *FINE)),
     Shown("labelled", "-outline", ("--outline", "--resolution", "5")),
     Shown("directions", "-signal", ("--signal", "along", "--resolution", "2.2")),
-    Shown("directions", "-arrows", ("--arrows", "--resolution", "4")),
 ]
 
 if __name__ == "__main__":

@@ -1,165 +1,158 @@
-"""What `vbraille render` wrote: any frame at any time, bit for bit, with the line under it."""
+"""What `vbraille render` wrote, played back: any frame at any time, with the line under it."""
 
-import io
 import json
+import signal
+from functools import cache
+from pathlib import Path
+from tempfile import mkdtemp
 
 import h5py
 import numpy as np
 import pytest
-from PIL import Image
 
 import vbraille
-from tests.playback.written import LINES, MODELS, asked, record, recorded
-from vbraille.braille.geometry import Geometry
+from tests.cli import program
+from tests.live.showing import Client, parts
 from vbraille.errors import InputError
-from vbraille.live.messages import Map, Next
-from vbraille.playback import open_recording
-from vbraille.playback.rendered import Rendered
+from vbraille.live.messages import Next, Turn
+from vbraille.playback.rendered import open_recording
+from vbraille.recording import Print
 from vbraille.render import STRESS2
 
+LINES = [[1, 3, 9, 0], [63, 17, 25, 11]]
+TEXTS = ["abc", "=efd"]
+X_MM = np.concatenate([np.linspace(-6, 60, 2000), np.linspace(60, -6, 500)])
 
-@pytest.mark.parametrize("name", MODELS)
-def test_each_frame_is_the_recorded_one_forwards_and_backwards(name):
-    path = recorded(name)
-    with h5py.File(path) as file:
-        frames, t_s, x_mm, rows = (file[n][:] for n in ("frames", "t_s", "x_mm", "line"))
-    source = open_recording(path)
+
+@cache
+def recorded():
+    """Give a recording of two lines that are read one after the other; no test may change it."""
+    masks = [np.array(line, np.uint8) for line in LINES]
+    style, display = STRESS2.style, STRESS2.display
+    sources = np.array([(0, 1), (1, 2), (2, 3), (3, 3)], np.int32)
+    recording = vbraille.Recording(
+        t_s=np.arange(2 * X_MM.size) / 1000,
+        x_mm=np.tile(X_MM, 2),
+        y_mm=np.zeros(2 * X_MM.size),
+        theta_rad=np.zeros(2 * X_MM.size),
+        frames=np.concatenate([style.render(line, display).path(X_MM) for line in masks]),
+        model=STRESS2,
+        cells=masks,
+        line=np.repeat([0, 1], X_MM.size),
+        part=np.zeros(2 * X_MM.size, np.int64),
+        prints=[Print(text, sources) for text in TEXTS],
+    )
+    path = Path(mkdtemp(prefix="vbraille-recording-")) / "a.h5"
+    recording.write(path)
+    return path
+
+
+def damaged(tmp_path, chunk):
+    """Give the recording with a chunk of its frames overwritten."""
+    with h5py.File(recorded()) as file:
+        at = file["frames"].id.get_chunk_info(chunk).byte_offset
+    content = bytearray(recorded().read_bytes())
+    content[at : at + 64] = bytes(64)
+    path = tmp_path / "damaged.h5"
+    path.write_bytes(content)
+    return path
+
+
+def look(viewer, at_s, since_s=None, **more):
+    """State, header, deflections and samples at a time."""
+    _, state, frame = viewer.look(Next(at_s=at_s, since_s=since_s, **more), None)
+    return json.loads(state), *parts(frame)
+
+
+def test_each_frame_is_the_recorded_one_forwards_and_backwards():
+    with h5py.File(recorded()) as file:
+        frames, t_s, x_mm, rows = (file[name][:] for name in ("frames", "t_s", "x_mm", "line"))
+    source = open_recording(recorded())
     viewer = source.viewer()
     assert source.playback
     assert source.length_s == t_s[-1]
-    for n in [*range(0, len(frames), 3), *range(len(frames) - 1, 0, -5), 0]:
-        request = Next(at_s=float(t_s[n]))
-        number, state = viewer.state(request)
-        header, frame, _ = asked(viewer, float(t_s[n]))
+    count = len(frames)
+    for n in [*range(0, count, 301), *range(count - 1, 0, -407), 0]:
+        state, header, frame, _ = look(viewer, float(t_s[n]))
         assert frame.tobytes() == frames[n].tobytes()
-        assert header["tick"] == n
-        assert header["time_s"] == t_s[n]
+        assert (header["tick"], header["time_s"]) == (n, t_s[n])
         assert header["x_mm"] == np.float32(x_mm[n])
-        assert header["state"] == number == json.loads(state)["number"]
-        assert header["line"] == rows[n] + 7
-        (under,) = [line for line in json.loads(state)["lines"] if line["under"]]
-        assert under["number"] == rows[n] + 7
-    assert [moment.kind for moment in source.moments] == ["line"] * (rows.max() + 1)
-    for moment in source.moments:
-        first = int(np.flatnonzero(t_s >= moment.at_s - 1e-9)[0])
-        assert first == 0 or rows[first - 1] != rows[first]
+        (under,) = [line for line in state["lines"] if line["under"]]
+        assert under["number"] == header["line"] == rows[n] + 1
+    changes = t_s[np.flatnonzero(np.diff(rows, prepend=-1))]
+    assert [moment.at_s for moment in source.moments] == changes.tolist()
 
 
-def test_a_time_between_two_frames_has_the_earlier_one(tmp_path):
-    path = record(tmp_path / "a.h5", LINES, np.linspace(-6, 60, 1500))
-    viewer = open_recording(path).viewer()
-    for at_s, tick in ((0.0, 0), (0.0104, 10), (2.9999, 2999), (-5.0, 0), (1e300, 5999)):
-        assert asked(viewer, at_s)[0]["tick"] == tick
-    assert np.frombuffer(viewer.frame(Next()), "<f8", 1, 24)[0] == 5999  # where it was
-
-
-def test_the_lines_are_those_of_the_page(tmp_path):
-    source = open_recording(record(tmp_path / "a.h5", LINES, np.linspace(-6, 60, 1500)))
-    state = json.loads(source.viewer().state(Next(at_s=1.6))[1])
-    assert [line["number"] for line in state["lines"]] == [7, 8, 9, 10]
-    assert [line["cells"] for line in state["lines"]] == [line.tolist() for line in LINES]
-    assert [line["top_mm"] for line in state["lines"]] == [-14.0, 0.0, 14.0, 28.0]
-    assert [line["under"] for line in state["lines"]] == [False, True, False, False]
-    assert state["title"] == "a.txt"
-    assert state["place"] == "line 8"
+def test_lines_have_their_print_and_the_place_of_each():
+    state = look(open_recording(recorded()).viewer(), 0.0)[0]
+    first, second = state["lines"]
+    assert [first["text"], second["text"]] == TEXTS
+    assert [first["cells"], second["cells"]] == LINES
+    assert first["text"][slice(*first["sources"][1])] == "b"
+    assert second["top_mm"] - first["top_mm"] == state["geometry"]["line_pitch_mm"]
     assert state["array"]["rows"] == 6
-    assert state["array"]["row_pitch_mm"] == STRESS2.display.row_pitch_mm
-    assert state["array"]["rest_right"]
-    assert state["rows_shown"] == [[0, 0], [-1, -1], [1, 1], [-1, -1], [2, 2], [-1, -1]]
-    assert state["knobs"] == []
-    assert Geometry(**state["geometry"]) == STRESS2.style.geometry
-    assert [moment.at_s for moment in source.moments] == [0, 1.5, 3, 4.5]
 
 
-def test_a_page_of_lines_is_shown_as_one(tmp_path):
-    source = open_recording(record(tmp_path / "a.h5", LINES, np.linspace(0, 40, 900), pages=True))
-    seen = {}
-    for at_s in np.arange(0, 1.8, 0.01):
-        header, _, _ = asked(source.viewer(), at_s)
-        state = json.loads(source.viewer().state(Next(at_s=at_s))[1])
-        lines = [(line["number"], line["top_mm"]) for line in state["lines"]]
-        assert lines == ([(7, 0), (8, 14)] if at_s < 0.9 else [(9, 0), (10, 14)])
-        seen.setdefault(int(header["line"]), at_s)
-    assert list(seen) == [7, 8, 9, 10]
-    assert state["array"]["height_mm"] == 28
-    image = Image.open(io.BytesIO(source.map(Map("png", 1.0))))
-    assert image.size[1] == 280
-    assert image.info["Title"] == "a.txt, line 9 to line 10"
-
-
-def test_a_map_is_of_the_line_at_the_time(tmp_path):
-    source = open_recording(record(tmp_path / "a.h5", LINES, np.linspace(-6, 60, 1500)))
-    for form in ("png", "svg"):
-        made = [source.map(Map(form, at_s)) for at_s in (0.2, 1.4, 1.6)]
-        assert made[0] == made[1] != made[2]
-
-
-def test_samples_are_the_ticks_since_the_frame_before(tmp_path):
-    x_mm = np.linspace(-6, 60, 1500)
-    viewer = open_recording(record(tmp_path / "a.h5", LINES, x_mm)).viewer()
+def test_samples_are_the_ticks_since_the_frame_before():
+    viewer = open_recording(recorded()).viewer()
     # Across the end of a piece, in which they stand in the file.
-    header, frame, samples = asked(viewer, 1.040, 1.000, row=2, column=9)
-    assert len(samples) == 40
+    _, header, frame, samples = look(viewer, 1.040, 1.000, row=2, column=9)
     np.testing.assert_allclose(samples[:, 0], np.arange(39, -1, -1) / 1000, atol=1e-7)
-    np.testing.assert_allclose(samples[:, 1], x_mm[1001:1041], atol=1e-5)
     assert samples[-1, 2] == frame[2, 9]
-    before = asked(viewer, 1.010)[1][2, 9]
-    assert samples[9, 2] == before
-    _, _, thinned = asked(viewer, 3.0, 2.0)
-    assert len(thinned) == 64
-    assert thinned[-1, 0] == 0
-    assert thinned[0, 0] > 0.95
-    _, _, far = asked(viewer, 5.9, 0.0)
-    assert 3.5 < far[0, 0] <= 4.0
+    assert samples[9, 2] == look(viewer, 1.010)[2][2, 9]
+    many = look(viewer, 3.0, 2.0)[3]
+    assert len(many) == 64
+    assert (many[-1, 0], many[0, 0] > 0.9) == (0, True)
     for since_s in (None, 1.040, 2.0):
-        _, _, alone = asked(viewer, 1.040, since_s, row=-3, column=99)
-        assert len(alone) == 1
-        assert tuple(alone[0, :2]) == (0.0, header["x_mm"])
+        alone = look(viewer, 1.040, since_s, row=-3, column=99)[3]
+        assert alone[:, :2].tolist() == [[0.0, header["x_mm"]]]
 
 
-def test_a_recording_without_a_whole_frame_is_refused(tmp_path):
-    path = record(tmp_path / "a.h5", LINES[:1], np.linspace(-6, 60, 500))
-    with h5py.File(path) as file:
-        at = file["frames"].id.get_chunk_info(0).byte_offset
-    content = bytearray(path.read_bytes())
-    content[at : at + 64] = bytes(64)
-    path.write_bytes(content)
-    with pytest.raises(InputError, match="no frame of the recording is whole"):
-        open_recording(path)
+def test_times_beyond_the_recording_are_its_ends():
+    source = open_recording(recorded())
+    viewer = source.viewer()
+    assert look(viewer, -5.0)[1]["tick"] == 0
+    for at_s in (1e300, float("nan"), None):  # no time is the one before
+        assert look(viewer, at_s)[1]["time_s"] == source.length_s
+    with pytest.raises(InputError):
+        source.ask(Turn("texture", 0.5))
 
 
 def test_a_damaged_chunk_is_passed_over(tmp_path):
-    path = record(tmp_path / "a.h5", LINES, np.linspace(-6, 60, 1500))
-    with h5py.File(path) as file:
-        at = file["frames"].id.get_chunk_info(2).byte_offset
-    content = bytearray(path.read_bytes())
-    content[at : at + 64] = bytes(64)
-    path.write_bytes(content)
-    viewer = open_recording(path).viewer()
-    assert asked(viewer, 2.1)[0]["tick"] == 2047
-    assert asked(viewer, 1.0)[0]["tick"] == 1000
-    assert asked(viewer, 4.0, 1.9)[0]["tick"] == 4000
+    viewer = open_recording(damaged(tmp_path, 2)).viewer()
+    assert look(viewer, 2.1)[1]["tick"] == 2047
+    assert look(viewer, 4.0, 1.9)[1]["tick"] == 4000
 
 
-def test_a_line_has_its_print_and_what_each_cell_stands_for(tmp_path):
-    made = vbraille.render_text("the day", grade=2).recording()
-    made.write(tmp_path / "made.h5")
-    again = vbraille.Recording.open(tmp_path / "made.h5")
-    assert [one.text for one in again.prints] == [one.text for one in made.prints]
-    again.write(tmp_path / "again.h5")
-    played = Rendered(tmp_path / "again.h5")
-    line = played.describe(1).lines[0]
-    assert line.text == "the day"
-    assert line.cells == made.cells[0].tolist()
-    pieces = ["".join(line.text[begin:end]) for begin, end in line.sources]
-    assert pieces[0] == "the"  # one cell, contracted
-    assert "".join(dict.fromkeys(pieces)).replace(" ", "") == "theday"
-    with pytest.raises(InputError, match="prints need one print"):
-        vbraille.Recording(
-            **{name: getattr(made, name) for name in made.__slots__} | {"prints": made.prints * 2}
-        )
+def test_a_page_sees_a_recording_until_ctrl_c():
+    process = program.start("monitor", str(recorded()))
+    try:
+        said = process.stdout.readline().decode()
+        with Client(said.removeprefix("live view: ").strip()) as page:
+            assert page.welcome["playback"]
+            assert not page.welcome["steers"]
+            assert page.welcome["moments"][0]["kind"] == "line"
+            header, deflections, _ = page.frame(at_s=0.2)
+            assert header["time_s"] == pytest.approx(0.2, abs=1e-3)
+            assert deflections.shape == (6, 10)
+            page.ask(ask="press", command="LNDN")
+            assert "recording" in page.hear()["why"]
+        process.send_signal(signal.SIGINT)
+        assert process.wait(program.PATIENCE_S) == 0
+    finally:
+        process.kill()
+        process.communicate()
 
 
-def test_a_recording_of_braille_alone_has_no_print():
-    line = Rendered(recorded()).describe(1).lines[0]
-    assert (line.text, line.sources) == ("", [(0, 0)] * len(line.cells))
+def test_what_cannot_be_played_is_one_sentence(tmp_path):
+    (tmp_path / "empty").touch()
+    (tmp_path / "cut.h5").write_bytes(recorded().read_bytes()[:9000])
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["t_s"] = [1.0]
+    for name in ("none.h5", "empty", "cut.h5", "other.h5"):
+        with pytest.raises(InputError, match=name):
+            open_recording(tmp_path / name)
+    done = program.run("monitor", tmp_path / "cut.h5")
+    assert done.returncode == 2
+    assert "cut.h5" in done.stderr
+    assert done.stderr.count("\n") == 1

@@ -11,6 +11,7 @@ import os
 import sys
 from contextlib import suppress
 from importlib import import_module
+from inspect import cleandoc
 from io import BufferedWriter, FileIO, RawIOBase, TextIOWrapper
 
 import click
@@ -81,7 +82,7 @@ class Program(Group):
             return click.Command(cmd_name, help=HELP[cmd_name])
         command = import_module(f"vbraille.cli.commands.{cmd_name}").command
         command.name = cmd_name
-        command.help = f"{HELP[cmd_name]}\n\n{command.help or ''}".strip()
+        command.help = f"{HELP[cmd_name]}\n\n{cleandoc(command.help or '')}".strip()
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
@@ -156,6 +157,9 @@ def _run(arguments: list[str]) -> tuple[str, int]:
         return "", code if isinstance(code, int) else 0
     except SystemExit as end:  # of completion
         return "", int(end.code or 0)
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message(), err=True)
+        return "", 2
     except click.Abort:
         return SAID, EXIT_CODE
     except click.ClickException as error:
@@ -183,8 +187,11 @@ def _sentence(error: click.ClickException) -> str:
     if isinstance(error, click.BadParameter) and context and error.param:
         place = origin(context, error.param)
         return f"{place}: {message}" if place else message
-    if isinstance(error, (click.NoSuchOption, click.MissingParameter)) and context:
-        return f"{message}; {context.command_path} --help lists the options"
+    if isinstance(error, click.NoSuchOption):
+        near = f"; did you mean {' or '.join(error.possibilities)}?" if error.possibilities else ""
+        message = f"unknown option {error.option_name}{near}"
+        if not near and context:
+            message += f"; {context.command_path} --help-all lists the options"
     return message
 
 

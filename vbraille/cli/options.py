@@ -67,7 +67,7 @@ class Command(click.Command):
         groups: dict[str, list[tuple[str, str]]] = {FIRST: []}
         for param in self.get_params(ctx):
             record = param.get_help_record(ctx)
-            if record is not None:
+            if record is not None and isinstance(param, click.Option):
                 groups.setdefault(getattr(param, "group", FIRST), []).append(record)
         shown = groups if ctx.meta.get("vbraille.help_all") else {FIRST: groups[FIRST]}
         for name, records in shown.items():

@@ -6,14 +6,17 @@ import sys
 import time
 from typing import Any
 
-from vbraille.wording import duration, printable
+from vbraille.wording import duration, printable, spelled
 
 _SHORT_S = 2.0  # work that is soon over, of which nothing is said
 
 
 def say(sentence: str, *, aside: bool = False) -> None:
-    """Print a line at once, control characters by their names; to standard error if `aside`."""
-    print(printable(sentence), file=sys.stderr if aside else sys.stdout, flush=True)
+    """Print a line at once, control characters by their names; to standard error if `aside`.
+
+    Settings that the line names are spelled as options.
+    """
+    print(printable(spelled(sentence)), file=sys.stderr if aside else sys.stdout, flush=True)
 
 
 def print_json(value: object) -> None:

@@ -222,9 +222,14 @@ class RingReader:
     def __init__(self, buffer: memoryview, shape: tuple[int, int], size: int) -> None:
         self.lost = 0
         self._size = size
+        self._buffer, self._shape = buffer, shape
         self._published = buffer[:_HEADER_BYTES].cast("q")
         self._records = np.frombuffer(buffer, tick_dtype(shape), size, _HEADER_BYTES)
         self.cursor = max(self._published[0] - 1, 0)
+
+    def another(self) -> RingReader:
+        """Make another reader of the same memory, which begins with the newest record."""
+        return RingReader(self._buffer, self._shape, self._size)
 
     def drain(self) -> NDArray[np.void]:
         """Copy the records since the last call, oldest first; `tick_dtype`[n]."""

@@ -1,1 +1,4 @@
-"""The live view: a page in a browser that shows the text, the array and the skin, and steers."""
+"""The live view: a page in a browser that shows a reading, a session or a recording, and steers.
+
+`vbraille.live.view.LiveView` serves what is read now, and `vbraille.live.server.Server` any source.
+"""

@@ -1,38 +1,21 @@
-"""Messages between a page of the live view and its server.
+"""Messages between a page of the live view and its server, in JSON.
 
-The page pulls: it asks for a frame when it has drawn the one before, so that nothing can pile up
-on the way. It asks in JSON. The server answers each `Next` with the `ViewState`, if that has
-changed since this page was told it, and then with one frame, which `vbraille.live.framing` makes.
-`docs/live-view.md` has both as tables.
+The page pulls: it asks for a frame with `Next` when it has drawn the one before, so that nothing
+piles up on the way. The server answers with the `ViewState`, if that has changed since this page
+was told it, and then with one frame (`vbraille.live.frames`).
 """
 
 from __future__ import annotations
 
-from typing import Final
-
 import msgspec
-
-VERSION: Final = 1
-# Longest request of a page, in bytes.
-MOST_BYTES: Final = 4096
-# The ticks of a frame are thinned out evenly to this number at most.
-MOST_SAMPLES: Final = 64
-FRAME_KIND: Final = 1
-MAP_KIND: Final = 2
 
 
 class Request(msgspec.Struct, frozen=True, tag_field="ask", forbid_unknown_fields=True):
     """Request of a page; its subclasses are the kinds."""
 
 
-class PageHello(Request, frozen=True, tag="hello"):
-    """The first request of a page, which the server answers with `Welcome`.
-
-    Parameters
-    ----------
-    token
-        Token of the address by which the page was opened; empty without one.
-    """
+class Hello(Request, frozen=True, tag="hello"):
+    """The first request of a page, with the token of its address; answered with `Welcome`."""
 
     token: str = ""
 
@@ -43,10 +26,9 @@ class Next(Request, frozen=True, tag="next"):
     Parameters
     ----------
     row, column
-        The actuator whose deflection the samples hold, from 0.
-    at_s
-        In a recording, the time of the frame that is asked for, in seconds from its start, and
-        ``since_s`` that of the frame before; the newest frame of a device where it is None.
+        Actuator whose deflection the samples hold, from 0.
+    at_s, since_s
+        In a recording, time of the frame and of the frame before, in seconds from its start.
     """
 
     row: int = 0
@@ -56,35 +38,21 @@ class Next(Request, frozen=True, tag="next"):
 
 
 class PagePress(Request, frozen=True, tag="press"):
-    """A command by its name, as in `docs/keys.md`; it needs the right to steer.
-
-    Parameters
-    ----------
-    command
-        The command.
-    place
-        Number of the place that a command is for which is pointed at, from 0, such as a card's.
-    """
+    """A command by its name, as in `docs/keys.md`, and the place it is for, such as a card's."""
 
     command: str
     place: int | None = None
 
 
 class Turn(Request, frozen=True, tag="turn"):
-    """A knob of the braille style turned to a value; it needs the right to steer."""
+    """A knob of the braille style, turned to a value."""
 
     knob: str
     value: float
 
 
 class Point(Request, frozen=True, tag="point"):
-    """The hand of a simulated device held at a place; it needs the right to steer.
-
-    Parameters
-    ----------
-    x_mm, y_mm, theta_rad
-        Place of the array's centre on the canvas, and angle by which the array is turned.
-    """
+    """The hand of a simulated device, held at a pose of the array's centre on the canvas."""
 
     x_mm: float
     y_mm: float = 0.0
@@ -92,29 +60,14 @@ class Point(Request, frozen=True, tag="point"):
 
 
 class LetGo(Request, frozen=True, tag="let-go"):
-    """The hand of a simulated device let go, so that it reads by itself again."""
+    """The hand of a simulated device, let go: it reads by itself again."""
 
 
-class Map(Request, frozen=True, tag="map"):
-    """The deflection map of what is under the hand, or of a recording at a time.
-
-    Parameters
-    ----------
-    form
-        "png" or "svg".
-    at_s
-        In a recording, the time of what is drawn.
-    """
-
-    form: str = "png"
-    at_s: float | None = None
-
-
-AnyRequest = PageHello | Next | PagePress | Turn | Point | LetGo | Map
+Steering = PagePress | Turn | Point | LetGo
 
 
 class ArrayShown(msgspec.Struct, frozen=True):
-    """The actuators of a device, as a page draws them.
+    """The actuators of a device.
 
     Parameters
     ----------
@@ -129,7 +82,7 @@ class ArrayShown(msgspec.Struct, frozen=True):
     rest_right
         Whether an actuator at rest stands at the right end of its swing.
     travel_mm, height_mm
-        How far the carriage goes along x and y.
+        How far the carriage goes along x and y; a height of 0 is one axis.
     turns
         Whether the carriage measures an angle.
     rate_hz
@@ -155,18 +108,17 @@ class LineShown(msgspec.Struct, frozen=True):
     Parameters
     ----------
     number
-        Number by which records call the line.
+        Number of the line in frames.
     text
-        Text of the line in print; empty where the source is braille.
+        Print of the line; empty where the source is braille.
     start_mm
-        Place of the left edge of the first of these cells.
+        Left edge of the first of these cells.
     top_mm
-        Place of the upper edge of the line: its dots stand around the middle of a line pitch.
+        Upper edge of the line: its dots stand around the middle of a line pitch.
     cells
         Dot masks of the cells; bit n - 1 is dot n.
     sources
-        For each cell, where in the text that begins and ends which it stands for; two equal
-        numbers where it stands for nothing.
+        For each cell, where the text that it stands for begins and ends; equal for none.
     under
         Whether this is the line under the hand.
     """
@@ -186,13 +138,13 @@ class KnobShown(msgspec.Struct, frozen=True):
     Parameters
     ----------
     name
-        Name of the knob, such as "dot_width_mm".
+        Name, such as "dot_width_mm".
     label, unit
         Name and unit for people.
     value, step, low, high
         Value, how far a key turns it, and its bounds.
     fixed
-        Reason why it cannot be turned here; empty if it can.
+        Why it cannot be turned; empty if it can.
     """
 
     name: str
@@ -206,23 +158,20 @@ class KnobShown(msgspec.Struct, frozen=True):
 
 
 class SceneShown(msgspec.Struct, frozen=True):
-    """A tactile picture that is felt, as a page draws it behind the array.
+    """A tactile picture.
 
     Parameters
     ----------
     title, description
-        What the picture shows.
+        What it shows.
     width_mm, height_mm
-        Size of the canvas, whose upper left corner is the origin.
+        Size of the canvas.
     image
-        Address of its deflection map, as a rule with the PNG in it (``data:``); white is rest, and
-        black is full deflection. Empty where there is none.
+        Address (``data:``) of its deflection map; white is rest. Empty where there is none.
     left_mm, top_mm
-        Place of the canvas where the carriage is at 0, 0.
-    off
-        Names of the layers that its switches hide, each with what hides it.
-    off_image
-        Address of a map of these layers alone; empty where none is hidden.
+        Place on the canvas where the carriage is at 0, 0.
+    off, off_image
+        Layers that its switches hide, each with what hides it, and a map of these alone.
     """
 
     title: str
@@ -237,21 +186,19 @@ class SceneShown(msgspec.Struct, frozen=True):
 
 
 class BesideShown(msgspec.Struct, frozen=True):
-    """The line under the hand in another mapping, which a page draws beside the array.
-
-    All actuators of a row do the same at one place, so that a row of values tells of all of them.
+    """The line under the hand in another mapping.
 
     Parameters
     ----------
     mapping
-        Words for the mapping, as in `ViewState`.
+        Words for the mapping.
     rows_shown
         Rows of dots that it shows, as in `ViewState`.
     first_mm, step_mm
         First of the places, and the distance from each to the next.
     rows
-        For each row of actuators the deflections at these places, in base64: a byte each, 0 for
-        rest and 255 for full swing.
+        For each row of actuators its deflections at these places, in base64: a byte each, 0 for
+        rest and 255 for full swing. All actuators of a row do the same at one place.
     """
 
     mapping: str
@@ -262,28 +209,14 @@ class BesideShown(msgspec.Struct, frozen=True):
 
 
 class SignalShown(msgspec.Struct, frozen=True):
-    """A signal of a picture; frames have its value at its place in the list.
-
-    Parameters
-    ----------
-    name
-        Name of the signal.
-    words
-        Words for when it is 1 and when it is 0.
-    """
+    """A signal of a picture, with words for 1 and 0; frames have its value at its place."""
 
     name: str
     words: str
 
 
 class CommandShown(msgspec.Struct, frozen=True):
-    """A command that a page offers, as `PagePress` calls it.
-
-    Parameters
-    ----------
-    name, words
-        Name of the command, and what it does.
-    """
+    """A command that a page offers as a button: its name in `PagePress`, and what it does."""
 
     name: str
     words: str
@@ -297,7 +230,7 @@ class CardShown(msgspec.Struct, frozen=True):
     place
         Words for the place, such as "row 1, card 2".
     side
-        How its card lies: "face down", "turned up" or "empty".
+        "face down", "turned up" or "empty".
     felt
         Whether its card is under the hand.
     """
@@ -315,13 +248,13 @@ class PlayedEvent(msgspec.Struct, frozen=True):
     at_s
         Seconds from the start of the recording.
     kind
-        Kind: "line", "trial", "cue", "answer", "fault", "tuning", "pause" or "note".
+        "line", "trial", "cue", "answer", "fault", "tuning", "pause" or "note".
     text
         Sentence on what happened.
     right
         Whether an answer was right; None where nothing is right or wrong.
     condition
-        Condition of the trial in which it happened; empty for none.
+        Condition of its trial; empty for none.
     """
 
     at_s: float
@@ -332,23 +265,17 @@ class PlayedEvent(msgspec.Struct, frozen=True):
 
 
 class Welcome(msgspec.Struct, frozen=True, tag_field="tell", tag="welcome"):
-    """The server's answer to `PageHello`.
+    """Answer to `Hello`.
 
     Parameters
     ----------
-    version
-        `VERSION`.
     steers
         Whether this page may steer.
-    playback
-        Whether a recording is played back, so that `Next` and `Map` name a time.
-    length_s
-        Length of the recording in seconds; 0 without one.
-    moments
-        What happened in the recording, by time.
+    playback, length_s, moments
+        Whether a recording is played back, so that `Next` names a time; its length, and what
+        happened in it, by time.
     """
 
-    version: int
     steers: bool
     playback: bool = False
     length_s: float = 0.0
@@ -356,42 +283,38 @@ class Welcome(msgspec.Struct, frozen=True, tag_field="tell", tag="welcome"):
 
 
 class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
-    """All that a page shows beside the frames, and that changes seldom.
+    """All that a page shows beside the frames, which changes seldom.
 
     Parameters
     ----------
     number
-        Number of the state, which grows with each.
+        Number of the state; `vbraille.live.view.LiveView` gives it.
     title
         Title of what is read.
     array
         The actuators; None before the device is known.
     geometry
-        Distances of the braille in mm: `dot_width_mm`, `dot_spacing_mm`, `cell_gap_mm`,
-        `row_spacing_mm` and `line_pitch_mm`.
+        Distances of the braille in mm: ``dot_width_mm``, ``dot_spacing_mm``, ``cell_gap_mm``,
+        ``row_spacing_mm`` and ``line_pitch_mm``.
     rows_shown
-        For each row of actuators, from row 0, which dots it shows: (dot row of the left dot
-        column, dot row of the right one), from 0; -1 for none. Empty where that is not shown.
+        For each row of actuators the dot rows, from 0, that it shows: in the left dot column and
+        in the right one; -1 for none.
     lines
-        The line under the hand and some around it, from top to bottom; empty in a blind session.
+        The line under the hand and some around it, from top to bottom.
     place
         Sentence that says where the reader is, such as "line 12, page 3".
     knobs
-        Knobs of the braille style; empty where nothing may be turned.
+        Knobs of the braille style.
     mapping
-        Words for the mapping, such as "mapping: sheared".
+        Words for the mapping.
     paused
         Whether the array rests because the reader said so.
-    simulated
-        Whether a simulated hand moves the carriage, so that a page may be the hand.
-    held
-        Whether a page is the hand now.
+    simulated, held
+        Whether a page may be the hand, and whether one is.
     device
-        Sentence on the state of the device, such as "reading", "place: known" or a fault.
-    said
-        The last sentences that the reader was told, oldest first.
-    said_before
-        Number of sentences that were said before those.
+        Sentence on the state of the device, such as "reading" or a fault.
+    said, said_before
+        The last sentences that the reader was told, oldest first, and how many were before.
     facts
         Name and value of whatever else is shown, such as the trial of a session.
     blind
@@ -399,20 +322,20 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
     done
         Whether reading is over.
     scene
-        Tactile picture that is felt; None where lines are read, and in a blind session.
+        Tactile picture under the hand; None where lines are read.
     beside
         The line under the hand in another mapping, where that was asked for.
     figures
-        Tactile pictures that stand on the page of a text, at their places.
+        Tactile pictures on the page of a text, at their places.
     signals
-        Signals of the picture that is felt.
+        Signals of the picture under the hand.
     commands
         Commands that a page with the right to steer offers.
     cards
-        Rows of the table of a memory game; a card is turned by the command "POINT" and its place.
+        Rows of the table of a memory game; "POINT" and a place turn a card.
     """
 
-    number: int
+    number: int = 0
     title: str = ""
     array: ArrayShown | None = None
     geometry: dict[str, float] = {}
@@ -439,12 +362,10 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
 
 
 class Refused(msgspec.Struct, frozen=True, tag_field="tell", tag="refused"):
-    """The server's answer to a request that it cannot do; the connection may end after it.
-
-    Parameters
-    ----------
-    why
-        Sentence that says what is wrong and what to do.
-    """
+    """Answer to a request that cannot be done: a sentence that says what to do."""
 
     why: str
+
+
+to_request = msgspec.json.Decoder(Hello | Next | Steering).decode
+to_json = msgspec.json.Encoder().encode

@@ -1,14 +1,14 @@
-"""Parts of the state that pages of the live view are told, made of what they show."""
+"""Parts of the state that pages are told, made of what they show."""
 
 from __future__ import annotations
 
+import base64
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vbraille.config.settings import KNOBS, fixed
-from vbraille.live.messages import ArrayShown, KnobShown, LineShown
+from vbraille.live.messages import ArrayShown, BesideShown, LineShown
 from vbraille.render.braille.mappings import NONE
 from vbraille.render.braille.models import swing_of
 
@@ -19,14 +19,16 @@ if TYPE_CHECKING:
 
     from vbraille.braille.geometry import Geometry
     from vbraille.display import Display
-    from vbraille.layout.blocks import Line
+    from vbraille.layout.pages import Line
     from vbraille.render.braille.style import BrailleStyle
 
-_DISTANCES = ("dot_width_mm", "dot_spacing_mm", "cell_gap_mm", "row_spacing_mm", "line_pitch_mm")
+_DISTANCES: Final = ("dot_width_mm", "dot_spacing_mm", "cell_gap_mm", "row_spacing_mm",
+                     "line_pitch_mm")  # fmt: skip
+_BESIDE_MM: Final = 0.1  # from one place to the next
 
 
 def array_shown(display: Display) -> ArrayShown:
-    """Actuators of a display as a page draws them."""
+    """Show the actuators of a display."""
     return ArrayShown(
         name=display.name,
         rows=display.rows,
@@ -43,36 +45,49 @@ def array_shown(display: Display) -> ArrayShown:
 
 
 def geometry_shown(geometry: Geometry) -> dict[str, float]:
-    """Distances of braille, by name, in mm."""
+    """Give the distances of braille by name, in mm."""
     distances = asdict(geometry)
     return {name: float(distances[name]) for name in _DISTANCES}
 
 
 def rows_shown(style: BrailleStyle, display: Display) -> list[tuple[int, int]]:
-    """Rows of dots that each row of actuators shows: of the left dot column and of the right one.
-
-    A row of dots counts from 0; -1 stands for none.
-    """
+    """Give the dot rows that each row of actuators shows, as `ViewState` has them."""
     shown = [(NONE, NONE)] * display.rows
     shown[style.rows_on(display)] = zip(style.mapping.left, style.mapping.right, strict=True)
     return shown
 
 
-def knobs_shown(style: BrailleStyle) -> list[KnobShown]:
-    """Knobs of a style, with their values and bounds."""
-    return [
-        KnobShown(
-            name=knob.key,
-            label=knob.label,
-            unit=knob.unit,
-            value=float(knob.value(style)),
-            step=float(knob.step),
-            low=float(knob.low),
-            high=float(knob.high),
-            fixed=fixed(knob, style),
-        )
-        for knob in KNOBS.values()
-    ]
+def beside_shown(
+    style: BrailleStyle, display: Display, masks: NDArray[np.uint8], start_mm: float, words: str
+) -> BesideShown:
+    """Show the cells of a line in another style.
+
+    Parameters
+    ----------
+    style
+        The style, with another mapping than is felt.
+    display
+        The actuators.
+    masks : uint8[cells]
+        Dot masks of the cells under the hand.
+    start_mm
+        Left edge of the first of them.
+    words
+        Words for the mapping.
+    """
+    pitch_mm = style.geometry.cell_pitch_mm
+    count = int((style.geometry.extent_mm(len(masks)) + 2 * pitch_mm) / _BESIDE_MM)
+    places_mm = _BESIDE_MM * np.arange(count, dtype=np.float64) - pitch_mm
+    # The left column tells its own place then. What it does, all columns do at that place.
+    made = style.render(masks, display).with_anchor(0.0).path(places_mm)[:, :, 0].T
+    rows = np.rint(255 * np.clip(made, 0, 1)).astype(np.uint8)
+    return BesideShown(
+        words,
+        rows_shown(style, display),
+        start_mm - pitch_mm,
+        _BESIDE_MM,
+        [base64.b64encode(row).decode() for row in rows],
+    )
 
 
 def cells_shown(
@@ -83,7 +98,7 @@ def cells_shown(
     top_mm: float = 0.0,
     under: bool = False,
 ) -> LineShown:
-    """Cells as a page draws them, of which it is not known what of a text each stands for."""
+    """Show cells of which it is not known what of a text each stands for."""
     cells = [int(mask) for mask in masks]
     return LineShown(number, text, 0.0, top_mm, cells, [(0, 0)] * len(cells), under)
 
@@ -98,20 +113,18 @@ def line_shown(
     number: int | None = None,
     under: bool = False,
 ) -> LineShown:
-    """A line, or a part of it, as a page draws it.
+    """Show a line, or a part of it.
 
     Parameters
     ----------
     line
         The line.
-    first
-        Cell of the line that stands first; below 0 that many blank cells stand before the line.
-    count
-        Number of cells that are shown; None for all from there on.
+    first, count
+        Cell that stands first, before the line if it is below 0, and how many are shown.
     start_mm, top_mm
-        Places of the left edge of the first of these cells, and of the upper edge of the line.
+        Left edge of the first of these cells, and upper edge of the line.
     number
-        Number by which records call the line; None for the line's own.
+        Number of the line in frames; None for the line's own.
     under
         Whether the line is under the hand.
     """
@@ -124,11 +137,11 @@ def line_shown(
     sources = sources[at]
     text = "" if line.block.cells is not None else line.text
     known = sources[sources[:, 0] >= 0]
-    cut_from = 0
+    cut = 0
     if known.size and count < len(line):  # of a long line, only what is shown
-        cut_from = int(known[:, 0].min())
-        text = text[cut_from : int(known[:, 1].max())]
-    sources = np.clip(np.where(sources < 0, cut_from, sources) - cut_from, 0, len(text))
+        cut = int(known[:, 0].min())
+        text = text[cut : int(known[:, 1].max())]
+    sources = np.clip(np.where(sources < 0, cut, sources) - cut, 0, len(text))
     return LineShown(
         number=line.number if number is None else number,
         text=text,
@@ -141,9 +154,21 @@ def line_shown(
 
 
 def _sources(line: Line) -> NDArray[np.int64]:
-    """Begin and end in the line's text of what each cell after the indent stands for."""
+    """Give where the text begins and ends that each cell stands for."""
     starts, places = line.cells.starts, line.block.text.places
     after = np.searchsorted(starts, starts, side="right")
     following = np.append(starts, line.cells.end)[after]
     there = np.searchsorted(places, np.stack((starts, following), axis=1)) - line.first
     return np.clip(there, 0, line.after - line.first)
+
+
+def knobs_shown(style: BrailleStyle) -> list:
+    """Knobs of a style, until readings make them."""
+    from vbraille.config.settings import KNOBS, fixed
+    from vbraille.live.messages import KnobShown
+
+    return [
+        KnobShown(knob.key, knob.label, knob.unit, float(knob.value(style)), float(knob.step),
+                  float(knob.low), float(knob.high), fixed(knob, style))
+        for knob in KNOBS.values()
+    ]  # fmt: skip

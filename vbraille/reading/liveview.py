@@ -9,7 +9,6 @@ from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any, Final, Self, cast
 
-import numpy as np
 from msgspec.structs import replace
 
 from vbraille.config.settings import KNOBS, say_mapping
@@ -30,6 +29,7 @@ from vbraille.live.messages import (
 from vbraille.live.monitor import Monitor
 from vbraille.live.states import (
     array_shown,
+    beside_shown,
     geometry_shown,
     knobs_shown,
     line_shown,
@@ -274,23 +274,10 @@ class ReadState(ExploredState):
 
     def _beside(self, mapping: Mapping) -> BesideShown:
         """Make the line under the hand in another mapping."""
-        # Only a page that wants it waits for what makes maps.
-        from vbraille.live.maps import STEP_MM, deflections_at
-
         window, display = self._device.reader.window, self._device.display
         style = self._device.reader.style.replace(mapping=mapping)
-        geometry = style.geometry
-        length_mm = geometry.extent_mm(len(window)) + 2 * geometry.cell_pitch_mm
-        count = int(length_mm / STEP_MM)
-        places_mm = STEP_MM * np.arange(count, dtype=np.float64) - geometry.cell_pitch_mm
-        (rows,) = deflections_at(style.render(window.masks, display), places_mm)
-        return BesideShown(
-            say_mapping(mapping),
-            rows_shown(style, display),
-            float(places_mm[0]) + window.start_mm,
-            STEP_MM,
-            [base64.b64encode(np.rint(255 * row).astype(np.uint8)).decode() for row in rows],
-        )
+        words = say_mapping(mapping)
+        return beside_shown(style, display, window.masks, window.start_mm, words)
 
     def _lines(self, line: Line) -> Iterable[LineShown]:
         """Lines to be drawn, from top to bottom."""

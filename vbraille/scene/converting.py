@@ -278,7 +278,7 @@ def _relative(file: Path, folder: Path) -> str:
 
 def _read(path: Path, form: str, as_shown: bool) -> FoundScene:
     if form == "svg":
-        from vbraille.scene.svg.reading import read_svg  # loads the library for SVG
+        from vbraille.scene.svg.drawing import read_svg  # loads the library for SVG
 
         return read_svg(path)
     from vbraille.scene.openlatero import read_gen  # loads the library for XML

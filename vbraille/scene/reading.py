@@ -16,7 +16,7 @@ from vbraille.scene.patterns import AnyPattern, Group, Image, ImageDots, Label, 
 from vbraille.scene.resolving import MOST_PATTERNS, resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import AnySignal
-from vbraille.scene.svg.paint import ClassLook
+from vbraille.scene.svg.looks import ClassLook
 from vbraille.scene.traversal import with_children
 from vbraille.tomlfile import Table, TomlFile
 
@@ -310,7 +310,7 @@ def _about(path: Path, warning: str) -> str:
 
 def _read_foreign(path: Path, form: str, classes: Mapping[str, ClassLook]) -> FoundScene:
     if form == "svg":
-        from vbraille.scene.svg.reading import read_svg  # loads the library for SVG
+        from vbraille.scene.svg.drawing import read_svg  # loads the library for SVG
 
         return read_svg(path, classes)
     from vbraille.scene.openlatero import read_gen  # loads the library for XML

@@ -359,11 +359,11 @@ def _open_answers(given: Any, conditions: Conditions, progress: Progress) -> Ans
     InputError
         If it cannot be used with this session.
     """
-    from vbraille.sessions.running.answers import answers_of
+    from vbraille.sessions.running.answers import Typed, answers_of
 
     spec = conditions.answers if given is None or isinstance(given, str) else given
     source = answers_of(spec, progress.protocol, progress.plan, progress.script_line)
-    if conditions.fast and source.typed:
+    if conditions.fast and isinstance(source, Typed):
         raise InputError("--fast is for answers that are not typed; give --answers simulated")
     if conditions.fast and not is_simulated(conditions.device):
         raise InputError("--fast is for the simulated device; leave --device out")

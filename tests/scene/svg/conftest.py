@@ -3,7 +3,7 @@
 import pytest
 
 from tests.scene.svg.plans import NS
-from vbraille.scene.svg.reading import read_svg
+from vbraille.scene.svg.drawing import read_svg
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from vbraille.errors import InputError
 from vbraille.scene.patterns import Fill, LinearGrating, StraightLine, UniformVibration
 from vbraille.scene.reading import open_scene
 from vbraille.scene.strokes import Dotting, Stroke
-from vbraille.scene.svg.paint import ClassLook
+from vbraille.scene.svg.looks import ClassLook
 
 WATER = ClassLook(fill=Fill(texture=UniformVibration(), gap_mm=1), stroke=Stroke(width_mm=5))
 

@@ -11,7 +11,7 @@ from PIL import Image
 
 from tests.tiers import examples
 from vbraille.scene.patterns import Circle
-from vbraille.scene.svg.reading import read_svg
+from vbraille.scene.svg.drawing import read_svg
 from vbraille.scene.traversal import each
 
 SIZE = 100  # mm, and pixels, of a drawing

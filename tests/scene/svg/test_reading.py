@@ -15,8 +15,9 @@ from vbraille.scene.patterns import PathShape as Lines
 from vbraille.scene.reading import SceneFile, open_scene
 from vbraille.scene.stock import stock_textures
 from vbraille.scene.strokes import Along, Stroke
-from vbraille.scene.svg.paint import BY_HUE, color_of, hue_of
-from vbraille.scene.svg.reading import read_svg
+from vbraille.scene.svg.drawing import read_svg
+from vbraille.scene.svg.looks import BY_HUE, hue_of
+from vbraille.scene.svg.values import color_of
 from vbraille.scene.traversal import each
 from vbraille.tomlfile import TomlFile
 
@@ -54,7 +55,7 @@ def test_a_drawing_of_inkscape():
     assert "Lake" in text[found.lines["elements", 0, "parts", 4] - 1]
     assert warned(found) == [
         "its filter is ignored",
-        "its fill url(#gradient) is felt as a plain gray one",
+        "its fill is a gradient or a pattern, felt as plain black",
     ]
 
 
@@ -176,10 +177,11 @@ SHAPES = {
     '<text><textPath href="#way">along</textPath></text>': Label(
         text="along", place_mm=(30, 31)
     ),
-    '<svg x="10" y="10" width="20" height="10" viewBox="0 0 2 1"><circle r="1"/></svg>': Circle(
+    '<svg x="10" y="10" width="20" height="10" viewBox="0 0 2 1" overflow="visible">'
+    '<circle r="1"/></svg>': Circle(
         center_mm=(10, 10), radius_mm=10, fill=Fill(texture=Use(name="stock:linear-0"))
     ),
-    '<symbol id="s" viewBox="0 0 2 1"><circle r="1"/></symbol>'
+    '<symbol id="s" viewBox="0 0 2 1" overflow="visible"><circle r="1"/></symbol>'
     '<use href="#s" x="10" y="10" width="20" height="10"/>': Circle(
         center_mm=(10, 10), radius_mm=10, fill=Fill(texture=Use(name="stock:linear-0"))
     ),

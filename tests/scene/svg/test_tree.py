@@ -4,7 +4,7 @@ import pytest
 
 from tests.tiers import by_tier
 from vbraille.errors import InputError
-from vbraille.scene.svg.tree import MOST_DEPTH, MOST_ELEMENTS, name_of, read_tree
+from vbraille.scene.svg.document import MOST_DEPTH, MOST_ELEMENTS, name_of, read_tree
 
 NS = 'xmlns="http://www.w3.org/2000/svg"'
 # As Adobe Illustrator begins its files.
@@ -24,35 +24,38 @@ LAUGHS = "".join(
 )
 COUNT = by_tier(MOST_ELEMENTS + 1, 1_000_000, 1_000_000)
 BAD = {
-    "entities of entities": (f"<!DOCTYPE svg [{LAUGHS}]><svg {NS}>&lol9;</svg>", "fill the memory"),
+    "entities of entities": (
+        f"<!DOCTYPE svg [{LAUGHS}]><svg {NS}>&lol9;</svg>",
+        "entities that cannot be replaced",
+    ),
     "entity of a file": (
         f'<!DOCTYPE svg [<!ENTITY x SYSTEM "file:///etc/passwd">]><svg {NS}>&x;</svg>',
-        "stand for other files",
+        "entities that cannot be replaced",
     ),
     "entity of an address": (
         f'<!DOCTYPE svg [<!ENTITY x PUBLIC "a" "http://localhost/x">]><svg {NS}>&x;</svg>',
-        "stand for other files",
+        "entities that cannot be replaced",
     ),
     "entities of the type itself": (
         f'<!DOCTYPE svg [<!ENTITY % x SYSTEM "http://localhost/x"> %x;]><svg {NS}/>',
-        "stand for other files",
+        "entities that cannot be replaced",
     ),
     "one entity many times": (
         f'<!DOCTYPE svg [<!ENTITY x "{"y" * 250}">]><svg {NS} id="{"&x;" * 250_000}"/>',
-        "fill the memory",
+        "entities that cannot be replaced",
     ),
-    "many declarations": (f"<!DOCTYPE svg [{'<!--' * 20_000}]><svg {NS}/>", "declares too much"),
-    "unfinished type": ("<!DOCTYPE svg [<!ENTITY x ", "document type"),
+    "many declarations": (f"<!DOCTYPE svg [{'<!--' * 20_000}]><svg {NS}/>", "not well-formed"),
+    "unfinished type": ("<!DOCTYPE svg [<!ENTITY x ", "entities that cannot be replaced"),
     "too many elements": (f"<svg {NS}>{'<g/>' * COUNT}</svg>", "more than 50000 elements"),
     "too deep": (f"<svg {NS}>{'<g>' * 250}{'</g>' * 250}</svg>", f"more than {MOST_DEPTH} deep"),
     "far too deep": (f"<svg {NS}>{'<g>' * 100_000}", f"more than {MOST_DEPTH} deep"),
     "a long attribute": (f'<svg {NS} id="{"x" * 11_000_000}"/>', "not well-formed"),
     "not well formed": (f"<svg {NS}><g></svg>", "not well-formed XML: Opening and ending tag"),
     "unfinished": (f"<svg {NS}><g>", "not well-formed"),
-    "unknown entity": (f"<svg {NS}>&nbsp;</svg>", "not well-formed"),
+    "unknown entity": (f"<svg {NS}>&nbsp;</svg>", "nbsp"),
     "no XML": ("Once upon a time", "not well-formed"),
-    "another document": ("<html><svg/></html>", "is no SVG: it is a document of html"),
-    "unknown encoding": ('<?xml version="1.0" encoding="idna"?><svg/>', "in the encoding idna"),
+    "another document": ("<html><svg/></html>", "is not SVG: it is a document of html"),
+    "unknown encoding": ('<?xml version="1.0" encoding="idna"?><svg/>', "idna"),
 }
 
 
@@ -77,7 +80,7 @@ def test_bad_drawings_are_one_sentence(tmp_path, kind):
 
 @pytest.mark.parametrize(
     ("content", "said"),
-    [(b"\x1f\x8b\x08\0", "compressed"), (b"<svg>\xff</svg>", "not in the enc"), (b"", "empty")],
+    [(b"\x1f\x8b\x08\0", "compressed"), (b"<svg>\xff</svg>", "character encoding"), (b"", "empty")],
 )
 def test_bad_bytes_are_one_sentence(tmp_path, content, said):
     with pytest.raises(InputError, match=said):

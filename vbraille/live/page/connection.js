@@ -3,7 +3,7 @@
  * pulled: nothing is asked for that has not been drawn, so that nothing can pile up.
  */
 
-import { readFrame, readMap } from "./messages.js";
+import { readFrame } from "./messages.js";
 
 /** @typedef {import("./messages.js").Frame} Frame */
 /** @typedef {import("./messages.js").State} State */
@@ -21,7 +21,6 @@ const MOST_IN_FLIGHT = 2;
  * @property {(welcome: Welcome) => void} welcomed
  * @property {(state: State) => void} told
  * @property {(frame: Frame) => void} framed
- * @property {(map: {svg: boolean, file: Blob}) => void} mapped
  * @property {(why: string) => void} refused
  * @property {(again: boolean) => void} lost whether it is tried again
  */
@@ -91,8 +90,6 @@ export class Connection {
   /** @param {string | ArrayBuffer} received */
   #take(received) {
     if (typeof received !== "string") {
-      const map = readMap(received);
-      if (map) return this.listener.mapped(map);
       const frame = readFrame(received);
       const asked = this.#asked.shift();
       if (frame === null) return this.listener.refused("a frame could not be read; load the page again");

@@ -10,10 +10,7 @@ import { Connection } from "./connection.js";
 import { byId, write } from "./drawing.js";
 import { Hand } from "./hand.js";
 import { Knobs } from "./knobs.js";
-import { DeflectionMap } from "./map.js";
-import { VERSION } from "./messages.js";
 import { Playback } from "./playback.js";
-import { Saving } from "./saving.js";
 import { Sheet } from "./sheet.js";
 import { Skin } from "./skin.js";
 import { Telling, tables } from "./telling.js";
@@ -54,8 +51,7 @@ let lostBefore = false;
 const connection = new Connection(token(), {
   welcomed: (said) => {
     welcome = said;
-    if (said.version !== VERSION) notice("The server speaks another version than this page; load the page again.");
-    else notice(lostBefore ? "Connected again." : "", lostBefore);
+    notice(lostBefore ? "Connected again." : "", lostBefore);
     lostBefore = false;
     queue = [];
     byId("again").hidden = true;
@@ -72,13 +68,11 @@ const connection = new Connection(token(), {
     queue.push(received);
     wake();
   },
-  mapped: (received) => map.take(received),
   refused: (why) => {
     const sentence = why.charAt(0).toUpperCase() + why.slice(1) + (/[.!?]$/.test(why) ? "" : ".");
-    if (!map.refused(sentence)) notice(sentence, connection.open);
+    notice(sentence, connection.open);
   },
   lost: (again) => {
-    map.lost();
     byId("again").hidden = again;
     // It is said once, not at every attempt.
     if (again && !lostBefore) notice("The connection to vbraille is lost. It is tried again every few seconds.");
@@ -93,8 +87,6 @@ const ask = (request) => connection.ask(request);
 const sheet = new Sheet(byId("sheet"));
 const skin = new Skin(byId("deflection"), byId("strain"), byId("touch-note"));
 const beside = new Beside();
-const saving = new Saving(skin);
-saving.now = () => /** @type {[State | null, Frame | null]} */ ([state, frame]);
 const traces = new Traces(byId("scopes"));
 const telling = new Telling();
 const knobs = new Knobs(ask);
@@ -102,9 +94,7 @@ const signals = new Signals();
 const cards = new Cards(ask);
 const hand = new Hand(sheet, ask, wake);
 const playback = new Playback(wake);
-const map = new DeflectionMap(ask);
 knobs.wake = wake;
-map.time = () => (playback.on ? playback.at_s : null);
 skin.onchoose = () => state && traces.show(state, skin.chosen);
 
 /** The token of the address; it stays for this tab, and goes out of the address bar. */
@@ -178,8 +168,6 @@ function show() {
   hand.show(state, steers);
   signals.show(state);
   cards.show(state, steers);
-  map.show(state.blind);
-  map.title = state.title;
   if (state.array) playback.tick(state.array.rate_hz);
   write(byId("kind"), playback.on ? "· a recording" : open ? (steers ? "· may steer" : "· watching") : "· not connected");
   write(byId("page-note"), pageNote(state));
@@ -219,7 +207,6 @@ function draw(now) {
   sheet.move(state, frame);
   if (!state.blind) skin.move(state, frame);
   beside.move(frame);
-  saving.take(frame);
   hand.see(frame);
   if (playback.on) playback.show();
   drawn += 1;

@@ -3,11 +3,7 @@
  * `vbraille/live/messages.py` says what each number means.
  */
 
-export const VERSION = 1;
-export const FRAME_KIND = 1;
-export const MAP_KIND = 2;
 const HEADER_BYTES = 80;
-const MAP_BYTES = 8;
 
 /**
  * @typedef {object} ArrayShown
@@ -142,53 +138,22 @@ const MAP_BYTES = 8;
 export function readFrame(bytes) {
   if (bytes.byteLength < HEADER_BYTES) return null;
   const view = new DataView(bytes);
-  if (view.getUint8(0) !== FRAME_KIND || view.getUint8(1) !== VERSION) return null;
-  const samples = view.getUint16(2, true);
-  const rows = view.getUint16(72, true);
-  const columns = view.getUint16(74, true);
+  const [samples, rows, columns, signals] = [0, 2, 4, 6].map((at) => view.getUint16(at, true));
   const size = rows * columns;
-  const signals = view.getUint32(76, true);
   const end = HEADER_BYTES + 4 * size + 12 * samples;
   if (bytes.byteLength < end + 4 * signals) return null;
-  const u4 = (/** @type {number} */ at) => view.getUint32(at, true);
-  const f4 = (/** @type {number} */ at) => view.getFloat32(at, true);
+  const [flags, state, line, part, late] = [8, 12, 16, 20, 24].map((at) => view.getUint32(at, true));
+  const [tick, time_s] = [32, 40].map((at) => view.getFloat64(at, true));
+  const [x_mm, y_mm, theta_rad, vx_mm_s, lateness_us, work_us, share, age_ms] =
+    [48, 52, 56, 60, 64, 68, 72, 76].map((at) => view.getFloat32(at, true));
   return {
-    flags: u4(4),
-    state: u4(8),
-    line: u4(12),
-    part: u4(16),
-    late: u4(20),
-    tick: view.getFloat64(24, true),
-    time_s: view.getFloat64(32, true),
-    x_mm: f4(40),
-    y_mm: f4(44),
-    theta_rad: f4(48),
-    vx_mm_s: f4(52),
-    lateness_us: f4(56),
-    work_us: f4(60),
-    share: f4(64),
-    age_ms: f4(68),
+    flags, state, line, part, late, tick, time_s, x_mm, y_mm, theta_rad, vx_mm_s, lateness_us, work_us, share, age_ms,
     rows,
     columns,
     deflections: new Float32Array(bytes, HEADER_BYTES, size),
     samples: new Float32Array(bytes, HEADER_BYTES + 4 * size, 3 * samples),
     signals: new Float32Array(bytes, end, signals),
   };
-}
-
-/**
- * A map out of its bytes; null if they are none.
- * @param {ArrayBuffer} bytes
- * @returns {{svg: boolean, file: Blob} | null}
- */
-export function readMap(bytes) {
-  if (bytes.byteLength < MAP_BYTES) return null;
-  const view = new DataView(bytes);
-  if (view.getUint8(0) !== MAP_KIND) return null;
-  const svg = view.getUint8(1) !== 0;
-  const length = view.getUint32(4, true);
-  const type = svg ? "image/svg+xml" : "image/png";
-  return { svg, file: new Blob([bytes.slice(MAP_BYTES, MAP_BYTES + length)], { type }) };
 }
 
 /** Bits of the flags of a frame that the user should be told: `vbraille.engine.record.Flag`. */

@@ -1,4 +1,1 @@
-"""Drawings in SVG as tactile pictures: what drawing programs write, as patterns.
-
-Nothing of a drawing is run, and nothing that it refers to is looked up.
-"""
+"""Drawings in SVG as scenes: files, values and styles, outlines, and the walk through them."""

@@ -12,16 +12,15 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError, VbrailleError, lacking
-from vbraille.scene.svg.drawing import view_of
-from vbraille.scene.svg.numbers import PX_MM
-from vbraille.scene.svg.reading import size_px
-from vbraille.scene.svg.tree import link_of, name_of, read_tree
+from vbraille.scene.svg.document import link_of, name_of, read_tree
+from vbraille.scene.svg.drawing import SvgDrawing
+from vbraille.scene.svg.values import PX_MM, view_box_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from vbraille.scene.svg.tree import Element
+    from vbraille.scene.svg.document import Element
 
 MOST_S = 10
 _MOST_BYTES = 2 << 30
@@ -71,12 +70,12 @@ def png_of(
         If no process can be started.
     """
     root = read_tree(path)
-    width, height = size_px(root, str(path))
+    width, height = SvgDrawing(str(path), root, {}).size_px
     fine = _STEPS / max(width, height)
     steps = max(round(width * fine), 1), max(round(height * fine), 1)
     columns, rows = shape_of(*steps, (width * PX_MM, height * PX_MM))
     _make_plain(root)
-    if view_of(root) is None:
+    if view_box_of(root.get("viewBox")) is None:
         root.set("viewBox", f"0 0 {width!r} {height!r}")
     root.set("preserveAspectRatio", "none")
     root.set("width", str(columns))

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import asyncio
 import sys
-import threading
+import time
 import webbrowser
+from pathlib import Path
+from threading import Thread
 from typing import TYPE_CHECKING
 
 from vbraille.cli.old.terminal import say_line
 from vbraille.errors import InputError
-from vbraille.live.monitor import has_desktop
-from vbraille.live.server import LiveServer
-from vbraille.playback import open_recording
+from vbraille.live.server import Server, has_desktop
 from vbraille.signals import EAR
 
 if TYPE_CHECKING:
@@ -20,8 +19,7 @@ if TYPE_CHECKING:
 
     from vbraille.playback.recorded import Playback
 
-# So long a signal may wait to be heard.
-_HEED_S = 0.1
+_HEED_S = 0.1  # how long a signal may wait to be heard
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -31,22 +29,29 @@ def run(arguments: argparse.Namespace) -> int:
             "nothing is to be played; give a recording or a session, as in vbraille monitor "
             "reading.h5: what is read now is shown by vbraille read FILE --monitor"
         )
-    source = open_recording(arguments.file)
+    source = _open(Path(arguments.file))
     for note in source.notes:
         print(f"note: {note}", file=sys.stderr)
-    with EAR.deferred():
-        asyncio.run(_serve(source, arguments.host, arguments.port))
+    with (
+        EAR.deferred(),
+        Server(source, host=arguments.host, port=arguments.port, steers=False) as server,
+    ):
+        (address,) = server.admission.addresses
+        say_line(f"live view: {address}")
+        if has_desktop():
+            Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+        while not EAR.heard and not server.fault:
+            time.sleep(_HEED_S)
     say_line("live view: ended")
     return 0
 
 
-async def _serve(source: Playback, host: str | None, port: int | None) -> None:
-    server = LiveServer(source, host=host, port=port, steers=False)
-    async with server:
-        address = server.admission.watching_address
-        say_line(f"live view: {address}")
-        if has_desktop():
-            # Some browsers run in the foreground, and are not waited for.
-            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
-        while not EAR.heard:
-            await asyncio.sleep(_HEED_S)
+def _open(path: Path) -> Playback:
+    """Open a session, or a recording."""
+    if path.is_dir() or path.suffix == ".gz":
+        from vbraille.sessions.playback import open_session
+
+        return open_session(path)
+    from vbraille.playback.rendered import open_recording
+
+    return open_recording(path)

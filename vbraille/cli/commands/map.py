@@ -1,0 +1,99 @@
+"""``vbraille map``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from vbraille.cli import options
+from vbraille.cli.printing import say
+
+
+class Place(click.ParamType):
+    """Numbers with commas between, such as X,Y; as a tuple."""
+
+    name = "numbers"
+
+    def __init__(self, *counts: int, most: float = 1e6) -> None:
+        self.counts, self.most = counts, most
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Convert a text."""
+        number = options.Number(-self.most, self.most)
+        parts = str(value).split(",")
+        if len(parts) not in self.counts:
+            count = " or ".join(map(str, self.counts))
+            self.fail(f"{value!r} is not {count} numbers with commas between", param, ctx)
+        return tuple(number.convert(part, param, ctx) for part in parts)
+
+
+class SwitchStates(click.ParamType):
+    """States of switches such as 1=2,3=1; from 1, as a dictionary of states from 0."""
+
+    name = "states"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Convert a text."""
+        states = {}
+        for pair in str(value).split(","):
+            key, _, state = pair.partition("=")
+            if not (key in "12345678" and state in "12345678" and key and state):
+                self.fail(f"{value!r} is not a list of switch states such as 1=2", param, ctx)
+            states[int(key)] = int(state) - 1
+        return states
+
+
+@click.command(
+    cls=options.Command,
+    epilog="Example: vbraille map texts/scenes/gallery/layers.scene --out layers.png",
+)
+@options.file
+@options.takes(
+    options.out(required=True, help="Picture to write: .png, .svg, .pdf, .csv or .gif."),
+    options.force,
+    options.option("--outline", is_flag=True, help="Draw black outlines, true to scale, for swell "
+                   "paper."),
+    options.option("--array", type=Place(2, 3), metavar="X,Y[,θ]", help="Draw the array with its "
+                   "centre here, in mm and degrees."),
+    options.model(group=options.FIRST, default="stress2-8x8", help="Display whose array is drawn."),
+    options.option("--rulers", is_flag=True, help="Draw rulers in mm."),
+    options.option("--frames", type=options.whole(2, 500), metavar="N", help="Draw N maps over one "
+                   "swing: a .gif, or numbered files."),
+    options.option("--resolution", type=options.Number(0.01, 1000), metavar="N",
+                   help="Pixels a mm."),
+    options.option("--velocity", type=Place(2, most=1000), metavar="X,Y", default="0,0",
+                   help="Velocity of the hand in mm/s, for pictures that answer to it."),
+    options.option("--switch", type=SwitchStates(), metavar="K=N", help="State N of the switch of "
+                   "key K."),
+    options.option("--signal", metavar="NAME", help="Draw how this signal answers to the hand's "
+                   "velocity."),
+    options.seed(group=options.FIRST, help="Seed of the noise that stands for vibration."),
+)  # fmt: skip
+def command(file: str, out: str, force: bool, outline: bool, model: str, **chosen: Any) -> None:
+    """Rest is white and full swing is black."""
+    from vbraille.feeling.loading import load_scene
+    from vbraille.files import write_files
+    from vbraille.pictures.maps import MapRequest, draw_map, draw_signal, kind_of
+    from vbraille.render import MODELS
+
+    path = Path(out)
+    request = MapRequest(
+        kind_of(path), MODELS[model], chosen["resolution"], chosen["seed"], chosen["frames"],
+        chosen["velocity"], chosen["switch"] or {}, chosen["array"] or (), chosen["rulers"],
+        outline,
+    )  # fmt: skip
+    style = request.model.style
+    # Dots of braille have no texture on paper, for which it is too fine.
+    loaded = load_scene(file, style.replace(texture=0.0) if outline else style)
+    for note in loaded.notes:
+        say(note, aside=True)
+    if chosen["signal"]:
+        content, said = draw_signal(loaded, chosen["signal"], request)
+        files, said = [(path, content)], [f"drawn: {path}", *said]
+    else:
+        files, said = draw_map(loaded, request, path)
+    write_files(files, replace=force)
+    for line in said:
+        say(line)

@@ -1,0 +1,126 @@
+"""``vbraille scene``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from vbraille.cli import options
+from vbraille.cli.printing import print_json, say
+
+if TYPE_CHECKING:
+    from vbraille.feeling.loading import LoadedScene
+    from vbraille.scene.checking import ElementReport, SceneReport
+
+
+@click.group(cls=options.Group)
+def command() -> None:
+    """Tactile pictures are scenes, drawings in SVG, or files of OpenLatero."""
+
+
+@command.command(epilog="Example: vbraille scene check texts/scenes/house.scene")
+@options.file
+@options.json
+def check(file: str, json: bool) -> int:
+    """List the elements of a picture, and what is hard to feel."""
+    from dataclasses import asdict, replace
+
+    from vbraille.feeling.checking import felt_advice
+    from vbraille.feeling.loading import load_scene
+    from vbraille.render import MODELS
+    from vbraille.scene.checking import check_scene
+
+    loaded = load_scene(file, MODELS["stress2"].style)
+    report = check_scene(loaded.opened, loaded.boxes())
+    report = replace(report, advice=(*report.advice, *felt_advice(loaded)))
+    if not json:
+        _print(loaded, report)
+        return 0
+    scene = loaded.opened.written
+    elements = [
+        {**asdict(one), "box": None if one.box is None or one.box.is_empty else one.box._asdict()}
+        for one in report.elements
+    ]
+    print_json(
+        {
+            "title": scene.title,
+            "description": scene.description,
+            "language": scene.language,
+            "canvas": {"width_mm": scene.canvas.width_mm, "height_mm": scene.canvas.height_mm},
+            "operation": scene.operation,
+            **asdict(report),
+            "elements": elements,
+            "file": loaded.notes,
+        }
+    )
+    return 0
+
+
+@command.command(epilog="Example: vbraille scene convert umbrella.gen --out umbrella.scene")
+@options.file
+@options.takes(
+    options.out(required=True, metavar="NEW", help="Scene file to write."),
+    options.option("--as-shown", is_flag=True, help="Convert what OpenLatero shows, where that "
+                   "differs from its file."),
+    options.force,
+)  # fmt: skip
+def convert(file: str, out: str, as_shown: bool, force: bool) -> None:
+    """Convert a drawing or a file of OpenLatero to a scene."""
+    from vbraille.files import check_unused, write_file
+    from vbraille.scene.converting import convert_scene
+
+    path = Path(out)
+    check_unused(path, replace=force)
+    made = convert_scene(Path(file), path.parent, as_shown=as_shown)
+    write_file(path, made.text.encode(), replace=force)
+    for difference in made.differences:
+        say(f"differs: {file} {difference}")
+    say(f"elements: {made.elements}")
+    say(f"differences: {len(made.differences)}")
+    say(f"written: {path}")
+
+
+@command.command(epilog="Example: vbraille scene schema > scene.schema.json")
+def schema() -> None:
+    """Print the JSON Schema of scene files, for editors."""
+    from vbraille.scene.schema import schema_text
+
+    click.echo(schema_text(), nl=False)
+
+
+def _print(loaded: LoadedScene, report: SceneReport) -> None:
+    """Print a report, a line for each thing."""
+    scene = loaded.opened.written
+    for label, value in (("title", scene.title), ("description", scene.description)):
+        if value:
+            say(f"{label}: {' '.join(value.split())}")
+    say(f"canvas: {scene.canvas.width_mm:g} × {scene.canvas.height_mm:g} mm")
+    say(f"language: {scene.language}")
+    say(f"elements: {len(report.elements)}, combined by {scene.operation}")
+    for kind, number in report.kinds.items():
+        say(f"{kind}: {number}")
+    say(f"different textures: {report.textures}")
+    for element in report.elements:
+        say(_described(element))
+    remarks = [f"file: {note}" for note in loaded.notes]
+    remarks += [f"vibration: {sentence}" for sentence in report.vibrations]
+    remarks += [f"advice: {sentence}" for sentence in report.advice]
+    for remark in remarks:
+        say(remark)
+    say(f"remarks: {len(remarks) or 'none'}")
+
+
+def _described(element: ElementReport) -> str:
+    box = element.box
+    if box is None:
+        where = "everywhere"
+    elif box.is_empty:
+        where = "nowhere"
+    else:
+        size = f"{box.right - box.left:.1f} × {box.bottom - box.top:.1f} mm"
+        where = f"{size} from {box.left:.1f}, {box.top:.1f}"
+    hz = " and ".join(f"{one:g}" for one in element.vibration_hz)
+    vibrates = f", vibrates at {hz} Hz" if hz else ""
+    return f"{element.said()}: {where}{vibrates}, {element.place}"
