@@ -18,7 +18,7 @@ TSC        := .venv/typescript/node_modules/.bin/tsc
 unexport PYTHONDONTWRITEBYTECODE
 
 .DELETE_ON_ERROR:
-.PHONY: deb read test test-all soak lint tests all-tests bench format setup clean sound speech site man
+.PHONY: deb read test test-all soak lint tests all-tests bench format setup clean sound speech site
 
 read: .venv/compiled
 	$(BIN)/vbraille read texts/english.txt --model stress2 --device sim --hand sweep:70 \
@@ -87,10 +87,6 @@ site: .venv/pip
 	$(BIN)/pip install -q --disable-pip-version-check -e '.[docs]'
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
 	@echo 'The site is site/index.html.'
-
-# Man pages, in man/, made from the command line.
-man: .venv/compiled
-	$(BIN)/python packaging/manual.py man
 
 # The package for Debian, in dist/debian/.
 DEBUILD := debhelper dh-python lintian pybuild-plugin-pyproject python3-all

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.commandline import helps, parsed
 from tests.documents import DOCS, PARTS, TABLES, with_part, with_table, words_of_guides
-from vbraille.cli.parser import parse
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
@@ -45,15 +45,6 @@ def code(page):
     return _INLINE.findall(_BLOCK.sub("", page.read_text(encoding="utf-8")))
 
 
-def helps(capsys, *words):
-    """Help of the program, of its commands and of their actions."""
-    with pytest.raises(SystemExit):
-        parse([*words, "--help"])
-    text = capsys.readouterr().out
-    names = re.findall(r"^    ([a-z]+)(?: |$)", text, re.MULTILINE) if "..." in text else []
-    return text + "".join(helps(capsys, *words, name) for name in names)
-
-
 @of_each(DOORS)
 def test_each_command_can_be_given_as_it_is_written(page):
     given = commands(page)
@@ -65,7 +56,7 @@ def test_each_command_can_be_given_as_it_is_written(page):
             targets = (ROOT / "Makefile").read_text()
             assert all(re.search(rf"^{word}:", targets, re.MULTILINE) for word in words), line
         elif program == "vbraille" and "--help" not in words:
-            assert parse(words).command == words[0]
+            assert parsed(words) == words[0]
         else:
             assert program == "vbraille" or line == ". .venv/bin/activate", line
 
@@ -76,7 +67,7 @@ def test_each_command_of_a_block_can_be_given(page):
     for line in commands(page):
         if line.startswith("vbraille ") and "…" not in line and "..." not in line:
             words = shlex.split(re.split(r" {3,}| > ", line)[0])[1:]
-            assert "--help" in words or parse(words).command == words[0], line
+            assert "--help" in words or parsed(words) == words[0], line
 
 
 @of_each(PAGES)
@@ -93,8 +84,8 @@ def test_each_text_that_a_command_takes_is_there(page):
 
 
 @of_each(DOORS)
-def test_each_option_that_is_named_is_one(page, capsys):
-    known = set(_OPTION.findall(helps(capsys)))
+def test_each_option_that_is_named_is_one(page):
+    known = set(_OPTION.findall(helps()))
     named = {option for words in code(page) for option in _OPTION.findall(words)}
     assert named <= known
 
@@ -140,16 +131,15 @@ def test_a_picture_has_words():
 
 
 def test_a_name_stands_for_one_thing():
-    """No two classes are called the same, and the glossary's names are in the program.
-
-    Events of the journal are called as the journal calls them, and written `events.Answer`.
-    """
-    record = ROOT / "vbraille/sessions/record"
-    events = {record / "events.py"}
-    paths = set((ROOT / "vbraille").rglob("*.py")) - events
-    sources = [path.read_text(encoding="utf-8") for path in paths]
-    classes = Counter(name for text in sources for name in _CLASS.findall(text))
-    assert [name for name, number in classes.items() if number > 1] == []
+    """No two classes of a folder are called the same; the glossary's names are in the program."""
+    paths = set((ROOT / "vbraille").rglob("*.py"))
+    texts = {path: path.read_text(encoding="utf-8") for path in paths}
+    events = {ROOT / "vbraille/sessions/record/events.py"}  # which are written `events.Answer`
+    named = Counter(
+        (path.parent, name) for path in paths - events for name in _CLASS.findall(texts[path])
+    )
+    assert [name for name, number in named.items() if number > 1] == []
+    sources, classes = texts.values(), {name for _, name in named}
     aliases = {name for text in sources for name in _ALIAS.findall(text)}
     told = {words for words in code(ROOT / "docs/glossary.md") if words[0].isupper()}
     assert told <= set(classes) | aliases

@@ -14,7 +14,7 @@ from vbraille.errors import EXTRAS, lacking, needing_extras
 CUSTOMIZE = f"import sys\nsys.modules.update(dict.fromkeys({sorted(EXTRAS)}))\n"
 CALL = """
 import sys
-from vbraille.cli.main import main
+from vbraille.cli.app import main
 for line in sys.stdin.read().splitlines():
     print("begins:", line, file=sys.stderr)
     print("ended:", main(line.split()), line, flush=True)

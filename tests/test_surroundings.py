@@ -54,7 +54,7 @@ def test_a_library_of_colors_that_numba_begins_does_not_end_the_output(tmp_path)
     (tmp_path / "colorama" / "__init__.py").touch()
     (tmp_path / "colorama" / "initialise.py").write_text(COLORAMA)
     program = (
-        "import colorama.initialise as it, vbraille.cli.main as cli; it.init(); cli.main(['-V'])"
+        "import colorama.initialise as it, vbraille.cli.app as cli; it.init(); cli.main(['-V'])"
     )
     environment = os.environ | {"PYTHONPATH": str(tmp_path)}
     done = subprocess.run(

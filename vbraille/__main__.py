@@ -1,5 +1,5 @@
 """``python -m vbraille``."""
 
-from vbraille.cli.main import main
+from vbraille.cli.app import main
 
 raise SystemExit(main())

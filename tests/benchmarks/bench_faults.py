@@ -38,7 +38,7 @@ _PATIENCE_S = 30.0
 _CONTROLLER = """
 import sys
 from tests.benchmarks.bench_faults import DISPLAYS
-from vbraille.cli.commands.simulate import PRIORITY
+from vbraille.cli.old.commands.simulate import PRIORITY
 from vbraille.engine.realtime import come_first
 from vbraille.simulation.carriage import area_of
 from vbraille.simulation.firmware import describe

@@ -35,7 +35,7 @@ def way(frame: Any) -> Iterator[tuple[str, str]]:
     """Our functions on the stack, by module and name, without those that run all the time."""
     while frame is not None and frame.f_code.co_name not in ("main", "write_frame"):
         module = frame.f_globals.get("__name__", "")
-        loops = frame.f_code.co_name == "run" or module == "vbraille.cli.main"
+        loops = frame.f_code.co_name == "run" or module == "vbraille.cli.app"
         if module.startswith("vbraille.") and not loops:
             yield module, frame.f_code.co_qualname.replace(".<locals>", "")
         frame = frame.f_back
@@ -43,7 +43,7 @@ def way(frame: Any) -> Iterator[tuple[str, str]]:
 
 def profile(report: int) -> None:
     """Read a text as `vbraille read` does; after the key "n" write what was on its way."""
-    from vbraille.cli.main import main
+    from vbraille.cli.app import main
     from vbraille.engine.mailbox import Mailbox
     from vbraille.reading.keyboard import Keyboard
 

@@ -64,7 +64,7 @@ PLANNED_SEEDS = 500
 _START = """
 import time
 begun_s = time.perf_counter()
-import vbraille.cli.commands.session
+import vbraille.cli.old.commands.session
 import vbraille.sessions.running.console, vbraille.sessions.running.runner
 import vbraille.sessions.running.presenters
 from vbraille.engine.host import Host

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import pytest
 
 from tests.calling import as_before
-from vbraille.cli.main import main
+from vbraille.cli.app import main
 
 TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
 

@@ -7,7 +7,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from tests.cli import program
-from vbraille.cli.commands.books import describe
+from vbraille.cli.old.commands.books import describe
 from vbraille.reading.keptplace import KeptPlace
 from vbraille.reading.library import KeptPlaces, ListedBook
 from vbraille.reading.store import ENVIRONMENT

@@ -1,6 +1,6 @@
 """The round through the actuators: what is next, what is set, and undo."""
 
-from vbraille.cli.commands.calibrate import ActuatorRound
+from vbraille.cli.old.commands.calibrate import ActuatorRound
 from vbraille.devices.calibration import Calibration, Tried
 
 NONE = Calibration("bench", 2, 2)

@@ -79,7 +79,7 @@ def test_a_key_feels_it_on_a_slider_and_the_same_place_is_read_on(water):
 
 
 def test_a_text_without_figures_loads_nothing_of_them():
-    code = "import sys, vbraille.cli.commands.read; print(*sys.modules)"
+    code = "import sys, vbraille.cli.old.commands.read; print(*sys.modules)"
     loaded = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )

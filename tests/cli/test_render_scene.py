@@ -1,9 +1,6 @@
-"""``vbraille render`` and ``scene cost`` of a tactile picture, and its recording played."""
+"""``vbraille render`` of a tactile picture, and its recording played."""
 
-import csv
 import hashlib
-import json
-from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -42,9 +39,9 @@ def test_each_frame_is_what_the_twin_has_at_its_pose_and_time(call, scene, tmp_p
     out = tmp_path / "house.h5"
     hand = tmp_path / "hand.csv"
     hand.write_text("t_s,x_mm,y_mm,theta_deg\n0,80,10,0\n0.3,90,30,20\n")
-    done = call("render", scene, "--hand", f"recorded:{hand}", "--out", out, "--verbose")
-    assert (done.code, done.err.splitlines()[-1]) == (0, "100 percent")
-    assert done.out == "rendered: 301 frames, 0.3 s on the path\n"
+    done = call("render", scene, "--hand", f"recorded:{hand}", "--out", out)
+    assert (done.code, done.err) == (0, "")
+    assert done.out == "rendered: 301 frames, 0.3 s on the way\n"
     resolved = open_scene(scene).resolved
     with h5py.File(out) as file:
         assert file.attrs["format"] == 3
@@ -92,37 +89,13 @@ def test_a_recording_of_a_picture_is_played_with_the_picture(call, scene, tmp_pa
     assert played.piece(0).ticks["y_mm"][0] == 45
 
 
-def test_what_frames_cost_is_said_and_written(call, scene, tmp_path):
-    out, drawn = tmp_path / "cost.csv", tmp_path / "cost.png"
-    path = ("--hand", "spot", "--seconds", "0.2")
-    done = call("scene", "cost", scene, *path, "--elements", "--out", out, "--map", drawn)
-    assert done.code == 0, done.err
-    said = SimpleNamespace(lines=done.out.splitlines())
-    for begun in ("frames: 192", "timed: ", "clock: ", "frame: median", "most: ", "actuator: "):
-        assert any(line.startswith(begun) for line in said.lines), begun
-    assert "of the 15.6 µs" in done.out
-    assert sum(line.startswith("element ") for line in said.lines) == 3
-    header, *rows = csv.reader(out.read_text().splitlines())
-    assert header == ["x_mm", "y_mm", "vx_mm_s", "vy_mm_s", "frame_us"]
-    assert len(rows) == 12
-    assert (np.array(rows, float)[:, 4] >= 0).all()
-    assert drawn.read_bytes().startswith(b"\x89PNG")
-    assert "is there already" in call("scene", "cost", scene, *path, "--out", out).err
-    again = call("scene", "cost", scene, *path, "--json", "--out", out, "--force")
-    told = json.loads(again.out)
-    assert told["frames"] == 192
-    assert {cost["direction"] for cost in told["velocities"]} <= {"right", "down", "left", "up"}
-    assert again.err == f"written: {out}\n"
-
-
 def test_what_cannot_be_read_as_it_stands_is_said(call, scene, tmp_path):
     scene.write_text(MOVING + '[[elements]]\nkind = "label"\ntext = "sea"\nplace_mm = [119, 20]\n')
     hand = tmp_path / "hand.csv"
     hand.write_text("t_s,x_mm,y_mm\n0,80,10\n0.01,81,10\n")
     done = call("render", scene, "--hand", f"recorded:{hand}", "--out", tmp_path / "house.h5")
     assert done.code == 0
-    (note,) = [line for line in done.err.splitlines() if line.startswith("note: ")]
-    assert "beyond the canvas; move it" in note
+    assert "beyond the canvas; move it" in done.err
 
 
 @pytest.mark.parametrize(
@@ -130,10 +103,8 @@ def test_what_cannot_be_read_as_it_stands_is_said(call, scene, tmp_path):
     [
         ("render {scene} --hand round --out {out}", "the hand 'round' does not go over"),
         ("render {scene} --radius 3 --out {out}", "--radius is not for the hand wide"),
-        ("render {text} --radius 3 --out {out}", "--radius is for a way over a tactile picture"),
+        ("render {text} --radius 3 --out {out}", "ways over a picture"),
         ("render {none} --hand wide --out {out}", "No such file"),
-        ("scene cost {scene} --out {text}", "does not end in .csv"),
-        ("scene cost {scene} --hand spot --seconds 0", "duration is 0 s"),
     ],
 )
 def test_what_cannot_be_is_one_sentence(call, scene, tmp_path, text, arguments, said):

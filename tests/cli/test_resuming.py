@@ -3,8 +3,8 @@
 import pytest
 
 from tests.reading.test_reader import Bench
-from vbraille.cli.build import open_to_resume
-from vbraille.cli.parser import parse
+from vbraille.cli.old.build import open_to_resume
+from vbraille.cli.old.parser import parse
 from vbraille.config.settings import settle
 from vbraille.reading.library import KeptPlaces
 from vbraille.render import STRESS2

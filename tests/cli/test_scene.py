@@ -42,7 +42,7 @@ def test_check_says_what_there_is_a_line_for_each_thing(call, tmp_path):
         "description: One of them vibrates.\n"
         "canvas: 200 × 100 mm\n"
         "language: en\n"
-        "elements: 2, put together by overwrite\n"
+        "elements: 2, combined by overwrite\n"
         "circle: 1\n"
         "use: 1\n"
         "different textures: 0\n"

@@ -371,7 +371,7 @@ def test_a_session_without_a_name_is_named_after_who_and_what_and_when(call, tmp
 
 
 def test_a_session_of_strings_loads_nothing_heavy():
-    code = "import vbraille.cli.commands.session, vbraille.sessions.session, sys\n"
+    code = "import vbraille.cli.old.commands.session, vbraille.sessions.session, sys\n"
     code += "from vbraille.sessions.planning.protocolfiles import load_protocol\n"
     code += "import vbraille.sessions.running.apparatus; load_protocol('legibility')\n"
     done = subprocess.run(

@@ -271,7 +271,7 @@ def test_where_no_table_is_written(call, tmp_path):
     before = contents(tmp_path)
     long = tmp_path / ("a" * 300)
     for options, pattern in [
-        (("--out", tmp_path / "mine"), "mine is there already; give another name with --out"),
+        (("--out", tmp_path / "mine"), "mine already exists"),
         (("--out", tmp_path / "s"), "s is there already"),
         (("--out", ""), "is a directory; give the name of a file"),
         (("--out", tmp_path / "no" / "t.csv"), "cannot be written: No such file or directory"),

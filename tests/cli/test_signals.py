@@ -13,7 +13,7 @@ from tests.tiers import TIER, Tier, by_tier
 # was called: a Ctrl-C at a moment that is the same in every run.
 AT_AN_EVENT = """
 import signal, sys
-from vbraille.cli.main import main
+from vbraille.cli.app import main
 
 moment, events = int(sys.argv[1]), 0
 

@@ -244,7 +244,7 @@ def test_what_it_cannot_be_is_said_in_a_sentence(call, tmp_path, monkeypatch, op
 
 
 def test_it_loads_nothing_heavy():
-    code = "import sys, vbraille.cli.commands.simulate; print(*sys.modules)"
+    code = "import sys, vbraille.cli.old.commands.simulate; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = set(done.stdout.split())
     assert "vbraille.simulation.simulator" in loaded

@@ -8,9 +8,9 @@ import pytest
 
 from tests.cli import program
 from tests.tiers import heavy
-from vbraille.cli.commands.simulate import LATERO_ONLY, SERIAL_ONLY
-from vbraille.cli.commandtable import COMMANDS
-from vbraille.cli.parser import CommandParser
+from vbraille.cli.old.commands.simulate import LATERO_ONLY, SERIAL_ONLY
+from vbraille.cli.old.commandtable import COMMANDS
+from vbraille.cli.old.parser import CommandParser
 from vbraille.config.options import COMMON
 
 

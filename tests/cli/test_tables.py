@@ -10,7 +10,7 @@ def test_every_table_is_a_line_that_says_what_it_is(call):
     assert (said.code, said.err) == (0, "")
     lines = said.out.splitlines()
     assert len(lines) == len(list_tables()) > 100
-    assert "fr-bfu-g2.ctb: French contracted braille, language fr, grade 2, dots unsaid" in lines
+    assert "fr-bfu-g2.ctb: French contracted braille, language fr, grade 2" in lines
     for line, table in zip(lines, list_tables(), strict=True):
         assert line.startswith(f"{table.name}: ")
         assert f"language {table.language}" in line
@@ -43,18 +43,3 @@ def test_tables_and_ports_are_printed_as_json(call):
     assert len(told["tables"]) == len(call("tables", "--language", "fr").out.splitlines()) - 1
     assert {"name", "title", "language", "grade", "dots", "kind"} == set(told["tables"][0])
     assert isinstance(json.loads(call("device", "list", "--json").out), list)
-
-
-def test_an_option_under_its_former_name_says_the_present_one(call):
-    for old, said in (
-        (("monitor", "--play", "reading.h5"), "vbraille monitor reading.h5"),
-        (("feel", "house.scene", "--at", "12"), "--y chooses"),
-        (("render", "house.scene", "--path", "wide"), "--hand wide"),
-        (("session", "run", "letters", "--sound", "bell"), "--cues"),
-        (("simulate", "latero", "--port", "0"), "--udp-port"),
-        (("profile", "house.scene"), "vbraille scene cost"),
-        (("plot", "profile"), "vbraille plot deflection"),
-    ):
-        refused = call(*old)
-        assert refused.code == 2
-        assert said in refused.err

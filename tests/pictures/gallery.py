@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from vbraille.cli.main import main
+from vbraille.cli.app import main
 
 ROOT = Path(__file__).parents[2]
 SCENES = ROOT / "texts/scenes/gallery"
@@ -35,7 +35,7 @@ GALLERY = [
         Shown(path.stem, options=("--resolution", LARGE.get(path.stem, "4")))
         for path in sorted(SCENES.glob("*.scene"))
     ),
-    Shown("pictured", "-sequence", ("--vibration", "sequence", "--frames", "4", *COARSE), "gif"),
+    Shown("pictured", "-sequence", ("--frames", "4", *COARSE), "gif"),
     Shown("pictured", "-array", ("--array", "14,27", "--resolution", "4", "--rulers")),
     Shown("pictured", "-outline", ("--outline", "--resolution", "5")),
     Shown("joints", "-outline", ("--outline", *FINE)),
@@ -43,7 +43,6 @@ GALLERY = [
     Shown("dotted", "-outline", ("--outline", *FINE)),
     Shown("labelled", "-outline", ("--outline", "--resolution", "5")),
     Shown("directions", "-signal", ("--signal", "along", "--resolution", "2.2")),
-    Shown("directions", "-arrows", ("--arrows", "--resolution", "4")),
 ]
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 from vbraille.braille.cells import Cells
 from vbraille.layout.pages import Line
-from vbraille.pictures import mapping, page, profile, resolution, strain, wave
+from vbraille.pictures import mapping, page, profile, strain, wave
 from vbraille.render import STRESS2, VBD, Tuning
 from vbraille.translate import Block, Text
 
@@ -29,5 +29,4 @@ TABLES = [
     wave(VBD),
     strain(VBD.style.geometry, VBD.style.tuning),
     make_page([make_line("⠵⠁"), make_line("⠃", number=2)], x_mm=3.0),
-    resolution(),
 ]

@@ -56,7 +56,7 @@ class TestFound:
             "    if 'louis' in str(name): raise OSError(name)\n"
             "    own(self, name, *rest, **more)\n"
             "ctypes.CDLL.__init__ = none\n"
-            "from vbraille.cli.main import main; sys.exit(main(['page', 'a.txt']))\n"
+            "from vbraille.cli.app import main; sys.exit(main(['page', 'a.txt']))\n"
         )
         (tmp_path / "a.txt").write_text("text")
         done = run("-c", script, cwd=tmp_path)

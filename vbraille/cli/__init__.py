@@ -1,1 +1,1 @@
-"""The command ``vbraille``: parse, build, call, print."""
+"""The command ``vbraille``: a module for each of its commands, and options that they share."""

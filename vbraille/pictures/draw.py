@@ -169,51 +169,12 @@ def page(table: FigureTable) -> Figure:
     return figure
 
 
-def resolution(table: FigureTable) -> Figure:
-    """Draw figs. 7.10 and 7.11: the resolution as lines on the page, and for arms of each ratio."""
-    places, ratios = table.where("what", "place"), table.where("what", "ratio")
-    figure = Figure(figsize=(11.5, 5))
-    tray, arms = figure.subplots(1, 2, width_ratios=(1.3, 1))
-    x, y = np.unique(places["x_mm"]), np.unique(places["y_mm"])
-    error = places["resolution_um"].reshape(y.size, x.size)
-    levels = np.arange(22, 50, 4)
-    lines = tray.contour(x, y, error, levels=levels, colors="black", linewidths=0.9)
-    middle = error[:, x.size // 2]
-    labels = [(0.0, y[np.argmin(abs(middle - level))]) for level in levels]
-    tray.clabel(lines, fmt="%g µm", manual=labels)
-    edges = _Box(x[0], x[-1], y[0], y[-1])
-    canvas = _Box(*_CANVAS)
-    for box, dashes in ((edges, "solid"), (canvas, "dashed")):
-        place = (box.left, box.far), box.right - box.left, box.near - box.far
-        tray.add_patch(Rectangle(*place, fill=False, linestyle=dashes, linewidth=1.2))
-    nearest = np.argmin(np.hypot(places["x_mm"], places["y_mm"]))
-    farthest = np.argmax(np.hypot(places["x_mm"], places["y_mm"]))
-    for at, mark in ((nearest, "^"), (farthest, "s")):
-        tray.plot(places["x_mm"][at], places["y_mm"][at], mark, color="black", clip_on=False)
-    tray.set(xlabel="from the first joint, x (mm)", ylabel="from the first joint, y (mm)")
-    tray.set(xlim=(edges.left, edges.right), ylim=(edges.near, edges.far), aspect="equal")
-    tray.set_title(
-        "largest error by one count; dashed: where the array can go\n"
-        "▲ finest, ■ coarsest; the reader sits below"
-    )
-    arms.plot(ratios["ratio"], ratios["worst_um"], "-", color="black", label="coarsest (■)")
-    arms.plot(ratios["ratio"], ratios["best_um"], "--", color="black", label="finest (▲)")
-    arms.axvline(_RATIO, color=MIDDLE, linestyle="dotted")
-    arms.text(_RATIO, 1, " as built", transform=arms.get_xaxis_transform(), va="top")
-    arms.set(xlabel="second arm to first arm, b / a", ylabel="resolution (µm)", ylim=(0, None))
-    arms.set_title("the shortest arms that reach the page")
-    arms.legend(loc="lower right")
-    figure.suptitle(table.title)
-    return figure
-
-
 DRAWINGS = {
     "profile": profile,
     "mapping": mapping,
     "wave": wave,
     "strain": strain,
     "page": page,
-    "resolution": resolution,
 }
 
 

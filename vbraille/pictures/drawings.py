@@ -8,16 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple
 from xml.sax.saxutils import escape
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PathCollection, PolyCollection
-from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
 from vbraille.errors import InputError
-from vbraille.files import write_file
 from vbraille.pictures.figurefiles import METADATA, styled, to_bytes
 from vbraille.pictures.scenes import grays, map_places
 from vbraille.pictures.words import plain
@@ -25,15 +21,10 @@ from vbraille.scene.traversal import vibrations
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
     from vbraille.display import Display
-    from vbraille.feeling.costs import CostMap
-    from vbraille.pictures.arrows import Arrow
     from vbraille.render.scene.labels import Assets
     from vbraille.scene.scene import Canvas, Scene
 
@@ -48,7 +39,6 @@ _HAIR_MM = 0.15
 # How far a bar is drawn from the middle of its place to either side, as a share of the pitch: as
 # far as bars can go without touching; true deflections would be too small to be seen.
 _SHIFT = 0.3
-_SHAFT_MM, _HEAD_MM, _RIM_MM = 0.8, 2.2, 0.4  # of arrows
 _OUTLINE_PER_MM, _OUTLINE_PIXELS = 8.0, 4_200_000
 _BAND_ROWS = 256
 # Times over a swing of 50 Hz, the fastest that there is: what vibrates is up at one of them.
@@ -167,7 +157,6 @@ def map_figure(
     deflections: NDArray[np.floating],
     array: ArrayOnMap | None = None,
     *,
-    arrows: Sequence[Arrow] = (),
     axes: bool = False,
 ) -> Figure:
     """Draw a deflection map true to scale, with what is wanted over it and around it.
@@ -180,8 +169,6 @@ def map_figure(
         Deflections of the scene.
     array
         An array over the map.
-    arrows
-        Arrows over the map.
     axes
         Whether there are axes in mm.
     """
@@ -203,11 +190,10 @@ def map_figure(
     )
     if array is not None:
         _draw_array(place, array)
-    _draw_arrows(place, arrows)
     return figure
 
 
-def outline_figure(scene: Scene, assets: Assets, arrows: Sequence[Arrow] = ()) -> Figure:
+def outline_figure(scene: Scene, assets: Assets) -> Figure:
     """Draw what is felt in black on white, for eyes and for paper that swells where it is black.
 
     Black is where a finger feels more than half of the scene's strongest deflection, with all that
@@ -217,8 +203,6 @@ def outline_figure(scene: Scene, assets: Assets, arrows: Sequence[Arrow] = ()) -
     ----------
     scene, assets
         A resolved scene, and what it takes from image files and labels.
-    arrows
-        Arrows over the drawing.
     """
     canvas = scene.canvas
     figure, place = _sheet(canvas, (0.0, 0.0, 0.0, 0.0))
@@ -228,7 +212,6 @@ def outline_figure(scene: Scene, assets: Assets, arrows: Sequence[Arrow] = ()) -
         whole = Outline.make_compound_path(*(Outline(c, closed=True) for c in contours))
         # Not `add_patch`, which looks for the limits of the axes at each point of it.
         place.add_artist(PathPatch(whole, facecolor="black", edgecolor="none"))
-    _draw_arrows(place, arrows)
     return figure
 
 
@@ -372,34 +355,6 @@ def _draw_array(axes: Axes, shown: ArrayOnMap) -> None:
     )
 
 
-def _draw_arrows(axes: Axes, arrows: Sequence[Arrow]) -> None:
-    """Draw arrows, black or hollow, with a white rim so that they are seen on black."""
-    for arrow in arrows:
-        points = arrow.points_mm
-        heads = [_head(points[-2], points[-1])]
-        if arrow.both:
-            heads.append(_head(points[1], points[0]))
-        for color, grown_mm in (("white", 2 * _RIM_MM), ("black", 0.0)):
-            wide = _POINTS_PER_MM * (_SHAFT_MM + grown_mm)
-            axes.add_line(Line2D(*points.T, color=color, lw=wide, solid_capstyle="butt"))
-            fill = "white" if arrow.hollow else color
-            lines = _POINTS_PER_MM * (_HAIR_MM * 2 + grown_mm)
-            axes.add_collection(PolyCollection(heads, facecolors=fill, edgecolors=color, lw=lines))
-        if arrow.hollow:
-            inner = _POINTS_PER_MM * (_SHAFT_MM - 2 * _HAIR_MM)
-            axes.add_line(Line2D(*points.T, color="white", lw=inner, solid_capstyle="butt"))
-
-
-def _head(before: NDArray[np.float64], tip: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Corners of the head of an arrow whose line ends at a tip; float64[3, 2]."""
-    ahead = (tip - before) / math.dist(tip, before)
-    aside = np.array((-ahead[1], ahead[0]))
-    base = tip - 0.4 * _HEAD_MM * ahead
-    return np.array(
-        (base + 0.5 * _HEAD_MM * aside, base + _HEAD_MM * ahead, base - 0.5 * _HEAD_MM * aside)
-    )
-
-
 def _bar_size_mm(display: Display) -> tuple[float, float]:
     wide, tall = display.contactor_mm or (
         _BAR_SHARES[0] * display.column_pitch_mm,
@@ -416,114 +371,3 @@ def _turned(offsets_mm: NDArray[np.floating], place: ArrayPlace) -> NDArray[np.f
     return np.stack(
         [place.x_mm + x * cosine + y * sine, place.y_mm + y * cosine - x * sine], axis=-1
     )
-
-
-_INCHES = 13.0, 4.0
-_PALEST = 0.9  # gray of the lowest cost; the highest is black
-_BARS = 20
-_PIXELS_PER_MM = 6.0
-
-
-def draw_costs(
-    places: CostMap,
-    velocities: CostMap,
-    path: Path,
-    *,
-    title: str,
-    frame_us: NDArray[np.float64],
-) -> None:
-    """Draw maps of what a frame costs at each place and velocity, and a histogram, into a file.
-
-    Parameters
-    ----------
-    places, velocities
-        Mean time of a frame in each square of the canvas, and of the hand's velocities.
-    path
-        The file, whose suffix is .png, .svg or .pdf; it is replaced if it is there.
-    title
-        What was rendered.
-    frame_us : float64[n]
-        Times that the histogram counts, one or more.
-
-    Raises
-    ------
-    InputError
-        If the suffix is another one, no square has a time, or the file cannot be made.
-    VbrailleError
-        If the disk cannot take the file.
-    """
-    kind = path.suffix.lower().removeprefix(".")
-    if kind not in KINDS:
-        raise InputError(f"cannot draw to {path}: end its name in .png, .svg or .pdf")
-    figure = costs_figure(places, velocities, title, frame_us)
-    words = "; ".join(costs_words(places, velocities))
-    content = drawing_bytes(figure, kind, _PIXELS_PER_MM, f"{title}: time of a frame", words)
-    write_file(path, content, replace=True)
-
-
-def costs_figure(
-    places: CostMap, velocities: CostMap, title: str, frame_us: NDArray[np.float64]
-) -> Figure:
-    """Make the figure of `draw_costs`, whose arguments it has.
-
-    Raises
-    ------
-    InputError
-        If no square has a time.
-    """
-    if not np.isfinite(places.mean_us).any():
-        raise InputError(
-            f"no frame was on the canvas, so that there is nothing to draw; choose another "
-            f"{setting('path')}"
-        )
-    rows, columns = (places.step * n for n in places.mean_us.shape)
-    fastest = velocities.step * len(velocities.mean_us) / 2
-    with styled():
-        figure = Figure(figsize=_INCHES)
-        FigureCanvasAgg(figure)
-        place, speed, bars = figure.subplots(1, 3, width_ratios=(3, 2, 2))
-        grays = LinearSegmentedColormap.from_list("costs", [str(_PALEST), "0"])
-        for axes, shown, extent in (
-            (place, places, (0, columns, rows, 0)),
-            (speed, velocities, (-fastest, fastest, fastest, -fastest)),
-        ):
-            image = axes.imshow(
-                np.ma.masked_invalid(shown.mean_us),
-                cmap=grays,
-                extent=extent,
-                interpolation="none",
-            )
-            figure.colorbar(image, ax=axes, label="µs")
-        place.set(xlabel="mm", ylabel="mm")
-        speed.set(xlabel="hand to the right, mm/s", ylabel="hand down, mm/s")
-        bars.hist(
-            frame_us, bins=_BARS, color="0.3", weights=np.full(frame_us.size, 100 / frame_us.size)
-        )
-        bars.set(xlabel="µs", ylabel="% of the frames")
-        figure.suptitle(f"{title}: time of a frame")
-        figure.draw_without_rendering()
-    return figure
-
-
-def costs_words(places: CostMap, velocities: CostMap) -> list[str]:
-    """Tell what maps of costs show, a line for each thing; `costs_figure` has the arguments."""
-    known = places.mean_us[np.isfinite(places.mean_us)]
-    down, right = np.unravel_index(np.nanargmax(places.mean_us), places.mean_us.shape)
-    x, y = (float(at + 0.5) * places.step for at in (right, down))
-    said = [
-        f"squares: {places.mean_us.shape[1]} × {places.mean_us.shape[0]} of {places.step:g} mm, "
-        "darker where a frame takes longer, white where none was",
-        f"least: {known.min():.2f} µs",
-        f"median: {np.median(known):.2f} µs",
-        f"most: {known.max():.2f} µs, around ({x:g}, {y:g}) mm",
-    ]
-    if np.isfinite(velocities.mean_us).any():
-        middle = (np.array(velocities.mean_us.shape) - 1) / 2
-        for name, found in (("cheapest", np.nanargmin), ("dearest", np.nanargmax)):
-            square = np.unravel_index(found(velocities.mean_us), velocities.mean_us.shape)
-            vy, vx = (np.array(square) - middle) * velocities.step
-            said.append(
-                f"{name} velocity: {velocities.mean_us[square]:.2f} µs, around {vx + 0.0:.0f} mm/s "
-                f"to the right and {vy + 0.0:.0f} mm/s down"
-            )
-    return said

@@ -6,7 +6,7 @@ import pytest
 
 from tests.calling import as_before
 from tests.sessions.sittings import MINI, Session
-from vbraille.cli.main import main
+from vbraille.cli.app import main
 from vbraille.errors import InputError
 from vbraille.sessions.record import bids
 from vbraille.sessions.record.export import encode, rows, to_csv

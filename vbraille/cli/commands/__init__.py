@@ -1,1 +1,1 @@
-"""The commands: a module with the name of each, imported only when it is called."""
+"""The commands: each module holds one as ``command``, and is loaded when that is called."""

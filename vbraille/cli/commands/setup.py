@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-import time
-from typing import TYPE_CHECKING
+import click
 
-from vbraille.caching import compiling_note, keep_compiled
-from vbraille.cli.terminal import say_line
-from vbraille.errors import VbrailleError
-
-if TYPE_CHECKING:
-    import argparse
+from vbraille.cli import options
+from vbraille.cli.printing import say
 
 
-def run(arguments: argparse.Namespace) -> int:  # noqa: ARG001 - as each command is called
-    """Compile all that readings call, or load it, and say how long that took."""
+@click.command(cls=options.Command, epilog="Example: vbraille setup")
+def command() -> None:
+    """The first reading then need not wait for it."""
+    import time
+
+    from vbraille.caching import compiling_note, keep_compiled
+    from vbraille.errors import VbrailleError
+
     if not keep_compiled():
         raise VbrailleError(
-            "what is compiled can be kept nowhere; give a folder that can be written by "
-            "NUMBA_CACHE_DIR"
+            "compiled code cannot be kept; set NUMBA_CACHE_DIR to a folder that you can write to"
         )
     if note := compiling_note():
-        say_line(note)
+        say(note)
     begun_s = time.monotonic()
     from vbraille.engine.compiling import compile_all
 
     compile_all()
-    say_line(f"compiled: {time.monotonic() - begun_s:.0f} s")
-    return 0
+    say(f"compiled: {time.monotonic() - begun_s:.0f} s")

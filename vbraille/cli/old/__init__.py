@@ -1,0 +1,1 @@
+"""The command ``vbraille``: parse, build, call, print."""

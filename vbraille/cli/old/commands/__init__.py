@@ -1,0 +1,1 @@
+"""The commands: a module with the name of each, imported only when it is called."""

@@ -1,0 +1,284 @@
+"""Recordings of a reading, or of a way over a picture, that no device took part in."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import replace
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from vbraille.engine.engine import EndOfLine
+from vbraille.errors import InputError
+from vbraille.newfile import new_file
+from vbraille.reading.frames import print_of
+from vbraille.recording import Recorder, SceneRecorded
+from vbraille.signals import EAR
+from vbraille.simulation.hand import Area
+from vbraille.simulation.motion import SLACK
+from vbraille.simulation.recorded import Recorded
+from vbraille.wording import setting
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from numpy.typing import NDArray
+
+    from vbraille.feeling.paths import PosedPath
+    from vbraille.layout.pages import Layout, Line
+    from vbraille.render import Model
+    from vbraille.simulation.hand import Hand
+
+_BLOCK_FRAMES = 16_384
+
+
+class Rendered(NamedTuple):
+    """What a recording holds: its lines, its frames and its length in seconds."""
+
+    lines: int
+    frames: int
+    seconds: float
+
+
+def lines_per_page(height_mm: float | None, pitch_mm: float) -> int:
+    """Number of lines whose middle a carriage reaches that goes so far across; 0 for one axis.
+
+    Raises
+    ------
+    InputError
+        If it reaches none.
+    """
+    if not height_mm:
+        return 0
+    if height_mm < pitch_mm / 2:
+        raise InputError(f"{setting('height')} {height_mm:g} mm is less than half a line")
+    return math.floor(height_mm / pitch_mm + 0.5)
+
+
+def render_reading(
+    path: str,
+    lines: Iterable[Line],
+    layout: Layout,
+    model: Model,
+    hand: Hand | Recorded,
+    rate_hz: float,
+    per_page: int = 0,
+    *,
+    replace_file: bool = False,
+    done: Callable[[Line], None] = lambda _line: None,
+) -> Rendered:
+    """Write every frame of a reading to an HDF5 file.
+
+    Parameters
+    ----------
+    path
+        File to make.
+    lines, layout
+        Lines that are read, and the layout that they are from.
+    model
+        Display and style.
+    hand
+        Hand that reads.
+    rate_hz
+        Frames a second.
+    per_page
+        Lines that are shown at once; 0 for one line on a carriage of one axis.
+    replace_file
+        Whether the file may be there already.
+    done
+        Function that is told the last line that is done.
+
+    Raises
+    ------
+    InputError, VbrailleError
+        If the file cannot be made, or the disk cannot take it.
+    """
+    style, display = model.style, model.display
+    count = frames = 0
+    with EAR.deferred(), new_file(path, replace=replace_file) as file:
+        recorder = Recorder(file, display, layout.width)
+        source = layout.book.source
+        walk = _walk(lines, model, hand, rate_hz, per_page)
+        for number, stretch in enumerate(walk):
+            if number == 0:
+                recorder.describe(
+                    model=model,
+                    rate_hz=rate_hz,
+                    first_line=stretch.lines[0].number,
+                    source=source.name,
+                    sha256=source.sha256(),
+                )
+            rows = [recorder.add_line(line.masks, print_of(line)) for line in stretch.lines]
+            masks = [line.masks for line in stretch.lines]
+            one = not per_page
+            program = style.render(masks[0], display) if one else style.render_page(masks, display)
+            for start in range(0, stretch.x_mm.size, _BLOCK_FRAMES):
+                x_mm = stretch.x_mm[start : start + _BLOCK_FRAMES]
+                t_s = (frames + np.arange(x_mm.size)) / rate_hz
+                if stretch.y_mm is None:
+                    made = program.path(x_mm)
+                    recorder.add_frames(t_s, x_mm, min(rows), made, y_mm=program.own_y_mm)
+                else:
+                    y_mm = stretch.y_mm[start : start + _BLOCK_FRAMES]
+                    part, made = program.poses(x_mm, y_mm)
+                    at = min(rows) + np.clip(part, 0, len(masks) - 1)
+                    recorder.add_frames(t_s, x_mm, at, made, y_mm=y_mm, part=part)
+                frames += x_mm.size
+                EAR.heed()
+            count += len(masks)
+            done(stretch.lines[-1])
+    return Rendered(count, frames, frames / rate_hz)
+
+
+def render_picture(
+    path: str,
+    scene: str,
+    model: Model,
+    make_path: Callable[[object], PosedPath],
+    rate_hz: float,
+    hand: str,
+    *,
+    replace_file: bool = False,
+    done: Callable[[float], None] = lambda _share: None,
+) -> tuple[Rendered, list[str]]:
+    """Write the frames of a way over a tactile picture to an HDF5 file.
+
+    Parameters
+    ----------
+    path, scene
+        File to make, and the picture's file.
+    model
+        Display.
+    make_path
+        Function that makes the way over a canvas.
+    rate_hz
+        Frames a second.
+    hand
+        Name of the way, which the file keeps.
+    replace_file
+        Whether the file may be there already.
+    done
+        Function that is told the share of the frames that is done.
+
+    Returns
+    -------
+    Rendered, list[str]
+        What the recording holds, and notes on the picture's file.
+
+    Raises
+    ------
+    InputError, VbrailleError
+        If the picture cannot be used, the file cannot be made, or the disk cannot take it.
+    """
+    from vbraille.feeling.composing import compose
+    from vbraille.feeling.loading import load_scene
+    from vbraille.pictures.scenes import small_png
+
+    display = replace(model.display, rate_hz=rate_hz)
+    try:
+        written = Path(scene).read_bytes()
+    except OSError as error:
+        raise InputError(f"{scene} cannot be read: {error.strerror}") from None
+    loaded = load_scene(scene, model.style)
+    canvas = loaded.scene.canvas
+    way = make_path(canvas)
+    program = compose(loaded, display, rate_hz=rate_hz)
+    frames = way.t_s.size
+    with EAR.deferred(), new_file(path, replace=replace_file) as file:
+        recorder = Recorder(file, display, 1)
+        recorder.describe_scene(
+            SceneRecorded(
+                text=written,
+                title=loaded.title,
+                description=loaded.scene.description,
+                width_mm=canvas.width_mm,
+                height_mm=canvas.height_mm,
+                map_png=small_png(loaded.scene, loaded.assets),
+            ),
+            model=model,
+            rate_hz=rate_hz,
+            source=Path(scene).name,
+            sha256=hashlib.sha256(written).hexdigest(),
+            path=hand,
+        )
+        for start in range(0, frames, _BLOCK_FRAMES):
+            span = slice(start, start + _BLOCK_FRAMES)
+            t_s, x_mm, y_mm, theta_rad = (
+                values[span] for values in (way.t_s, way.x_mm, way.y_mm, way.theta_rad)
+            )
+            velocity = way.velocity_mm_s[span]
+            _, made = program.poses(x_mm, y_mm, theta_rad, t_s, velocity, going_on=start > 0)
+            recorder.add_frames(t_s, x_mm, 0, made, y_mm=y_mm, theta_rad=theta_rad)
+            EAR.heed()
+            done((start + t_s.size) / frames)
+    return Rendered(0, frames, frames / rate_hz), loaded.notes
+
+
+class _Stretch(NamedTuple):
+    """Lines that are shown at once, and places of the array's centre meanwhile.
+
+    Parameters
+    ----------
+    lines
+        The line, or all lines of a page.
+    x_mm : float64[n]
+        Places along the lines.
+    y_mm : float64[n] or None
+        Places down the page; None for a carriage of one axis.
+    """
+
+    lines: list[Line]
+    x_mm: NDArray[np.float64]
+    y_mm: NDArray[np.float64] | None = None
+
+
+def _walk(
+    lines: Iterable[Line], model: Model, hand: Hand | Recorded, rate_hz: float, per_page: int
+) -> Iterator[_Stretch]:
+    """Stretches in order, with the way of the hand over each."""
+    if per_page:
+        return _walk_pages(iter(lines), model, hand, rate_hz, per_page)
+    return _walk_lines(lines, model, hand, rate_hz)
+
+
+def _walk_pages(
+    lines: Iterator[Line], model: Model, hand: Hand | Recorded, rate_hz: float, per_page: int
+) -> Iterator[_Stretch]:
+    span_mm, geometry = model.display.span_mm, model.style.geometry
+    while page := list(islice(lines, per_page)):
+        end_mm = max(geometry.extent_mm(len(line)) for line in page)
+        if isinstance(hand, Recorded):
+            motion = hand.motion()
+        else:
+            motion = hand.read_page(Area(len(page), geometry.line_pitch_mm, -span_mm, end_mm))
+        at_s = np.arange(1 + math.floor(motion.duration_s * rate_hz + SLACK)) / rate_hz
+        x_mm = np.interp(at_s, motion.t_s, motion.x_mm) + span_mm / 2
+        y_mm = np.zeros(at_s.size)
+        if motion.y_mm is not None:
+            y_mm = np.interp(at_s, motion.t_s, motion.y_mm)
+        yield _Stretch(page, x_mm, y_mm)
+        if isinstance(hand, Recorded):
+            return  # the hand has recorded no more
+
+
+def _walk_lines(
+    lines: Iterable[Line], model: Model, hand: Hand | Recorded, rate_hz: float
+) -> Iterator[_Stretch]:
+    span_mm = model.display.span_mm
+    middle_mm = span_mm / 2  # hands move the left column
+    recorded = hand.motion().sample(rate_hz) + middle_mm if isinstance(hand, Recorded) else None
+    for line in lines:
+        end_mm = model.style.geometry.extent_mm(len(line))
+        if recorded is None:
+            assert not isinstance(hand, Recorded)
+            yield _Stretch([line], hand.read_line(-span_mm, end_mm).sample(rate_hz) + middle_mm)
+            continue
+        if not recorded.size:
+            return
+        end = EndOfLine(span_mm, end_mm).find(recorded)
+        stop = recorded.size if end is None else end + 1
+        yield _Stretch([line], recorded[:stop])
+        recorded = recorded[stop:]
