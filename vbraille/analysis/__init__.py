@@ -90,3 +90,18 @@ def analyse_scores(path: str | Path) -> Analysis:
         methods=of_tests(result),
         sources=[str(path)],
     )
+
+
+def methods_of(paths: Sequence[str | Path]) -> list[str]:
+    """Return the paragraph on what was done in sessions, a sentence each.
+
+    Raises
+    ------
+    InputError
+        If one cannot be read.
+    """
+    with needing_extras():
+        from vbraille.analysis.methods import of_sessions
+        from vbraille.analysis.read import read_trials
+
+    return of_sessions(read_trials(paths))

@@ -103,7 +103,7 @@ def codebook(tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
 def _of_sessions() -> dict[str, str]:
     from vbraille.sessions.record.trials import COLUMNS
 
-    return COLUMNS
+    return {name: column.meaning for name, column in COLUMNS.items()}
 
 
 def _other(table: str, column: str) -> str:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import io
 from typing import TYPE_CHECKING
 
 import matplotlib
@@ -17,7 +18,6 @@ from vbraille.analysis.primary import plain
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from vbraille.analysis.primary import Result
 
@@ -28,11 +28,6 @@ ACROSS = 3
 MOST_POINTS = 500
 MOST_KINDS = 12
 GREYS = (".85", ".6", ".35", ".1")
-
-
-def save(figure: Figure, path: Path) -> None:
-    """Write a figure."""
-    figure.savefig(path, metadata={"Date": None}, bbox_inches="tight", dpi=300)
 
 
 def means(result: Result) -> Figure:
@@ -192,21 +187,26 @@ DRAWN: dict[str, Callable[[pd.DataFrame], Figure]] = {
 """Figures by the names of the tables that they show; confusions have `confusion`."""
 
 
-def write(result: Result | None, tables: dict[str, pd.DataFrame], folder: Path) -> list[str]:
-    """Draw all figures, and return the names of their files; that of the means also as PNG."""
-    names = []
+def draw(result: Result | None, tables: dict[str, pd.DataFrame]) -> dict[str, bytes]:
+    """Return the content of each figure by the name of its file; the means are a PNG as well."""
+    files = {}
     with matplotlib.rc_context(STYLE):
-        if result is not None:
+        if result is not None and len(result.cells):
             figure = means(result)
-            save(figure, folder / "means.png")
-            save(figure, folder / "means.svg")
-            names.append("means")
+            files["means.svg"] = _content(figure, "svg")
+            files["means.png"] = _content(figure, "png")
         for name, table in tables.items():
-            draw = confusion if name.startswith("confusion") else DRAWN.get(name)
-            if draw is not None and len(table):
-                save(draw(table), folder / f"{name}.svg")
-                names.append(name)
-    return names
+            drawn = confusion if name.startswith("confusion") else DRAWN.get(name)
+            if drawn is not None and len(table):
+                files[f"{name}.svg"] = _content(drawn(table), "svg")
+    return files
+
+
+def _content(figure: Figure, form: str) -> bytes:
+    content = io.BytesIO()
+    when = {"Date": None} if form == "svg" else None
+    figure.savefig(content, format=form, metadata=when, bbox_inches="tight", dpi=300)
+    return content.getvalue()
 
 
 def alt_of_means(result: Result) -> str:

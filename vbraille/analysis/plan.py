@@ -78,13 +78,13 @@ def plan_of(
             f"trials are of several protocols: {', '.join(filter(None, protocols))}; "
             f"choose one with --protocol"
         )
-    question = str(frame["question"].mode()[0])
+    planned = _of_protocol(trials)
+    question = planned.question if planned else str(frame["question"].mode()[0])
     others = int((frame["question"] != question).sum())
     if others:
         trials.notes.append(f"{others} trials of other questions than {question} are not compared")
     asked = frame[frame["question"] == question]
-    usual = usual_measure(asked)
-    plan = _of_protocol(trials, question, usual) or Plan(question, usual, ("condition",))
+    plan = planned or Plan(question, usual_measure(asked), ("condition",))
     departures = []
     if measure is not None and measure != plan.measure:
         departures.append(f"The measure is {measure}; {plan.measure or 'none'} is planned.")
@@ -114,24 +114,19 @@ def _level_names(values: pd.Series) -> pd.Series:
     return values.map(lambda value: f"{value:g}" if isinstance(value, float) else str(value))
 
 
-def _of_protocol(trials: Trials, question: str, usual: str) -> Plan | None:
+def _of_protocol(trials: Trials) -> Plan | None:
     """Return the plan in the protocol of the sessions; None if there are no sessions."""
     if not trials.contents:
         return None
-    from vbraille.sessions.planning.protocol import parse_protocol
+    from vbraille.sessions.record.trials import protocol_of
 
-    content = trials.contents[0]
-    protocol = parse_protocol(content.files, f"the protocol of {content.path.name}")
-    columns = [f"factor_{factor.name}" for factor in protocol.factors] or ["condition"]
+    protocol = protocol_of(trials.contents[0])
     planned = protocol.analysis
-    if planned is None:
-        return Plan(question, usual, tuple(columns))
-    if planned.factors is not None:
-        known = {column.removeprefix("factor_"): column for column in columns}
-        columns = [known.get(name, name) for name in planned.factors]
+    own = {factor.name for factor in protocol.factors}
+    columns = [f"factor_{name}" if name in own else name for name in planned.factors or ()]
     return Plan(
-        question,
-        planned.measure or usual,
+        protocol.asks.kind,
+        planned.measure or "",
         tuple(columns),
         planned.too_fast_s,
         planned.too_slow_s,

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
-import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,7 +20,7 @@ from vbraille.analysis.measures import (
 )
 from vbraille.analysis.primary import Result, people, plain
 from vbraille.analysis.read import SIGNALS, STRINGS, Trials
-from vbraille.errors import InputError
+from vbraille.files import write_folder
 from vbraille.version import __version__
 
 if TYPE_CHECKING:
@@ -118,34 +116,17 @@ class Analysis:
         InputError
             If there is such a directory already, or it cannot be made.
         """
-        folder = Path(folder)
-        if folder.exists():
-            raise InputError(f"{folder} is there already; choose another name")
-        try:
-            folder.parent.mkdir(parents=True, exist_ok=True)
-            part = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
-        except OSError as error:
-            raise InputError(f"{folder}: {error.strerror}") from None
-        try:
-            self._write(part)
-            part.chmod(0o755)
-            part.rename(folder)
-        finally:
-            shutil.rmtree(part, ignore_errors=True)
-
-    def _write(self, folder: Path) -> None:
-        from vbraille.analysis import figures
         from vbraille.analysis.codebook import codebook
+        from vbraille.analysis.figures import draw
 
-        (folder / "tables").mkdir()
-        (folder / "figures").mkdir()
-        for name, table in self.tables.items():
-            _with_index(name, table).to_csv(folder / "tables" / f"{name}.csv", index=False)
-        codebook(self.tables).to_csv(folder / "codebook.csv", index=False)
-        drawn = figures.write(self.result, self.tables, folder / "figures")
+        files = {f"tables/{name}.csv": _csv(name, table) for name, table in self.tables.items()}
+        files["codebook.csv"] = _csv("", codebook(self.tables))
+        figures = draw(self.result, self.tables)
+        files |= {f"figures/{name}": content for name, content in figures.items()}
         results = json.dumps(self.to_json(), ensure_ascii=False, indent=1)
-        (folder / "results.json").write_text(results + "\n", encoding="utf-8")
-        (folder / "report.html").write_text(self._page(drawn), encoding="utf-8")
+        files["results.json"] = f"{results}\n".encode()
+        files["report.html"] = self._page(list(figures)).encode()
+        write_folder(Path(folder), files)
 
     def _page(self, drawn: list[str]) -> str:
         from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -166,6 +147,10 @@ class Analysis:
             shown=[_shown(caption, table) for caption, table in shown if len(table)],
             drawn=drawn,
         )
+
+
+def _csv(name: str, table: pd.DataFrame) -> bytes:
+    return _with_index(name, table).to_csv(index=False, lineterminator="\n").encode()
 
 
 def _with_index(name: str, table: pd.DataFrame) -> pd.DataFrame:
