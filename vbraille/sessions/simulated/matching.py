@@ -15,19 +15,15 @@ anybody, and it claims nothing about people; it is for trying protocols out.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+from vbraille.sessions.simulated.skin import FeltFrames
 
-    from numpy.typing import NDArray
-
-    from vbraille.sessions.simulated.skin import FeltFrames
-
-    # Frames, float[n, rows, columns], of a picture at x, y (mm), θ (rad) and times (s), float64[n].
-    PictureFrames = Callable[..., NDArray[np.floating]]
+# Frames, float[n, rows, columns], of a picture at x, y (mm), θ (rad) and times (s), float64[n].
+PictureFrames = Callable[..., NDArray[np.floating]]
 
 MOMENTS = 48
 _WINDOW_S = 0.02
