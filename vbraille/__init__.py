@@ -44,14 +44,14 @@ if TYPE_CHECKING:
     from vbraille.render.braille.style import Tuning as Tuning
     from vbraille.scene.scene import Canvas as Canvas
     from vbraille.scene.scene import Scene as Scene
-    from vbraille.sessions.conditions import Conditions as Conditions
+    from vbraille.sessions.session import Conditions as Conditions
     from vbraille.sessions.session import Session as Session
 
 # Where each name is; what it has another name there stands after the colon.
 _PLACES = {
     "BrailleStyle": "vbraille.render.braille.style",
     "Canvas": "vbraille.scene.scene",
-    "Conditions": "vbraille.sessions.conditions",
+    "Conditions": "vbraille.sessions.session",
     "Device": "vbraille.devices.base",
     "DeviceError": "vbraille.errors",
     "Display": "vbraille.display",

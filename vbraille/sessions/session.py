@@ -18,7 +18,9 @@ from msgspec import Meta, Struct, ValidationError, convert, structs
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.planning.plan import Plan, make_plan
-from vbraille.sessions.planning.protocol import Protocol, load_protocol, parse_protocol
+from vbraille.sessions.planning.loading import load_protocol
+from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.planning.values import Look
 from vbraille.sessions.record import record
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Content, Record
@@ -156,11 +158,10 @@ class Session:
         RecordError
             If the file is there already, or cannot be written.
         """
-        loaded = load_protocol(str(protocol))[0]
+        loaded = load_protocol(str(protocol))
         path = free_path(participant, loaded.name) if path is None else Path(path)
-        loaded, files, plan = plan_session(
-            protocol, participant, seed, order, group, session or next_number(path, participant), best_from
-        )
+        number = session or next_number(path, participant)
+        loaded, plan = plan_session(loaded, participant, seed, order, group, number, best_from)
         head = {
             "protocol": loaded.name,
             "participant": participant,
@@ -171,7 +172,7 @@ class Session:
             "fields": check_fields(loaded, fields or {}),
             "made": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}",
         }
-        record.create(path, head, files, plan)
+        record.create(path, head, loaded.files, plan)
         return cls(path)
 
     @property
@@ -228,10 +229,11 @@ class Session:
         """
         if isinstance(answers, str):
             changed["answers"] = answers
+        from vbraille.sessions.record.trials import protocol_of  # loads compiled code
+
         with closing(Record(self.path)) as opened:
             content = opened.read()
-            protocol = parse_protocol(content.files, f"protocol of {self.path}")
-            protocol = protocol.of_group(content.plan.group)
+            protocol = protocol_of(content)
             progress = Progress(protocol, content.plan, content.events)
             if progress.ended:
                 raise InputError(f"{self.path} has ended; session export makes a table of it")
@@ -245,32 +247,37 @@ class Session:
                 apparatus = _open_apparatus(
                     stack, progress, conditions, source, say, make_engine, monitor, before_rest
                 )
-                _run(opened, progress, source, conditions, apparatus)
+                _run(opened, progress, source, conditions, apparatus, before_rest)
             say(f"record: {opened.sum.hex()}")
         return self
 
 
 def plan_session(
-    protocol: str | Path,
+    protocol: str | Path | Protocol,
     participant: str,
     seed: int | None = None,
     order: int | None = None,
     group: str | None = None,
     session: int | None = None,
     best_from: str | Path | None = None,
-) -> tuple[Protocol, dict[str, bytes], Plan]:
+) -> tuple[Protocol, Plan]:
     """Plan a session; the arguments are those of `Session.create`.
 
     Returns
     -------
-    Protocol, dict[str, bytes], Plan
-        The protocol as the participant's group has it, its files by their names, and the plan.
+    Protocol, Plan
+        The protocol as the participant's group has it, and the plan.
     """
-    loaded, files = load_protocol(str(protocol))
+    loaded = protocol if isinstance(protocol, Protocol) else load_protocol(str(protocol))
     if seed is None:
         seed = secrets.randbelow(_MOST_DRAWN)
-    plan = make_plan(loaded, participant, seed, order, session=session or 1, group=group)
-    return loaded.of_group(plan.group), files, plan
+    look = None
+    if best_from is not None:
+        from vbraille.sessions.record.trials import best_level  # loads compiled code
+
+        look = Look(texture=best_level(Path(best_from), "texture"))
+    plan = make_plan(loaded, participant, seed, order, session=session or 1, group=group, look=look)
+    return loaded.of_group(plan.group), plan
 
 
 def nearly_same(folder: Path, participant: str) -> str | None:
@@ -434,8 +441,9 @@ def _run(
     source: Answers,
     conditions: Conditions,
     apparatus: _Apparatus,
+    before_rest: Callable[[], None],
 ) -> None:
-    """Run a session, and write what went wrong with its device."""
+    """Run a session, close its device, and write what went wrong with that."""
     from vbraille.sessions.running.device import SessionDevice
     from vbraille.sessions.running.runner import Runner
 
@@ -454,14 +462,20 @@ def _run(
     )
     told: dict[str, Any] = {"conditions": structs.asdict(conditions), "versions": _versions()}
     if isinstance(device, SessionDevice):
-        told |= {"display": asdict(device.display), "calibration": device.engine.calibration}
+        told |= {
+            "display": asdict(device.display),
+            "calibration": device.engine.calibration,
+            "simulated": is_simulated(conditions.device),
+        }
     if view is not None:
         told["monitor"] = view.described
-    runner.run(**told)
+    over = runner.run(**told)
+    before_rest()
     device.close()
     if isinstance(device, SessionDevice):
         counts = {name: number for name, number in device.engine.counts.items() if number}
         runner.log("closed", lost=device.engine.lost, counts=counts)
+    runner.finish(over)
 
 
 def _hand_seed(progress: Progress) -> int:

@@ -15,7 +15,7 @@ def typed(folder, *lines):
 def test_a_file_has_a_line_for_each_answer_and_goes_on_where_it_ended(tmp_path):
     sat = made(tmp_path, MINI + SURE)
     sat.sit(answers=typed(tmp_path, "# letters", "ac; 2", "note the door", "ca"))
-    assert [event.kind for event in sat.events][-2:] == ["stop", "closed"]
+    assert [event.kind for event in sat.events][-2:] == ["closed", "stop"]
     sat.sit(answers=typed(tmp_path, "# letters", "ac; 2", "note the door", "ca", "4", "aa;1"))
     assert [event.data["script_line"] for event in sat.of("answer")] == [2, 4, 6]
     assert [event.data["confidence"] for event in sat.of("confidence")] == [2, 4, 1]

@@ -25,7 +25,7 @@ def test_a_simulated_reader_reads_all_of_it(tmp_path):
     for trial in (1, 2, 3):
         kinds = [event.kind for event in sat.events if event.trial == trial]
         assert kinds == ["cue", "contact", "read", "answer"]
-    assert [event.kind for event in sat.events][-2:] == ["end", "closed"]
+    assert [event.kind for event in sat.events][-2:] == ["closed", "end"]
     with pytest.raises(InputError, match="ended"):
         sat.sit(answers="simulated")
 
@@ -41,15 +41,15 @@ def test_answers_are_typed_at_any_time_and_said_back_once_they_are_in(tmp_path):
 
 def test_nothing_of_a_stimulus_or_a_condition_is_said_before_its_answer(tmp_path):
     factors = "[[conditions]]\nname = 'flat'\ntexture = 0.0\n[[conditions]]\nname = 'rough'\n"
-    sat = made(tmp_path, MINI + factors).sit(*[("read:", "??")] * 6, ("last", ""))
+    sat = made(tmp_path, MINI + "blocks = 1\n" + factors).sit(*[("read:", "??")] * 6, ("last", ""))
     assert not [sentence for sentence in sat.said if "flat" in sentence or "rough" in sentence]
     assert not [sentence for sentence in sat.said if any(c in sentence for c in "⠁⠉")]
 
 
 def test_an_answer_is_taken_back_and_typed_again(tmp_path):
     sat = made(tmp_path).sit(
-        ("cue", "undo"), ("read:", "ac"), ("cue: trial 2", "undo"), ("type", "ca"), ("read:", "aa"), ("read:", "aa"), ("last", "undo"),
-        ("type", "cc"), ("last", "stop"),
+        ("cue", "undo"), ("read:", "ac"), ("cue: trial 2", "undo"), ("undo: trial 1", "ca"), ("read:", "aa"), ("read:", "aa"), ("last", "undo"),
+        ("undo: trial 3", "cc"), ("last", "stop"),
     )  # fmt: skip
     assert answered(sat)[:2] == [(1, "⠁⠉"), (1, "⠉⠁")]
     rows = sat.session.trials

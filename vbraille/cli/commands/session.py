@@ -75,12 +75,14 @@ def command() -> None:
 @options.takes(options.json)
 def protocols(name: str | None, json: bool) -> None:
     """List the protocols that come with the program, or print one."""
-    from vbraille.sessions.planning.protocol import load_protocol, protocol_names, protocol_text
+    from vbraille.sessions.planning.loading import FOLDER, OWN_FILE, load_protocol, shipped
 
     if name is not None:
-        click.echo(protocol_text(name), nl=False)
+        beside = FOLDER / name
+        content = beside.read_bytes() if beside.is_file() else load_protocol(name).files[OWN_FILE]
+        click.echo(content, nl=False)
         return
-    loaded = [load_protocol(each)[0] for each in protocol_names()]
+    loaded = [load_protocol(each) for each in shipped()]
     if json:
         print_json([{"name": p.name, "title": p.title, "display": p.model} for p in loaded])
         return
@@ -97,10 +99,10 @@ def protocols(name: str | None, json: bool) -> None:
 )
 def plan(protocol: str, brf: bool, json: bool, **given: Any) -> None:
     """Print the order of a session, and how long it takes."""
-    from vbraille.sessions.planning.plan import plan_text
+    from vbraille.sessions.planning.plan import plan_lines
     from vbraille.sessions.session import plan_session
 
-    loaded, _, planned = plan_session(protocol, **given)
+    loaded, planned = plan_session(protocol, **given)
     if given["seed"] is None:
         say(f"seed: {planned.seed}", aside=True)
     if json:
@@ -110,7 +112,7 @@ def plan(protocol: str, brf: bool, json: bool, **given: Any) -> None:
 
         click.echo(to_brf(loaded, planned), nl=False)
     else:
-        for line in plan_text(loaded, planned):
+        for line in plan_lines(loaded, planned):
             say(line)
 
 
@@ -130,12 +132,12 @@ def plan(protocol: str, brf: bool, json: bool, **given: Any) -> None:
 def run(protocol: str, fields: tuple[tuple[str, str], ...], out: str | None, another: bool,
         rate: float | None, **given: Any) -> None:  # fmt: skip
     """Run a session; type help at its prompt for what can be typed."""
-    from vbraille.sessions.planning.protocol import load_protocol
+    from vbraille.sessions.planning.loading import load_protocol
     from vbraille.sessions.session import Session, check_fields, nearly_same
 
     planned = {name: given.pop(name) for name in _names(_PLAN)}
     participant = planned.pop("participant")
-    loaded, _ = load_protocol(protocol)
+    loaded = load_protocol(protocol)
     answered = dict(fields)
     check_fields(loaded, answered)
     with _typing(given.get("answers"), given.pop("speech")) as (typed, tell):
@@ -191,21 +193,21 @@ def _conduct(
 )  # fmt: skip
 def check(path: str, expect: str | None, salvage: str | None, json: bool) -> int:
     """Check that a session is whole, and that nothing was changed."""
-    from vbraille.sessions.record import record
+    from vbraille.sessions.record import checking
 
     if salvage is not None:
-        for line in record.salvage(Path(path), Path(salvage)):
+        for line in checking.salvage(Path(path), Path(salvage)):
             say(line)
         return 0
-    faults = record.check(Path(path), expect)
+    faults = checking.check(Path(path), expect or "")
     if json:
         print_json({"good": not faults, "faults": faults})
     else:
         for fault in faults:
             say(f"fault: {fault}")
         if not faults:
-            say(f"whole: {record.read(Path(path)).count} events")
-            say(f"record: {record.sum_of(Path(path))}")
+            say("whole: the protocol, the plan, all events and all ticks")
+            say(f"record: {checking.sum_of(Path(path))}")
     return 1 if faults else 0
 
 
@@ -223,7 +225,7 @@ def export(paths: tuple[str, ...], out: str | None, force: bool, bids: bool, cod
            anonymous: bool) -> None:  # fmt: skip
     """Write the trials of sessions as a table, or as a BIDS dataset."""
     from vbraille.files import write_file
-    from vbraille.sessions.record import trials
+    from vbraille.sessions.record import record, trials
 
     given = [Path(path) for path in paths]
     if len({path.resolve() for path in given}) < len(given):
@@ -244,7 +246,10 @@ def export(paths: tuple[str, ...], out: str | None, force: bool, bids: bool, cod
         write_file(Path(out), text.encode("utf-8-sig"), replace=force)
         say(f"written: {out}, {len(rows)} rows")
     if codebook is not None:
-        write_file(Path(codebook), trials.codebook(rows).encode("utf-8-sig"), replace=force)
+        columns = list(dict.fromkeys(name for row in rows for name in row))
+        book = trials.codebook(columns, trials.protocol_of(record.read(given[0])))
+        entries = [{"column": name, **each._asdict()} for name, each in book.items()]
+        write_file(Path(codebook), trials.to_csv(entries).encode("utf-8-sig"), replace=force)
         say(f"written: {codebook}")
 
 

@@ -35,8 +35,6 @@ class Asked(NamedTuple):
         The answer, where it is asked how sure it is.
     item
         What is asked of the questionnaire.
-    columns
-        Columns of the item of the trial that the questionnaire asks about.
     """
 
     what: Literal["answer", "confidence", "reply", "go"]
@@ -45,7 +43,6 @@ class Asked(NamedTuple):
     felt: Callable[[], list[FeltFrames]] = list
     answer: str = ""
     item: Item | None = None
-    columns: dict[str, str] = {}  # noqa: RUF012  (never changed)
 
 
 class Line(NamedTuple):

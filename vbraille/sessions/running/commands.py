@@ -131,7 +131,7 @@ def _quit(runner: Runner, reason: str) -> None:
 def _help(runner: Runner, _: str) -> None:
     asks = runner.protocol.asks
     if runner.asked is not None and runner.asked.item is not None:
-        runner.say(f"question: {runner.asked.item.asked(runner.asked.columns)}")
+        runner.say(f"question: {runner.asked.item.ask} Type {runner.asked.item.typed}")
     elif asks.ask:
         runner.say(f"question: {asks.ask}")
     runner.say(f"an answer: {asks.typed}")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -121,8 +122,7 @@ class SessionDevice:
         make_engine: MakeEngine | None = None,
         pointer: Pointer | None = None,
     ) -> None:
-        model = protocol.display_model
-        self.wanted = model.on(model.style.geometry, rate_hz)
+        self.wanted = replace(protocol.wanted, rate_hz=rate_hz)
         self.span_mm = self.wanted.span_mm
         self.line = line
         self.ready = self.read = self.ended = False
@@ -420,7 +420,7 @@ def _room(protocol: Protocol, plan: Plan) -> int:
 def _all_shown(protocol: Protocol, plan: Plan) -> Iterable[Shown]:
     """Return the longest line and each picture of a plan, compiled."""
     stimuli = [s for trial in plan.trials for s in trial.stimuli if s.on == "device"]
-    pictures = {(s.scene, s.picture): s for s in stimuli if s.picture}
+    pictures = {(s.look.scene, s.picture): s for s in stimuli if s.picture}
     lead = protocol.display.lead_cells
     lines = [s for s in stimuli if not s.picture]
     longest = {repr(s.look): s for s in sorted(lines, key=lambda s: len(s.masks(lead)))}

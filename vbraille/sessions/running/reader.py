@@ -9,16 +9,16 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from msgspec import structs
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocol import Protocol
-from vbraille.sessions.planning.questionnaire import Item
 from vbraille.sessions.planning.shown import make_shown
 from vbraille.sessions.planning.trial import Stimulus, Trial
 from vbraille.sessions.running.answers import Asked, InTurn, Line
 from vbraille.sessions.simulated.feeling import CELL_GAP, LENGTHS, DotPair, FeltTrial
-from vbraille.sessions.simulated.matching import PictureFrames, differences, name_one
+from vbraille.sessions.simulated.matching import FeltPicture, PictureFrames, differences
 from vbraille.sessions.simulated.observer import Observer
 
 MOST_NOISE = 100.0
@@ -121,20 +121,19 @@ class Simulated(InTurn):
         self._question = protocol.asks
         self._drawn = f"{protocol.name} {plan.participant} {plan.seed}"
         self._parameter = getattr(protocol.design, "parameter", "")
-        self._replied = 0
         if habits.false_alarms and not self._question.alarm:
             raise InputError(
                 f"{protocol.name} asks {self._question.kind}, to which no answer is a false alarm; "
                 f"leave false-alarms out"
             )
-        if why := self._question.unfelt(protocol.design):
+        if why := self._question.unfelt(self._parameter):
             raise InputError(f"{protocol.name}: {why}; {INSTEAD}")
         self._learn(plan)
 
     def give(self, asked: Asked) -> Line:
         """Return the answer to what is asked."""
         if asked.item is not None:
-            return Line(self._reply(asked.item, asked.columns))
+            return Line(asked.item.simulate())
         assert asked.trial is not None, "a trial is asked about"
         drawn = f"{self._drawn} {asked.trial.practice} {asked.trial.number} {asked.attempt}"
         habits = random_of(f"{drawn} habits")
@@ -152,12 +151,6 @@ class Simulated(InTurn):
             return Line(self._question.alarm)
         return Line(self._answer(asked, random_of(drawn)))
 
-    def _reply(self, item: Item, columns: dict[str, str]) -> str:
-        """Answer a question of the questionnaire: as is right, or anyhow."""
-        self._replied += 1
-        random = random_of(f"{self._drawn} {item.name} {self._replied}")
-        return item.simulate(columns, self._habits.noise, random)
-
     def _learn(self, plan: Plan) -> None:
         """Learn what a reader is told before the session."""
         self._observers: dict[str, Observer] = {}
@@ -166,21 +159,20 @@ class Simulated(InTurn):
         for trial in plan.trials:
             if trial.condition in self._observers:
                 continue
-            condition = next(c for c in self._study.conditions if c.name == trial.condition)
-            style = self._study.style(condition.over(self._study.display))
+            style = self._study.style(self._study.look(trial.condition))
             told = replace(usual, mapping=style.mapping, geometry=style.geometry)
             self._observers[trial.condition] = Observer(display, told, noise=self._habits.noise)
-            self._pairs[trial.condition] = self._pair_of(trial.stimuli[0], condition)
+            self._pairs[trial.condition] = self._pair_of(trial)
 
-    def _pair_of(self, stimulus: Stimulus, condition: object) -> DotPair | None:
+    def _pair_of(self, trial: Trial) -> DotPair | None:
         """Return two dot columns by which a distance is told; None if it has none, or needs none.
 
         The cells are the same in all trials of a comparison, and known to the reader.
         """
         if self._parameter not in LENGTHS:
             return None
-        look = condition.over(self._study.display)  # type: ignore[attr-defined]
-        nominal = Stimulus(stimulus.cells, look, stimulus.before, stimulus.after)
+        look = self._study.look(trial.condition)
+        nominal = structs.replace(trial.stimuli[0], look=look)
         edges = make_shown(self._study, nominal).edges_mm
         pitch_mm = self._study.style(look).geometry.cell_pitch_mm
         for number, (one, two) in enumerate(pairwise(edges)):
@@ -214,6 +206,11 @@ class SimulatedNaming(Simulated):
     """
 
     def _learn(self, plan: Plan) -> None:
+        if self._question.kind != "name":
+            raise InputError(
+                f"{self._study.name} asks {self._question.kind} of pictures, which the simulated "
+                f"reader cannot answer; {INSTEAD}"
+            )
         self._known: dict[str, dict[str, Trial]] = {}
         self._thought: dict[str, list[PictureFrames]] = {}
         for trial in plan.trials:
@@ -226,8 +223,8 @@ class SimulatedNaming(Simulated):
         if condition not in self._thought:
             self._thought[condition] = [_frames_of(self._study, t.stimuli[0]) for t in known]
         apart = differences(asked.felt()[-1], self._thought[condition])
-        chosen = list(known)[name_one(apart, self._habits.noise, random)]
-        return self._question.right_answer(chosen)
+        names = [self._question.right_answer(trial) for trial in known]
+        return self._question.simulate(FeltPicture(apart, names), self._habits.noise, random)
 
 
 def _frames_of(protocol: Protocol, stimulus: Stimulus) -> Callable[..., np.ndarray]:

@@ -168,13 +168,18 @@ class Runner:
         """True if a stimulus of the open trial has not been shown yet."""
         return self.trial is not None and self.stimulus + 1 < len(self.trial.stimuli)
 
-    def run(self, **told: Any) -> None:
+    def run(self, **told: Any) -> Over:
         """Run the session from where it is to its end, or until it is stopped.
 
         Parameters
         ----------
         told
             What the event of the run says, such as the device.
+
+        Returns
+        -------
+        Over
+            Why the run is over, for `finish`; the array rests.
         """
         self._begin(answers=self.answers.name, **told)
         self._watch_key()
@@ -191,7 +196,11 @@ class Runner:
                 over = Over("stop", "there are no more answers")
             except Over as left:
                 over = left
-        self._finish(over)
+        trial, self.trial = self.trial, None
+        self.withdraw()
+        if trial is not None and self.progress.lacks_confidence(trial):
+            self.say(f"no confidence: the answer to {trial.name} is kept without one")
+        return over
 
     def _begin(self, **told: Any) -> None:
         """Wait for the first tick, and write that the run has begun."""
@@ -224,12 +233,8 @@ class Runner:
             self.await_enter("Enter, which ends the session")
         return True
 
-    def _finish(self, over: Over) -> None:
-        """Take the stimulus away, and write why the run is over."""
-        trial, self.trial = self.trial, None
-        self.withdraw()
-        if trial is not None and self.progress.lacks_confidence(trial):
-            self.say(f"no confidence: the answer to {trial.name} is kept without one")
+    def finish(self, over: Over) -> None:
+        """Write why the run is over, and say it."""
         self.waits_for = "nothing: the session is over"
         self.log(over.kind, why=over.why, **over.data)
         done = f"{self.progress.done} trials have answers"
@@ -259,17 +264,13 @@ class Runner:
     def _ask_item(self, item: Item, number: int) -> None:
         """Ask a question of the questionnaire, and write the reply."""
         self.trial = None
-        newest = self.progress.last_answered
-        columns = {}
-        if item.when == "trial" and newest is not None:
-            columns = self.protocol.item_columns(newest)
-        self.say(f"question: {item.asked(columns)}")
+        self.say(f"question: {item.ask} Type {item.typed}")
         self.waits_for = "a reply to the questionnaire"
-        asked = Asked("reply", item=item, columns=columns)
+        asked = Asked("reply", item=item)
         while True:
             line = self._wait_for_line(asked)
             try:
-                reply = item.parse(line.text, columns)
+                reply = item.parse(line.text)
                 break
             except ValueError as error:
                 self._refuse(error, line)
@@ -371,27 +372,44 @@ class Runner:
 
     def _ask(self, trial: Trial) -> None:
         """Wait for the answer of a trial, and write it."""
-        question, draft = self.protocol.asks, ""
+        question, names = self.protocol.asks, ()
         if not self.is_shown:
-            self.say(f"answer: {self.name}; type {question.typed}")
+            self.say(f"undo: {self.name}; type {question.typed}")
         while True:
             line = self._wait_for_line(self._asked("answer"))
-            if not line.text and not draft and self.answers.typed:
-                continue
             if self.is_shown and (steps := question.steps(line.text)) is not None:
                 trial = self._turn(trial, steps)
                 continue
             try:
-                answer, sure = self._parse(trial, line.text or draft)
+                if question.confirms and self.answers.typed:
+                    names, line = self._confirm(names, line)
+                if not line.text and self.answers.typed:
+                    continue
+                answer, sure = self._parse(trial, line.text)
             except ValueError as error:
                 self._refuse(error, line)
                 continue
-            if question.confirms and self.answers.typed and line.text and answer != draft:
-                draft = answer
-                self.say(f"chosen: {self._said(trial, answer)}; press Enter to take it")
-            elif not self._is_doubted(answer):
+            if not self._is_doubted(answer):
                 break
         self._take_answer(trial, answer, sure, line)
+
+    def _confirm(self, before: tuple[str, ...], line: Line) -> tuple[tuple[str, ...], Line]:
+        """Say names back until Enter takes them; the line is empty as long as nothing is taken.
+
+        Parameters
+        ----------
+        before
+            Names that were said back already.
+        """
+        question = self.protocol.asks
+        names = question.marked(line.text, before) if line.text else before
+        missing = question.missing(names) if names else ""
+        if names and names == before and not missing:
+            return names, Line(" ".join(names))
+        if names:
+            how = f"one of {missing} is missing" if missing else "Enter takes it"
+            self.say(f"chosen: {' '.join(filter(None, names))}; {how}")
+        return names, Line("")
 
     def _parse(self, trial: Trial, text: str) -> tuple[str, int | None]:
         """Read an answer, and how sure it is if that stands after a semicolon."""
@@ -488,8 +506,7 @@ class Runner:
         return self.protocol.asks.said(answer, self._spelling(trial))
 
     def _spelling(self, trial: Trial) -> Spelling:
-        style = self.protocol.style(trial.stimuli[0].look)
-        return Spelling(self.protocol.masks, style.mapping.shown_dots())
+        return self.protocol.spelling(trial.stimuli[0])
 
     # Breaks.
 
@@ -727,7 +744,7 @@ class Runner:
     def _watch_key(self) -> None:
         """Look out for the participant's key, or say that Enter is pressed instead."""
         self._key, key = self.protocol.trial.end or "", self.protocol.trial.key
-        if key is None or self._key == "key:enter" or not self.answers.typed:
+        if not key or self._key == "key:enter" or not self.answers.typed:
             return
         name = self._key.removeprefix("key:")
         if self.answers.watch(key):

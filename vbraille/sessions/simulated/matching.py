@@ -16,6 +16,7 @@ anybody, and it claims nothing about people; it is for trying protocols out.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,3 +69,22 @@ def name_one(apart: NDArray[np.float64], noise: float, random: np.random.Generat
     if unit == 0 or np.ptp(apart) == 0:
         return int(drawn.argmin())
     return int((apart / unit + noise * drawn).argmin())
+
+
+class FeltPicture(NamedTuple):
+    """A trial with a picture as the simulated person feels it.
+
+    Parameters
+    ----------
+    apart : float64[pictures]
+        How much each known picture differs from what was felt.
+    names
+        Their names.
+    """
+
+    apart: NDArray[np.float64]
+    names: Sequence[str]
+
+    def named(self, noise: float, random: np.random.Generator) -> str:
+        """Return the name of the picture that is felt most like it."""
+        return self.names[name_one(self.apart, noise, random)]
