@@ -18,7 +18,7 @@ from msgspec import structs
 from vbraille.braille.spelling import ordinal, say_cells
 from vbraille.devices.base import Placing
 from vbraille.engine.engine import placing_of
-from vbraille.engine.record import Flag
+from vbraille.engine.record import Flag, RingReader
 from vbraille.errors import InputError
 from vbraille.live.messages import LetGo, Point, ViewState
 from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
@@ -106,10 +106,10 @@ class SessionView:
             self._said.append(sentence)
             self._count += 1
 
-    def watch(self, device: SessionDevice) -> None:
-        """Show the ticks of a device from now on; called after each start of it."""
+    def watch(self, ticks: RingReader) -> None:
+        """Show the ticks of a device from now on; called at each start of it."""
         if self._view is not None:
-            self._view.watch(device.engine.reader())
+            self._view.watch(ticks)
 
     def look(self, runner: Runner) -> None:
         """Tell the pages what has changed, and lead the simulated hand as they ask."""
