@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self
 from msgspec import Meta, Struct, ValidationError, convert, structs
 
 from vbraille.errors import InputError, VbrailleError
-from vbraille.sessions.planning.plan import Plan, make_plan
 from vbraille.sessions.planning.loading import load_protocol
+from vbraille.sessions.planning.plan import Plan, make_plan
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.values import Look
 from vbraille.sessions.record import record
