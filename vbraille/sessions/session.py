@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import secrets
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack, closing
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self
 from msgspec import Meta, Struct, ValidationError, convert, structs
 
 from vbraille.errors import InputError, VbrailleError
+from vbraille.names import likeness
 from vbraille.sessions.planning.loading import load_protocol
 from vbraille.sessions.planning.plan import Plan, make_plan
 from vbraille.sessions.planning.protocol import Protocol
@@ -288,7 +288,8 @@ def nearly_same(folder: Path, participant: str) -> str | None:
     known = {_participant_of(path) for path in folder.glob("*.session")} - {""}
     if participant in known:
         return None
-    return next((each for each in sorted(known) if _plain(each) == _plain(participant)), None)
+    own = likeness(participant, person=True)
+    return next((each for each in sorted(known) if likeness(each, person=True) == own), None)
 
 
 def next_number(path: Path, participant: str) -> int:
@@ -304,10 +305,6 @@ def _participant_of(path: Path) -> str:
             return db.execute("SELECT participant FROM session").fetchone()[0]
     except (VbrailleError, OSError):
         return ""
-
-
-def _plain(participant: str) -> str:
-    return re.sub(r"(?<![0-9])0+(?=[0-9])", "", re.sub("[^0-9a-z]", "", participant.lower()))
 
 
 def free_path(participant: str, protocol: str) -> Path:

@@ -117,7 +117,7 @@ def _begin(runner: Runner, _: str) -> None:
     raise Again
 
 
-def _stop(runner: Runner, _: str) -> None:
+def _stop(_runner: Runner, _: str) -> None:
     raise Over("stop", "stopped by the experimenter")
 
 

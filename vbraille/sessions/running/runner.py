@@ -601,7 +601,8 @@ class Runner:
         if word == "answer" or (awaited and not self.answers.typed and word in self._ambiguous):
             return line._replace(text=rest)
         if awaited and word in self._ambiguous and text.lower() == word:
-            self.say(f"{text} is a command, and a string here: type answer {text}, or command {word}")
+            said = f"type answer {text}, or command {word}"
+            self.say(f"{text} is a command, and a string here: {said}")
             return None
         if word == "command":
             word, rest = rest.lower(), ""
@@ -667,7 +668,8 @@ class Runner:
             self.say(f"read: type {self.protocol.asks.typed}")
         if kind == "fault":
             repeats = self.protocol.faults.repeat
-            self.say(f"fault: {data['what']}; {self.name} {'is repeated' if repeats else 'goes on'}")
+            then = "is repeated" if repeats else "goes on"
+            self.say(f"fault: {data['what']}; {self.name} {then}")
             if repeats:
                 raise Again
 
