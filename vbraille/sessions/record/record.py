@@ -51,6 +51,9 @@ CREATE TABLE ticks (            -- a second or less of the device's ticks; see `
     first_line INTEGER NOT NULL, last_line INTEGER NOT NULL, fields BLOB NOT NULL,
     sum BLOB NOT NULL, PRIMARY KEY (after, first)
 ) STRICT;
+CREATE TABLE seal (             -- the newest sum when a console closed the file last
+    id INTEGER PRIMARY KEY CHECK (id = 1), sum BLOB NOT NULL
+) STRICT;
 CREATE INDEX ticks_of_line ON ticks (first_line);
 CREATE INDEX event_of_trial ON event (trial, practice, kind);
 CREATE TRIGGER events_do_not_change BEFORE UPDATE ON event
@@ -244,6 +247,8 @@ class Record:
         """Write the ticks that wait, and close the file, which then stands alone."""
         with closing(self._db):
             self.write_ticks()
+            with self._transaction():
+                self._db.execute("INSERT OR REPLACE INTO seal VALUES (1, ?)", (self.sum,))
             with told(self.path):
                 self._db.execute("PRAGMA journal_mode = DELETE")
 
