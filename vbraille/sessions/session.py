@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self
 from msgspec import Meta, Struct, ValidationError, convert, structs
 
 from vbraille.errors import InputError, VbrailleError
-from vbraille.sessions.planning.plan import Plan, make_plan
 from vbraille.sessions.planning.loading import load_protocol
+from vbraille.sessions.planning.plan import Plan, make_plan
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.values import Look
 from vbraille.sessions.record import record
@@ -420,12 +420,10 @@ def _open_apparatus(
             keeps=source.felt,
             by_hand=not source.typed or protocol.trial.end is None,
             make_engine=make_engine,
-            pointer=None if view is None else view.pointer,
+            watched=None if view is None else view.watch,
         )
     stack.callback(device.close)
     stack.callback(before_rest)
-    if view is not None:
-        view.watch(device)
     device.start()
     if isinstance(device, SessionDevice):
         check_room(protocol, plan, device.display)

@@ -110,11 +110,11 @@ class Typed:
         self._given: list[Line | Press] = []
         self._over = self._descriptor < 0
 
-    def watch(self, key: str) -> bool:  # noqa: ARG002  (one that reads keys does)
+    def watch(self, key: str) -> bool:
         """Look out for the participant's key; return whether that is possible."""
         return False
 
-    def line(self, asked: Asked | None, wait_s: float) -> Line | Press | None:  # noqa: ARG002
+    def line(self, asked: Asked | None, wait_s: float) -> Line | Press | None:
         """Return a line that was typed."""
         if not self._given and not self._over:
             self._read(wait_s)

@@ -91,8 +91,9 @@ class Runner:
         Whether a stimulus is shown, and whether the session is paused.
     waits_for : str
         What the session waits for, in words for people.
-    break_wanted : bool
-        Whether the experimenter has asked for a break that has not begun.
+    break_wanted, is_over : bool
+        Whether the experimenter has asked for a break that has not begun, and whether the run is
+        over.
     """
 
     def __init__(
@@ -114,7 +115,7 @@ class Runner:
         self.answers, self.device, self.pins = answers, device, pins
         self.trial: Trial | None = None
         self.attempt = self.stimulus = 0
-        self.is_shown = self.paused = self.break_wanted = False
+        self.is_shown = self.paused = self.break_wanted = self.is_over = False
         self.waits_for = ""
         self.asked: Asked | None = None
         self.say = say
@@ -235,7 +236,7 @@ class Runner:
 
     def finish(self, over: Over) -> None:
         """Write why the run is over, and say it."""
-        self.waits_for = "nothing: the session is over"
+        self.is_over, self.waits_for = True, ""
         self.log(over.kind, why=over.why, **over.data)
         done = f"{self.progress.done} trials have answers"
         goes_on = "; session resume goes on" if over.kind == "stop" else ""
