@@ -72,7 +72,7 @@ SPECIFICATIONS = (
     *("wire-protocol.md", "session-format.md", "recording.md", "latero.md", "live-view.md"),
     "tables.md",
 )
-RECORDS = ("decisions.md", "measured.md", "validation.md")
+RECORDS = ("decisions.md", "measured.md")
 _WORD = re.compile(r"\S*\w\S*")
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.errors import needing_extras
+from vbraille.errors import InputError, needing_extras
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def analyse(
-    paths: Sequence[str | Path],
+    paths: str | Path | Sequence[str | Path],
     *,
     protocol: str | None = None,
     measure: str | None = None,
@@ -30,7 +30,8 @@ def analyse(
     Parameters
     ----------
     paths
-        Files of sessions, and tables in CSV with the columns participant, presented and answered.
+        Files of sessions, and tables in CSV with the columns participant, presented and answered;
+        one, or several.
     protocol
         Name of the protocol whose trials are taken; None if there is only one.
     measure, factors
@@ -50,7 +51,7 @@ def analyse(
         from vbraille.analysis.plan import asked_of, leave_out, plan_of
         from vbraille.analysis.read import read_trials
 
-    trials = read_trials(paths, protocol=protocol, exclude=exclude)
+    trials = read_trials(_listed(paths), protocol=protocol, exclude=exclude)
     plan = plan_of(trials, measure, factors)
     leave_out(trials, plan)
     asked = asked_of(trials, plan)
@@ -92,7 +93,15 @@ def analyse_scores(path: str | Path) -> Analysis:
     )
 
 
-def methods_of(paths: Sequence[str | Path]) -> list[str]:
+def _listed(paths: str | Path | Sequence[str | Path]) -> list[Path]:
+    """Return paths, one or several, as a list."""
+    given = [paths] if isinstance(paths, str | Path) else list(paths or ())
+    if not given:
+        raise InputError("nothing is given to analyse; give files of sessions, or tables")
+    return [Path(path) for path in given]
+
+
+def methods_of(paths: str | Path | Sequence[str | Path]) -> list[str]:
     """Return the paragraph on what was done in sessions, a sentence each.
 
     Raises
@@ -104,4 +113,4 @@ def methods_of(paths: Sequence[str | Path]) -> list[str]:
         from vbraille.analysis.methods import of_sessions
         from vbraille.analysis.read import read_trials
 
-    return of_sessions(read_trials(paths))
+    return of_sessions(read_trials(_listed(paths)))

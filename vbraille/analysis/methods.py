@@ -45,9 +45,9 @@ def of_sessions(trials: Trials) -> list[str]:
     strings = frame.loc[frame["question"] == STRINGS, "presented"]
     if len(strings):
         made.append(f"Strings had {span(strings.str.len(), 'cell')}.")
-    conditions = frame["condition"].astype(str).unique()
+    conditions = [name for name in frame["condition"].cat.categories if name]
     if len(conditions) > 1:
-        made.append(f"Conditions were {', '.join(sorted(conditions))}.")
+        made.append(f"Conditions were {', '.join(conditions)}.")
     made += _display(frame)
     made += _happened(trials)
     return made
@@ -102,12 +102,12 @@ def of_tests(result: Result) -> list[str]:
     what = "mean logarithm of the " * (scale == LOGS) + result.measure.name
     made = []
     within = result.cells.shape[1] > 1
-    pairs = len(result.pairs)
+    pairs = int(result.pairs["p"].notna().sum()) if len(result.pairs) else 0
     if within and pairs:
         made.append(f"The {what} of each person was compared by paired t-tests.")
     if result.groups is not None and pairs:
         made.append(f"Groups were compared by Welch’s t-tests of the {what} of each person.")
-    if len(result.effects) and within:
+    if pairs and len(result.effects) and within:
         made.append(
             "Effects were tested by analysis of variance within people with the correction of "
             "Greenhouse and Geisser."
@@ -118,12 +118,12 @@ def of_tests(result: Result) -> list[str]:
             "of 1 − 0.05/k (column k of the pairs) in step with it, so that each holds 0 if and "
             "only if the corrected p is above 0.05."
         )
-    if scale == SHARES:
+    if scale == SHARES and result.means["low"].notna().any():
         made.append(
             "Each person weighs the same, whatever the number of trials. Intervals of mean shares "
             "are Student’s on the logit scale."
         )
-    elif scale == LOGS:
+    if scale == LOGS and pairs:
         made.append("Differences of logarithms are told as ratios.")
     return made
 

@@ -119,8 +119,9 @@ class Analysis:
         from vbraille.analysis.codebook import codebook
         from vbraille.analysis.figures import draw
 
-        files = {f"tables/{name}.csv": _csv(name, table) for name, table in self.tables.items()}
-        files["codebook.csv"] = _csv("", codebook(self.tables))
+        tables = {name: _with_index(name, table) for name, table in self.tables.items()}
+        files = {f"tables/{name}.csv": _csv(table) for name, table in tables.items()}
+        files["codebook.csv"] = _csv(codebook(tables))
         figures = draw(self.result, self.tables)
         files |= {f"figures/{name}": content for name, content in figures.items()}
         results = json.dumps(self.to_json(), ensure_ascii=False, indent=1)
@@ -149,8 +150,8 @@ class Analysis:
         )
 
 
-def _csv(name: str, table: pd.DataFrame) -> bytes:
-    return _with_index(name, table).to_csv(index=False, lineterminator="\n").encode()
+def _csv(table: pd.DataFrame) -> bytes:
+    return table.to_csv(index=False, lineterminator="\n").encode()
 
 
 def _with_index(name: str, table: pd.DataFrame) -> pd.DataFrame:
@@ -205,7 +206,7 @@ def all_tables(trials: Trials, plan: Plan, asked: pd.DataFrame) -> dict[str, pd.
         made["thresholds"] = thresholds(asked, keys)
     if "confidence" in asked and asked["confidence"].notna().any():
         made["confidence"] = tables.ratings(asked, "confidence", ["condition", "right"])
-    return made | {"trials": trials.frame}
+    return made | {"trials": trials.frame.astype({"right": int})}
 
 
 def string_tables(trials: pd.DataFrame) -> dict[str, pd.DataFrame]:

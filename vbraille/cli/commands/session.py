@@ -257,9 +257,9 @@ def export(paths: tuple[str, ...], out: str | None, force: bool, bids: bool, cod
 @_files
 def methods(paths: tuple[str, ...]) -> None:
     """Print a paragraph for a paper on what was done."""
-    from vbraille.analysis import methods as tell
+    from vbraille.analysis import methods_of
 
-    for line in tell([Path(path) for path in paths]):
+    for line in methods_of([Path(path) for path in paths]):
         say(line)
 
 
