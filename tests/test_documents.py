@@ -154,4 +154,3 @@ def test_the_glossary_has_each_word_once():
 def test_each_table_is_what_the_program_has(name, rows):
     text = (DOCS / name).read_text(encoding="utf-8")
     assert with_table(text, rows) == text, "python -m tests.documents writes it"
-

@@ -366,7 +366,13 @@ def _open_answers(given: Any, conditions: Conditions, progress: Progress) -> Ans
     from vbraille.sessions.running.answers import Typed, answers_of
 
     spec = conditions.answers if given is None or isinstance(given, str) else given
-    source = answers_of(spec, progress.protocol, progress.plan, progress.script_line)
+    kind, _, habits = spec.partition(":") if isinstance(spec, str) else ("", "", "")
+    if kind == "simulated":
+        from vbraille.sessions.running.reader import simulated_answers
+
+        source: Answers = simulated_answers(progress.protocol, progress.plan, habits)
+    else:
+        source = answers_of(spec, progress.script_line)
     if conditions.fast and isinstance(source, Typed):
         raise InputError("--fast is for answers that are not typed; give --answers simulated")
     if conditions.fast and not is_simulated(conditions.device):
@@ -397,7 +403,7 @@ def _open_apparatus(
     if monitor is not None:
         from vbraille.sessions.running.liveview import SessionView
 
-        view = stack.enter_context(SessionView(protocol, conditions, *monitor, say=say))
+        view = stack.enter_context(SessionView(protocol, *monitor, fast=conditions.fast, say=say))
         say = view.say
     pins = None
     if protocol.needs_pins and not source.felt and not conditions.fast:
@@ -439,6 +445,7 @@ def _run(
     before_rest: Callable[[], None],
 ) -> None:
     """Run a session, close its device, and write what went wrong with that."""
+    from vbraille.sessions.running.commands import COMMANDS
     from vbraille.sessions.running.device import SessionDevice
     from vbraille.sessions.running.runner import Runner
 
@@ -448,6 +455,7 @@ def _run(
         progress,
         source,
         device,
+        commands=COMMANDS,
         pins=pins,
         real=not conditions.fast,
         say=say,
