@@ -54,7 +54,9 @@ def test_no_answer_is_lost_or_asked_again_however_often_it_is_killed(tmp_path, s
             if found := re.match(r"answer: (trial \d+) of 9, (.*)", line):
                 told[found[1]] = found[2]
             if found := re.match(r"cue: (trial \d+) of", line):
-                assert found[1] not in told, "a trial whose answer was said to be in was shown again"
+                assert found[1] not in told, (
+                    "a trial whose answer was said to be in was shown again"
+                )
                 cues.append(found[1])
         if any(event.kind == "end" for event in sat.events):
             break
@@ -154,7 +156,9 @@ def test_a_clock_that_was_set_back_is_said_and_elapsed_times_go_on(tmp_path):
     told = subprocess.run([sys.executable, "-c", code, str(sat.session.path)], env=faked,
                           capture_output=True, text=True, check=True).stdout  # fmt: skip
     assert sum(line.startswith("clock: ") for line in told.splitlines()) == 1
-    assert all(event.t_s >= before for event in sat.events if event.kind == "cue" and event.trial > 1)
+    assert all(
+        event.t_s >= before for event in sat.events if event.kind == "cue" and event.trial > 1
+    )
 
 
 def test_a_device_that_is_not_there_leaves_no_file(tmp_path):

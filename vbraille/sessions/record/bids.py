@@ -135,10 +135,6 @@ def _add(
     return [*files, folder / PEOPLE]
 
 
-def _plain(pseudonym: str) -> str:
-    return re.sub(r"(?<!\d)0+(?=\d)", "", label_of(pseudonym).lower())
-
-
 def _read_people(folder: Path) -> dict[str, str]:
     """Return the pseudonyms of a dataset's participants, by their labels."""
     path = folder / PEOPLE

@@ -1,7 +1,7 @@
 """The frames of a session, made again from its ticks, bit for bit.
 
-A tick tells where the array was, what was under it, and how far a change had faded in. So each frame
-follows from the one before.
+A tick tells where the array was, what was under it, and how far a change had faded in. So each
+frame follows from the one before.
 """
 
 from __future__ import annotations

@@ -51,7 +51,9 @@ class Markers:
         elif kind == "serial" and where:
             self._send = _open_port(where)
         elif spec:
-            raise InputError(f"markers are {spec!r}; give lsl, lsl:NAME, serial:PORT or serial:PORT:BAUD")
+            raise InputError(
+                f"markers are {spec!r}; give lsl, lsl:NAME, serial:PORT or serial:PORT:BAUD"
+            )
 
     def mark(self, kind: str, at_s: float, trial: Trial | None, stimulus: int) -> None:
         """Send the marker of an event; what was answered is not in it.

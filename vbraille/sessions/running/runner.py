@@ -600,7 +600,9 @@ class Runner:
         if word == "answer" or (awaited and not self.answers.typed and word in self._ambiguous):
             return line._replace(text=rest)
         if awaited and word in self._ambiguous and text.lower() == word:
-            self.say(f"{text} is a command, and a string here: type answer {text}, or command {word}")
+            self.say(
+                f"{text} is a command, and a string here: type answer {text}, or command {word}"
+            )
             return None
         if word == "command":
             word, rest = rest.lower(), ""
@@ -666,7 +668,9 @@ class Runner:
             self.say(f"read: type {self.protocol.asks.typed}")
         if kind == "fault":
             repeats = self.protocol.faults.repeat
-            self.say(f"fault: {data['what']}; {self.name} {'is repeated' if repeats else 'goes on'}")
+            self.say(
+                f"fault: {data['what']}; {self.name} {'is repeated' if repeats else 'goes on'}"
+            )
             if repeats:
                 raise Again
 
