@@ -5,6 +5,19 @@ import click
 from vbraille.cli import app
 
 
+def commands():
+    """All commands and their actions, with the words that call them."""
+    context = click.Context(app.app, info_name="vbraille")
+    for name in app.HELP:
+        if app._is_old(name):
+            continue
+        command = app.app.get_command(context, name)
+        yield (name,), command
+        if isinstance(command, click.Group):
+            for action in command.list_commands(context):
+                yield (name, action), command.get_command(context, action)
+
+
 def parsed(words):
     """The command that words call, without calling it; a refusal is raised."""
     if app._is_old(words[0]):
@@ -12,37 +25,27 @@ def parsed(words):
 
         return parse(words).command
     with app.app.make_context("vbraille", list(words)) as context:
-        _follow(context, [*context._protected_args, *context.args])
+        _follow(context)
     return words[0]
 
 
-def _follow(context, words):
+def _follow(context):
     command = context.command
     if isinstance(command, click.Group):
-        name, found, rest = command.resolve_command(context, words)
+        rest = [*context._protected_args, *context.args]
+        name, found, rest = command.resolve_command(context, rest)
         with found.make_context(name, rest, parent=context) as inside:
-            _follow(inside, [*getattr(inside, "_protected_args", ()), *inside.args])
+            _follow(inside)
 
 
 def helps():
     """All help of all commands, their actions and their options."""
-    with app.app.make_context("vbraille", ["read"]) as context:
-        return _helps(app.app, context)
-
-
-def _helps(command, context):
-    if isinstance(command, click.Group):
-        text = command.get_help(context)
-        for name in command.list_commands(context):
-            if context.parent is None and app._is_old(name):
-                text += _old_help(name)
-                continue
-            found = command.get_command(context, name)
-            with click.Context(found, context, name) as inside:
-                text += _helps(found, inside)
-        return text
-    context.meta["vbraille.help_all"] = True
-    return command.get_help(context)
+    text = app.app.get_help(click.Context(app.app, info_name="vbraille"))
+    for words, command in commands():
+        context = click.Context(command, info_name=" ".join(words))
+        context.meta["vbraille.help_all"] = True
+        text += command.get_help(context)
+    return text + "".join(_old_help(name) for name in app.HELP if app._is_old(name))
 
 
 def _old_help(name):

@@ -89,27 +89,8 @@ def test_the_notebook_runs(tmp_path, monkeypatch):
     for cell in cells:
         exec(compile(cell, "notebook.ipynb", "exec"), known)
     assert known["recording"].frames.max() == pytest.approx(1.0, abs=0.05)
-    assert len(known["results"].table("legibility")) == 1
+    assert len(known["results"].tables["legibility"]) == 1
     assert known["scene"]._repr_png_()[:4] == b"\x89PNG"
-    assert known["results"].findings[0] in known["results"]._repr_html_()
-
-
-def test_results_show_themselves_and_draw_their_figures(tmp_path):
-    table = Path(tmp_path, "t.csv")
-    rows = "".join(f"P{n},<b>{c},a,{'ab'[n % 2]}\n" for n in range(4) for c in "xy")
-    table.write_text(f"participant,condition,presented,answered\n{rows}")
-    results = vbraille.analyse(table)
-    shown = results._repr_html_()
-    assert results.title in shown
-    assert "&lt;b&gt;x" in shown
-    assert "<b>" not in shown
-    assert shown.count("<tr>") == len(results.shown.rows)
-    drawn = {figure.name: figure for figure in results.figures()}
-    assert len(results.plot().axes) == len(drawn[results.main].chart.panels)
-    for name in drawn:
-        assert results.plot(name).axes
-    with pytest.raises(vbraille.InputError, match=r"no figure .legibilty.; there are .*primary"):
-        results.plot("legibilty")
 
 
 def test_a_session_that_never_ran_lets_its_device_go(tmp_path):
@@ -217,9 +198,9 @@ class Still(vbraille.Device):
         (lambda: vbraille.open(Still), r"^Still is a class; give a device of it, as in open\(S"),
         (lambda: vbraille.open(3), "^device is 3; give a spec such as 'sim', or a"),
         (lambda: vbraille.open("sim", "vbd"), "'vbd'; give vbraille.VBD$"),
-        (lambda: vbraille.analyse([]), "^nothing is given to analyse; give directories"),
-        (lambda: vbraille.analyse("Q1"), "^there is no Q1; give the directory"),
-        (lambda: vbraille.analyse(Path("Q1")), "^there is no Q1; give the directory"),
+        (lambda: vbraille.analyse([]), "^nothing is given to analyse; give files of sessions"),
+        (lambda: vbraille.analyse("Q1"), "^Q1: No such file"),
+        (lambda: vbraille.analyse(Path("Q1")), "^Q1: No such file"),
     ],
 )
 def test_what_cannot_be_used_is_said_in_one_sentence(call, says):
@@ -332,7 +313,7 @@ def calls():
     yield page.frames, {"x_mm": [1.0], "y_mm": [2.0]}
     yield vbraille.testing.parse_hand, {"spec": "slow", "seed": 1}
     yield vbraille.testing.simulated_device, {"display": vbraille.VBD, "hand": "slow"}
-    yield vbraille.analyse, {"paths": "x.csv", "correction": "holm"}
+    yield vbraille.analyse, {"paths": "x.csv", "measure": "right"}
 
 
 def test_a_value_of_the_wrong_type_is_one_sentence(tmp_path, monkeypatch):
@@ -357,7 +338,7 @@ def test_a_value_of_the_wrong_type_is_one_sentence(tmp_path, monkeypatch):
         (lambda: vbraille.Display("m", 3.5, 1, 1.0, 1.0), "rows is 3.5; it must be a whole number"),
         (lambda: vbraille.Scene(canvas=1), "canvas is 1; it must be a Canvas"),
         (lambda: vbraille.Session.create("letters", "P1", conditions={}), "give a Conditions"),
-        (lambda: vbraille.analyse(None), "give a path"),
+        (lambda: vbraille.analyse(None), "nothing is given"),
     ],
 )
 def test_the_sentence_names_what_is_wrong(call, said):

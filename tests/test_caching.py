@@ -86,7 +86,7 @@ def test_a_first_reading_says_that_it_compiles(tmp_path):
     command = [sys.executable, "-c", said]
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
     first = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    assert first.stdout.startswith("compiling: ")
+    assert first.stdout.startswith("compiling ")
     assert list(tmp_path.iterdir()) == []  # nothing is compiled by asking
     compiled = "from vbraille.caching import _compiled_folder as f; print(f())"
     folder = subprocess.run(
@@ -97,14 +97,6 @@ def test_a_first_reading_says_that_it_compiles(tmp_path):
         check=True,
     ).stdout.strip()
     (Path(folder) / "engine").mkdir(parents=True)
-    (Path(folder) / "engine" / "serialtick.run-1.nbc").touch()
+    (Path(folder) / "engine" / "tick.run-1.nbc").touch()
     again = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     assert again.stdout == "None\n"
-    # What was compiled for one processor is of no use to another, and is left for the first.
-    another = {**environment, "NUMBA_CPU_NAME": "another"}
-    command[-1] += "; from vbraille.caching import keep_compiled as keep; print(keep())"
-    there = subprocess.run(command, env=another, capture_output=True, text=True, check=True)
-    assert there.stdout.startswith("compiling: ")
-    assert there.stdout.endswith("True\n")
-    back = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    assert back.stdout == "None\nTrue\n"

@@ -16,7 +16,7 @@ TYPE_CHECKING = False  # importing typing, for its constant, takes as long as al
 if TYPE_CHECKING:
     from vbraille import testing as testing
     from vbraille.analysis import analyse as analyse
-    from vbraille.analysis.results import Results as Results
+    from vbraille.analysis.report import Analysis as Analysis
     from vbraille.braille.geometry import Geometry as Geometry
     from vbraille.devices.base import Device as Device
     from vbraille.display import Display as Display
@@ -65,7 +65,7 @@ _PLACES = {
     "Recording": "vbraille.recording",
     "RenderedLine": "vbraille.reading.frames",
     "RenderedPage": "vbraille.reading.frames",
-    "Results": "vbraille.analysis.results",
+    "Analysis": "vbraille.analysis.report",
     "STRESS2": "vbraille.render.braille.models",
     "STRESS2_8X8": "vbraille.render.braille.models",
     "Scene": "vbraille.scene.scene",
@@ -87,6 +87,7 @@ __all__ = [
     "STRESS2",
     "STRESS2_8X8",
     "VBD",
+    "Analysis",
     "BrailleStyle",
     "Canvas",
     "Conditions",
@@ -101,7 +102,6 @@ __all__ = [
     "Recording",
     "RenderedLine",
     "RenderedPage",
-    "Results",
     "Scene",
     "Session",
     "Straying",

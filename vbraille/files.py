@@ -1,4 +1,4 @@
-"""Files and directories written whole or not at all, texts read whole, and where the settings are.
+"""Files that are written whole or not at all, texts that are read whole, and the settings' place.
 
 What is being written stands under another name beside its own, which it gets once it is whole.
 Whatever ends the writing early, a signal or a full disk, leaves nothing of it behind.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import errno
 import os
 import shutil
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,13 +23,12 @@ if TYPE_CHECKING:
     Content = bytes | Iterable[bytes]
 
 _MOST_TEXT_BYTES = 1_000_000
-SETTINGS = "settings.toml"
 SETTINGS_VARIABLE = "VBRAILLE_SETTINGS"  # of the environment, with the path of the settings file
 
 
 @contextmanager
 def whole_file(path: Path, *, replace: bool = False) -> Iterator[Path]:
-    """Give the place to write a file to, which gets its own name once the block is done.
+    """Give a path to write a file to, which gets its own name once the block is done.
 
     Parameters
     ----------
@@ -40,12 +39,12 @@ def whole_file(path: Path, *, replace: bool = False) -> Iterator[Path]:
 
     Raises
     ------
-    FileExistsError
+    InputError
         If a file exists that may not be replaced.
     OSError
         If the file cannot have its name for another reason.
     """
-    partial = _partial(path)
+    partial = path.with_name(f".{path.name}.partial")
     try:
         yield partial
         if replace:
@@ -58,11 +57,7 @@ def whole_file(path: Path, *, replace: bool = False) -> Iterator[Path]:
 
 
 def write_file(
-    path: Path,
-    content: Content,
-    *,
-    replace: bool = False,
-    durable: bool = False,
+    path: Path, content: Content, *, replace: bool = False, durable: bool = False
 ) -> None:
     """Write a file: whole, or not at all.
 
@@ -82,91 +77,124 @@ def write_file(
     VbrailleError
         If the disk cannot take the file.
     """
-    if not path.name:
-        raise InputError(f"{path} is a directory; give the name of a file with {setting('out')}")
-    try:
-        with whole_file(path, replace=replace) as partial:
+    write_files([(path, content)], replace=replace, durable=durable)
+
+
+def write_files(
+    files: Iterable[tuple[Path, Content]], *, replace: bool = False, durable: bool = False
+) -> None:
+    """Write several files; none gets its name before all are written.
+
+    The parameters and errors are those of `write_file`.
+    """
+    path = Path()
+    with ExitStack() as named:
+        for path, content in files:
+            if not path.name:
+                raise InputError(f"{path} is a directory; give the name of a file")
+            check_unused(path, replace=replace)
             try:
+                named.enter_context(_reporting(path))
+                partial = named.enter_context(whole_file(path, replace=replace))
                 file = partial.open("wb")
             except OSError as error:
                 raise InputError(f"{path} cannot be written: {error.strerror}") from None
             with file:
-                _fill(file, content, durable=durable)
-    except FileExistsError:
-        raise InputError(
-            f"{path} is there already; give another name with {setting('out')}"
-        ) from None
+                file.writelines([content] if isinstance(content, bytes) else content)
+                if durable:
+                    file.flush()
+                    os.fsync(file.fileno())
+    if durable:
+        sync_names(path.parent)
+
+
+@contextmanager
+def _reporting(path: Path) -> Iterator[None]:
+    """Raise VbrailleError for a disk that cannot take a file."""
+    try:
+        yield
     except OSError as error:
         raise VbrailleError(f"{path} could not be written: {error.strerror}") from None
 
 
-def write_files(files: Iterable[tuple[Path, Content]], *, replace: bool = False) -> None:
-    """Write several files: all of them whole, or none of them.
-
-    No file gets its name before all are written. If one cannot have its name, those that already
-    have theirs are taken back, and what they replaced stands there again.
-
-    Parameters
-    ----------
-    files
-        Path and content of each; they may be made while they are asked for.
-    replace
-        Whether existing files may be replaced.
+def check_unused(path: Path, *, replace: bool) -> None:
+    """Check that a file can have this name, before long work is done for it.
 
     Raises
     ------
     InputError
-        If a file exists and may not be replaced, or cannot be made.
-    VbrailleError
-        If the disk cannot take the files.
+        If something exists at the path that may not be replaced.
     """
-    written: list[Path] = []
-    named: list[Path] = []
-    path = Path()
+    if not replace and os.path.lexists(path):
+        raise InputError(f"{path} already exists; choose another name, or add {setting('force')}")
+
+
+def _name(partial: Path, path: Path) -> None:
+    """Give a file its name, unless another has it."""
     try:
-        for path, content in files:
-            partial = _partial(path)
-            file = partial.open("wb")
-            written.append(path)
-            with file:
-                _fill(file, content, durable=False)
-        for path in written:
-            named.append(path)
-            if replace and path.exists():
-                path.replace(_before(path))
-            _name(_partial(path), path)
-    except BaseException as fault:
-        for path_again in named:
-            _take_back(path_again)
-        if isinstance(fault, FileExistsError):
-            raise InputError(
-                f"{path} is there already; give another name with {setting('out')}"
-            ) from None
-        if isinstance(fault, OSError):
-            kind = VbrailleError if path in written else InputError
-            raise kind(f"{path} cannot be written: {fault.strerror}") from None
-        raise
+        os.link(partial, path)
+    except FileExistsError:
+        check_unused(path, replace=False)
+    except OSError as error:
+        if error.errno not in (errno.EPERM, errno.EOPNOTSUPP):
+            raise
+        check_unused(path, replace=False)  # a disk without hard links, such as a memory stick
+        partial.rename(path)
+
+
+def sync_names(folder: Path) -> None:
+    """Have the names in a directory on the disk, so that new files outlast a loss of power."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
     finally:
-        for path_again in written:
-            for other in (_partial(path_again), _before(path_again)):
-                with suppress(OSError):
-                    other.unlink(missing_ok=True)
+        os.close(descriptor)
 
 
-def _take_back(path: Path) -> None:
-    """Undo that a file got its name; what it replaced has it again."""
-    with suppress(OSError):
-        # A file that another process made meanwhile is left alone.
-        if _partial(path).exists() and path.exists() and not path.samefile(_partial(path)):
-            return
-        path.unlink(missing_ok=True)
-        if _before(path).exists():
-            _before(path).replace(path)
+def settings_path(given: str | None = None) -> Path:
+    """Path of the settings file: an option's, the environment's, or the platform's."""
+    chosen = given or os.environ.get(SETTINGS_VARIABLE)
+    if chosen:
+        return Path(chosen).expanduser()
+    from platformdirs import user_config_path  # takes 20 ms to load
+
+    return user_config_path("vbraille") / "settings.toml"
 
 
-def _before(path: Path) -> Path:
-    """Path that a file has which is replaced, until all others are."""
-    return path.with_name(f".{path.name}.before")
+def read_text(path: str | Path, what: str, most_bytes: int = _MOST_TEXT_BYTES) -> str:
+    """Text of a file, without a byte-order mark.
+
+    Parameters
+    ----------
+    path
+        Path of the file.
+    what
+        Noun for the file, such as "protocol".
+    most_bytes
+        Size of the largest file that is read.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is far too large or is not UTF-8.
+    """
+    try:
+        with Path(path).open("rb") as file:
+            content = file.read(most_bytes + 1)
+    except FileNotFoundError:
+        raise InputError(f"there is no file {path}; check the name") from None
+    except IsADirectoryError:
+        raise InputError(f"{path} is a directory; give a {what} in it") from None
+    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{path} cannot be read: {reason}") from None
+    if len(content) > most_bytes:
+        raise InputError(f"{path} is too large for a {what}; at most {most_bytes / 1e6:g} MB")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise InputError(f"{path} is not UTF-8 in line {line}; save it as UTF-8") from None
 
 
 def write_folder(
@@ -250,20 +278,6 @@ def open_memory(name: str, size: int) -> int:
     return descriptor
 
 
-def check_unused(path: Path, *, replace: bool) -> None:
-    """Check that a file can have this name, before what takes time is done for it.
-
-    Raises
-    ------
-    InputError
-        If something exists at the path that may not be replaced.
-    """
-    if not replace and os.path.lexists(path):
-        raise InputError(
-            f"{path} is there already; choose another name, or replace it by {setting('force')}"
-        )
-
-
 def check_free(folder: Path, name: str = "out") -> None:
     """Check that a new directory can have this name.
 
@@ -316,27 +330,6 @@ def _fill(file: BinaryIO, content: Content, *, durable: bool) -> None:
         os.fsync(file.fileno())
 
 
-def _name(partial: Path, path: Path) -> None:
-    """Give a file its name, unless another has it."""
-    try:
-        os.link(partial, path)
-    except OSError as error:
-        if error.errno not in (errno.EPERM, errno.EOPNOTSUPP):
-            raise
-        if path.exists():  # a disk without hard links, such as a memory stick
-            raise FileExistsError from None
-        partial.rename(path)
-
-
-def sync_names(folder: Path) -> None:
-    """Have the names in a directory on the disk, so that new files outlast a loss of power."""
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
-
-
 def no_formula(text: str) -> str:
     """Text for a cell of a CSV that no spreadsheet takes for a formula; `cell_text` undoes it.
 
@@ -366,50 +359,3 @@ def _is_formula(text: str) -> bool:
     except ValueError:
         return True
     return False
-
-
-def settings_path(given: str | None = None) -> Path:
-    """Path of the settings file: an option's, the environment's, or the platform's."""
-    chosen = given or os.environ.get(SETTINGS_VARIABLE)
-    if chosen:
-        return Path(chosen).expanduser()
-    from platformdirs import user_config_path  # takes 20 ms to load
-
-    return user_config_path("vbraille") / SETTINGS
-
-
-def read_text(path: str | Path, what: str, most_bytes: int = _MOST_TEXT_BYTES) -> str:
-    """Text of a file, without a byte-order mark.
-
-    Parameters
-    ----------
-    path
-        Path of the file.
-    what
-        What the file is to be, such as "protocol".
-    most_bytes
-        Size of the largest file that is read.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, is far too large or is not UTF-8.
-    """
-    try:
-        with Path(path).open("rb") as file:
-            content = file.read(most_bytes + 1)
-    except FileNotFoundError:
-        raise InputError(f"there is no file {path}; check the name") from None
-    except IsADirectoryError:
-        raise InputError(f"{path} is a directory; give a {what} in it") from None
-    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{path} cannot be read: {reason}") from None
-    if len(content) > most_bytes:
-        most = f"{most_bytes / 1e6:g} MB at most"
-        raise InputError(f"{path} is too large for a {what}; give a TOML file of {most}")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        raise InputError(f"{path} is not UTF-8 in line {line}; save it as UTF-8") from None

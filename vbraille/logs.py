@@ -9,54 +9,27 @@ from __future__ import annotations
 
 import logging
 import os
+import sys
 import traceback
 from contextlib import suppress
 from pathlib import Path
 
 from vbraille.errors import InputError
-from vbraille.wording import setting
 
 _FORMAT = "%(asctime)s.%(msecs)03d %(process)d %(levelname)s %(name)s: %(message)s"
-_STDERR = "-"
-_STDERR_DESCRIPTOR = 2
-# If this is set to anything, in the environment, faults print their tracebacks: --verbose sets it,
-# and processes that are started inherit it.
+# If this is set in the environment, faults print their tracebacks.
 _TRACEBACKS = "VBRAILLE_TRACEBACK"
 
 
-class LineHandler(logging.Handler):
-    """Write each record as one line, by one system call.
+class _OneLine(logging.Formatter):
+    """Formats a record as one line."""
 
-    Parameters
-    ----------
-    where
-        A file, which is appended to, or "-" for standard error.
-    """
-
-    def __init__(self, where: str) -> None:
-        super().__init__()
-        self.where = where
-        self._descriptor = _STDERR_DESCRIPTOR
-        if where != _STDERR:
-            flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC
-            self._descriptor = os.open(where, flags, 0o666)
-        self.setFormatter(logging.Formatter(_FORMAT, "%Y-%m-%d %H:%M:%S"))
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Write a line; one that cannot be written is lost, and ends nothing."""
-        line = " ".join(self.format(record).split("\n"))
-        with suppress(OSError):  # a full disk, or a closed output, must not stop a reader
-            os.write(self._descriptor, line.encode(errors="backslashreplace") + b"\n")
-
-    def close(self) -> None:
-        """Close the file."""
-        super().close()
-        if self.where != _STDERR and self._descriptor != _STDERR_DESCRIPTOR:
-            os.close(self._descriptor)
-            self._descriptor = _STDERR_DESCRIPTOR
+    def format(self, record: logging.LogRecord) -> str:
+        """Join the lines of a record."""
+        return " ".join(super().format(record).split("\n"))
 
 
-def keep(where: str) -> LineHandler:
+def keep(where: str) -> logging.Handler:
     """Keep a log of all that vbraille's modules write, from now on.
 
     Parameters
@@ -69,14 +42,19 @@ def keep(where: str) -> LineHandler:
     InputError
         If the file cannot be written.
     """
-    if where != _STDERR:
-        where = str(Path(where).absolute())
     try:
-        handler = LineHandler(where)
+        handler = (
+            logging.StreamHandler(sys.stderr)
+            if where == "-"
+            else logging.FileHandler(
+                Path(where).absolute(), encoding="utf-8", errors="backslashreplace"
+            )
+        )
     except OSError as error:
-        raise InputError(
-            f"no log can be kept in {where}: {error.strerror}; choose another {setting('log')}"
-        ) from None
+        raise InputError(f"the log {where} cannot be written: {error.strerror}") from None
+    handler.setFormatter(_OneLine(_FORMAT, "%Y-%m-%d %H:%M:%S"))
+    handler.set_name(where if where == "-" else str(Path(where).absolute()))
+    logging.raiseExceptions = False  # a full disk must not stop a reader
     logger = logging.getLogger("vbraille")
     logger.addHandler(handler)
     logger.setLevel(logging.DEBUG)
@@ -85,11 +63,20 @@ def keep(where: str) -> LineHandler:
 
 
 def kept() -> str | None:
-    """Tell where this process keeps its log, so that processes it starts may; None if nowhere."""
-    for handler in logging.getLogger("vbraille").handlers:
-        if isinstance(handler, LineHandler):
-            return handler.where
-    return None
+    """Where this process keeps its log, so that processes it starts may; None if nowhere."""
+    names = (handler.name for handler in logging.getLogger("vbraille").handlers)
+    return next(filter(None, names), None)
+
+
+def stop(handler: logging.Handler) -> None:
+    """Stop keeping the log that `keep` began."""
+    logger = logging.getLogger("vbraille")
+    logger.removeHandler(handler)
+    with suppress(OSError):
+        handler.close()
+    if not logger.handlers:
+        logger.setLevel(logging.NOTSET)
+        logger.propagate = True
 
 
 def want_tracebacks() -> None:
@@ -107,13 +94,3 @@ def print_traceback(error: BaseException) -> None:
     if tracebacks_wanted():
         with suppress(OSError):
             traceback.print_exception(error)
-
-
-def stop(handler: LineHandler) -> None:
-    """Stop keeping the log that `keep` began."""
-    logger = logging.getLogger("vbraille")
-    logger.removeHandler(handler)
-    handler.close()
-    if not logger.handlers:
-        logger.setLevel(logging.NOTSET)
-        logger.propagate = True

@@ -1,12 +1,10 @@
-"""Signals: to stop for good, heard once, at any moment, and then no more; or to stop for a while.
+"""Signals: to end the program, heard once and then no more; or to suspend it.
 
-A signal to end raises `Stopped` wherever the program then is, so that what it is about
-is left in order. Where an exception out of nowhere would do harm it waits for a
-better place (HDF5), or ends the program at once, if nothing is open that has to
-be left in order (imports, numba's compiler).
+A signal to end raises `Stopped` wherever the program then is, so that what it is about is left in
+order. Where an exception would do harm, in code that is called back from C, it waits for `heed`.
 
-Ctrl-Z and its kin only ask; the program's loop stops it, at a moment that suits. The
-host process goes on meanwhile: it takes no such signals, and keeps the array at rest.
+Ctrl-Z only asks: the program's loop suspends it, at a moment that suits. The process that drives a
+device goes on meanwhile, and keeps the array at rest.
 """
 
 from __future__ import annotations
@@ -14,9 +12,9 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 
-TYPE_CHECKING = False  # as in vbraille.cli
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from types import FrameType
@@ -44,13 +42,12 @@ class _Ear:
     """
 
     def __init__(self) -> None:
-        self.heard = False
-        self._at_once = self._deferred = False
+        self.heard = self._deferred = False
         self._say_unraisable = sys.unraisablehook
 
     def listen(self) -> None:
         """Begin; signals that our parent has us ignore (nohup) stay ignored."""
-        self.heard = self._at_once = self._deferred = False
+        self.heard = self._deferred = False
         if sys.unraisablehook != self._take_unraisable:
             self._say_unraisable = sys.unraisablehook
             sys.unraisablehook = self._take_unraisable
@@ -59,24 +56,13 @@ class _Ear:
                 signal.signal(number, self._stop)
 
     def close(self) -> None:
-        """Let nothing disturb what has to be done before the end."""
-        for number in SIGNALS:
+        """Ignore signals from now on, so that nothing disturbs the end."""
+        for number in (*SIGNALS, getattr(signal, "SIGALRM", SIGNALS[0])):
             signal.signal(number, signal.SIG_IGN)
-        if hasattr(signal, "SIGALRM"):
-            signal.signal(signal.SIGALRM, signal.SIG_IGN)
-
-    @contextmanager
-    def at_once(self) -> Iterator[None]:
-        """Nothing is open here that would have to be left in order."""
-        self._at_once = True
-        try:
-            yield
-        finally:
-            self._at_once = False
 
     @contextmanager
     def deferred(self) -> Iterator[None]:
-        """Let only `heed` stop here: code that is called back from C must not meet an exception."""
+        """Let only `heed` raise `Stopped` in a block."""
         self._deferred = True
         try:
             yield
@@ -84,21 +70,15 @@ class _Ear:
             self._deferred = False
 
     def heed(self) -> None:
-        """Stop here if a signal came."""
+        """Raise `Stopped` if a signal came."""
         if self.heard:
             self.close()
             raise Stopped
 
     def _stop(self, _signal: int, _frame: FrameType | None) -> None:
         self.heard = True
-        if self._deferred:
-            return
-        self.close()
-        if self._at_once:
-            with suppress(OSError):
-                os.write(2, f"vbraille: {SAID}\n".encode())
-            os._exit(EXIT_CODE)
-        raise Stopped
+        if not self._deferred:
+            self.heed()
 
     def _take_unraisable(self, unraisable: sys.UnraisableHookArgs) -> None:
         # Python cannot stop within a destructor or a callback: try again a moment later.
@@ -113,7 +93,7 @@ EAR = _Ear()
 
 
 class Suspension:
-    """Hear SIGTSTP and SIGCONT; a context manager that leaves them as they were.
+    """Hears SIGTSTP and SIGCONT; a context manager that leaves them as they were.
 
     Attributes
     ----------
@@ -129,7 +109,7 @@ class Suspension:
         self._before = {}
 
     def __enter__(self) -> Self:
-        # Without job control the process that started us may have us ignore it: so be it.
+        # Without job control the process that started us may have us ignore it.
         if signal.getsignal(signal.SIGTSTP) is not signal.SIG_IGN:
             self._before = {
                 signal.SIGTSTP: signal.signal(signal.SIGTSTP, self._ask),

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import os
 import sys
+import wave as wav
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Protocol
-from wave import Error as WaveError
-from wave import open as open_wave
 
 import numpy as np
 
@@ -16,7 +15,6 @@ from vbraille.errors import InputError, lacking
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
-    from wave import Wave_read
 
     from numpy.typing import NDArray
 
@@ -24,19 +22,21 @@ _RATE_HZ = 48_000
 _RAMP_S = 0.005  # a tone swells and fades for so long, so that it does not click
 _LOUDNESS = 0.5
 _GAP_S = 0.02  # between the tones of a melody
+MOST_BYTES = 10_000_000  # of a file of sound: a minute of it, as music is recorded
+_TYPES = {1: np.dtype("u1"), 2: np.dtype("<i2"), 4: np.dtype("<i4")}  # by the bytes of a sample
 
 
 class Pitched(Protocol):
-    """Tone that can be played: a sine."""
+    """A tone: a sine of a frequency in Hz, for a time in ms."""
 
     @property
     def frequency_hz(self) -> float:
-        """Frequency of the sine, in Hz."""
+        """Frequency of the sine."""
         ...
 
     @property
     def duration_ms(self) -> float:
-        """Tell how long the tone lasts, in ms."""
+        """Length of the tone."""
         ...
 
 
@@ -51,7 +51,7 @@ class Sound(Protocol):
 
 
 class Silence:
-    """Sound device that plays nothing, where there is no listener."""
+    """Sound device that plays nothing."""
 
     name = "none"
 
@@ -91,12 +91,11 @@ class Tones:
                 import sounddevice
             except ModuleNotFoundError:
                 raise OSError(f"a tone {lacking('sounddevice')}") from None
+            self._play, self._fault = sounddevice.play, sounddevice.PortAudioError
             try:
                 sounddevice.check_output_settings(samplerate=_RATE_HZ, channels=1)
-            except (sounddevice.PortAudioError, ValueError) as error:
+            except (self._fault, ValueError) as error:
                 raise OSError(f"there is no audio output ({error})") from None
-        self._play = sounddevice.play
-        self._fault = sounddevice.PortAudioError
 
     def play(self, tone: Pitched, /) -> None:
         """Begin to play a tone."""
@@ -113,14 +112,14 @@ class Tones:
         self._begin(melody(tones), _RATE_HZ)
 
     def play_file(self, path: Path) -> None:
-        """Begin to play a file of sound, in place of what is being played.
+        """Begin to play a WAV file, in place of what is being played.
 
         Raises
         ------
         OSError
-            If the audio output is gone, or does not take so many samples a second.
+            If the audio output is gone, or does not take the file's rate.
         InputError
-            If the file cannot be played; see `check_sound`.
+            If the file cannot be played; see `read_sound`.
         """
         self._begin(*read_sound(path))
 
@@ -129,64 +128,37 @@ class Tones:
             with _quiet():
                 self._play(samples, rate_hz)
         except (self._fault, ValueError) as error:
-            raise OSError(f"there is no audio output any more ({error})") from None
+            raise OSError(f"the audio output is gone ({error})") from None
 
 
-MOST_BYTES = 10_000_000  # of a file of sound: a minute of it, as music is recorded
-_TYPES = {1: np.dtype("u1"), 2: np.dtype("<i2"), 4: np.dtype("<i4")}  # by the bytes of a sample
-
-
-def check_sound(path: Path) -> None:
-    """Check that a file is one of sound that can be played; its samples are not read.
+def read_sound(path: Path) -> tuple[NDArray[np.float32], int]:
+    """Read a WAV file: float32[n, channels] from -1 to 1, and its rate in Hz.
 
     Raises
     ------
     InputError
         If it is not there, is larger than 10 MB, or is no WAV file of 8, 16 or 32 bits.
     """
-    with _opened(path):
-        pass
-
-
-def read_sound(path: Path) -> tuple[NDArray[np.float32], int]:
-    """Read a file of sound: float32[n, channels] from -1 to 1, and how many a second.
-
-    Raises
-    ------
-    InputError
-        In the cases of `check_sound`.
-    """
-    with _opened(path) as file:
-        kind = _TYPES[file.getsampwidth()]
-        samples = np.frombuffer(file.readframes(file.getnframes()), kind)
-        rate_hz, channels = file.getframerate(), file.getnchannels()
+    try:
+        if not path.is_file() or path.stat().st_size > MOST_BYTES:
+            most = f"a WAV file of at most {MOST_BYTES / 1e6:.0f} MB"
+            raise InputError(f"sound {path} is not {most}")
+        with wav.open(str(path), "rb") as file:
+            kind = _TYPES[file.getsampwidth()]
+            samples = np.frombuffer(file.readframes(file.getnframes()), kind)
+            rate_hz, channels = file.getframerate(), file.getnchannels()
+    except OSError as error:
+        raise InputError(f"sound {path} cannot be read: {error.strerror}") from None
+    except (wav.Error, EOFError, KeyError, ValueError):
+        raise InputError(f"sound {path} is not a WAV file of 8, 16 or 32 bits") from None
     middle = 128.0 if kind.itemsize == 1 else 0.0
     whole = samples[: samples.size // channels * channels].reshape(-1, channels)
     return ((whole - middle) / 2.0 ** (8 * kind.itemsize - 1)).astype(np.float32), rate_hz
 
 
-@contextmanager
-def _opened(path: Path) -> Iterator[Wave_read]:
-    """Open a file of sound, with its head read and checked."""
-    try:
-        size = path.stat().st_size
-        if not path.is_file():
-            raise InputError(f"sound {path} is no file; give a WAV file")
-        if size > MOST_BYTES:
-            raise InputError(
-                f"sound {path} has {size / 1e6:.0f} MB; {MOST_BYTES / 1e6:.0f} are the most: "
-                "make it shorter"
-            )
-        with open_wave(str(path), "rb") as file:
-            if file.getsampwidth() not in _TYPES:
-                raise WaveError(f"{8 * file.getsampwidth()} bits")
-            yield file
-    except OSError as error:
-        raise InputError(f"sound {path} cannot be read: {error.strerror}") from None
-    except (WaveError, EOFError):
-        raise InputError(
-            f"sound {path} is no WAV file of 8, 16 or 32 bits; another program can make one of it"
-        ) from None
+def check_sound(path: Path) -> None:
+    """Check that a file can be played; the errors are those of `read_sound`."""
+    read_sound(path)
 
 
 def wave(tone: Pitched) -> NDArray[np.float32]:

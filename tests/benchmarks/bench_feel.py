@@ -28,8 +28,8 @@ from vbraille.reading.commands.scene import BOUND
 from vbraille.reading.keyboard import POLL_S
 from vbraille.reading.sceneview import SceneView
 from vbraille.render import MODELS
+from vbraille.render.compiling import compile_scene
 from vbraille.render.program import Program
-from vbraille.render.scene.compiling import compile_scene
 from vbraille.scene.converting import write_scene
 from vbraille.scene.patterns import Circle, Fill, Group
 from vbraille.scene.scene import Canvas, Scene

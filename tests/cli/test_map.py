@@ -236,7 +236,7 @@ def test_a_file_is_replaced_only_if_asked(scene, call, tmp_path):
     out.write_text("mine")
     done = call("map", scene, "--out", out)
     assert done.code == 2
-    assert "is there already" in done.err
+    assert "already exists" in done.err
     assert out.read_text() == "mine"
     assert call("map", scene, "--out", out, "--force").code == 0
     assert pixels_of(out).shape == (120, 160)

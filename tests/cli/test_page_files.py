@@ -59,7 +59,7 @@ def test_lines_without_pages(call, text, tmp_path):
         (("--format", "pef", "--model", "vbd"), "as many cells as --cells says; leave out"),
         (("--cells", "40", "--model", "vbd"), "leave out --model"),
         (("--cells", "0"), "--cells is 0; it must be 1 to 200"),
-        (("--format", "brf", "--out", "."), ". is there already"),
+        (("--format", "brf", "--out", "."), ". already exists"),
         (
             ("--format", "brf", "--out", "no/such/dir"),
             "there is no directory no/such; make it",
@@ -80,7 +80,7 @@ def test_a_file_is_replaced_only_by_force_and_whole(call, text, tmp_path):
     for options in (("--format", "brf"), ("--format", "pef")):
         said = call("page", text, *options, "--out", out)
         assert (said.code, out.read_text()) == (2, "precious")
-        assert "is there already; choose another name, or replace it by --force" in said.err
+        assert "already exists" in said.err
     eight = tmp_path / "eight.brf"
     eight.write_text("⠁\n⣿\n")
     said = call("page", eight, "--format", "brf", "--out", out, "--force")

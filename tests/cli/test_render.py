@@ -164,7 +164,7 @@ def test_a_file_that_is_there_is_replaced_only_if_told_so(old, call, text):
     out, before = old
     said = call("render", text, "--out", out, "--lines", "2")
     assert (said.code, said.out) == (2, "")
-    wanted = f"vbraille: {out} is there already; choose another name, or replace it by --force"
+    wanted = f"vbraille: {out} already exists; choose another name, or add --force"
     assert said.err.splitlines()[-1] == wanted
     assert out.read_bytes() == before
     assert call("render", text, "--out", out, "--lines", "2", "--force").code == 0

@@ -91,15 +91,16 @@ class Reading:
     def tick(self, count=1):
         """Leave records of ticks, as the engine does."""
         ints, floats, frames = self.ring.columns
+        frame = self.frame()
         for _ in range(count):
             slot, n = self.ring.begin(), self.ring.appended
             ints[slot] = 0
-            ints[slot, : len(INTS[:2])] = n, time.monotonic_ns()
+            ints[slot, :2] = n, time.monotonic_ns()
             ints[slot, INTS.index("line")] = 2
             floats[slot] = 0
             floats[slot, :3] = self.x_mm, math.nan, math.nan
             floats[slot, 8] = 1
-            frames[slot] = self.frame()
+            frames[slot] = frame
             self.ring.end()
         self.ring.publish()
 

@@ -1,6 +1,7 @@
 """Sessions in this process, as fast as the machine can, with an experimenter of a few lines."""
 
 import re
+import time
 from dataclasses import dataclass, field
 
 from vbraille.sessions.running.answers import Line, NoMoreAnswers, Press
@@ -32,7 +33,7 @@ class Person:
     def watch(self, _key):
         return any(line is KEY for _, line in self.script)
 
-    def line(self, _asked, _wait_s):
+    def line(self, _asked, wait_s):
         if not self.script:
             raise NoMoreAnswers
         pattern, line = self.script[0]
@@ -41,8 +42,10 @@ class Person:
                 self.seen = number + 1
                 self.script.pop(0)
                 return Press() if line is KEY else Line(line)
+        time.sleep(wait_s)
         self.waited += 1
-        assert self.waited < 300, f"{pattern!r} is never said: {self.said[-20:]}"
+        most = 1500 if wait_s else 300
+        assert self.waited < most, f"{pattern!r} is never said: {self.said[-20:]}"
         return None
 
 

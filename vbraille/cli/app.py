@@ -58,6 +58,7 @@ SECTIONS = {
         "session": "Plan, run and export legibility sessions.",
         "analyse": "Analyse sessions: tables, statistics, a report.",
         "power": "Estimate the power of a study by simulation.",
+        "pilot": "Try a whole study with the simulated reader.",
     },
     "Shell": {
         "setup": "Compile what drives the actuators.",
@@ -81,8 +82,9 @@ class Program(Group):
         if _is_old(cmd_name):
             return click.Command(cmd_name, help=HELP[cmd_name])
         command = import_module(f"vbraille.cli.commands.{cmd_name}").command
-        command.name = cmd_name
-        command.help = f"{HELP[cmd_name]}\n\n{cleandoc(command.help or '')}".strip()
+        command.name, more = cmd_name, cleandoc(command.help or "")
+        if not more.startswith(HELP[cmd_name]):
+            command.help = f"{HELP[cmd_name]}\n\n{more}".strip()
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002

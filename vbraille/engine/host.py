@@ -245,6 +245,12 @@ class Host:
         """Name of the driver in sentences."""
         return self._device.partition(":")[0]
 
+    def reader(self) -> RingReader:
+        """Make another reader of the records, for a live view."""
+        if self._ring is None:
+            raise DeviceError("no device is open; start the host first")
+        return self._ring.another()
+
     @property
     def process_id(self) -> int | None:
         """Number of the host process."""

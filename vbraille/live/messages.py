@@ -7,7 +7,11 @@ was told it, and then with one frame (`vbraille.live.frames`).
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import msgspec
+
+Finite = Annotated[float, msgspec.Meta(ge=-1e9, le=1e9)]
 
 
 class Request(msgspec.Struct, frozen=True, tag_field="ask", forbid_unknown_fields=True):
@@ -48,15 +52,15 @@ class Turn(Request, frozen=True, tag="turn"):
     """A knob of the braille style, turned to a value."""
 
     knob: str
-    value: float
+    value: Finite
 
 
 class Point(Request, frozen=True, tag="point"):
     """The hand of a simulated device, held at a pose of the array's centre on the canvas."""
 
-    x_mm: float
-    y_mm: float = 0.0
-    theta_rad: float = 0.0
+    x_mm: Finite
+    y_mm: Finite = 0.0
+    theta_rad: Finite = 0.0
 
 
 class LetGo(Request, frozen=True, tag="let-go"):

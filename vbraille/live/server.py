@@ -7,12 +7,14 @@ import errno
 import logging
 import os
 import socket
+import sys
 import threading
+import webbrowser
 from concurrent.futures import Future
 from contextlib import suppress
 from http import HTTPStatus
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import msgspec
 from websockets.asyncio.server import ServerConnection, serve
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
     from typing import Self
 
     from vbraille.live.frames import Source
+    from vbraille.live.messages import Steering
 
 _TYPES: Final = {".html": "text/html", ".css": "text/css", ".js": "text/javascript",
                  ".svg": "image/svg+xml"}  # fmt: skip
@@ -239,9 +242,10 @@ class Server:
         viewer, told = source.viewer(), None
         async for said in page:
             request = to_request(said)
+            if isinstance(request, Hello):
+                raise InputError("hello is said once")
             if not isinstance(request, Next):
-                why = self._steer(page, request, may=steers)
-                if why:
+                if why := self._steer(page, request, may=steers):
                     await page.send(to_json(Refused(spelled(why))), text=True)
                 continue
             late_s, known = self._loop.time() + _MOST_WAIT_S, told
@@ -255,18 +259,11 @@ class Server:
                 told = number
             await page.send(frame)
 
-    def _steer(self, page: ServerConnection, request: Any, *, may: bool) -> str:
+    def _steer(self, page: ServerConnection, request: Steering, *, may: bool) -> str:
         """Do what a page asks; a sentence if it cannot be done."""
-        if isinstance(request, Hello):
-            raise InputError("hello is said once")
-        if not may:
-            playback = self._source.playback
-            return (
-                "a recording is played back: nothing in it can be changed"
-                if playback
-                else "this page may only watch; steering needs the other address"
-            )
         try:
+            if not may and not self._source.playback:
+                raise InputError("this page may only watch; steering needs the other address")
             self._source.ask(request)
         except VbrailleError as error:
             return str(error)
@@ -322,23 +319,18 @@ def _limited() -> type[ServerConnection]:
 def _cannot_listen(host: str | None, port: int, error: Exception) -> Exception:
     """Say why no server can listen at a place."""
     match error:
-        case OSError(errno=errno.EADDRINUSE):
-            why = f"port {port} is in use; give {setting('port')} another, or leave it out"
-        case OSError(errno=errno.EACCES | errno.EPERM):
-            why = f"port {port} is for the system alone; give {setting('port')} one above 1023"
-        case OverflowError():
-            why = f"there is no port {port}; give {setting('port')} a number from 1 to 65535"
-        case OSError() | UnicodeError() | ValueError():
-            why = f"{host!r} is no address of this machine; give {setting('host')} one that is"
+        case OSError(errno=errno.EADDRINUSE | errno.EACCES | errno.EPERM):
+            why = f"port {port} is in use, or is the system's; give {setting('port')} another"
+        case OSError() | UnicodeError() | OverflowError():
+            why = f"{host!r}, port {port} is no place of this machine; correct {setting('host')}"
         case _:
             return error
     return InputError(why)
 
 
-def has_desktop() -> bool:
-    """Tell whether a person sits here who would see a browser that opens."""
+def open_browser(address: str) -> None:
+    """Open a page, if a person sits here who would see it; nothing is waited for."""
     desktop = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    try:
-        return bool(desktop) and os.isatty(0)
-    except OSError:
-        return False
+    if desktop and sys.stdin is not None and sys.stdin.isatty():
+        # Some browsers run in the foreground.
+        threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()

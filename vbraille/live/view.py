@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import math
-import threading
 import time
-import webbrowser
 from collections import deque
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from msgspec.structs import astuple, replace
+from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.live.frames import EMPTY, FrameHeader, frame_bytes
 from vbraille.live.messages import LetGo, Point, ViewState, to_json
-from vbraille.live.server import Server, has_desktop
+from vbraille.live.server import Server, open_browser
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,7 +27,7 @@ if TYPE_CHECKING:
 
 _SAME: Final = ("flags", "line", "part", "late", "tick", "x_mm", "y_mm", "theta_rad", "vx_mm_s",
                 "share")  # fmt: skip
-_MOST_ASKED: Final = 100  # requests that wait to be taken
+_MOST_ASKED: Final = 100  # requests that wait to be taken; of more the oldest go
 _BLIND: Final[dict] = {
     "lines": [], "rows_shown": [], "scene": None, "beside": None, "figures": [], "signals": [],
     "blind": True,
@@ -71,7 +68,7 @@ class LiveView:
     ) -> None:
         self.ticks: RingReader | None = None
         self.blind = blind
-        self._asked: deque[Steering] = deque()
+        self._asked: deque[Steering] = deque(maxlen=_MOST_ASKED)
         self._server = Server(self, host=host, port=port, steers=steers)
         self._state = ViewState(-1)
         self.told = 0, b""
@@ -79,9 +76,7 @@ class LiveView:
 
     def __enter__(self) -> Self:
         self._server.__enter__()
-        if has_desktop():  # some browsers run in the foreground, and are not waited for
-            address = self._server.admission.addresses[0]
-            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+        open_browser(self._server.admission.addresses[0])
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -90,9 +85,11 @@ class LiveView:
     @property
     def addresses(self) -> list[str]:
         """Sentences on how it is opened, the one with the most rights first."""
-        first, *others = self._server.admission.addresses
-        watching = [] if self._server.admission.on_loopback else others
-        return [f"live view: {first}", *(f"live view, to watch only: {one}" for one in watching)]
+        admission = self._server.admission
+        said = [f"live view: {admission.addresses[0]}"]
+        if not admission.on_loopback and admission.steers:
+            said.append(f"live view, to watch only: {admission.addresses[1]}")
+        return said
 
     def watch(self, ticks: RingReader) -> None:
         """Show the ticks of an engine; call it after each start, with a reader of its ring."""
@@ -139,14 +136,10 @@ class LiveView:
         Raises
         ------
         InputError
-            If there is no hand that a page could be, or the reader has not kept up.
+            If there is no hand that a page could be.
         """
         if isinstance(request, Point | LetGo) and not self._state.simulated:
             raise InputError("a real hand moves this device; there is none that a page could be")
-        if isinstance(request, Point) and not all(map(math.isfinite, astuple(request))):
-            raise InputError("a hand is at a place in mm; give numbers")
-        if len(self._asked) >= _MOST_ASKED:
-            raise InputError("the program is busy; ask again in a moment")
         self._asked.append(request)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from vbraille.errors import InputError
 from vbraille.feeling.loading import LoadedScene, check_fits, load_scene
 from vbraille.reading.commands.scene import BOUND_FROM_TEXT
-from vbraille.render.scene.figures import FigureAt, page_with_figures
+from vbraille.render.figures import FigureAt, page_with_figures
 from vbraille.translate.documents.epub import EpubBook
 from vbraille.wording import count, printable, spelled
 
@@ -171,7 +171,7 @@ class BookFigures:
         placed: Sequence[tuple[Any, float]],
     ) -> Program:
         # It loads numba, which a reader who comes to no figure does not need.
-        from vbraille.render.scene.compiling import compile_scene
+        from vbraille.render.compiling import compile_scene
 
         figures = [
             FigureAt(figure.loaded.scene, (0.0, top_mm), figure.loaded.assets)

@@ -442,7 +442,7 @@ def _drawn(loaded: LoadedScene, switches: int) -> SceneShown:
     # Only a live view waits for what draws it.
     from vbraille.feeling.index import label_of
     from vbraille.pictures.scenes import hidden_layers, small_png
-    from vbraille.render.scene.compiling import settled
+    from vbraille.render.compiling import settled
 
     def address(scene: Scene, beyond: Scene | None = None) -> str:
         drawn = base64.b64encode(small_png(scene, loaded.assets, beyond)).decode()

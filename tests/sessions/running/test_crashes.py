@@ -10,6 +10,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -20,12 +21,25 @@ PROGRAM = [sys.executable, "-m", "vbraille", "session"]
 FAST = ["--answers", "simulated:0.3", "--fast", "--hand", "sweep:150"]
 
 
-def started(*words, **how):
-    """A command of the program, in a process of its own."""
-    return subprocess.Popen(
-        [*PROGRAM, *map(str, words)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE, encoding="utf-8", **how,
-    )  # fmt: skip
+@pytest.fixture
+def started():
+    """What starts a command of the program, in a process of its own that ends with the test."""
+    processes = []
+
+    def start(*words, stdin=subprocess.DEVNULL, **how):
+        process = subprocess.Popen(
+            [*PROGRAM, *map(str, words)], stdin=stdin, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, encoding="utf-8", **how,
+        )  # fmt: skip
+        processes.append(process)
+        return process
+
+    yield start
+    for process in processes:
+        process.kill()
+        process.wait()
+        for pipe in filter(None, (process.stdin, process.stdout, process.stderr)):
+            pipe.close()
 
 
 def said_of(process, kills_at=None):
@@ -43,7 +57,7 @@ def said_of(process, kills_at=None):
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_no_answer_is_lost_or_asked_again_however_often_it_is_killed(tmp_path, seed):
+def test_no_answer_is_lost_or_asked_again_however_often_it_is_killed(started, tmp_path, seed):
     rows = MINI.replace('"aa"]', '"aa"]\nrepeats = 3') + SURE
     sat = made(tmp_path, rows, seed=seed)
     draw, told, cues = random.Random(seed), {}, []
@@ -54,9 +68,7 @@ def test_no_answer_is_lost_or_asked_again_however_often_it_is_killed(tmp_path, s
             if found := re.match(r"answer: (trial \d+) of 9, (.*)", line):
                 told[found[1]] = found[2]
             if found := re.match(r"cue: (trial \d+) of", line):
-                assert found[1] not in told, (
-                    "a trial whose answer was said to be in was shown again"
-                )
+                assert found[1] not in told, "its answer was said to be in, and it is shown again"
                 cues.append(found[1])
         if any(event.kind == "end" for event in sat.events):
             break
@@ -68,7 +80,7 @@ def test_no_answer_is_lost_or_asked_again_however_often_it_is_killed(tmp_path, s
     assert len(sat.of("confidence")) == 9
 
 
-def test_a_killed_host_process_leaves_no_array_moving(tmp_path):
+def test_a_killed_host_process_leaves_no_array_moving(started, tmp_path):
     sat = made(tmp_path)
     process = started("resume", sat.session.path, "--answers", "simulated", "--hand", "sweep:20")
     for line in process.stdout:
@@ -79,12 +91,12 @@ def test_a_killed_host_process_leaves_no_array_moving(tmp_path):
     process.kill()
     process.wait()
     end = time.monotonic() + 10
-    while any(os.path.exists(f"/proc/{child}") for child in children):
+    while any(Path(f"/proc/{child}").exists() for child in children):
         assert time.monotonic() < end, "the process that drives the device goes on alone"
         time.sleep(0.05)
 
 
-def test_a_signal_ends_it_in_order_and_it_goes_on(tmp_path):
+def test_a_signal_ends_it_in_order_and_it_goes_on(started, tmp_path):
     sat = made(tmp_path)
     process = started("resume", sat.session.path, "--answers", "simulated", "--hand", "sweep:40")
     for line in process.stdout:
@@ -97,21 +109,19 @@ def test_a_signal_ends_it_in_order_and_it_goes_on(tmp_path):
     assert sat.sit(answers="simulated").of("end")
 
 
-def test_a_second_console_is_refused_in_one_sentence(tmp_path):
+def test_a_second_console_is_refused_in_one_sentence(started, tmp_path):
     sat = made(tmp_path)
     first = started("resume", sat.session.path, "--answers", "simulated", "--hand", "sweep:20")
     next(line for line in first.stdout if line.startswith("cue"))
     second = started("resume", sat.session.path, *FAST)
     out, err = second.communicate(timeout=30)
-    first.kill()
-    first.wait()
     assert second.returncode == 1
     assert not out
     assert "another console" in err
     assert err.count("\n") == 1
 
 
-def test_a_full_disk_loses_nothing_that_was_said_to_be_in(tmp_path):
+def test_a_full_disk_loses_nothing_that_was_said_to_be_in(started, tmp_path):
     sat = made(tmp_path, MINI.replace('"aa"]', '"aa"]\nrepeats = 20'))
 
     def little_room():
@@ -141,8 +151,7 @@ def test_a_folder_that_may_not_be_written_is_said(tmp_path):
 
 def test_a_clock_that_was_set_back_is_said_and_elapsed_times_go_on(tmp_path):
     sat = made(tmp_path).sit(answers=["ac"])
-    before = sat.events[-1].t_s
-    faked = {**os.environ, "VBRAILLE_TEST": "1"}
+    before = sat.events[-1]
     code = (
         "import sys, vbraille.sessions.session as s\n"
         "from datetime import datetime, timedelta\n"
@@ -153,15 +162,14 @@ def test_a_clock_that_was_set_back_is_said_and_elapsed_times_go_on(tmp_path):
         "s.datetime = Early\n"
         "s.Session(sys.argv[1]).run('simulated', say=print, fast=True)\n"
     )
-    told = subprocess.run([sys.executable, "-c", code, str(sat.session.path)], env=faked,
+    told = subprocess.run([sys.executable, "-c", code, str(sat.session.path)],
                           capture_output=True, text=True, check=True).stdout  # fmt: skip
     assert sum(line.startswith("clock: ") for line in told.splitlines()) == 1
-    assert all(
-        event.t_s >= before for event in sat.events if event.kind == "cue" and event.trial > 1
-    )
+    assert all(event.t_s >= before.t_s for event in sat.events if event.n > before.n)
+    assert sat.of("end")
 
 
-def test_a_device_that_is_not_there_leaves_no_file(tmp_path):
+def test_a_device_that_is_not_there_leaves_no_file(started, tmp_path):
     protocol = tmp_path / "mini.toml"
     protocol.write_text(MINI)
     process = started("run", protocol, "--participant", "P01", "--device", "serial:/dev/none",
@@ -172,12 +180,11 @@ def test_a_device_that_is_not_there_leaves_no_file(tmp_path):
     assert not list(tmp_path.glob("*.session*"))
 
 
-def test_each_answer_is_confirmed_at_once(tmp_path):
+def test_each_answer_is_confirmed_at_once(started, tmp_path):
     """The time from a line to its confirmation, on the disk meanwhile; a bound for any machine."""
     sat = made(tmp_path, MINI.replace('"aa"]', '"aa"]\nrepeats = 10'))
-    process = subprocess.Popen([*PROGRAM, "resume", str(sat.session.path), "--answers", "typed",
-                                "--hand", "sweep:400", "--cues", "none"],
-                               stdin=subprocess.PIPE, stdout=subprocess.PIPE, encoding="utf-8")  # fmt: skip
+    process = started("resume", sat.session.path, "--answers", "typed", "--hand", "sweep:400",
+                      "--cues", "none", stdin=subprocess.PIPE)  # fmt: skip
     waited = []
     for line in process.stdout:
         if line.startswith("read: "):

@@ -25,7 +25,7 @@ def test_a_serial_port_is_sent_a_byte_an_event_and_the_condition_of_each_cue(tmp
     cues = [byte for byte in sent if byte in codes.values()]
     assert cues == [codes[conditions[cue.trial]] for cue in sat.of("cue")]
     assert len(sent) == len(sat.events) - 1  # all but the plan's own
-    assert any(sentence.startswith(f"markers: {len(sent) - 1} sent") for sentence in sat.said)
+    assert any(sentence.startswith(f"markers: {len(sent)} sent") for sentence in sat.said)
     os.close(master)
     os.close(slave)
 

@@ -10,6 +10,8 @@ import click
 from vbraille.cli import options
 from vbraille.cli.printing import say
 
+_ANSWERS = "Pictures that answer the hand"
+
 
 class Place(click.ParamType):
     """Numbers with commas between, such as X,Y; as a tuple."""
@@ -64,12 +66,12 @@ class SwitchStates(click.ParamType):
     options.option("--resolution", type=options.Number(0.01, 1000), metavar="N",
                    help="Pixels a mm."),
     options.option("--velocity", type=Place(2, most=1000), metavar="X,Y", default="0,0",
-                   help="Velocity of the hand in mm/s, for pictures that answer to it."),
-    options.option("--switch", type=SwitchStates(), metavar="K=N", help="State N of the switch of "
-                   "key K."),
-    options.option("--signal", metavar="NAME", help="Draw how this signal answers to the hand's "
-                   "velocity."),
-    options.seed(group=options.FIRST, help="Seed of the noise that stands for vibration."),
+                   help="Velocity of the hand in mm/s.", group=_ANSWERS),
+    options.option("--switch", type=SwitchStates(), metavar="K=N",
+                   help="State N of the switch of key K.", group=_ANSWERS),
+    options.option("--signal", metavar="NAME", group=_ANSWERS,
+                   help="Draw how this signal answers to the hand's velocity."),
+    options.seed(group="Vibration", help="Seed of the noise that stands for vibration."),
 )  # fmt: skip
 def command(file: str, out: str, force: bool, outline: bool, model: str, **chosen: Any) -> None:
     """Rest is white and full swing is black."""

@@ -257,9 +257,9 @@ def export(paths: tuple[str, ...], out: str | None, force: bool, bids: bool, cod
 @_files
 def methods(paths: tuple[str, ...]) -> None:
     """Print a paragraph for a paper on what was done."""
-    from vbraille.analysis import methods as tell
+    from vbraille.analysis import methods_of
 
-    for line in tell([Path(path) for path in paths]):
+    for line in methods_of([Path(path) for path in paths]):
         say(line)
 
 
@@ -303,18 +303,13 @@ class _typing(ExitStack):  # noqa: N801  (used as a function)
         """Open it."""
         speak: Callable[[str], None] = _say_nothing
         if self._speech:
-            from vbraille.reading.outputs import Behind, Speech
+            from vbraille.reading.speech import Speech
 
-            spoken = Behind("speech", Speech, _say)
+            spoken = Speech()
             self.callback(spoken.close)
             speak = spoken.say
         if not self._typed:
             return None, lambda sentence: (_say(sentence), speak(sentence))
-        if sys.stdin is not None and sys.stdin.isatty():
-            from vbraille.cli.typing import TypedKeys
-
-            keys = self.enter_context(TypedKeys(speak))
-            return keys, keys.say
         from vbraille.sessions.running.answers import Typed
 
         return Typed(), lambda sentence: (_say(sentence), speak(sentence))

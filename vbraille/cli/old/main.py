@@ -6,10 +6,8 @@ A command's module is imported only when the command is called.
 from __future__ import annotations
 
 import os
-from contextlib import ExitStack
+from contextlib import ExitStack, nullcontext
 from importlib import import_module
-
-from vbraille.signals import EAR
 
 TYPE_CHECKING = False  # importing typing, for its constant, takes as long as all the rest
 if TYPE_CHECKING:
@@ -22,7 +20,7 @@ if TYPE_CHECKING:
 
 def call(argv: Sequence[str] | None) -> int:
     """Run a command, and give its exit code."""
-    with EAR.at_once():
+    with nullcontext():
         from vbraille.cli.old.parser import parse, read_instead
     try:
         arguments = parse(argv)
@@ -49,7 +47,7 @@ def call(argv: Sequence[str] | None) -> int:
             arguments.begun = _begin_host() if _session_may_begin(arguments) else None
         if (host := getattr(arguments, "begun", None)) is not None:
             begun.callback(host[0].end)
-        with EAR.at_once():
+        with nullcontext():
             command = import_module(f"vbraille.cli.old.commands.{arguments.command}")
         return command.run(arguments)
 

@@ -1,111 +1,97 @@
 /**
- * The talk with the server: it is begun again when it is lost, later each time, and frames are
- * pulled: nothing is asked for that has not been drawn, so that nothing can pile up.
+ * The talk with the server: it is begun again when it is lost, later each time, and frames are pulled:
+ * none is asked for before the one before is drawn, so that nothing piles up.
+ * `vbraille/live/messages.py` and `frames.py` say what each message and number means.
  */
 
-import { readFrame } from "./messages.js";
-
-/** @typedef {import("./messages.js").Frame} Frame */
-/** @typedef {import("./messages.js").State} State */
-/** @typedef {import("./messages.js").Welcome} Welcome */
-
+const HEADER_BYTES = 80;
 const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 10_000;
-/** A frame on its way for longer than this is not waited for: a second one is asked for. */
-const SLOW_MS = 12;
-const MOST_IN_FLIGHT = 2;
+const SLOW_MS = 12; // beside a frame that takes longer, a second one is asked for
 
-/**
- * What is told about the connection.
- * @typedef {object} Listener
- * @property {(welcome: Welcome) => void} welcomed
- * @property {(state: State) => void} told
- * @property {(frame: Frame) => void} framed
- * @property {(why: string) => void} refused
- * @property {(again: boolean) => void} lost whether it is tried again
- */
+/** Reads a frame out of its bytes. */
+function readFrame(bytes) {
+  const view = new DataView(bytes);
+  const [samples, rows, columns, signals] = [0, 2, 4, 6].map((at) => view.getUint16(at, true));
+  const [flags, state, line, part, late] = [8, 12, 16, 20, 24].map((at) => view.getUint32(at, true));
+  const [tick, time_s] = [32, 40].map((at) => view.getFloat64(at, true));
+  const [x_mm, y_mm, theta_rad, vx_mm_s, lateness_us, work_us, share, age_ms] = new Float32Array(bytes, 48, 8);
+  const size = rows * columns;
+  const traced = HEADER_BYTES + 4 * size;
+  return {
+    rows, columns, flags, state, line, part, late, tick, time_s,
+    x_mm, y_mm, theta_rad, vx_mm_s, lateness_us, work_us, share, age_ms,
+    deflections: new Float32Array(bytes, HEADER_BYTES, size),
+    samples: new Float32Array(bytes, traced, 3 * samples),
+    signals: new Float32Array(bytes, traced + 12 * samples, signals),
+  };
+}
+
+/** Remarks of a frame: bits of `vbraille.engine.record.Flag`. */
+const FLAGS = /** @type {[number, string][]} */ ([
+  [1, "paused"],
+  [2, "no place from the device"],
+  [8, "waits for its mark"],
+  [16, "waits to be told that it is at the left stop"],
+  [32, "resting"],
+  [256, "the device is at rest by itself"],
+  [512, "rests: it has moved by itself for as long as it may"],
+  [1024, "rests: the array is turned too far"],
+]);
+
+export const sayFlags = (flags) => FLAGS.filter(([bit]) => flags & bit).map(([, words]) => words).join(", ");
 
 export class Connection {
-  /** @type {WebSocket | null} */
+  open = false; // whether the server has said welcome
   #socket = null;
   #wait = FIRST_WAIT_MS;
-  #welcomed = false;
   #refused = false;
-  /** @type {number[]} */
   #asked = []; // when each frame on its way was asked for
-  #slow = true; // at first two are asked for
+  #slow = true;
 
-  /**
-   * @param {string} token
-   * @param {Listener} listener
-   */
+  /** The listener has `welcomed`, `told`, `framed`, `refused` and `lost`. */
   constructor(token, listener) {
     this.token = token;
     this.listener = listener;
   }
 
-  /** Whether the server has said welcome, and can be asked. */
-  get open() {
-    return this.#welcomed;
-  }
-
-  /** Begins to talk. */
   begin() {
-    const scheme = location.protocol === "https:" ? "wss:" : "ws:";
-    const socket = new WebSocket(`${scheme}//${location.host}/live`);
+    const socket = (this.#socket = new WebSocket(`ws://${location.host}/live`));
     socket.binaryType = "arraybuffer";
-    this.#socket = socket;
     this.#refused = false;
     socket.addEventListener("open", () => this.#send({ ask: "hello", token: this.token }));
     socket.addEventListener("message", (event) => this.#take(event.data));
     socket.addEventListener("close", () => this.#end());
   }
 
-  /**
-   * Asks for something; false if no server is there to ask.
-   * @param {{ask: string} & Record<string, unknown>} request
-   */
   ask(request) {
-    if (this.#welcomed) this.#send(request);
-    return this.#welcomed;
+    if (this.open) this.#send(request);
   }
 
-  /**
-   * Asks for as many frames as keep the drawing going.
-   * @param {() => Record<string, unknown>} wanted what to ask, for each
-   * @param {number} most how many may be on their way
-   */
-  pull(wanted, most = this.#slow ? MOST_IN_FLIGHT : 1) {
-    while (this.#welcomed && this.#asked.length < most) {
+  /** Asks for as many frames as keep the drawing going. */
+  pull(wanted, most = this.#slow ? 2 : 1) {
+    while (this.open && this.#asked.length < most) {
       this.#asked.push(performance.now());
       this.#send({ ask: "next", ...wanted() });
     }
   }
 
-  /** @param {object} request */
   #send(request) {
     if (this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(JSON.stringify(request));
   }
 
-  /** @param {string | ArrayBuffer} received */
   #take(received) {
     if (typeof received !== "string") {
-      const frame = readFrame(received);
-      const asked = this.#asked.shift();
-      if (frame === null) return this.listener.refused("a frame could not be read; load the page again");
-      if (asked !== undefined) this.#slow = performance.now() - asked > SLOW_MS;
-      return this.listener.framed(frame);
+      this.#slow = performance.now() - this.#asked.shift() > SLOW_MS;
+      return this.listener.framed(readFrame(received));
     }
     const said = JSON.parse(received);
     if (said.tell === "welcome") {
-      this.#welcomed = true;
-      this.#wait = FIRST_WAIT_MS;
-      this.#asked = [];
-      this.#slow = true;
+      [this.open, this.#wait, this.#asked, this.#slow] = [true, FIRST_WAIT_MS, [], true];
       this.listener.welcomed(said);
     } else if (said.tell === "state") {
       this.listener.told(said);
-    } else if (said.tell === "refused") {
+    } else {
       this.#refused = true;
       this.listener.refused(said.why);
     }
@@ -113,9 +99,8 @@ export class Connection {
 
   #end() {
     // A page that was not let in is told why, and asks again only when a person wants it.
-    const again = this.#welcomed || !this.#refused;
-    this.#welcomed = false;
-    this.#socket = null;
+    const again = this.open || !this.#refused;
+    this.open = false;
     this.listener.lost(again);
     if (!again) return;
     setTimeout(() => this.begin(), this.#wait);

@@ -1,56 +1,40 @@
 /**
- * Being the hand of a simulated device: the array is drawn along by mouse, pen or finger, or goes
- * by arrow keys. A place is sent at its event, and no second one before the next picture is drawn;
- * then the newest goes out.
+ * Being the hand of a simulated device: the array is drawn along by mouse, pen or finger, or goes by
+ * arrow keys. A place is sent at its event, and no second one before the next picture is drawn; then
+ * the newest goes out.
  */
 
 import { sayWhere } from "./braille.js";
-import { byId, put } from "./drawing.js";
-
-/** @typedef {import("./messages.js").State} State */
-/** @typedef {import("./messages.js").Frame} Frame */
+import { byId, clamp, put } from "./elements.js";
 
 const STEP_MM = 0.5;
 const LEAP_MM = 5;
 const TURN_RAD = Math.PI / 36;
 const CALM_MS = 1000; // how often a hand that moves by itself is named anew
-
-/** @typedef {{x: number, y: number, theta: number}} Place */
+const OWN_MS = 400; // for so long after it was moved here, it is named often
 
 export class Hand {
-  /** @type {State | null} */
+  moved = -Infinity; // when the hand was moved here last
+  #steers = false;
   #state = null;
-  /** @type {Frame | null} */
   #frame = null;
-  /** @type {Place | null} */
-  #wanted = null; // not yet sent
+  #wanted = null; // a place that is not yet sent
   #sent = false; // whether a place went out since the last picture
-  /** @type {Place | null} */
-  #target = null; // where the hand is or is going
-  /** @type {{dx: number, dy: number} | null} */
+  #target = null; // where the hand is going
   #grip = null;
   #named = -Infinity;
-  steers = false;
-  /** When the hand was moved here last. */
-  moved = -Infinity;
 
-  /**
-   * @param {import("./sheet.js").Sheet} sheet
-   * @param {(request: {ask: string} & Record<string, unknown>) => void} ask
-   * @param {() => void} wake
-   */
   constructor(sheet, ask, wake) {
     this.sheet = sheet;
     this.ask = ask;
     this.wake = wake;
-    const drawing = sheet.moving;
-    drawing.addEventListener("pointerdown", (event) => this.#down(event));
+    const { moving, array } = sheet;
+    moving.addEventListener("pointerdown", (event) => this.#down(event));
     // All but raw updates are held back until the browser draws.
-    const moves = "onpointerrawupdate" in drawing ? "pointerrawupdate" : "pointermove";
-    drawing.addEventListener(moves, (event) => this.#drag(/** @type {PointerEvent} */ (event)));
-    for (const end of ["pointerup", "pointercancel"]) drawing.addEventListener(end, () => this.#up());
-    sheet.array.addEventListener("keydown", (event) => this.#key(event));
-    sheet.array.addEventListener("focus", () => this.#name(true));
+    moving.addEventListener("onpointerrawupdate" in moving ? "pointerrawupdate" : "pointermove", (event) => this.#drag(event));
+    for (const end of ["pointerup", "pointercancel"]) moving.addEventListener(end, () => this.#up());
+    array.addEventListener("keydown", (event) => this.#key(event));
+    array.addEventListener("focus", () => this.#name(true));
     byId("let-go").addEventListener("click", () => this.letGo());
     document.addEventListener("keydown", (event) => {
       if (event.key === "Escape" && this.#state?.held) this.letGo();
@@ -59,92 +43,64 @@ export class Hand {
 
   /** Whether this page may be the hand. */
   get can() {
-    return Boolean(this.steers && this.#state?.simulated && this.#state.array && !this.#state.done);
+    return Boolean(this.#steers && this.#state?.simulated && this.#state.array && !this.#state.done);
   }
 
-  /**
-   * @param {State} state
-   * @param {boolean} steers
-   */
   show(state, steers) {
-    this.#state = state;
-    this.steers = steers;
-    const finger = this.sheet.array;
-    const array = state.array;
-    finger.classList.toggle("loose", this.can);
-    this.sheet.moving.classList.toggle("free", this.can && (array?.height_mm ?? 0) > 0);
-    this.sheet.moving.classList.toggle("along", this.can && (array?.height_mm ?? 0) === 0);
-    byId("let-go").hidden = !(this.can && state.held);
-    if (!state.held && !this.#grip && performance.now() - this.moved > 500) this.#target = null;
-    if (this.can && array) {
-      const [low, high] = this.#reach(array);
-      put(finger, "role", "slider");
-      put(finger, "tabindex", "0");
-      put(finger, "aria-label", "The hand: the array on the page");
-      put(finger, "aria-valuemin", low.toFixed(1));
-      put(finger, "aria-valuemax", high.toFixed(1));
-      this.#name(true);
-    } else {
-      put(finger, "role", "img");
-      put(finger, "aria-label", "The array on the page");
-      for (const name of ["tabindex", "aria-valuemin", "aria-valuemax", "aria-valuenow", "aria-valuetext"]) finger.removeAttribute(name);
-    }
+    [this.#state, this.#steers] = [state, steers];
+    const { can } = this;
+    const { array, moving } = this.sheet;
+    const two = state.array?.height_mm > 0;
+    array.classList.toggle("loose", can);
+    moving.classList.toggle("free", can && two);
+    moving.classList.toggle("along", can && !two);
+    byId("let-go").hidden = !(can && state.held);
+    if (!state.held && !this.#grip && performance.now() - this.moved > OWN_MS) this.#target = null;
+    put(array, "role", can ? "slider" : "img");
+    put(array, "aria-label", can ? "The hand: the array on the page" : "The array on the page");
+    const [low, high] = can ? this.#reach() : [0, 0];
+    const slides = { tabindex: 0, "aria-valuemin": low.toFixed(1), "aria-valuemax": high.toFixed(1) };
+    if (can) for (const [name, value] of Object.entries(slides)) put(array, name, value);
+    else for (const name of [...Object.keys(slides), "aria-valuenow", "aria-valuetext"]) array.removeAttribute(name);
+    this.#name(true);
   }
 
-  /**
-   * How far the array's centre goes along x.
-   * @param {import("./messages.js").ArrayShown} array
-   * @returns {[number, number]}
-   */
-  #reach(array) {
-    const half = ((array.columns - 1) / 2) * array.column_pitch_mm;
-    return [-half, array.travel_mm - half];
+  /** How far the array's centre goes along x. */
+  #reach() {
+    const { columns, column_pitch_mm, travel_mm } = this.#state.array;
+    const half = ((columns - 1) / 2) * column_pitch_mm;
+    return [-half, travel_mm - half];
   }
 
-  /**
-   * Keeps the newest frame.
-   * @param {Frame} frame
-   */
+  /** Keeps the newest frame. */
   see(frame) {
     this.#frame = frame;
     this.#name(false);
   }
 
-  /**
-   * Names where the hand is; not often, or a screen reader would never end.
-   * @param {boolean} now
-   */
+  /** Names where the hand is; not often, or a screen reader would never end. */
   #name(now) {
     const time = performance.now();
-    const own = time - this.moved < 400;
-    if (!this.can || !this.#state) return;
+    const own = time - this.moved < OWN_MS;
+    if (!this.can || (!now && time - this.#named < (own ? 150 : CALM_MS))) return;
     const focused = document.activeElement === this.sheet.array;
-    if (!now && time - this.#named < (own ? 150 : CALM_MS)) return;
-    if (!now && focused && !own && this.#named > this.moved + 400) return;
-    const x = Number(this.#frame?.x_mm ?? NaN);
-    this.#named = Number.isFinite(x) ? time : -Infinity; // a place is named as soon as it is known
-    put(this.sheet.array, "aria-valuenow", (x || 0).toFixed(1));
+    if (!now && focused && !own && this.#named > this.moved + OWN_MS) return;
+    const known = Number.isFinite(this.#frame?.x_mm);
+    this.#named = known ? time : -Infinity; // a place is named as soon as it is known
+    put(this.sheet.array, "aria-valuenow", known ? this.#frame.x_mm.toFixed(1) : "0.0");
     put(this.sheet.array, "aria-valuetext", sayWhere(this.#state, this.#frame));
   }
 
-  /** @returns {Place} */
   #here() {
-    const frame = this.#frame;
-    const number = (/** @type {number | undefined} */ value) => (Number.isFinite(value) ? Number(value) : 0);
-    return this.#target ?? { x: number(frame?.x_mm), y: number(frame?.y_mm), theta: number(frame?.theta_rad) };
+    const { x_mm, y_mm, theta_rad } = this.#frame ?? {};
+    return this.#target ?? { x: x_mm || 0, y: y_mm || 0, theta: theta_rad || 0 };
   }
 
-  /**
-   * Takes the hand to a place, as far as the carriage goes.
-   * @param {Place} place
-   */
+  /** Takes the hand to a place, as far as the carriage goes. */
   to(place) {
-    const array = this.#state?.array;
-    if (!this.can || !array) return;
-    const [low, high] = this.#reach(array);
-    const y = array.height_mm > 0 ? Math.min(Math.max(place.y, 0), array.height_mm) : 0;
-    this.#target = { x: Math.min(Math.max(place.x, low), high), y, theta: array.turns ? place.theta : 0 };
-    this.#wanted = this.#target;
+    if (!this.can) return;
+    const { height_mm, turns } = this.#state.array;
+    this.#target = this.#wanted = { x: clamp(place.x, ...this.#reach()), y: clamp(place.y, 0, height_mm), theta: turns ? place.theta : 0 };
     this.moved = performance.now();
     if (!this.#sent) this.#point();
     this.wake();
@@ -166,27 +122,23 @@ export class Hand {
   #point() {
     if (!this.#wanted) return;
     const { x, y, theta } = this.#wanted;
-    this.#wanted = null;
-    this.#sent = true;
+    [this.#wanted, this.#sent] = [null, true];
     this.ask({ ask: "point", x_mm: x, y_mm: y, theta_rad: theta });
   }
 
-  /** @param {PointerEvent} event */
   #down(event) {
     if (!this.can || event.button !== 0) return;
-    const at = this.sheet.point(event);
-    const here = this.#here();
-    const gripped = event.target instanceof Element && this.sheet.array.contains(event.target);
+    const [at, here] = [this.sheet.point(event), this.#here()];
+    const gripped = this.sheet.array.contains(event.target);
     // Elsewhere on the page the hand comes there, as the thumb of a slider does.
     this.#grip = gripped ? { dx: here.x - at.x, dy: here.y - at.y } : { dx: 0, dy: 0 };
     this.sheet.moving.setPointerCapture(event.pointerId);
     this.sheet.array.classList.add("gripped");
     this.sheet.array.focus({ preventScroll: true });
-    if (!gripped) this.to({ x: at.x, y: at.y, theta: here.theta });
+    if (!gripped) this.to({ ...at, theta: here.theta });
     event.preventDefault();
   }
 
-  /** @param {PointerEvent} event */
   #drag(event) {
     if (!this.#grip) return;
     const at = this.sheet.point(event);
@@ -198,30 +150,22 @@ export class Hand {
     this.sheet.array.classList.remove("gripped");
   }
 
-  /** @param {KeyboardEvent} event */
   #key(event) {
-    const array = this.#state?.array;
-    if (!array || !this.can || event.altKey || event.ctrlKey || event.metaKey) return;
+    if (!this.can || event.altKey || event.ctrlKey || event.metaKey) return;
     const step = event.shiftKey ? LEAP_MM : STEP_MM;
-    const two = array.height_mm > 0;
-    const line = this.#state?.geometry.line_pitch_mm ?? 10;
+    const two = this.#state.array.height_mm > 0;
+    const line = this.#state.geometry.line_pitch_mm ?? 10;
     const here = this.#here();
-    const [low, high] = this.#reach(array);
-    const place = { ...here };
-    switch (event.key) {
-      case "ArrowRight": place.x += step; break;
-      case "ArrowLeft": place.x -= step; break;
-      case "ArrowDown": if (two) place.y += step; else place.x -= step; break;
-      case "ArrowUp": if (two) place.y -= step; else place.x += step; break;
-      case "PageDown": if (two) place.y += line; else place.x -= LEAP_MM; break;
-      case "PageUp": if (two) place.y -= line; else place.x += LEAP_MM; break;
-      case "Home": place.x = low; break;
-      case "End": place.x = high; break;
-      case "[": place.theta += TURN_RAD; break;
-      case "]": place.theta -= TURN_RAD; break;
-      default: return;
-    }
+    const [low, high] = this.#reach();
+    const along = (by) => ({ x: here.x + by });
+    const down = (by, otherwise) => (two ? { y: here.y + by } : along(-otherwise));
+    const place = {
+      ArrowRight: along(step), ArrowLeft: along(-step), ArrowDown: down(step, step), ArrowUp: down(-step, -step),
+      PageDown: down(line, LEAP_MM), PageUp: down(-line, -LEAP_MM), Home: { x: low }, End: { x: high },
+      "[": { theta: here.theta + TURN_RAD }, "]": { theta: here.theta - TURN_RAD },
+    }[event.key];
+    if (!place) return;
     event.preventDefault();
-    this.to(place);
+    this.to({ ...here, ...place });
   }
 }

@@ -1,56 +1,53 @@
 /** The knobs of the braille style and the reader's commands: what keys do, by mouse and by touch. */
 
-import { button, byId, html, short, write } from "./drawing.js";
+import { button, byId, clamp, html, short, write } from "./elements.js";
 
-/** @typedef {import("./messages.js").State} State */
-/** @typedef {import("./messages.js").KnobShown} KnobShown */
-
-/** A length whose bounds are further apart than this is turned by equal factors, not equal steps. */
-const WIDE = 100;
+const WIDE = 100; // a knob whose bounds are further apart is turned by equal factors, not equal steps
 
 /** One knob: step buttons, a slider and a number. */
 class Knob {
-  #value = 0;
   busy = false; // whether a person turns it here
-  #typing = false; // whether a number is being typed: it stays until it is taken
+  #value = 0;
+  #typing = false; // a number that is being typed stays until it is taken
 
-  /**
-   * @param {KnobShown} knob
-   * @param {(name: string, value: number) => void} turn
-   */
   constructor(knob, turn) {
     this.knob = knob;
     this.turn = turn;
     const id = `knob-${knob.name}`;
-    const unit = knob.unit ? ` ${knob.unit}` : "";
+    const unit = knob.unit && ` ${knob.unit}`;
     this.slider = html("input", { type: "range", id, step: "any", min: 0, max: 1 });
     this.number = html("input", {
       type: "number", id: `${id}-number`, step: "any", min: knob.low, max: knob.high, inputmode: "decimal",
-      "aria-label": `${knob.label}${knob.unit ? ` in ${knob.unit}` : ""}, as a number`,
+      "aria-label": `${knob.label}${knob.unit && ` in ${knob.unit}`}, as a number`,
     });
-    const by = short(knob.step) + unit;
-    this.less = button("−", () => this.#step(-1), { "aria-label": `${knob.label}: less by ${by}` });
-    this.more = button("+", () => this.#step(1), { "aria-label": `${knob.label}: more by ${by}` });
+    const by = (way) => ({ "aria-label": `${knob.label}: ${way} by ${short(knob.step)}${unit}` });
+    this.less = button("−", () => this.#step(-1), by("less"));
+    this.more = button("+", () => this.#step(1), by("more"));
     this.reason = html("p", { class: "reason", id: `${id}-reason` });
     this.plain = html("span", { class: "plain" }); // in place of all of them where it cannot be turned
     this.entry = html("span", { class: "value" }, this.number, html("span", { "aria-hidden": "true" }, unit));
     this.element = html("div", { class: "knob" },
       html("label", { for: id }, knob.label), this.less, this.slider, this.more, this.entry, this.plain, this.reason);
-    this.slider.addEventListener("input", () => this.#set(this.#snap(this.#fromSlider())));
+    this.slider.addEventListener("input", () => {
+      const { step, value } = this.knob;
+      this.#set(value + Math.round((this.#fromSlider() - value) / step) * step);
+    });
     this.slider.addEventListener("keydown", (event) => this.#key(event));
     this.number.addEventListener("input", () => (this.#typing = true));
-    this.number.addEventListener("blur", () => {
-      this.#typing = false;
-      this.#write();
-    });
+    this.number.addEventListener("blur", () => this.#typed());
     this.number.addEventListener("change", () => {
+      const typed = this.number.value === "" ? NaN : Number(this.number.value);
       this.#typing = false;
-      const typed = Number(this.number.value);
-      if (this.number.value !== "" && Number.isFinite(typed)) this.#set(this.#bound(typed));
-      this.#write();
+      if (Number.isFinite(typed)) this.#set(typed);
+      this.#typed();
     });
     this.slider.addEventListener("pointerdown", () => (this.busy = true));
     for (const end of ["pointerup", "pointercancel", "blur"]) this.slider.addEventListener(end, () => (this.busy = false));
+  }
+
+  #typed() {
+    this.#typing = false;
+    this.#write();
   }
 
   get #steep() {
@@ -68,26 +65,10 @@ class Knob {
     return this.#steep ? Math.log(this.#value / low) / Math.log(high / low) : (this.#value - low) / (high - low || 1);
   }
 
-  /** @param {number} value */
-  #bound(value) {
-    return Math.min(Math.max(Math.round(value * 1e6) / 1e6, this.knob.low), this.knob.high);
-  }
-
-  /**
-   * A value that keys come to from where the reader's knob stands.
-   * @param {number} value
-   */
-  #snap(value) {
-    const { step, value: from } = this.knob;
-    return this.#bound(from + Math.round((value - from) / step) * step);
-  }
-
-  /** @param {number} steps */
   #step(steps) {
-    this.#set(this.#bound(this.#value + steps * this.knob.step));
+    this.#set(this.#value + steps * this.knob.step);
   }
 
-  /** @param {KeyboardEvent} event */
   #key(event) {
     const steps = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 5, PageDown: -5 }[event.key];
     if (event.key === "Home" || event.key === "End") this.#set(event.key === "Home" ? this.knob.low : this.knob.high);
@@ -96,8 +77,8 @@ class Knob {
     event.preventDefault();
   }
 
-  /** @param {number} value */
-  #set(value) {
+  #set(wanted) {
+    const value = clamp(Math.round(wanted * 1e6) / 1e6, this.knob.low, this.knob.high);
     const changed = value !== this.#value;
     this.#value = value;
     this.#write();
@@ -105,85 +86,54 @@ class Knob {
   }
 
   #write() {
-    const { label, unit } = this.knob;
+    const { unit } = this.knob;
     this.slider.value = String(this.#toSlider());
     this.slider.setAttribute("aria-valuetext", `${short(this.#value)} ${unit}`.trim());
     if (!this.#typing) this.number.value = String(this.#value);
-    this.slider.title = `${label}: ${short(this.#value)} ${unit}`.trim();
+    write(this.plain, `${short(this.#value)} ${unit}`.trim());
   }
 
-  /**
-   * Shows the reader's knob.
-   * @param {KnobShown} knob
-   * @param {boolean} steers
-   */
+  /** Shows what the reader's knob is turned to. */
   show(knob, steers) {
     this.knob = knob;
-    const off = !steers || knob.fixed !== "";
-    for (const part of [this.slider, this.entry, this.less, this.more]) part.hidden = off;
-    this.plain.hidden = !off;
-    write(this.plain, `${short(knob.value)} ${knob.unit}`.trim());
-    write(this.reason, knob.fixed);
-    this.reason.hidden = !knob.fixed;
-    if (this.busy) return;
-    this.#value = knob.value;
+    if (!this.busy) this.#value = knob.value;
     this.#write();
+    const turns = steers && !knob.fixed;
+    for (const part of [this.less, this.slider, this.more, this.entry]) part.hidden = !turns;
+    this.plain.hidden = turns;
+    write(this.reason, steers ? knob.fixed : "");
   }
 }
 
 export class Knobs {
-  /** @type {Map<string, Knob>} */
   #knobs = new Map();
-  /** @type {Map<string, number>} */
+  #buttons = new Map();
   #turned = new Map();
 
-  /** @param {(request: {ask: string} & Record<string, unknown>) => void} ask */
-  constructor(ask) {
+  constructor(ask, wake) {
     this.ask = ask;
-    /** @type {() => void} */
-    this.wake = () => {};
-    /** @type {Map<string, HTMLButtonElement>} */
-    this.buttons = new Map();
+    this.wake = wake;
   }
 
-  /**
-   * Shows the knobs.
-   * @param {State} state
-   * @param {boolean} steers
-   * @param {string} why reason why nothing can be turned here; empty if it can
-   */
-  show(state, steers, why) {
-    const names = state.knobs.map((knob) => knob.name).join();
-    if (names !== [...this.#knobs.keys()].join()) {
-      const turn = (/** @type {string} */ name, /** @type {number} */ value) => {
-        this.#turned.set(name, value);
-        this.wake();
-      };
+  /** Shows the knobs and commands, and why nothing can be turned; empty if it can. */
+  show(state, steers, whyNot) {
+    if (state.knobs.map(({ name }) => name).join() !== [...this.#knobs.keys()].join()) {
+      const turn = (name, value) => (this.#turned.set(name, value), this.wake());
       this.#knobs = new Map(state.knobs.map((knob) => [knob.name, new Knob(knob, turn)]));
       byId("knobs").replaceChildren(...[...this.#knobs.values()].map((knob) => knob.element));
     }
-    for (const knob of state.knobs) {
-      // What was asked for here and is not yet sent stays.
-      if (!this.#turned.has(knob.name)) this.#knobs.get(knob.name)?.show(knob, steers);
-    }
-    this.#offer(state.commands);
-    byId("commands").hidden = !steers || state.commands.length === 0;
-    const pause = this.buttons.get("PAUSE");
-    if (pause) write(pause, state.paused ? "Go on" : "Rest the array");
-    write(byId("knobs-note"), why);
-    byId("knobs-note").hidden = !why;
-  }
-
-  /** @param {{name: string, words: string}[]} commands */
-  #offer(commands) {
-    if (commands.map(({ name }) => name).join() !== [...this.buttons.keys()].join()) {
-      const press = (/** @type {string} */ command) => button("", () => this.ask({ ask: "press", command }));
-      this.buttons = new Map(commands.map(({ name }) => [name, press(name)]));
-      byId("commands").replaceChildren(...this.buttons.values());
+    // What was asked for here and is not yet sent stays.
+    for (const knob of state.knobs) if (!this.#turned.has(knob.name)) this.#knobs.get(knob.name).show(knob, steers);
+    write(byId("knobs-note"), whyNot);
+    const commands = steers ? state.commands : [];
+    if (commands.map(({ name }) => name).join() !== [...this.#buttons.keys()].join()) {
+      const press = (command) => button("", () => this.ask({ ask: "press", command }));
+      this.#buttons = new Map(commands.map(({ name }) => [name, press(name)]));
+      byId("commands").replaceChildren(...this.#buttons.values());
     }
     for (const { name, words } of commands) {
-      const made = /** @type {HTMLButtonElement} */ (this.buttons.get(name));
-      if (name !== "PAUSE") write(made, words.charAt(0).toUpperCase() + words.slice(1));
+      const shown = name.toLowerCase() === "pause" ? (state.paused ? "go on" : "rest the array") : words;
+      write(this.#buttons.get(name), shown.charAt(0).toUpperCase() + shown.slice(1));
     }
   }
 

@@ -1,55 +1,43 @@
 /**
- * The live view. A frame is drawn when the browser draws, the next is asked for when it is drawn,
- * and what is asked of the knobs goes out at the same time: once for each frame.
+ * The live view. A frame is drawn when the browser draws, the next is asked for when it is drawn, and
+ * what is asked of the knobs goes out at the same time: once for each frame.
  */
 
 import { Cards, Signals } from "./answers.js";
-import { Beside } from "./beside.js";
 import { sayWhere } from "./braille.js";
 import { Connection } from "./connection.js";
-import { byId, write } from "./drawing.js";
+import { byId, write } from "./elements.js";
 import { Hand } from "./hand.js";
 import { Knobs } from "./knobs.js";
 import { Playback } from "./playback.js";
 import { Sheet } from "./sheet.js";
-import { Skin } from "./skin.js";
+import { Beside, Skin } from "./skin.js";
 import { Telling, tables } from "./telling.js";
 import { Traces } from "./traces.js";
-
-/** @typedef {import("./messages.js").State} State */
-/** @typedef {import("./messages.js").Frame} Frame */
-/** @typedef {import("./messages.js").Welcome} Welcome */
 
 const READ_MS = 100; // how often numbers change: people cannot read them faster
 const CALM_MS = 1000; // how often anything changes where motion is to be reduced
 const OWN_MS = 400; // for so long after the hand was moved here, the drawing follows it all the same
 const NOTICE_MS = 20_000;
 
-/** @type {Welcome | null} */
 let welcome = null;
-/** @type {State | null} */
 let state = null;
-/** @type {State | null} */
-let fresh = null; // told, and not yet shown
-/** @type {Frame | null} */
+let fresh = null; // a state that is told, and not yet shown
 let frame = null;
-/** @type {Frame[]} */
-let queue = [];
+let queue = []; // frames that are not yet drawn
 let drawn = 0;
 let drawnAt = -Infinity;
-let reading = 0; // until the numbers are read anew
+let reading = 0; // timer until the numbers are read anew
 let readAt = -Infinity;
 let told = 0; // pictures drawn before the numbers were read last
 let frozen = false;
 let woken = false;
 let noticed = 0;
+let lostBefore = false;
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 
-let lostBefore = false;
-
-/** @type {Connection} */
 const connection = new Connection(token(), {
-  welcomed: (said) => {
+  welcomed(said) {
     welcome = said;
     notice(lostBefore ? "Connected again." : "", lostBefore);
     lostBefore = false;
@@ -57,66 +45,58 @@ const connection = new Connection(token(), {
     byId("again").hidden = true;
     playback.begin(said);
     traces.wipe();
-    if (state) fresh = state;
+    fresh ??= state;
     wake();
   },
-  told: (said) => {
+  told(said) {
     fresh = said;
     wake();
   },
-  framed: (received) => {
+  framed(received) {
     queue.push(received);
     wake();
   },
-  refused: (why) => {
-    const sentence = why.charAt(0).toUpperCase() + why.slice(1) + (/[.!?]$/.test(why) ? "" : ".");
-    notice(sentence, connection.open);
+  refused(why) {
+    notice(why.charAt(0).toUpperCase() + why.slice(1) + (/[.!?]$/.test(why) ? "" : "."), connection.open);
   },
-  lost: (again) => {
+  lost(again) {
     byId("again").hidden = again;
     // It is said once, not at every attempt.
     if (again && !lostBefore) notice("The connection to vbraille is lost. It is tried again every few seconds.");
     lostBefore = again;
-    if (state) fresh = state;
+    fresh ??= state;
     wake();
   },
 });
-
-/** @type {(request: {ask: string} & Record<string, unknown>) => boolean} */
 const ask = (request) => connection.ask(request);
 const sheet = new Sheet(byId("sheet"));
-const skin = new Skin(byId("deflection"), byId("strain"), byId("touch-note"));
+const skin = new Skin();
 const beside = new Beside();
 const traces = new Traces(byId("scopes"));
 const telling = new Telling();
-const knobs = new Knobs(ask);
 const signals = new Signals();
 const cards = new Cards(ask);
+const knobs = new Knobs(ask, wake);
 const hand = new Hand(sheet, ask, wake);
 const playback = new Playback(wake);
-knobs.wake = wake;
-skin.onchoose = () => state && traces.show(state, skin.chosen);
+skin.onchoose = () => traces.show(state, skin.chosen);
 
 /** The token of the address; it stays for this tab, and goes out of the address bar. */
 function token() {
   const given = decodeURIComponent(location.hash.slice(1));
   // Only what looks like a token: the page has places of its own, such as #page.
-  if (given && document.getElementById(given) === null) {
+  if (given && !byId(given)) {
     sessionStorage.setItem("vbraille-token", given);
     history.replaceState(null, "", location.pathname);
   }
   return sessionStorage.getItem("vbraille-token") ?? "";
 }
 
-/**
- * Says something about the connection or a refusal.
- * @param {string} words
- * @param {boolean} brief whether it goes away by itself
- */
+/** Says something about the connection or a refusal; what is brief goes away by itself. */
 function notice(words, brief = false) {
   clearTimeout(noticed);
   write(byId("notice"), words);
-  if (brief && words) noticed = window.setTimeout(() => write(byId("notice"), ""), NOTICE_MS);
+  if (brief && words) noticed = setTimeout(() => write(byId("notice"), ""), NOTICE_MS);
 }
 
 /** Has the browser call `beat` when it draws next. */
@@ -126,10 +106,7 @@ function wake() {
   requestAnimationFrame(beat);
 }
 
-/**
- * What is done once for each picture of the browser.
- * @param {number} now in ms
- */
+/** What is done once for each picture of the browser. */
 function beat(now) {
   woken = false;
   knobs.send();
@@ -146,16 +123,14 @@ function beat(now) {
     return;
   }
   if (queue.length && state) draw(now);
-  const { row, column } = skin.chosen;
-  if (!playback.on) connection.pull(() => ({ row, column }));
-  else if (playback.wanted) connection.pull(() => ({ row, column, ...playback.request() }), 1);
+  if (!playback.on) connection.pull(() => skin.chosen);
+  else if (playback.wanted) connection.pull(() => ({ ...skin.chosen, ...playback.request() }), 1);
 }
 
 /** Shows a new state. */
 function show() {
-  state = /** @type {State} */ (fresh);
-  fresh = null;
-  const open = connection.open;
+  [state, fresh] = [fresh, null];
+  const { open } = connection;
   const steers = Boolean(open && welcome?.steers && !playback.on && !state.done);
   document.body.classList.toggle("blind", state.blind);
   byId("touch").hidden = state.blind;
@@ -164,48 +139,41 @@ function show() {
   skin.show(state);
   beside.show(state);
   traces.show(state, skin.chosen);
-  knobs.show(state, steers, whyNot(state, open));
+  knobs.show(state, steers, whyNot(open));
   hand.show(state, steers);
   signals.show(state);
   cards.show(state, steers);
   if (state.array) playback.tick(state.array.rate_hz);
   write(byId("kind"), playback.on ? "· a recording" : open ? (steers ? "· may steer" : "· watching") : "· not connected");
-  write(byId("page-note"), pageNote(state));
-  if (frame && frame.deflections.length) {
+  write(byId("page-note"), pageNote());
+  if (frame) {
     skin.move(state, frame);
     beside.move(frame);
   }
 }
 
-/**
- * Reason why nothing can be turned here; empty if it can.
- * @param {State} now
- * @param {boolean} open
- */
-function whyNot(now, open) {
+/** Reason why nothing can be turned here; empty if it can. */
+function whyNot(open) {
   if (!open) return "Nothing can be turned without a connection.";
   if (playback.on) return "A recording is shown: nothing can be turned in it.";
-  if (now.done) return "Reading is over.";
-  if (!welcome?.steers) return "This page watches. To steer, open the address with a token that vbraille says when it begins.";
-  return now.knobs.length || now.commands.length ? "" : "Nothing may be turned here.";
+  if (state.done) return "Reading is over.";
+  if (!welcome.steers) return "This page watches. To steer, open the address with a token that vbraille says when it begins.";
+  return state.knobs.length || state.commands.length ? "" : "Nothing may be turned here.";
 }
 
-/** @param {State} now */
-function pageNote(now) {
-  if (now.blind) return "Hidden: where the hand is, and nothing of what it feels.";
+function pageNote() {
+  if (state.blind) return "Hidden: where the hand is, and nothing of what it feels.";
   if (!hand.can) return "To scale; the rulers are in mm.";
-  const two = (now.array?.height_mm ?? 0) > 0;
-  return `To scale, in mm. Drag the array${two ? "" : " along the line"}, or press where it is to go; arrow keys move it by 0.5 mm, with Shift by 5 mm; Escape lets it go.`;
+  const along = state.array.height_mm > 0 ? "" : " along the line";
+  return `To scale, in mm. Drag the array${along}, or press where it is to go; arrow keys move it by 0.5 mm, with Shift by 5 mm; Escape lets it go.`;
 }
 
-/** @param {number} now */
 function draw(now) {
-  if (!state) return;
   for (const each of queue) traces.take(each);
   frame = queue[queue.length - 1];
   queue = [];
   sheet.move(state, frame);
-  if (!state.blind) skin.move(state, frame);
+  skin.move(state, frame);
   beside.move(frame);
   hand.see(frame);
   if (playback.on) playback.show();
@@ -213,7 +181,7 @@ function draw(now) {
   drawnAt = now;
   const left = readAt + READ_MS - performance.now();
   if (left <= 0 || still.matches || (playback.on && !playback.playing)) read();
-  else if (!reading) reading = window.setTimeout(read, left);
+  else if (!reading) reading = setTimeout(read, left);
 }
 
 /** Tells what is drawn in words and numbers. */
@@ -226,13 +194,11 @@ function read() {
   telling.read(state, frame);
   signals.read(frame);
   traces.draw();
-  if (!state.blind) skin.tell();
-  beside.tell();
 }
 
 byId("say").addEventListener("click", () => {
-  const words = state && frame ? sayWhere(state, frame) : "Nothing is shown yet.";
   write(byId("where"), "");
+  const words = state ? sayWhere(state, frame) : "Nothing is shown yet.";
   setTimeout(() => write(byId("where"), words), 30); // so that the same words are said again
 });
 byId("freeze").addEventListener("click", () => {
@@ -257,24 +223,4 @@ tellMotion();
 connection.begin();
 
 /** For tests: what was drawn and told last. */
-const shown = {
-  get drawn() {
-    return drawn;
-  },
-  /** Pictures drawn before the newest that words and numbers tell. */
-  get told() {
-    return told;
-  },
-  get last() {
-    if (!frame) return null;
-    const { tick, time_s, x_mm, y_mm, rows, columns } = frame;
-    return { tick, time_s, x_mm, y_mm, rows, columns, deflections: Array.from(frame.deflections) };
-  },
-  get beside() {
-    return frame && beside.shown && { x_mm: frame.x_mm, deflections: [...beside.shown] };
-  },
-  get state() {
-    return state;
-  },
-};
-Object.assign(window, { vbraille: shown });
+Object.defineProperty(window, "vbraille", { get: () => ({ drawn, told, state, last: frame && { ...frame, deflections: [...frame.deflections] } }) });

@@ -1,69 +1,57 @@
 /**
- * The page to scale: its lines with cells, dots and print, rulers in mm, and the array where the
- * finger is. What stands still is one drawing, and the array another that is moved over it as a
- * whole, so that neither is drawn again for that.
+ * The page to scale: its lines with cells, dots and print, pictures, rulers in mm, and the array where
+ * the finger is. What stands still is one drawing; the array is moved over it as a whole, so that
+ * neither is drawn again for that.
  */
 
 import { DOTS, distances, dotX, dotY, endOf, placeOf, under } from "./braille.js";
-import { Canvas, onSharpness, whole } from "./canvas.js";
-import { fixed, html, put, ruler, svg } from "./drawing.js";
-import { onScheme, stepOf, steps } from "./palette.js";
+import { onScheme, stepOf, steps } from "./colours.js";
+import { Canvas, clamp, html, onResolution, put, ruler, svg } from "./elements.js";
 
-/** @typedef {import("./messages.js").State} State */
-/** @typedef {import("./messages.js").Frame} Frame */
-/** @typedef {import("./messages.js").LineShown} LineShown */
-/** @typedef {import("./braille.js").Distances} Distances */
-
-const LEAST_PX_MM = 2.5; // below that, a part of the line is shown, which follows the finger
+const LEAST_PX_MM = 2.5; // below that a part of the line is shown, which follows the finger
 const MOST_PX_MM = 9;
-const LEFT_PX = 62;
-const LEFT_NARROW_PX = 40;
 const TOP_PX = 46;
 const RIGHT_PX = 14;
 const LEAST_FINGER_PX = 32; // to be hit by a real finger
 
-/**
- * A tactile picture from above, on its canvas, with the layers that are off drawn faintly.
- * @param {import("./messages.js").SceneShown} scene
- */
+/** A number of pixels of the page that falls on whole pixels of the screen. */
+const whole = (px) => Math.round(px * devicePixelRatio) / devicePixelRatio;
+
+const circle = (x, y, r) => `M${(x - r).toFixed(2)} ${y.toFixed(2)}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
+
+/** A tactile picture from above, on its canvas, with the layers that are off drawn faintly. */
 function picture(scene) {
-  const { width_mm: width, height_mm: height, image, off_image: off } = scene;
-  const at = { x: -scene.left_mm, y: -scene.top_mm, width, height, preserveAspectRatio: "none" };
-  return svg("g", { class: "scene" }, svg("rect", { class: "canvas", x: at.x, y: at.y, width, height }),
-    ...(image ? [svg("image", { ...at, href: image })] : []),
-    ...(off ? [svg("image", { ...at, href: off, class: "off" })] : []));
+  const at = { x: -scene.left_mm, y: -scene.top_mm, width: scene.width_mm, height: scene.height_mm };
+  const image = (href, kind) => (href ? [svg("image", { ...at, href, class: kind, preserveAspectRatio: "none" })] : []);
+  return svg("g", { class: "scene" }, svg("rect", { class: "canvas", ...at }), ...image(scene.image, "on"), ...image(scene.off_image, "off"));
 }
 
-/**
- * A picture that is larger than the carriage goes: what that reaches.
- * @param {import("./messages.js").SceneShown} scene
- * @param {import("./messages.js").ArrayShown} array
- */
-function within(scene, array) {
-  const reach = { width: Math.max(array.travel_mm, 1), height: array.height_mm || scene.height_mm };
-  return svg("svg", { ...reach, overflow: "hidden" }, picture(scene));
+/** The first and the last cell of a piece of the print; null if it has none. */
+function cellsOf(line, piece) {
+  const [from, to] = piece;
+  const inside = line.sources.flatMap(([a, b], cell) => (b > a && a < to && b > from ? [cell] : []));
+  return inside.length ? [inside[0], inside[inside.length - 1]] : null;
+}
+
+/** Gives a small drawing its place in pixels around the point that it is moved by. */
+function size(drawing, left, top, wide, high, unit) {
+  const box = [left, top, wide, high].map((px) => px * unit).join(" ");
+  for (const [name, value] of Object.entries({ width: wide, height: high, viewBox: box })) drawing.setAttribute(name, String(value));
+  [drawing.style.left, drawing.style.top] = [`${left}px`, `${top}px`];
 }
 
 export class Sheet {
-  /** @type {State | null} */
   #state = null;
-  /** @type {Frame | null} */
   #frame = null;
   #px_mm = 4;
-  #left = 0; // what the view shows: the left edge, in mm
-  #top = 0;
-  #wide = 1;
-  #high = 1;
-  #most = 0; // the tallest page so far, so that nothing below it jumps
+  #view = { left: 0, top: 0, wide: 1, high: 1 }; // what is seen, in mm
+  #most = 0; // height of the tallest page so far, so that nothing below it jumps
   #contactors = new Canvas(false);
-  /** @type {number[]} */
   #steps = []; // the colour in which each contactor is drawn; it is not moved by less, either
-  #moved = ""; // what stands in the drawing, so that only what changes is touched
+  #moved = "";
   #marked = "";
-  /** @type {boolean | null} */
   #known = null;
 
-  /** @param {HTMLElement} figure */
   constructor(figure) {
     this.still = svg("svg", { "aria-hidden": "true", class: "still" });
     this.marks = html("div", { class: "marks" }, html("div"), html("div"));
@@ -72,238 +60,154 @@ export class Sheet {
     this.array = html("div", { class: "array", id: "finger" }, this.outline, this.#contactors.element);
     this.moving = html("div", { class: "moving" }, this.marks, this.hairline, this.array);
     figure.append(html("div", { class: "layers" }, this.still, this.moving));
-    const layers = /** @type {HTMLElement} */ (figure.firstElementChild);
-    new ResizeObserver(() => this.show(this.#state)).observe(layers);
-    onScheme(() => this.show(this.#state));
-    onSharpness(() => this.show(this.#state));
+    const again = () => this.show(this.#state);
+    new ResizeObserver(again).observe(figure);
+    onScheme(again);
+    onResolution(again);
   }
 
-  /**
-   * Where on the page something on the screen is, in mm.
-   * @param {MouseEvent} event
-   */
+  /** Where on the page something on the screen is, in mm. */
   point(event) {
     const box = this.moving.getBoundingClientRect();
-    return {
-      x: this.#left + (event.clientX - box.left) / this.#px_mm,
-      y: this.#top + (event.clientY - box.top) / this.#px_mm,
-    };
+    return { x: this.#view.left + (event.clientX - box.left) / this.#px_mm, y: this.#view.top + (event.clientY - box.top) / this.#px_mm };
   }
 
-  /**
-   * Draws what stands still.
-   * @param {State | null} state
-   */
+  /** Draws what stands still. */
   show(state) {
     this.#state = state;
-    const width = this.still.parentElement?.clientWidth ?? 0;
-    const array = state?.array;
-    if (!state || !array || width === 0) return;
+    const width = this.still.parentElement.clientWidth;
+    if (!state?.array || !width) return;
+    const { array, lines, figures } = state;
     const d = distances(state);
     const half = (array.columns * array.column_pitch_mm) / 2;
-    const ends = d ? state.lines.map((line) => endOf(d, line)) : [];
-    if (ends.length) ends.push(...state.figures.map((figure) => figure.width_mm - figure.left_mm));
-    const right = Math.max(...ends, ends.length ? 0 : array.travel_mm) + half * 0.6;
-    const pad = width < 560 ? LEFT_NARROW_PX : LEFT_PX;
-    const from = Math.min(0, ...state.lines.map((line) => line.start_mm)) - half;
-    const fit = (width - pad - RIGHT_PX) / (right - from);
-    this.#px_mm = Math.min(Math.max(fit, LEAST_PX_MM), MOST_PX_MM);
-    this.#wide = width / this.#px_mm;
-    const px = 1 / this.#px_mm;
-    this.span = { from, right, pad: pad * px };
-    const top = Math.min(...state.lines.map((line) => line.top_mm), Infinity);
-    const bottoms = state.figures.map((figure) => figure.height_mm - figure.top_mm);
-    const bottom = Math.max(...state.lines.map((line) => line.top_mm + (d ? d.line + this.#below(d) : 0)), ...bottoms, -Infinity);
-    const first = Number.isFinite(top) ? top : 0;
-    const tall = Math.max(Number.isFinite(bottom) ? bottom - first : 0, this.#tallOf(state, d));
-    this.#most = state.lines.length ? Math.max(this.#most, tall) : tall;
-    if (this.#most > 3 * tall) this.#most = tall;
-    this.#top = first - TOP_PX * px;
-    this.#high = Math.ceil(this.#most * this.#px_mm + TOP_PX + 14) * px;
-    if (fit >= LEAST_PX_MM) this.#left = from - pad * px;
+    const start = Math.min(0, ...lines.map((line) => line.start_mm));
+    const ends = d && lines.length ? [0, ...lines.map((line) => endOf(d, line)), ...figures.map((one) => one.width_mm - one.left_mm)] : [array.travel_mm];
+    const right = Math.max(...ends) + 0.6 * half;
+    const pad_px = width < 560 ? 40 : 62;
+    const fit = (width - pad_px - RIGHT_PX) / (right - start + half);
+    const px_mm = (this.#px_mm = clamp(fit, LEAST_PX_MM, MOST_PX_MM));
+    this.span = { from: start - half, right, pad: pad_px / px_mm, start };
+    const first = lines.length ? Math.min(...lines.map((line) => line.top_mm)) : 0;
+    const bottoms = [...lines.map((line) => line.top_mm + (d ? d.line + this.#below(d) : 0)), ...figures.map((one) => one.height_mm - one.top_mm)];
+    const alone = array.height_mm || state.scene?.height_mm || array.rows * array.row_pitch_mm + 6;
+    const tall = Math.max(...bottoms.map((bottom) => bottom - first), d?.line ?? 0, lines.length ? array.height_mm : alone);
+    this.#most = lines.length && this.#most < 3 * tall ? Math.max(this.#most, tall) : tall;
+    const left = fit < LEAST_PX_MM ? this.#view.left : this.span.from - this.span.pad;
+    this.#view = { left, top: first - TOP_PX / px_mm, wide: width / px_mm, high: Math.ceil(this.#most * px_mm + TOP_PX + 14) / px_mm };
     this.#draw(state, d, first);
     this.#contact(state);
-    this.#look(this.#left);
+    this.#look(left);
     if (this.#frame) this.move(state, this.#frame);
   }
 
-  /**
-   * Height of what is shown where there are no lines.
-   * @param {State} state
-   * @param {Distances | null} d
-   */
-  #tallOf(state, d) {
-    const array = /** @type {import("./messages.js").ArrayShown} */ (state.array);
-    return Math.max(array.height_mm && !state.lines.length ? array.height_mm : 0, d?.line ?? 0,
-      array.height_mm || (state.scene?.height_mm ?? 0),
-      state.lines.length ? 0 : array.rows * array.row_pitch_mm + 6);
-  }
-
-  /**
-   * @param {State} state
-   * @param {Distances | null} d
-   * @param {number} first
-   */
   #draw(state, d, first) {
     const px = 1 / this.#px_mm;
-    const { right } = this.span ?? { right: 0 };
-    const from = Math.min(0, ...state.lines.map((line) => line.start_mm));
+    const { start, right, pad } = this.span;
     const group = svg("g", { "font-size": 12 * px });
-    if (state.scene && state.array) group.append(within(state.scene, state.array));
-    group.append(...state.figures.map(picture));
-    const end = Math.max(right, state.array?.travel_mm && !state.lines.length ? state.array.travel_mm : 0);
-    for (const line of d ? state.lines : []) group.append(this.#line(/** @type {Distances} */ (d), line));
-    group.append(ruler(Math.floor(from / 10) * 10, end, first - 6 * px, false, this.#px_mm));
-    const side = ruler(first, first + this.#most, 0, true, this.#px_mm);
-    side.classList.add("side");
-    const wide = (this.span?.pad ?? 0) - 4 * px;
-    side.prepend(svg("rect", { class: "margin", x: 4 * px - wide, y: first - TOP_PX * px, width: wide, height: this.#high }));
-    side.append(svg("text", { x: -4 * px, y: first - 18 * px, "text-anchor": "end", class: "unit" }, "mm"));
-    group.append(side);
-    this.still.replaceChildren(group);
-    this.side = side;
+    if (state.scene) {
+      // A picture that is larger than the carriage goes: what that reaches.
+      const reach = { width: Math.max(state.array.travel_mm, 1), height: state.array.height_mm || state.scene.height_mm };
+      group.append(svg("svg", { ...reach, overflow: "hidden" }, picture(state.scene)));
+    }
+    group.append(...state.figures.map(picture), ...(d ? state.lines.map((line) => this.#line(d, line)) : []));
+    group.append(ruler(Math.floor(start / 10) * 10, right, first - 6 * px, false, this.#px_mm));
+    this.side = ruler(first, first + this.#most, 0, true, this.#px_mm);
+    const margin = { x: 8 * px - pad, y: first - TOP_PX * px, width: pad - 4 * px, height: this.#view.high };
+    this.side.prepend(svg("rect", { class: "margin", ...margin }));
+    this.side.append(svg("text", { x: -4 * px, y: first - 18 * px, "text-anchor": "end", class: "unit" }, "mm"));
+    this.still.replaceChildren(svg("g", {}, group, this.side));
+    this.side.setAttribute("font-size", String(12 * px));
   }
 
-  /**
-   * A line: its band, dots and print.
-   * @param {Distances} d
-   * @param {LineShown} line
-   */
+  /** A line: its band, dots and print. */
   #line(d, line) {
     const px = 1 / this.#px_mm;
     const group = svg("g", { class: line.under ? "line under" : "line", "data-line": line.number });
-    const end = Math.max(endOf(d, line), line.start_mm + d.pitch);
-    const eight = line.cells.some((mask) => mask > 0x3f);
-    const size = Math.min(d.width / 2, d.rows * 0.48);
-    // The print has all the room to the dots of the next line, and the band goes around both.
-    const over = Math.max(dotY(d, line, 0) - size - line.top_mm - 0.6, 0);
+    const rows = line.cells.some((mask) => mask > 0x3f) ? 8 : 6;
+    const radius = Math.min(d.width / 2, d.rows * 0.48);
     if (line.under) {
-      group.append(svg("rect", {
-        class: "band", x: line.start_mm - d.pitch / 4, y: line.top_mm + over, width: end - line.start_mm + d.pitch / 2,
-        height: d.line, rx: 4 * px,
-      }));
+      // The print has all the room to the dots of the next line, and the band goes around both.
+      const over = Math.max(dotY(d, line, 0) - radius - line.top_mm - 0.6, 0);
+      const width = Math.max(endOf(d, line), line.start_mm + d.pitch) - line.start_mm + d.pitch / 2;
+      group.append(svg("rect", { class: "band", x: line.start_mm - d.pitch / 4, y: line.top_mm + over, width, height: d.line, rx: 4 * px }));
     }
-    let raised = "";
-    let flat = "";
+    let [raised, flat] = ["", ""];
     line.cells.forEach((mask, cell) => {
-      DOTS.slice(0, eight ? 8 : 6).forEach(([column, row], dot) => {
+      DOTS.slice(0, rows).forEach(([column, row], dot) => {
         const [x, y] = [dotX(d, line, cell, column), dotY(d, line, row)];
-        if ((mask >> dot) & 1) raised += circle(x, y, size);
-        else flat += circle(x, y, Math.min(0.28, size * 0.3));
+        if ((mask >> dot) & 1) raised += circle(x, y, radius);
+        else flat += circle(x, y, Math.min(0.28, radius * 0.3));
       });
     });
     group.append(svg("path", { class: "flat", d: flat }), svg("path", { class: "raised", d: raised }));
-    const below = dotY(d, line, eight ? 3 : 2) + size;
-    const room = d.line - (below - dotY(d, line, 0) + size);
+    const below = dotY(d, line, rows === 8 ? 3 : 2) + radius;
+    const room = d.line - (below - dotY(d, line, 0) + radius);
     const height = Math.min(room * 0.74, 16 * px);
     if (height * this.#px_mm >= 7) group.append(this.#print(d, line, below + room * 0.42 + height * 0.34, height));
     return group;
   }
 
-  /**
-   * The print, each piece under the cells that stand for it.
-   * @param {Distances} d
-   * @param {LineShown} line
-   * @param {number} y
-   * @param {number} height
-   */
+  /** The print, each piece under the cells that stand for it. */
   #print(d, line, y, height) {
     const group = svg("g", { class: "gloss", "font-size": height });
-    for (let cell = 0; cell < line.cells.length; cell++) {
+    for (let cell = 0, last = 0; cell < line.cells.length; cell = last + 1) {
+      last = cell;
       const [from, to] = line.sources[cell] ?? [0, 0];
-      if (to <= from) continue;
-      let last = cell;
-      while (line.sources[last + 1]?.[0] === from && line.sources[last + 1]?.[1] === to) last++;
       const words = line.text.slice(from, to).trim();
+      while (to > from && line.sources[last + 1]?.[0] === from && line.sources[last + 1][1] === to) last++;
+      if (!words) continue;
       const room = (last - cell + 1) * d.pitch - 0.8;
-      const text = svg("text", {
-        x: (dotX(d, line, cell, 0) + dotX(d, line, last, 1)) / 2, y, "text-anchor": "middle",
-      }, words);
-      if (words.length * height * 0.56 > room) {
-        text.setAttribute("textLength", String(room));
-        text.setAttribute("lengthAdjust", "spacingAndGlyphs");
-      }
-      if (words) group.append(text);
-      cell = last;
+      const x = (dotX(d, line, cell, 0) + dotX(d, line, last, 1)) / 2;
+      const narrow = words.length * height * 0.56 > room ? { textLength: room, lengthAdjust: "spacingAndGlyphs" } : {};
+      group.append(svg("text", { x, y, "text-anchor": "middle", ...narrow }, words));
     }
     return group;
   }
 
-  /**
-   * Makes the array, as large as it is.
-   * @param {State} state
-   */
+  /** Makes the array, as large as it is. */
   #contact(state) {
-    const array = /** @type {import("./messages.js").ArrayShown} */ (state.array);
+    const { array } = state;
     const px = 1 / this.#px_mm;
     const [wide, high] = [array.columns * array.column_pitch_mm, array.rows * array.row_pitch_mm];
-    const hit = [Math.max(wide, LEAST_FINGER_PX * px), Math.max(high, LEAST_FINGER_PX * px)];
+    const hit = { width: Math.max(wide, LEAST_FINGER_PX * px), height: Math.max(high, LEAST_FINGER_PX * px) };
+    // As wide as an even number of pixels, so that its middle falls on a whole one.
+    const [box, tall] = [hit.width, hit.height].map((mm) => 2 * Math.ceil((mm * this.#px_mm) / 2 + 5));
     this.#steps = [];
     this.#moved = this.#marked = "";
-    let seats = "";
     const [w, h] = [0.6 * array.column_pitch_mm, 0.64 * array.row_pitch_mm];
-    for (let row = 0; row < array.rows && !state.blind; row++) {
-      for (let column = 0; column < array.columns; column++) {
-        const [x, y] = this.#seat(array, row, column);
-        seats += `M${x} ${y}h${w}v${h}h${-w}z`;
-      }
-    }
-    const frame = { x: -wide / 2, y: -high / 2, width: wide, height: high, rx: 3 * px };
-    const grown = { x: frame.x - 3 * px, y: frame.y - 3 * px, width: wide + 6 * px, height: high + 6 * px, rx: 5 * px };
-    // As wide as an even number of pixels, so that its middle falls on a whole one.
-    const even = (/** @type {number} */ mm) => 2 * Math.ceil((mm * this.#px_mm) / 2 + 5);
-    const [box, tall] = [even(hit[0]), even(hit[1])];
-    sized(this.outline, -box / 2, -tall / 2, box, tall, px);
-    this.outline.replaceChildren(
-      svg("rect", { class: "hit", x: -hit[0] / 2, y: -hit[1] / 2, width: hit[0], height: hit[1] }),
-      svg("rect", { class: "ring", ...grown }),
-      svg("rect", { class: "frame", ...frame }),
-      svg("path", { class: "seats", "stroke-width": 0.5 * px, d: seats }),
-    );
-    this.#contactors.fit(-box / 2 * px, -tall / 2 * px, box, tall, this.#px_mm);
-    const { style: canvas } = this.#contactors.element;
-    [canvas.left, canvas.top] = [`${-box / 2}px`, `${-tall / 2}px`];
-    const to = TOP_PX - 6;
-    const down = Math.round(this.#high * this.#px_mm);
-    sized(this.hairline, -6, 0, 12, down, 1);
-    this.hairline.replaceChildren(
-      svg("path", { d: `M0 ${to}V${down}`, class: "thread" }),
-      svg("path", { d: `M0 ${to}l-5 -8h10z`, class: "pointer" }),
-    );
+    const seats = state.blind ? "" : this.#seats(array).map(([x, y]) => `M${x} ${y}h${w}v${h}h${-w}z`).join("");
+    const around = (more, kind, radius) => svg("rect", {
+      class: kind, x: -wide / 2 - more, y: -high / 2 - more, width: wide + 2 * more, height: high + 2 * more, rx: radius,
+    });
+    size(this.outline, -box / 2, -tall / 2, box, tall, px);
+    this.outline.replaceChildren(svg("rect", { class: "hit", x: -hit.width / 2, y: -hit.height / 2, ...hit }),
+      around(3 * px, "ring", 5 * px), around(0, "frame", 3 * px), svg("path", { class: "seats", "stroke-width": 0.5 * px, d: seats }));
+    this.#contactors.fit((-box / 2) * px, (-tall / 2) * px, box, tall, this.#px_mm);
+    const { style } = this.#contactors.element;
+    [style.left, style.top] = [`${-box / 2}px`, `${-tall / 2}px`];
+    const down = Math.round(this.#view.high * this.#px_mm);
+    size(this.hairline, -6, 0, 12, down, 1);
+    this.hairline.replaceChildren(svg("path", { d: `M0 ${TOP_PX - 6}V${down}`, class: "thread" }),
+      svg("path", { d: `M0 ${TOP_PX - 6}l-5 -8h10z`, class: "pointer" }));
   }
 
-  /**
-   * The upper left corner of a contactor in the middle of its swing, from the array's middle.
-   * @param {import("./messages.js").ArrayShown} array
-   * @param {number} row
-   * @param {number} column
-   */
-  #seat(array, row, column) {
-    return [
-      (column - (array.columns - 1) / 2 - 0.3) * array.column_pitch_mm,
-      (row - (array.rows - 1) / 2 - 0.32) * array.row_pitch_mm,
-    ];
+  /** Upper left corners of the contactors in the middle of their swing, from the array's middle, row by row. */
+  #seats(array) {
+    return Array.from({ length: array.rows * array.columns }, (_, n) => [
+      ((n % array.columns) - (array.columns - 1) / 2 - 0.3) * array.column_pitch_mm,
+      (Math.floor(n / array.columns) - (array.rows - 1) / 2 - 0.32) * array.row_pitch_mm,
+    ]);
   }
 
-  /**
-   * Turns the view so that it begins at a place.
-   * @param {number} left
-   */
+  /** Turns the view so that it begins at a place. */
   #look(left) {
-    this.#left = left;
-    const box = [left, this.#top, this.#wide, this.#high].map((value) => value.toFixed(3)).join(" ");
-    const height = String(Math.round(this.#high * this.#px_mm));
-    put(this.still, "viewBox", box);
-    put(this.still, "height", height);
-    const at = left + (this.span?.pad ?? 0) - 10 / this.#px_mm;
-    if (this.side) put(this.side, "transform", `translate(${at.toFixed(3)} 0)`);
+    const view = (this.#view = { ...this.#view, left });
+    put(this.still, "viewBox", [left, view.top, view.wide, view.high].map((value) => value.toFixed(3)).join(" "));
+    put(this.still, "height", Math.round(view.high * this.#px_mm));
+    put(this.side, "transform", `translate(${(left + this.span.pad - 10 / this.#px_mm).toFixed(3)} 0)`);
   }
 
-  /**
-   * Moves the array to where a frame has it.
-   * @param {State} state
-   * @param {Frame} frame
-   */
+  /** Moves the array to where a frame has it. */
   move(state, frame) {
     this.#frame = frame;
     if (!state.array || !this.span) return;
@@ -312,124 +216,61 @@ export class Sheet {
     if (!known) return;
     const { x, y, theta } = placeOf(state, frame);
     this.#follow(x);
-    const [right, down] = [whole((x - this.#left) * this.#px_mm), whole((y - this.#top) * this.#px_mm)];
-    const turn = theta ? ` rotate(${(-theta).toFixed(4)}rad)` : "";
-    const moved = `translate(${right}px, ${down}px)${turn}`;
+    const right = whole((x - this.#view.left) * this.#px_mm);
+    const moved = `translate(${right}px, ${whole((y - this.#view.top) * this.#px_mm)}px) rotate(${(-theta).toFixed(4)}rad)`;
     if (moved !== this.#moved) {
       this.array.style.transform = this.#moved = moved;
       this.hairline.style.transform = `translate(${right}px)`;
     }
     this.#mark(state, frame);
-    this.#deflect(state, frame);
+    this.#deflect(state.array, frame.deflections);
   }
 
-  /**
-   * Keeps the finger in view where the line is longer than that: by leaps, not by sliding.
-   * @param {number} x
-   */
+  /** Keeps the finger in view where the line is longer than that: by leaps, not by sliding. */
   #follow(x) {
-    const { from, right, pad } = this.span ?? { from: 0, right: 0, pad: 0 };
-    const inner = this.#wide - pad - RIGHT_PX / this.#px_mm;
-    if (inner >= right - from) return;
-    const at = (x - this.#left - pad) / inner;
-    if (at > 0.12 && at < 0.82) return;
-    const left = Math.min(Math.max(x - 0.25 * inner, from), right - inner) - pad;
-    if (Math.abs(left - this.#left) > 1e-6) this.#look(left);
+    const { from, right, pad } = this.span;
+    const inner = this.#view.wide - pad - RIGHT_PX / this.#px_mm;
+    const at = (x - this.#view.left - pad) / inner;
+    if (inner >= right - from || (at > 0.12 && at < 0.82)) return;
+    const left = clamp(x - 0.25 * inner, from, right - inner) - pad;
+    if (Math.abs(left - this.#view.left) > 1e-6) this.#look(left);
   }
 
-  /**
-   * @param {State} state
-   * @param {Frame} frame
-   */
+  /** Underlines the cell and the word under the finger. */
   #mark(state, frame) {
-    const [word, cell] = /** @type {HTMLCollectionOf<HTMLElement>} */ (this.marks.children);
     const d = distances(state);
     const here = state.blind || !d ? null : under(state, frame);
-    const marked = here && d ? `${here.line.number} ${here.line.start_mm} ${here.cell} ${this.#left}` : "";
+    const marked = here ? `${here.line.number} ${here.line.start_mm} ${here.cell} ${this.#view.left}` : "";
     if (marked === this.#marked) return;
     this.#marked = marked;
-    const show = (/** @type {HTMLElement} */ mark, /** @type {number} */ thick, /** @type {[number, number] | null} */ cells) => {
+    const show = (mark, thick, cells) => {
       mark.hidden = !cells;
-      if (!cells || !here || !d) return;
+      if (!cells) return;
       const [from, to] = [dotX(d, here.line, cells[0], 0) - d.width / 2, dotX(d, here.line, cells[1], 1) + d.width / 2];
-      const bottom = (here.line.top_mm + d.line + this.#below(d) - this.#top) * this.#px_mm;
-      mark.style.left = `${((from - this.#left) * this.#px_mm).toFixed(2)}px`;
-      mark.style.width = `${((to - from) * this.#px_mm).toFixed(2)}px`;
-      mark.style.top = `${(bottom - thick).toFixed(2)}px`;
-      mark.style.height = `${thick}px`;
+      const bottom = (here.line.top_mm + d.line + this.#below(d) - this.#view.top) * this.#px_mm;
+      const [left, width] = [from - this.#view.left, to - from].map((mm) => mm * this.#px_mm);
+      for (const [name, px] of Object.entries({ left, width, top: bottom - thick, height: thick })) mark.style[name] = `${px.toFixed(2)}px`;
     };
-    show(cell, 2.6, here && here.cell >= 0 ? [here.cell, here.cell] : null);
-    show(word, 1.2, here && here.word[1] > here.word[0] ? cellsOf(here.line, here.word) : null);
+    show(this.marks.children[0], 2.6, here && here.cell >= 0 ? [here.cell, here.cell] : null);
+    show(this.marks.children[1], 1.2, here && cellsOf(here.line, here.word));
   }
 
-  /**
-   * How far below a line its band goes, to the dots of the next.
-   * @param {Distances} d
-   */
+  /** How far below a line its band goes, to the dots of the next. */
   #below(d) {
     return Math.max((d.line - d.width) / 2 - d.rows - 0.6, 0);
   }
 
-  /**
-   * @param {State} state
-   * @param {Frame} frame
-   */
-  #deflect(state, frame) {
-    const array = /** @type {import("./messages.js").ArrayShown} */ (state.array);
-    const palette = steps();
-    const way = (array.rest_right ? -1 : 1) * array.swing_mm;
-    const fits = frame.deflections.length === array.rows * array.columns;
-    const wanted = fits ? Array.from(frame.deflections, stepOf) : [];
+  #deflect(array, deflections) {
+    const wanted = deflections.length === array.rows * array.columns ? Array.from(deflections, stepOf) : [];
     if (wanted.length === this.#steps.length && wanted.every((step, n) => step === this.#steps[n])) return;
     this.#steps = wanted;
     const pen = this.#contactors.begin();
-    const [w, h] = [0.6 * array.column_pitch_mm, 0.64 * array.row_pitch_mm];
+    const way = (array.rest_right ? -1 : 1) * array.swing_mm;
+    const seats = this.#seats(array);
     wanted.forEach((step, n) => {
       if (!step) return; // at rest, the dots below are seen
-      const [x, y] = this.#seat(array, Math.floor(n / array.columns), n % array.columns);
-      pen.fillStyle = palette[step];
-      pen.fillRect(x + (frame.deflections[n] - 0.5) * way, y, w, h);
+      pen.fillStyle = steps()[step];
+      pen.fillRect(seats[n][0] + (deflections[n] - 0.5) * way, seats[n][1], 0.6 * array.column_pitch_mm, 0.64 * array.row_pitch_mm);
     });
   }
-
-  /** Words for the scale. */
-  get scale() {
-    return `1 mm is ${fixed(this.#px_mm, 1)} pixels here`;
-  }
 }
-
-/**
- * The first and the last cell of a piece of the text; null if it has none.
- * @param {LineShown} line
- * @param {[number, number]} piece
- * @returns {[number, number] | null}
- */
-function cellsOf(line, [from, to]) {
-  const inside = line.sources.flatMap(([a, b], cell) => (b > a && a < to && b > from ? [cell] : []));
-  return inside.length ? [inside[0], inside[inside.length - 1]] : null;
-}
-
-/**
- * Gives a small drawing its place around the point that it is moved by, and its scale.
- * @param {SVGSVGElement} drawing
- * @param {number} left in pixels
- * @param {number} top
- * @param {number} wide
- * @param {number} high
- * @param {number} unit of its coordinates, for a pixel
- */
-function sized(drawing, left, top, wide, high, unit) {
-  drawing.setAttribute("width", String(wide));
-  drawing.setAttribute("height", String(high));
-  drawing.setAttribute("viewBox", [left, top, wide, high].map((px) => px * unit).join(" "));
-  drawing.style.left = `${left}px`;
-  drawing.style.top = `${top}px`;
-}
-
-/**
- * @param {number} x
- * @param {number} y
- * @param {number} r
- */
-const circle = (x, y, r) =>
-  `M${(x - r).toFixed(2)} ${y.toFixed(2)}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;

@@ -14,8 +14,8 @@ from msgspec import structs
 from vbraille.errors import InputError
 from vbraille.feeling.composing import compose
 from vbraille.feeling.loading import check_fits, shown_at
+from vbraille.render.labels import Assets
 from vbraille.render.program import Program
-from vbraille.render.scene.labels import Assets
 from vbraille.scene.locations import OpenedScene
 from vbraille.scene.patterns import Image, ImageDots, Label
 from vbraille.scene.reading import open_text

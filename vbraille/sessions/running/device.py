@@ -8,6 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from mmap import mmap
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,14 +20,16 @@ from vbraille.display import Display
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.engine import HOME_MM, EndOfLine, Upright, placing_of
 from vbraille.engine.host import Host
-from vbraille.engine.record import Flag
+from vbraille.engine.mailbox import watch
+from vbraille.engine.record import Flag, RingReader
 from vbraille.errors import InputError
+from vbraille.live.messages import LetGo, Point
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import Shown, make_shown
 from vbraille.sessions.simulated.skin import FeltFrames
 from vbraille.simulation.specs import device_spec, steering_of
-from vbraille.simulation.steering import Pointer, ReadLine, ReadPage
+from vbraille.simulation.steering import BeAt, Pointer, ReadLine, ReadPage
 
 # Makes the engine that drives a device, from the device's spec and the display that is wanted.
 MakeEngine = Callable[[str, Display], Any]
@@ -89,8 +92,9 @@ class SessionDevice:
         Whether the hand's way to the end and back ends reading, and not a key alone.
     make_engine
         Function that makes another engine than the usual one.
-    pointer
-        Channel by which a page of the live view is the hand.
+    watched
+        Function that is given a reader of the ticks at each start, for a live view, whose pages may
+        be the hand of a simulated device; None without one.
 
     Attributes
     ----------
@@ -120,7 +124,7 @@ class SessionDevice:
         keeps: bool,
         by_hand: bool,
         make_engine: MakeEngine | None = None,
-        pointer: Pointer | None = None,
+        watched: Callable[[RingReader], None] | None = None,
     ) -> None:
         self.wanted = replace(protocol.wanted, rate_hz=rate_hz)
         self.span_mm = self.wanted.span_mm
@@ -131,15 +135,21 @@ class SessionDevice:
         self._keeps, self._by_hand = keeps, by_hand
         self._button = protocol.trial.button
         self._steering = steering_of(spec)
-        spec = device_spec(spec, hand, seed, self._steering, pointer)
+        self._pointer = Pointer() if watched is not None and self._steering is not None else None
+        spec = device_spec(spec, hand, seed, self._steering, self._pointer)
         if make_engine is not None:
             self.engine = make_engine(spec, self.wanted)
         elif fast:
             self.engine = BatchEngine(open_device(spec, self.wanted), self.wanted.rate_hz)
         else:
             find_driver(spec)
-            channels = [each.descriptor for each in (self._steering, pointer) if each is not None]
-            self.engine = Host(spec, self.wanted, _room(protocol, plan), pass_fds=channels)
+            channels = [each for each in (self._steering, self._pointer) if each is not None]
+            descriptors = [each.descriptor for each in channels]
+            self.engine = Host(spec, self.wanted, _room(protocol, plan), pass_fds=descriptors)
+            if watched is not None:
+                self.engine.on_share = lambda descriptor, extent: watched(
+                    watch(memoryview(mmap(descriptor, extent.total_bytes)), extent)[1]
+                )
         self._felt: list[list[NDArray[np.void]]] = []
         self._shown: Shown | None = None
         self._first_line = self._trial_line = line + 1
@@ -166,6 +176,20 @@ class SessionDevice:
     def display(self) -> Display:
         """Display that the device turned out to be."""
         return self.engine.display
+
+    @property
+    def steered(self) -> bool:
+        """Tell whether a page of the live view may be the hand."""
+        return self._pointer is not None
+
+    def lead(self, asked: Point | LetGo) -> None:
+        """Hold the simulated hand at a place, or let it go."""
+        if self._pointer is None:
+            return
+        if isinstance(asked, Point):
+            self._pointer.hold(BeAt(asked.x_mm, asked.y_mm, asked.theta_rad))
+        else:
+            self._pointer.let_go()
 
     @property
     def now_s(self) -> float:

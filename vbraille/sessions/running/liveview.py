@@ -7,6 +7,7 @@ participant, whose number chooses the order of the conditions.
 
 from __future__ import annotations
 
+import logging
 from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Self
@@ -17,7 +18,7 @@ from msgspec import structs
 from vbraille.braille.spelling import ordinal, say_cells
 from vbraille.devices.base import Placing
 from vbraille.engine.engine import placing_of
-from vbraille.engine.record import Flag
+from vbraille.engine.record import Flag, RingReader
 from vbraille.errors import InputError
 from vbraille.live.messages import LetGo, Point, ViewState
 from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
@@ -27,16 +28,19 @@ from vbraille.sessions.running.device import SessionDevice
 
 if TYPE_CHECKING:
     from vbraille.sessions.running.runner import Runner
-    from vbraille.sessions.session import Conditions
 
 # Sentences begin with a word for their kind. Those of these kinds hold no stimulus and no answer.
 SAFE = frozenset(
-    "begin break cue device display ended fault go hand last late missed pause place read ready "
-    "repeat stop turned undo upright warning".split()
+    (
+        *("begin", "break", "cue", "device", "display", "ended", "fault", "go", "hand", "last"),
+        *("late", "missed", "pause", "place", "read", "ready", "repeat", "stop", "turned", "undo"),
+        *("upright", "warning"),
+    )
 )
 # The address of the live view has its token in it.
 NEVER = frozenset(("live view", "record", "resume"))
 MOST_SAID = 20
+_log = logging.getLogger(__name__)
 
 
 class SessionView:
@@ -46,10 +50,10 @@ class SessionView:
     ----------
     protocol
         Protocol of the session, which may have to be blind.
-    conditions
-        What the session is run with.
     host, port
         Where the pages are served.
+    fast
+        Whether the session runs as fast as the machine can.
     say
         Function that is called with each sentence for the experimenter.
 
@@ -62,33 +66,35 @@ class SessionView:
     def __init__(
         self,
         protocol: Protocol,
-        conditions: Conditions,
         host: str | None,
         port: int | None,
+        *,
+        fast: bool,
         say: Callable[[str], None],
     ) -> None:
-        if protocol.medium != "device" or conditions.fast:
+        if protocol.medium != "device" or fast:
             raise InputError(
                 f"--monitor shows a device in real time; {protocol.name} is on paper, or --fast is "
                 f"given; leave one of them out"
             )
         self.blind = protocol.session.blind
-        self._view = LiveView(host=host, port=port, blind=self.blind)
+        self._view: LiveView | None = LiveView(host=host, port=port, blind=self.blind)
         self._host = host or "127.0.0.1"
         self._say = say
-        self._device: SessionDevice | None = None
         self._said: deque[str] = deque(maxlen=MOST_SAID)
         self._count = 0
-        self._is_held = False
 
     def __enter__(self) -> Self:
+        assert self._view is not None
         self._view.__enter__()
         for sentence in self._view.addresses:
             self._say(sentence)
         return self
 
     def __exit__(self, *exception: object) -> None:
-        self._view.__exit__(*exception)
+        view, self._view = self._view, None
+        if view is not None:
+            view.__exit__(*exception)
 
     @property
     def described(self) -> dict[str, Any]:
@@ -103,19 +109,28 @@ class SessionView:
             self._said.append(sentence)
             self._count += 1
 
-    def watch(self, device: SessionDevice) -> None:
-        """Show the ticks of a device from now on; called after each start of it."""
-        self._view.watch(device.engine.reader())
+    def watch(self, ticks: RingReader) -> None:
+        """Show the ticks of a device from now on; called at each start of it."""
+        if self._view is not None:
+            self._view.watch(ticks)
 
     def look(self, runner: Runner) -> None:
         """Tell the pages what has changed, and lead the simulated hand as they ask."""
+        if self._view is None:
+            return
         assert isinstance(runner.device, SessionDevice)
         for asked in self._view.take():
             if isinstance(asked, Point | LetGo):
-                runner.device.lead(asked if isinstance(asked, Point) else None)
+                runner.device.lead(asked)
         for note in self._view.notes():
             self._say(note)
-        self._view.tell(state_of(runner, runner.device, list(self._said), self._count, self.blind))
+        try:
+            state = state_of(runner, runner.device, list(self._said), self._count, self.blind)
+            self._view.tell(state)
+        except Exception as fault:  # whatever it is, the session goes on
+            _log.info("the live view failed: %r", fault)
+            self._say("live view: ended by a fault; the session goes on")
+            self.__exit__(None, None, None)
 
 
 def state_of(

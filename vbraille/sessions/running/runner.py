@@ -6,7 +6,7 @@ and takes lines. A command that ends the trial raises `Again`, one that ends the
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any, NamedTuple
 
@@ -21,7 +21,6 @@ from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Record
 from vbraille.sessions.running.answers import Answers, Asked, Line, NoMoreAnswers, Press, Typed
-from vbraille.sessions.running.commands import COMMANDS, Again, Over, find_command
 from vbraille.sessions.running.device import Happening, SessionDevice
 from vbraille.sessions.running.paper import Paper, Pins
 from vbraille.signals import Suspension
@@ -37,6 +36,46 @@ class Tone(NamedTuple):
 
     frequency_hz: float
     duration_ms: float
+
+
+class Again(Exception):
+    """The open trial is over; whichever trial comes next now is begun."""
+
+
+class Over(Exception):
+    """The run is over.
+
+    Parameters
+    ----------
+    kind
+        Kind of the last event: "stop" if the session can be resumed, or "end".
+    why
+        Why it is over.
+    data
+        What else the event says.
+    """
+
+    def __init__(self, kind: str, why: str, **data: str) -> None:
+        super().__init__(why)
+        self.kind, self.why, self.data = kind, why, data
+
+
+class Command(NamedTuple):
+    """A command.
+
+    Parameters
+    ----------
+    does
+        Function that does it, given the runner and the text after the word.
+    help
+        What it does.
+    takes
+        Whether text may follow the word; a line with such a text is an answer otherwise.
+    """
+
+    does: Callable[[Runner, str], None]
+    help: str
+    takes: bool = False
 
 
 class Timer:
@@ -69,6 +108,8 @@ class Runner:
         Record that events are added to, and how far the session has come.
     answers, device, pins
         Where answers come from, what stimuli are felt on, and the conventional display beside it.
+    commands
+        What may be typed beside answers, by its word.
     real
         Whether the session runs by the clock of the machine.
     say
@@ -91,8 +132,9 @@ class Runner:
         Whether a stimulus is shown, and whether the session is paused.
     waits_for : str
         What the session waits for, in words for people.
-    break_wanted : bool
-        Whether the experimenter has asked for a break that has not begun.
+    break_wanted, is_over : bool
+        Whether the experimenter has asked for a break that has not begun, and whether the run is
+        over.
     """
 
     def __init__(
@@ -102,6 +144,7 @@ class Runner:
         answers: Answers,
         device: SessionDevice | Paper,
         *,
+        commands: Mapping[str, Command],
         pins: Pins | None = None,
         real: bool = True,
         say: Say = _nothing,
@@ -114,10 +157,10 @@ class Runner:
         self.answers, self.device, self.pins = answers, device, pins
         self.trial: Trial | None = None
         self.attempt = self.stimulus = 0
-        self.is_shown = self.paused = self.break_wanted = False
+        self.is_shown = self.paused = self.break_wanted = self.is_over = False
         self.waits_for = ""
         self.asked: Asked | None = None
-        self.say = say
+        self.commands, self.say = commands, say
         self._record = record
         self._real = real
         self._play, self._mark, self._look = play, mark, look
@@ -132,7 +175,7 @@ class Runner:
         self._warned = self._told_late = False
         self._doubted = ""  # answer that was typed early, and is asked for once more
         spelled = self._spelled_commands() if answers.typed else set()
-        self._ambiguous = spelled & COMMANDS.keys()
+        self._ambiguous = spelled & commands.keys()
 
     @property
     def now_s(self) -> float:
@@ -235,7 +278,7 @@ class Runner:
 
     def finish(self, over: Over) -> None:
         """Write why the run is over, and say it."""
-        self.waits_for = "nothing: the session is over"
+        self.is_over, self.waits_for = True, ""
         self.log(over.kind, why=over.why, **over.data)
         done = f"{self.progress.done} trials have answers"
         goes_on = "; session resume goes on" if over.kind == "stop" else ""
@@ -592,7 +635,7 @@ class Runner:
         text = line.text.strip()
         if not text:
             return self._enter(line)
-        found = find_command(text)
+        found = self._find_command(text)
         if found is None:
             return line._replace(text=text)
         word, rest = found
@@ -600,14 +643,21 @@ class Runner:
         if word == "answer" or (awaited and not self.answers.typed and word in self._ambiguous):
             return line._replace(text=rest)
         if awaited and word in self._ambiguous and text.lower() == word:
-            self.say(
-                f"{text} is a command, and a string here: type answer {text}, or command {word}"
-            )
+            said = f"type answer {text}, or command {word}"
+            self.say(f"{text} is a command, and a string here: {said}")
             return None
         if word == "command":
             word, rest = rest.lower(), ""
-        COMMANDS[word].does(self, rest)
+        self.commands[word].does(self, rest)
         return None
+
+    def _find_command(self, line: str) -> tuple[str, str] | None:
+        """Return the command of a line and the text after it; None if the line is no command."""
+        word, _, rest = line.partition(" ")
+        command = self.commands.get(word.lower())
+        if command is None or (rest.strip() and not command.takes):
+            return None
+        return word.lower(), rest.strip()
 
     def _enter(self, line: Line) -> Line | None:
         """Do what Enter does now; return it if something waits for it."""
@@ -668,9 +718,8 @@ class Runner:
             self.say(f"read: type {self.protocol.asks.typed}")
         if kind == "fault":
             repeats = self.protocol.faults.repeat
-            self.say(
-                f"fault: {data['what']}; {self.name} {'is repeated' if repeats else 'goes on'}"
-            )
+            then = "is repeated" if repeats else "goes on"
+            self.say(f"fault: {data['what']}; {self.name} {then}")
             if repeats:
                 raise Again
 

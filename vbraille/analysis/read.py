@@ -1,0 +1,466 @@
+"""Sessions and tables of trials, or of scores, as one typed frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from vbraille.braille.spelling import LETTERS
+from vbraille.csvfiles import parse_csv
+from vbraille.errors import InputError
+from vbraille.names import check_alike, likeness, natural, visible
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from vbraille.sessions.record.record import Content
+
+MISSING = frozenset({"", "NA", "N/A", "n/a", "NaN", "None", "NULL", "<NA>"})
+NEEDED = ("participant", "presented", "answered")
+TEXTS = frozenset({"session", "participant", "protocol", "condition", *NEEDED[1:], "string_set"})
+LEVELS = (
+    "contrast", "texture", "dot_width_mm", "dot_spacing_mm", "cell_gap_mm", "row_spacing_mm",
+)  # fmt: skip
+DURATIONS = ("duration_s", "response_s", "contact_s", "paused_s")
+NUMBERS = (*DURATIONS, "trial", "block", "early", "confidence", "words_per_minute")
+STRINGS = "identify"
+NO_SCORE = "no score"
+QUESTIONS = (
+    STRINGS, "which", "odd", "match", "same-different", "detect", "rating", "magnitude", "adjust",
+    "name", "free", "read",
+)  # fmt: skip
+SIGNALS = {"detect": ("yes", "no"), "same-different": ("different", "same")}
+GOOD = ("right", "hit", "correct rejection")
+OUTCOMES = (*GOOD, "wrong", "miss", "false alarm")
+_NUMBER = r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?"
+_CELLS = str.maketrans({letter: chr(0x2800 + mask) for letter, mask in LETTERS.items()})
+_BLANK = str.maketrans(" ", "⠀")
+_SQLITE = b"SQLite format 3\0"
+
+
+@dataclass
+class Trials:
+    """Trials that are analysed, and what was seen while they were read.
+
+    Parameters
+    ----------
+    frame
+        A row a trial: what was read, with ``right``, ``outcome``, and conditions and participants
+        in their order.
+    notes, warnings
+        Sentences on what was left out or changed, and what a reader must know first.
+    left_out
+        People who are left out, each with the reason.
+    sources
+        Sentences on each file.
+    contents
+        Sessions, for the methods.
+    """
+
+    frame: pd.DataFrame
+    notes: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+    sources: list[str] = field(default_factory=list)
+    contents: list[Content] = field(default_factory=list)
+
+
+@dataclass
+class _Source:
+    name: str
+    table: pd.DataFrame
+    said: str
+    content: Content | None = None
+
+
+def read_trials(
+    paths: Sequence[str | Path],
+    *,
+    protocol: str | None = None,
+    exclude: Mapping[str, str] | None = None,
+) -> Trials:
+    """Read sessions and tables.
+
+    Parameters
+    ----------
+    protocol
+        Name of the protocol whose trials are taken; None for all.
+    exclude
+        People to leave out, each with the reason.
+
+    Raises
+    ------
+    InputError
+        If something cannot be read, is there twice, or nothing is left.
+    """
+    files = [Path(path) for path in paths]
+    sources = [_load(path, name) for path, name in zip(files, _names(files), strict=True)]
+    _check_copies(sources)
+    frame = pd.concat([source.table for source in sources], ignore_index=True)
+    trials = Trials(frame, sources=[source.said for source in sources])
+    trials.contents = [source.content for source in sources if source.content is not None]
+    _fill(trials)
+    _join_names(trials, ["participant", "condition"])
+    _drop_unanswered(trials)
+    _read_answers(trials)
+    if protocol is not None:
+        _keep(trials, "protocol", [protocol])
+    for person, reason in (exclude or {}).items():
+        _check_known(trials.frame, "participant", person)
+        trials.frame = trials.frame[trials.frame["participant"] != person]
+        trials.left_out.append(f"{person}: {reason}")
+    if trials.frame.empty:
+        raise InputError("no trial is left; see what was excluded")
+    order = ["participant", "session", "block", "trial"]
+    _warn_of_sources(trials)
+    for name in ("participant", "condition"):
+        trials.frame[name] = in_order(trials.frame[name])
+    trials.frame = trials.frame.sort_values(order, kind="stable", ignore_index=True)
+    return trials
+
+
+def in_order(values: pd.Series) -> pd.Series:
+    """Return names as categories in natural order: T0, T25, T100."""
+    names = values.astype(str)
+    kinds = pd.CategoricalDtype(sorted(names.unique(), key=natural), ordered=True)
+    return names.astype(kinds)
+
+
+def _load(path: Path, name: str) -> _Source:
+    """Read a session or a table."""
+    data = _content(path)
+    said = f"{name}: SHA-256 {sha256(data).hexdigest()[:16]}…"
+    if data.startswith(_SQLITE):
+        from vbraille.sessions.record import record, trials
+
+        rows = [{key: str(cell) for key, cell in row.items()} for row in trials.rows(path)]
+        table = _typed(pd.DataFrame(rows, dtype=object), name)
+        table["session"] = name
+        return _Source(name, table, f"{said}, {len(rows)} trials", record.read(path))
+    sheet = parse_csv(data, name)
+    table = pd.DataFrame(sheet.rows, sheet.lines, list(sheet.columns), dtype=object)
+    for column in NEEDED:
+        if column not in table:
+            raise InputError(f"{name} has no column {column}; it has {', '.join(table)}")
+    table = _typed(table, name)
+    numbered = "trial" in table
+    if "session" not in table:
+        table["session"] = name
+    _check_once(table, name, numbered=numbered)
+    return _Source(name, table, f"{said}, {len(table)} rows")
+
+
+def _content(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except IsADirectoryError:
+        raise InputError(f"{path} is a directory; give files of sessions, or tables") from None
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}") from None
+
+
+def _names(paths: list[Path]) -> list[str]:
+    """Return the name of each file, with its folder where two have the same name."""
+    names = [path.name for path in paths]
+    if len({path.resolve() for path in paths}) < len(paths):
+        again = next(name for name in names if names.count(name) > 1)
+        raise InputError(f"{again} is given twice; give it once")
+    return [
+        name if names.count(name) == 1 else str(path)
+        for name, path in zip(names, paths, strict=True)
+    ]
+
+
+def _check_once(table: pd.DataFrame, name: str, *, numbered: bool) -> None:
+    """Refuse a trial that a table holds twice, as far as trials have numbers."""
+    again = table.index[table.duplicated()] if numbered else []
+    if len(again):
+        raise InputError(
+            f"{name}: line {again[0]} is the same as a line above it; give each trial once, and "
+            f"tell sessions apart in a column session"
+        )
+
+
+def _typed(table: pd.DataFrame, name: str) -> pd.DataFrame:
+    """Return a table with missing cells, and with numbers in columns that have nothing else."""
+    made = {}
+    for column in table:
+        cells = table[column]
+        cells = cells.mask(cells.isin(MISSING))
+        made[column] = cells if column in TEXTS else _numbers(cells, str(column), name)
+    return pd.DataFrame(made, table.index)
+
+
+def _numbers(cells: pd.Series, column: str, name: str) -> pd.Series:
+    known = cells.dropna()
+    good = known.drop_duplicates().astype(str).str.fullmatch(_NUMBER)
+    if good.all():
+        numbers = to_number(cells)
+        wrong = numbers.index[np.isinf(numbers) | ((numbers < 0) & (column in DURATIONS))]
+    elif column in (*NUMBERS, "score"):
+        wrong = good.index[~good.astype(bool)]
+    else:
+        return cells
+    if len(wrong):
+        raise InputError(
+            f"{name}: line {wrong[0]} has {column} {known[wrong[0]]!r}; give a number, or nothing"
+        )
+    return numbers
+
+
+def to_number(values: pd.Series) -> pd.Series:
+    """Return numbers, with decimal points or commas; what is none is missing."""
+    texts = values.astype(object).map(lambda value: str(value).replace(",", "."), "ignore")
+    return pd.to_numeric(texts, errors="coerce").astype(float)
+
+
+def _check_copies(sources: list[_Source]) -> None:
+    """Refuse a session, or the trials of a person, that two files hold."""
+    sessions: dict[str, str] = {}
+    people: dict[str, list[_Source]] = {}
+    for source in sources:
+        for session in source.table["session"].dropna().unique():
+            other = sessions.setdefault(session, source.name)
+            if other != source.name:
+                raise InputError(
+                    f"{other} and {source.name} both hold the session {session}; give one, or give "
+                    f"sessions other names in the column session"
+                )
+        for person in source.table["participant"].dropna().unique():
+            for other in people.setdefault(person, []):
+                if _same_trials(source.table, other.table, person):
+                    raise InputError(
+                        f"{other.name} and {source.name} hold the same trials of {person}; give "
+                        f"one of them"
+                    )
+            people[person].append(source)
+
+
+def _same_trials(one: pd.DataFrame, other: pd.DataFrame, person: str) -> bool:
+    """Tell whether two tables have the same answers of a person, by their times or by all cells."""
+    parts = [table[table["participant"] == person] for table in (one, other)]
+    parts = [part.dropna(subset=["answered"]) for part in parts]
+    if "answer_time" in one and "answer_time" in other:
+        return bool(parts[0]["answer_time"].isin(parts[1]["answer_time"].dropna()).any())
+    shared = [name for name in one if name in other and name != "session"]
+    rows = [sorted(map(tuple, part[shared].astype(str).to_numpy().tolist())) for part in parts]
+    return bool(rows[0]) and rows[0] == rows[1]
+
+
+def _fill(trials: Trials) -> None:
+    """Add the columns that a table may leave out, and refuse names that are missing."""
+    frame = trials.frame
+    if "condition" not in frame:
+        frame["condition"] = "all"
+    pairs = frame["presented"].astype(str).str.fullmatch(rf"{_NUMBER}\s+{_NUMBER}")
+    asked = frame["question"] if "question" in frame else pd.Series(np.nan, frame.index)
+    usual = pd.Series(np.where(pairs, "which", STRINGS), frame.index)
+    frame["question"] = asked.astype(object).fillna(usual)
+    unknown = sorted(set(frame["question"]) - set(QUESTIONS))
+    if unknown:
+        raise InputError(f"unknown question {unknown[0]!r}; known: {', '.join(QUESTIONS)}")
+    if "protocol" not in frame:
+        frame["protocol"] = ""
+    frame["protocol"] = frame["protocol"].fillna("")
+    for name in ("participant", "condition", "session", "presented"):
+        holes = int(frame[name].isna().sum())
+        if holes:
+            raise InputError(
+                f"{name} is missing in {holes} rows; {', '.join(sorted(MISSING)[1:])} and an empty "
+                f"cell name nothing"
+            )
+    if "block" not in frame:
+        frame["block"] = 0
+    frame["block"] = frame["block"].fillna(0)
+    numbers = frame.groupby("session").cumcount() + 1.0
+    frame["trial"] = frame["trial"].fillna(numbers) if "trial" in frame else numbers
+
+
+def _join_names(trials: Trials, columns: Iterable[str]) -> None:
+    """Join names that differ by what cannot be seen, and refuse those that look like one."""
+    for column in columns:
+        names = {name: visible(name) for name in trials.frame[column].unique()}
+        check_alike(names.values(), column)
+        joined = sorted({shown for name, shown in names.items() if shown != name})
+        if joined:
+            trials.frame[column] = trials.frame[column].map(names)
+            trials.notes.append(
+                f"{column}: spellings that look the same were joined: {', '.join(joined)}"
+            )
+
+
+def _drop_unanswered(trials: Trials) -> None:
+    frame = trials.frame
+    if "practice" in frame:
+        practice = frame["practice"].eq(1)
+        if practice.any():
+            trials.notes.append(f"{practice.sum()} trials of practice are left out")
+        frame = frame[~practice]
+    unanswered = frame["answered"].isna()
+    for person, count in frame.loc[unanswered, "participant"].value_counts(sort=False).items():
+        trials.notes.append(f"{person}: {count} trials without an answer are left out")
+    if unanswered.all():
+        raise InputError("no trial has an answer; nothing can be analysed")
+    trials.frame = frame[~unanswered].reset_index(drop=True)
+
+
+def _read_answers(trials: Trials) -> None:
+    """Bring presented and answered into one spelling, and tell which answers are right."""
+    frame = trials.frame
+    strings = frame["question"] == STRINGS
+    if "string_set" not in frame:
+        frame["string_set"] = np.nan
+    frame["string_set"] = frame["string_set"].astype(object).fillna(frame["presented"])
+    for column in ("presented", "answered", "string_set"):
+        known = frame.loc[strings, column].unique()
+        cells = {text: visible(text.translate(_BLANK)).lower() for text in known}
+        cells = {text: plain.translate(_CELLS) for text, plain in cells.items()}
+        frame.loc[strings, column] = frame.loc[strings, column].map(cells)
+    frame["right"] = frame["presented"] == frame["answered"]
+    if "correct" in frame:
+        said = frame["correct"]
+        odds = int((strings & said.notna() & (said != frame["right"])).sum())
+        if odds:
+            trials.notes.append(f"correct disagrees with the answer in {odds} rows: answers count")
+    given = frame["outcome"] if "outcome" in frame else pd.Series(np.nan, frame.index)
+    frame["outcome"] = given.astype(object)
+    _name_answers(trials, frame["question"] == "name")
+    for question, rows in frame[~strings].groupby("question"):
+        if question in SIGNALS:
+            frame.loc[rows.index, "outcome"] = _detected(rows, *SIGNALS[str(question)])
+        elif "correct" in rows:
+            scored = rows["correct"].map({1: "right", 0: "wrong"})
+            frame.loc[rows.index, "outcome"] = rows["outcome"].fillna(scored)
+    outcome = frame["outcome"]
+    unknown = sorted(set(outcome.dropna()) - set(OUTCOMES))
+    if unknown:
+        raise InputError(f"unknown outcome {unknown[0]!r}; known: {', '.join(OUTCOMES)}")
+    told = ~strings & (outcome.notna() | (frame["question"] != "name"))
+    frame["right"] = frame["right"].where(~told, outcome.isin(GOOD))
+
+
+def _name_answers(trials: Trials, named: pd.Series) -> None:
+    """Spell names that were answered as they were presented, whatever their case."""
+    frame = trials.frame
+    if not named.any():
+        return
+    presented = {name: visible(name) for name in frame.loc[named, "presented"].unique()}
+    check_alike(presented.values(), "presented")
+    known = {likeness(name): name for name in presented.values()}
+    answered = {
+        name: known.get(likeness(name), visible(name))
+        for name in frame.loc[named, "answered"].unique()
+    }
+    frame.loc[named, "presented"] = frame.loc[named, "presented"].map(presented)
+    frame.loc[named, "answered"] = frame.loc[named, "answered"].map(answered)
+    frame.loc[named, "right"] = frame.loc[named, "presented"] == frame.loc[named, "answered"]
+
+
+def _detected(rows: pd.DataFrame, signal: str, noise: str) -> pd.Series:
+    """Return the outcome of each answer, as given, or by what was presented."""
+    answered = rows["answered"].str.lower()
+    wrong = answered[~answered.isin([signal, noise])]
+    if len(wrong):
+        raise InputError(f"answered is {wrong.iloc[0]!r}; it must be {signal} or {noise}")
+    presented = rows["presented"].str.lower()
+    told = {
+        f"{signal} {signal}": "hit",
+        f"{signal} {noise}": "miss",
+        f"{noise} {signal}": "false alarm",
+        f"{noise} {noise}": "correct rejection",
+    }
+    outcome = rows["outcome"].fillna((presented + " " + answered).map(told))
+    untold = rows["presented"][outcome.isna()]
+    if len(untold):
+        raise InputError(
+            f"presented is {untold.iloc[0]!r}, and there is no outcome; give {signal} or {noise}, "
+            f"or a column outcome"
+        )
+    return outcome
+
+
+def _check_known(frame: pd.DataFrame, column: str, name: str) -> None:
+    known = sorted(frame[column].astype(str).unique(), key=natural)
+    if name not in known:
+        raise InputError(f"no {column} {name!r} has answered; known: {', '.join(known)}")
+
+
+def _keep(trials: Trials, column: str, names: list[str]) -> None:
+    for name in names:
+        _check_known(trials.frame, column, name)
+    kept = trials.frame[column].isin(names)
+    if not kept.all():
+        trials.notes.append(f"{(~kept).sum()} trials of another {column} are left out")
+    trials.frame = trials.frame[kept].copy()
+    trials.contents = [each for each in trials.contents if each.head.get(column) in names]
+
+
+def caught(frame: pd.DataFrame) -> pd.Series:
+    """Tell which trials only keep watch over the participant."""
+    if "catch" not in frame:
+        return pd.Series(False, frame.index)
+    return frame["catch"].notna() & ~frame["question"].eq("detect")
+
+
+def _warn_of_sources(trials: Trials) -> None:
+    """Say how many answers no person gave, and how many trials no finger read."""
+    for column, source, words in (
+        ("answers_from", "simulated", "answers are of a simulated reader"),
+        ("moved_by", "simulated:pointer", "trials were moved by the pointer of a live view"),
+    ):
+        if column in trials.frame:
+            count = int(trials.frame[column].astype(str).str.startswith(source).sum())
+            if count:
+                trials.warnings.append(f"{count} {words}: no data about people.")
+
+
+def read_scores(path: str | Path) -> tuple[pd.DataFrame, list[str], list[str]]:
+    """Read a table of scores: columns participant, one to four factors, and score.
+
+    A factor of which each person has one level is one between people. The last column holds the
+    scores if none is called score.
+
+    Returns
+    -------
+    values, within, between
+        A row for each person and cell, with ``value``, and ``why`` it is missing if it is; and the
+        factors within people and between them.
+
+    Raises
+    ------
+    InputError
+        If it is no such table.
+    """
+    sheet = parse_csv(_content(Path(path)), Path(path).name)
+    table = pd.DataFrame(sheet.rows, sheet.lines, list(sheet.columns), dtype=object)
+    if "participant" not in table or table.shape[1] < 3 or table.empty:
+        raise InputError(f"{sheet.name} needs columns participant, what was varied, and score")
+    score = "score" if "score" in table else str(table.columns[-1])
+    table = table.mask(table.isin(MISSING))
+    table[score] = _numbers(table[score], "score", sheet.name)
+    factors = [name for name in table if name not in ("participant", score)]
+    for name in ("participant", *factors):
+        if table[name].isna().any():
+            line = table.index[table[name].isna()][0]
+            raise InputError(f"{sheet.name}: line {line} has no {name}")
+        table[name] = table[name].map(visible)
+        check_alike(table[name], name)
+        table[name] = in_order(table[name])
+    levels = table.groupby("participant", observed=True)[factors].nunique().max()
+    between = [name for name in factors if levels[name] == 1 < table[name].nunique()]
+    within = [name for name in factors if name not in between]
+    if len(between) > 1 or len(within) > 3:
+        raise InputError(
+            f"{sheet.name}: {', '.join(within)} vary within people, and {', '.join(between)} "
+            f"between them; at most three and one can be compared"
+        )
+    again = table.index[table.duplicated(["participant", *within])]
+    if len(again):
+        raise InputError(f"{sheet.name}: line {again[0]} has a second score of a person in a cell")
+    values = table.set_index(["participant", *factors])[[score]].set_axis(["value"], axis=1)
+    return values.assign(why=NO_SCORE), within, between
