@@ -16,8 +16,9 @@ from bisect import bisect_left
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tests.benchmarks.timing import Result, vbraille
 from vbraille.sessions.planning.protocolfiles import builtin_text
+
+from tests.benchmarks.timing import Result, vbraille
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

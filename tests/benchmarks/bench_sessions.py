@@ -14,17 +14,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
+from vbraille.sessions.record.events import Answer, Closed
+from vbraille.sessions.record.folder import load
+from vbraille.sessions.record.traces import read_trace
 
 from tests.benchmarks.killing import ADAPTIVE, kill_often
 from tests.benchmarks.killing import KILLS as KILLED
 from tests.benchmarks.timing import Result, seconds, vbraille
 from tests.conftest import SEED
 from tests.sessions.planning.rulebook import broken_rules
-from vbraille.sessions.planning.making import make_plan
-from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
-from vbraille.sessions.record.events import Answer, Closed
-from vbraille.sessions.record.folder import load
-from vbraille.sessions.record.traces import read_trace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-
-from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import to_json
 from vbraille.sessions.record.folder import PLAN, check, load
 from vbraille.sessions.record.traces import read_last_tie
+
+from vbraille.sessions.record import journal
 
 if TYPE_CHECKING:
     from pathlib import Path
