@@ -106,7 +106,7 @@ def test_a_dataset_of_all_kinds_has_nothing_against_it(sessions, tmp_path):
     export_bids(list(sessions.values()), tmp_path / "set")
     assert complaints(tmp_path / "set") == ""
     (events,) = (tmp_path / "set" / "sub-P01").rglob("*_events.tsv")
-    table = list(csv.DictReader(events.open(encoding="utf-8"), delimiter="\t"))
+    table = list(csv.DictReader(events.read_text("utf-8").splitlines(), delimiter="\t"))
     onsets = [float(row["onset"]) for row in table]
     assert onsets == sorted(onsets)
     assert sum(row["trial_type"] == "answer" for row in table) == 3
@@ -137,7 +137,7 @@ def test_all_of_a_person_is_found_and_removed(sessions, tmp_path):
     found.remove()
     assert not mine.exists()
     assert other.exists()
-    kept = list(csv.DictReader((tmp_path / "trials.csv").open(encoding="utf-8")))
+    kept = list(csv.DictReader((tmp_path / "trials.csv").read_text("utf-8").splitlines()))
     assert {row["participant"] for row in kept} == {"P02"}
     assert not (tmp_path / "set" / "sub-P01").exists()
     assert "P01" not in (tmp_path / "set" / "participants.tsv").read_text()

@@ -126,7 +126,7 @@ CHANGES = {
     "ticks gone": "DELETE FROM ticks WHERE rowid = 2",
     "the last ticks gone": "DELETE FROM ticks WHERE rowid = (SELECT max(rowid) FROM ticks)",
     "the end gone": "DELETE FROM event WHERE n = (SELECT max(n) FROM event)",
-    "the plan": "UPDATE trial SET item = '⠁⠁' WHERE number = 1",
+    "the plan": "UPDATE trial SET item = 'x' WHERE number = 1",
     "the protocol": "UPDATE file SET content = CAST(content || '#' AS BLOB)",
     "the participant": "UPDATE session SET participant = 'P02'",
 }
@@ -165,7 +165,7 @@ def test_what_can_be_read_of_a_damaged_file_is_saved(ended, tmp_path):
 
 def test_the_view_of_answers_has_those_that_count(tmp_path):
     sat = made(tmp_path).sit(
-        ("read:", "ac"), ("answer:", "undo"), ("answer:", "aa"), ("read:", "ca"),
+        ("read:", "ac"), ("answer:", "undo"), ("undo:", "aa"), ("read:", "ca"),
         ("read:", "aa"), ("last", ""),
     )  # fmt: skip
     with sqlite3.connect(sat.session.path) as db:
