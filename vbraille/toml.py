@@ -8,7 +8,7 @@ import re
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import msgspec
 from msgspec import inspect
@@ -72,7 +72,7 @@ def read_toml(text: str, kind: type[Kind], where: str) -> Kind:
     try:
         return msgspec.convert(tree, kind)
     except msgspec.ValidationError as error:
-        raise _refused(text, where, *_explain(error, kind)) from None
+        raise _refused(text, where, *_explain(error, kind, tree)) from None
 
 
 def located(text: str, where: str, error: WrongValue) -> InputError:
@@ -126,14 +126,15 @@ def line_of(text: str, path: Path) -> int:
     return found
 
 
-def _explain(error: msgspec.ValidationError, kind: type) -> tuple[Path, str]:
+def _explain(error: msgspec.ValidationError, kind: type, tree: object) -> tuple[Path, str]:
     """Return the path to what is wrong, and the words for it."""
     message, _, steps = str(error).partition(" - at `$")
     path: Path = [int(item) if item else key for key, item in _STEP.findall(steps)]
     if isinstance(error.__cause__, WrongValue):
         return path + error.__cause__.path, error.__cause__.problem
     if match := re.match(r"Object contains unknown field `(.*)`", message):
-        return [*path, match[1]], f"there is no such key{which(match[1], _known_keys(kind, path))}"
+        near = which(match[1], _known_keys(kind, path, tree))
+        return [*path, match[1]], f"there is no such key{near}"
     if match := re.match(r"Object missing required field `(.*)`", message):
         return path, f"{match[1]} is missing"
     if match := re.match(r"Invalid (?:enum )?value (.*)", message):
@@ -145,10 +146,13 @@ def _explain(error: msgspec.ValidationError, kind: type) -> tuple[Path, str]:
     return path, message.replace("Expected", "must be").replace(", got", ", and is")
 
 
-def _known_keys(kind: type, path: Path) -> list[str]:
-    """Return the keys that the table at a path may have."""
+def _known_keys(kind: type, path: Path, tree: Any) -> list[str]:
+    """Return the keys that the table at a path may have, if it is of one of several kinds."""
+    for step in path:
+        tree = tree[step]
     structs = [each for each in _types_at(kind, path) if isinstance(each, inspect.StructType)]
-    return [field.encode_name for each in structs for field in each.fields]
+    own = [each for each in structs if not each.tag_field or tree.get(each.tag_field) == each.tag]
+    return [field.encode_name for each in own for field in each.fields]
 
 
 def _known_values(kind: type, path: Path) -> list[str]:

@@ -199,6 +199,7 @@ def check(protocol: Protocol) -> None:
     WrongValue
         If they do not.
     """
+    _items(protocol)
     _check_names(protocol)
     _check_design(protocol)
     _check_question(protocol)

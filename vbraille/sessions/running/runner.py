@@ -250,7 +250,9 @@ class Runner:
         early: list[Happening] = []
         if isinstance(self.device, SessionDevice):
             while self.device.newest is None:
-                early += self.device.poll()[1]
+                ticks, happened = self.device.poll()
+                self._record.add_ticks(ticks)
+                early += happened
         self._began_s, self._before_s = self.now_s, self.progress.t_s
         self._free_s = -1e9
         self.log("run", **told)
