@@ -6,13 +6,13 @@ analysis.write("report")
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError, needing_extras
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
     from vbraille.analysis.report import Analysis
 
