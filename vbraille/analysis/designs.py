@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pandas as pd
+from pandas import DataFrame, Series
 
 from vbraille.analysis import stats
 
@@ -81,7 +82,7 @@ def pairs_of(cube: Floats, levels: list[int], member: ArrayLike | None = None) -
             yield Pair(GROUP, first, second, test)
 
 
-def levels_of(cells: pd.DataFrame) -> list[list[str]]:
+def levels_of(cells: DataFrame) -> list[list[str]]:
     """Return the levels of each factor within people, in their order; none of groups alone."""
     if cells.shape[1] == 1:
         return []
@@ -89,7 +90,7 @@ def levels_of(cells: pd.DataFrame) -> list[list[str]]:
     return [list(dict.fromkeys(table[name])) for name in table]
 
 
-def crossed(cells: pd.DataFrame) -> pd.DataFrame:
+def crossed(cells: DataFrame) -> DataFrame:
     """Return cells with a column for each combination of levels, in the order of the factors."""
     levels = levels_of(cells)
     if len(levels) < 2:
@@ -98,9 +99,7 @@ def crossed(cells: pd.DataFrame) -> pd.DataFrame:
     return cells.reindex(columns=whole)
 
 
-def compare(
-    cells: pd.DataFrame, groups: pd.Series | None = None
-) -> tuple[pd.DataFrame, pd.DataFrame]:
+def compare(cells: DataFrame, groups: Series | None = None) -> tuple[DataFrame, DataFrame]:
     """Test effects and pairs of people's values.
 
     Parameters
@@ -152,9 +151,9 @@ def _floats(test: FTest | TTest) -> dict[str, float | str]:
     return {name: x if name == "note" else float(x) for name, x in test._asdict().items()}
 
 
-def _corrected(rows: list[dict]) -> pd.DataFrame:
+def _corrected(rows: list[dict]) -> DataFrame:
     """Return a table of tests with Holm's p, and with intervals where there is an error."""
-    table = pd.DataFrame(rows)
+    table = DataFrame(rows)
     if "p" not in table:
         return table
     corrected, k = stats.holm(table["p"])
@@ -166,7 +165,7 @@ def _corrected(rows: list[dict]) -> pd.DataFrame:
     return table[[*table.columns.drop("note"), "note"]]
 
 
-def simple_effects(cells: pd.DataFrame, groups: pd.Series | None = None) -> pd.DataFrame:
+def simple_effects(cells: DataFrame, groups: Series | None = None) -> DataFrame:
     """Test the other factors at each level of each factor; p is corrected among all rows."""
     whole = crossed(cells).dropna()
     found = []
@@ -181,7 +180,7 @@ def simple_effects(cells: pd.DataFrame, groups: pd.Series | None = None) -> pd.D
             found.append(compare(at)[0].assign(at=f"{groups.name} {level}"))
     tables = [table for table in found if "p" in table]
     if not tables:
-        return pd.DataFrame()
+        return DataFrame()
     made = pd.concat(tables, ignore_index=True).drop(columns="p_holm")
     made.insert(0, "at", made.pop("at"))
     return _corrected(made.to_dict("records"))

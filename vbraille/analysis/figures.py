@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import matplotlib
 import numpy as np
-import pandas as pd
 from matplotlib.figure import Figure
+from pandas import DataFrame, Series
 
 from vbraille.analysis.measures import LOGS, SHARES
 from vbraille.analysis.primary import plain
@@ -44,7 +44,7 @@ def means(result: Result) -> Figure:
         axes.set_yscale("log")
     axes.bar(at, times * shown["mean"], 0.6, color=".9", edgecolor="k")
     first = 0
-    groups = pd.Series("", result.cells.index) if result.groups is None else result.groups
+    groups = Series("", result.cells.index) if result.groups is None else result.groups
     for _, own in groups.groupby(groups):
         people = values[result.cells.index.isin(own.index)]
         places = np.arange(first, first + values.shape[1])
@@ -58,7 +58,7 @@ def means(result: Result) -> Figure:
     return figure
 
 
-def confusion(counts: pd.DataFrame) -> Figure:
+def confusion(counts: DataFrame) -> Figure:
     """Draw how often each was answered where another was presented, darker for more."""
     size = min(2 + 0.2 * counts.shape[1], 14), min(1.5 + 0.2 * counts.shape[0], 10)
     figure = Figure(figsize=size)
@@ -71,7 +71,7 @@ def confusion(counts: pd.DataFrame) -> Figure:
     return figure
 
 
-def over_time(table: pd.DataFrame) -> Figure:
+def over_time(table: DataFrame) -> Figure:
     """Draw the moving average of each person in each condition, figure 3.14."""
     runs = list(table.groupby(["participant", "condition"], observed=True))[:MOST_RUNS]
     down = -(-len(runs) // ACROSS)
@@ -89,9 +89,7 @@ def over_time(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _bars(
-    labels: pd.Series, parts: dict[str, pd.Series], what: str, unit: str, reach=None
-) -> Figure:
+def _bars(labels: Series, parts: dict[str, Series], what: str, unit: str, reach=None) -> Figure:
     """Draw a bar, or a group of bars, for each label."""
     figure = Figure(figsize=(min(2 + 0.35 * len(labels) * len(parts), 12), 3))
     axes = figure.subplots()
@@ -111,31 +109,31 @@ def _bars(
     return figure
 
 
-def legibility(table: pd.DataFrame) -> Figure:
+def legibility(table: DataFrame) -> Figure:
     """Draw legibility by character of each person in each condition, figure 4.7."""
     wide = table.pivot(index="participant", columns="condition", values="character_legibility")
     parts = {str(name): 100 * wide[name] for name in wide}
     return _bars(wide.index.to_series(), parts, "participant", "characters right (%)")
 
 
-def dots(table: pd.DataFrame) -> Figure:
+def dots(table: DataFrame) -> Figure:
     """Draw legibility by the number of dots of a character, figure 4.8."""
     shares = 100 * table["legibility"]
     reach = [shares - 100 * table["low"], 100 * table["high"] - shares]
     return _bars(table["level"], {"": shares}, "dots", "characters right (%)", reach)
 
 
-def errors(table: pd.DataFrame) -> Figure:
+def errors(table: DataFrame) -> Figure:
     """Draw the most frequent errors by dots, figure 4.8."""
     shown = table.head(MOST_KINDS)
     kinds = [
         ", ".join(f"{row[name]} {name}" for name in ("added", "removed", "moved") if row[name])
         for row in shown.to_dict("records")
     ]
-    return _bars(pd.Series(kinds), {"": 100 * shown["share"]}, "dots", "of all errors (%)")
+    return _bars(Series(kinds), {"": 100 * shown["share"]}, "dots", "of all errors (%)")
 
 
-def choices(table: pd.DataFrame) -> Figure:
+def choices(table: DataFrame) -> Figure:
     """Draw how often each value was chosen, figure 3.12."""
     shares = {"": 100 * table["share"]}
     return _bars(
@@ -143,7 +141,7 @@ def choices(table: pd.DataFrame) -> Figure:
     )
 
 
-def levels(table: pd.DataFrame) -> Figure:
+def levels(table: DataFrame) -> Figure:
     """Draw right answers and times by level, with their SD over people, figure 6.7."""
     figure = Figure(figsize=(8, 3), layout="constrained")
     grid = figure.subplots(1, 2)
@@ -159,7 +157,7 @@ def levels(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def answers(table: pd.DataFrame) -> Figure:
+def answers(table: DataFrame) -> Figure:
     """Draw the distribution of answers to each name, figure 6.10."""
     down = -(-len(table) // ACROSS)
     figure = Figure(figsize=(9, 0.6 + 1.6 * down), layout="constrained")
@@ -175,7 +173,7 @@ def answers(table: pd.DataFrame) -> Figure:
     return figure
 
 
-DRAWN: dict[str, Callable[[pd.DataFrame], Figure]] = {
+DRAWN: dict[str, Callable[[DataFrame], Figure]] = {
     "legibility": legibility,
     "dots": dots,
     "errors": errors,
@@ -187,7 +185,7 @@ DRAWN: dict[str, Callable[[pd.DataFrame], Figure]] = {
 """Figures by the names of the tables that they show; confusions have `confusion`."""
 
 
-def draw(result: Result | None, tables: dict[str, pd.DataFrame]) -> dict[str, bytes]:
+def draw(result: Result | None, tables: dict[str, DataFrame]) -> dict[str, bytes]:
     """Return the content of each figure by the name of its file; the means are a PNG as well."""
     files = {}
     with matplotlib.rc_context(STYLE):

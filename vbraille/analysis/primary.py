@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from pandas import DataFrame, Series
 
 from vbraille.analysis import designs, stats
 from vbraille.analysis.measures import CHOICES, LOGS, PLAIN, SHARES, Measure, alternatives
@@ -44,18 +45,18 @@ class Result:
     """
 
     measure: Measure
-    cells: pd.DataFrame
-    groups: pd.Series | None
-    means: pd.DataFrame
-    effects: pd.DataFrame
-    pairs: pd.DataFrame
-    simple: pd.DataFrame
+    cells: DataFrame
+    groups: Series | None
+    means: DataFrame
+    effects: DataFrame
+    pairs: DataFrame
+    simple: DataFrame
     left_out: list[str]
     warnings: list[str] = field(default_factory=list)
     sentences: list[str] = field(default_factory=list)
 
 
-def compare(trials: pd.DataFrame, plan: Plan) -> Result:
+def compare(trials: DataFrame, plan: Plan) -> Result:
     """Make the planned comparison.
 
     Parameters
@@ -93,14 +94,14 @@ def compare_scores(path: str | Path) -> Result:
 
 
 def result_of(
-    measure: Measure, cells: pd.DataFrame, groups: pd.Series | None, left_out: list[str]
+    measure: Measure, cells: DataFrame, groups: Series | None, left_out: list[str]
 ) -> Result:
     """Test people's values in cells, and say what was found; `Result` describes the arguments."""
-    effects = pairs = pd.DataFrame()
+    effects = pairs = DataFrame()
     if cells.shape[1] > 1 or groups is not None:
         effects, pairs = designs.compare(cells, groups)
     if len(effects) == 1 and len(pairs) == 1:
-        effects = pd.DataFrame()  # its F is the t of the only pair, squared
+        effects = DataFrame()  # its F is the t of the only pair, squared
     means = _means(cells, groups, measure.scale)
     simple = designs.simple_effects(cells, groups)
     result = Result(measure, cells, groups, means, effects, pairs, simple, left_out)
@@ -109,8 +110,8 @@ def result_of(
 
 
 def _in_cells(
-    values: pd.DataFrame, within: list[str], between: list[str], missing: str = "no trial"
-) -> tuple[pd.DataFrame, pd.Series | None, list[str]]:
+    values: DataFrame, within: list[str], between: list[str], missing: str = "no trial"
+) -> tuple[DataFrame, Series | None, list[str]]:
     """Return people by cells, their groups, and who is left out with the reason."""
     groups = None
     if between:
@@ -138,7 +139,7 @@ def _in_cells(
     return cells, None if groups is None else groups[cells.index], left_out
 
 
-def _plain(wide: pd.DataFrame) -> pd.DataFrame:
+def _plain(wide: DataFrame) -> DataFrame:
     """Return a frame whose names are text, and not categories."""
     if wide.columns.nlevels == 1:
         wide.columns = pd.Index(wide.columns.astype(str), name=wide.columns.name)
@@ -153,7 +154,7 @@ def cell_words(name: str | tuple[str, ...]) -> str:
     return name if isinstance(name, str) else ", ".join(name)
 
 
-def _means(cells: pd.DataFrame, groups: pd.Series | None, scale: str) -> pd.DataFrame:
+def _means(cells: DataFrame, groups: Series | None, scale: str) -> DataFrame:
     """Return the mean of each cell with its interval, over the people of the tests."""
     parts = [("", cells)]
     if groups is not None:
@@ -168,10 +169,10 @@ def _means(cells: pd.DataFrame, groups: pd.Series | None, scale: str) -> pd.Data
             mean = values.mean() if values.size else np.nan
             numbers = np.array([mean, *interval(values)] if values.size else [np.nan] * 3)
             rows.append((name, values.size, *(np.exp(numbers) if scale == LOGS else numbers)))
-    return pd.DataFrame(rows, columns=["cell", "participants", "mean", "low", "high"])
+    return DataFrame(rows, columns=["cell", "participants", "mean", "low", "high"])
 
 
-def _warnings(result: Result, asked: pd.DataFrame, plan: Plan) -> list[str]:
+def _warnings(result: Result, asked: DataFrame, plan: Plan) -> list[str]:
     """Say where the tests are known to find differences that are not there."""
     made = []
     keys = ["participant", *plan.factors]
@@ -198,7 +199,7 @@ def _warnings(result: Result, asked: pd.DataFrame, plan: Plan) -> list[str]:
     return made
 
 
-def chance_of(question: str, asked: pd.DataFrame) -> float | None:
+def chance_of(question: str, asked: DataFrame) -> float | None:
     """Return the share of right answers by guessing; None if the answers are not limited."""
     names = asked["presented"].nunique()
     if question == "name" and names > 1:
@@ -262,7 +263,7 @@ def _say_means(result: Result) -> list[str]:
     return made
 
 
-def _say_chance(asked: pd.DataFrame, plan: Plan) -> list[str]:
+def _say_chance(asked: DataFrame, plan: Plan) -> list[str]:
     chance = chance_of(plan.question, asked)
     if chance is None or plan.measure != "right":
         return []
