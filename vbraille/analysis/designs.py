@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from itertools import combinations, product
+from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -90,23 +90,14 @@ def levels_of(cells: DataFrame) -> list[list[str]]:
     return [list(dict.fromkeys(table[name])) for name in table]
 
 
-def crossed(cells: DataFrame) -> DataFrame:
-    """Return cells with a column for each combination of levels, in the order of the factors."""
-    levels = levels_of(cells)
-    if len(levels) < 2:
-        return cells
-    whole = pd.MultiIndex.from_tuples(list(product(*levels)), names=cells.columns.names)
-    return cells.reindex(columns=whole)
-
-
 def compare(cells: DataFrame, groups: Series | None = None) -> tuple[DataFrame, DataFrame]:
     """Test effects and pairs of people's values.
 
     Parameters
     ----------
     cells
-        A row is a person, and a column a cell, named by one level of each factor. People with a
-        hole are in no test.
+        A row is a person, and a column a cell, named by one level of each factor; all combinations
+        have a column, those of the last factor first. People with a hole are in no test.
     groups
         Group of each person, whose name is that of the factor between people.
 
@@ -115,7 +106,7 @@ def compare(cells: DataFrame, groups: Series | None = None) -> tuple[DataFrame, 
     effects, pairs
         A row for each test, with p and with p corrected by Holm among the rows.
     """
-    whole = crossed(cells).dropna()
+    whole = cells.dropna()
     levels = levels_of(whole)
     names = [str(name) for name in whole.columns.names] if levels else []
     member = None
@@ -167,7 +158,7 @@ def _corrected(rows: list[dict]) -> DataFrame:
 
 def simple_effects(cells: DataFrame, groups: Series | None = None) -> DataFrame:
     """Test the other factors at each level of each factor; p is corrected among all rows."""
-    whole = crossed(cells).dropna()
+    whole = cells.dropna()
     found = []
     factors = list(whole.columns.names) if levels_of(whole) else []
     for factor in factors if len(factors) > 1 or groups is not None else []:

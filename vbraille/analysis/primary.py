@@ -11,7 +11,7 @@ from pandas import DataFrame, Series
 
 from vbraille.analysis import designs, stats
 from vbraille.analysis.measures import CHOICES, LOGS, PLAIN, SHARES, Measure, alternatives
-from vbraille.analysis.read import NO_SCORE, read_scores
+from vbraille.analysis.read import NO_SCORE, in_order, read_scores
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
@@ -113,40 +113,33 @@ def _in_cells(
     values: DataFrame, within: list[str], between: list[str], missing: str = "no trial"
 ) -> tuple[DataFrame, Series | None, list[str]]:
     """Return people by cells, their groups, and who is left out with the reason."""
+    table = values.reset_index()
     groups = None
     if between:
-        groups = values.reset_index(between[0])[between[0]].astype(str)
-        groups = groups[~groups.index.get_level_values(0).duplicated()]
-        groups.index = groups.index.get_level_values(0)
-        values = values.droplevel(between[0])
+        groups = table.drop_duplicates("participant").set_index("participant")[between[0]]
     if within:
-        wide = designs.crossed(_plain(values["value"].unstack(within)))
-        why = designs.crossed(_plain(values["why"].unstack(within))).fillna(missing)
+        levels = [list(in_order(table[name]).cat.categories) for name in within]
+        cells = pd.MultiIndex.from_product(levels, names=within)
+        if len(within) == 1:
+            cells = cells.get_level_values(0)
+        wide = table.pivot(index="participant", columns=list(cells.names), values="value")
+        why = table.pivot(index="participant", columns=list(cells.names), values="why")
+        wide, why = wide.reindex(columns=cells), why.reindex(columns=cells).fillna(missing)
     else:
-        wide = values[["value"]]
-        why = values[["why"]].set_axis(wide.columns, axis=1)
+        wide, why = (table.set_index("participant")[[name]] for name in ("value", "why"))
+        why.columns = wide.columns
     left_out = []
     for person in wide.index[wide.isna().any(axis=1)]:
         reasons: dict[str, list[str]] = {}
         for name in wide.columns[wide.loc[person].isna()]:
-            reasons.setdefault(str(why.loc[person, name]), []).append(cell_words(name))
+            reasons.setdefault(why.loc[person, name], []).append(cell_words(name))
         told = [
             f"{reason} in {', '.join(names)}" if within else reason
             for reason, names in reasons.items()
         ]
         left_out.append(f"{person}: {'; '.join(told)}")
-    cells = wide.dropna()
-    return cells, None if groups is None else groups[cells.index], left_out
-
-
-def _plain(wide: DataFrame) -> DataFrame:
-    """Return a frame whose names are text, and not categories."""
-    if wide.columns.nlevels == 1:
-        wide.columns = pd.Index(wide.columns.astype(str), name=wide.columns.name)
-    else:
-        names = [tuple(map(str, name)) for name in wide.columns]
-        wide.columns = pd.MultiIndex.from_tuples(names, names=wide.columns.names)
-    return wide
+    kept = wide.dropna()
+    return kept, None if groups is None else groups[kept.index].astype(str), left_out
 
 
 def cell_words(name: str | tuple[str, ...]) -> str:
@@ -249,17 +242,14 @@ def _say_means(result: Result) -> list[str]:
     kind = "Geometric mean" if result.measure.scale == LOGS else "Mean"
     for row in result.means.itertuples():
         where = "" if len(result.means) == 1 else f", {row.cell}"
-        text = f"{kind} {result.measure.name}{where}: "
+        mean, low, high = (_number(result.measure, each) for each in (row.mean, row.low, row.high))
+        how = f"95 % interval {low} to {high}"
+        if np.isnan(row.low):
+            how = "all alike" if row.participants >= stats.FEWEST else "too few for an interval"
+        said = f"{mean} ({people(row.participants)}, {how})"
         if not row.participants:
-            made.append(text + "no one has a value in every cell.")
-        elif np.isnan(row.low):
-            why = "all alike" if row.participants >= stats.FEWEST else "too few for an interval"
-            number = _number(result.measure, row.mean)
-            made.append(f"{text}{number} ({people(row.participants)}, {why}).")
-        else:
-            ends = f"{_number(result.measure, row.low)} to {_number(result.measure, row.high)}"
-            number = _number(result.measure, row.mean)
-            made.append(f"{text}{number} (95 % interval {ends}; {people(row.participants)}).")
+            said = "no person has a value in every cell"
+        made.append(f"{kind} {result.measure.name}{where}: {said}.")
     return made
 
 
