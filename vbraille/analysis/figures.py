@@ -19,6 +19,8 @@ from vbraille.analysis.primary import plain
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from matplotlib.axes import Axes
+
     from vbraille.analysis.primary import Result
 
 # The same figure gives the same bytes.
@@ -71,19 +73,25 @@ def confusion(counts: DataFrame) -> Figure:
     return figure
 
 
+def _panels(count: int, high: float) -> tuple[Figure, list[Axes]]:
+    """Return a figure with some panels, three in a row."""
+    down = -(-count // ACROSS)
+    figure = Figure(figsize=(9, 1 + high * down), layout="constrained")
+    grid = list(figure.subplots(down, ACROSS, sharey=True, squeeze=False).flat)
+    for axes in grid[count:]:
+        axes.remove()
+    return figure, grid[:count]
+
+
 def over_time(table: DataFrame) -> Figure:
     """Draw the moving average of each person in each condition, figure 3.14."""
     runs = list(table.groupby(["participant", "condition"], observed=True))[:MOST_RUNS]
-    down = -(-len(runs) // ACROSS)
-    figure = Figure(figsize=(9, 1 + 1.3 * down), layout="constrained")
-    grid = figure.subplots(down, ACROSS, sharey=True, squeeze=False)
-    for axes, (names, run) in zip(grid.flat, runs, strict=False):
+    figure, panels = _panels(len(runs), 1.3)
+    for axes, (names, run) in zip(panels, runs, strict=True):
         many = len(run) > MOST_POINTS
         axes.plot(run["number"], 100 * run["right"], ".", color=".65", ms=3, rasterized=True)
         axes.plot(run["number"], 100 * run["average"], "k", lw=1, rasterized=many)
         axes.set_title(", ".join(map(str, names)), fontsize=7)
-    for axes in grid.flat[len(runs) :]:
-        axes.remove()
     figure.supxlabel("trial")
     figure.supylabel("right (%), mean of the last 10")
     return figure
@@ -144,14 +152,10 @@ def choices(table: DataFrame) -> Figure:
 def levels(table: DataFrame) -> Figure:
     """Draw right answers and times by level, with their SD over people, figure 6.7."""
     figure = Figure(figsize=(8, 3), layout="constrained")
-    grid = figure.subplots(1, 2)
-    for axes, name, times, unit in (
-        (grid[0], "share", 100, "right (%)"),
-        (grid[1], "taken", 1, "time (s)"),
-    ):
-        middle = times * table["share" if name == "share" else "taken_s"]
-        spread = times * table["share_sd" if name == "share" else "taken_sd_s"]
-        axes.errorbar(table["level"], middle, spread, fmt="ko-", capsize=3, mfc="w")
+    shares = 100 * table["share"], 100 * table["share_sd"], "right (%)"
+    times = table["taken_s"], table["taken_sd_s"], "time (s)"
+    for axes, (mean, sd, unit) in zip(figure.subplots(1, 2), (shares, times), strict=True):
+        axes.errorbar(table["level"], mean, sd, fmt="ko-", capsize=3, mfc="w")
         axes.set_xlabel("level, with SD over people")
         axes.set_ylabel(unit)
     return figure
@@ -159,16 +163,12 @@ def levels(table: DataFrame) -> Figure:
 
 def answers(table: DataFrame) -> Figure:
     """Draw the distribution of answers to each name, figure 6.10."""
-    down = -(-len(table) // ACROSS)
-    figure = Figure(figsize=(9, 0.6 + 1.6 * down), layout="constrained")
-    grid = figure.subplots(down, ACROSS, sharey=True, squeeze=False)
-    for axes, (name, row) in zip(grid.flat, table.iterrows(), strict=False):
+    figure, panels = _panels(len(table), 1.6)
+    for axes, (name, row) in zip(panels, table.iterrows(), strict=True):
         greys = [".35" if column == name else ".85" for column in table]
         axes.bar(range(len(row)), 100 * row, color=greys, edgecolor="k")
         axes.set_xticks(range(len(row)), table.columns, rotation=90, fontsize=6)
         axes.set_title(str(name), fontsize=8)
-    for axes in grid.flat[len(table) :]:
-        axes.remove()
     figure.supylabel("answers (%)")
     return figure
 

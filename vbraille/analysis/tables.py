@@ -215,10 +215,8 @@ def fatigue(trials: DataFrame) -> DataFrame:
     half = np.where(people.cumcount() < people["right"].transform("size") // 2, "first", "second")
     shares = trials.groupby(["participant", half], observed=True)["right"].mean().unstack()
     shares = shares.reindex(columns=["first", "second"]).dropna()
-    test = stats.paired(shares["first"] - shares["second"])
-    ends = stats.t_interval(test.value, test.error, test.df)
-    means = {"first_half": shares["first"].mean(), "second_half": shares["second"].mean()}
-    return _row({"participants": len(shares)} | means, test, ends)
+    made = _tested(shares["first"] - shares["second"])
+    return made.assign(first_half=shares["first"].mean(), second_half=shares["second"].mean())
 
 
 def duration_legibility(trials: DataFrame) -> DataFrame:
@@ -227,23 +225,23 @@ def duration_legibility(trials: DataFrame) -> DataFrame:
     The mean is of Fisher's z, with Student's interval, and told as r.
     """
     timed = trials.assign(duration=durations(trials)).dropna(subset=["duration"])
-    own = []
-    for _, part in timed.groupby("participant", observed=True):
-        if len(part) >= 4 and part["right"].nunique() > 1 and part["duration"].nunique() > 1:
-            own.append(np.arctanh(np.corrcoef(part["duration"], part["right"])[0, 1]))
-    if not own:
-        return DataFrame()
-    test = stats.paired(own)
-    ends = stats.t_interval(test.value, test.error, test.df)
-    test = test._replace(value=np.tanh(test.value))
-    return _row({"participants": len(own)}, test, np.tanh(ends))
+    own = [
+        np.corrcoef(part["duration"], part["right"])[0, 1]
+        for _, part in timed.groupby("participant", observed=True)
+        if len(part) > 3 and part["right"].nunique() > 1 and part["duration"].nunique() > 1
+    ]
+    made = _tested(np.arctanh(own))
+    ends = ["value", "low", "high"]
+    return made.assign(**np.tanh(made[ends]))[made["participants"] > 0]
 
 
-def _row(row: dict, test: stats.TTest, ends) -> DataFrame:
-    low, high = ends
+def _tested(values) -> DataFrame:
+    """Return a row with the mean of people's values, its interval, and its test by t."""
+    test = stats.paired(values)
+    low, high = stats.t_interval(test.value, test.error, test.df)
     told = {"value": test.value, "low": low, "high": high, "t": test.t, "df": test.df, "p": test.p}
     numbers = {name: float(value) for name, value in told.items()}
-    return DataFrame([row | numbers | {"note": test.note}])
+    return DataFrame([{"participants": len(values)} | numbers | {"note": test.note}])
 
 
 def by_factors(trials: DataFrame, factors: list[str]) -> DataFrame:
