@@ -131,6 +131,7 @@ def of_tests(result: Result) -> list[str]:
 def methods(trials: Trials, result: Result | None) -> list[str]:
     """Return the paragraph, a sentence each."""
     tests = [] if result is None else of_tests(result)
-    ran = sorted({str(content.head.get("version", "")) for content in trials.contents} - {""})
+    runs = [event for content in trials.contents for event in content.events if event.kind == "run"]
+    ran = sorted({run.data.get("versions", {}).get("vbraille", "unknown") for run in runs})
     versions = f"Sessions were run with vbraille {', '.join(ran)}, and a" if ran else "A"
     return [*of_sessions(trials), *tests, f"{versions}nalysed with vbraille {__version__}."]

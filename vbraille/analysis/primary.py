@@ -11,7 +11,7 @@ from pandas import DataFrame, Series
 
 from vbraille.analysis import designs, stats
 from vbraille.analysis.measures import CHOICES, LOGS, PLAIN, SHARES, Measure, alternatives
-from vbraille.analysis.read import NO_SCORE, in_order, read_scores
+from vbraille.analysis.read import in_order, read_scores
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
@@ -69,18 +69,8 @@ def compare(trials: DataFrame, plan: Plan) -> Result:
     InputError
         If more than three factors vary within people, or more than one between them.
     """
-    factors = list(plan.factors)
-    per_person = trials.groupby("participant", observed=True)
-    between = [name for name in factors if per_person[name].nunique().max() == 1]
-    within = [name for name in factors if name not in between]
-    if len(between) > 1 or len(within) > 3:
-        raise InputError(
-            f"{', '.join(within) or 'no factor'} vary within people, and "
-            f"{', '.join(between) or 'none'} between them; at most three and one can be compared"
-        )
-    values = plan.of.values(trials, ["participant", *factors])
-    cells, groups, left_out = _in_cells(values, within, between)
-    result = result_of(plan.of, cells, groups, left_out)
+    values = plan.of.values(trials, ["participant", *plan.factors])
+    result = result_of(plan.of, *_in_cells(values, "no trial"))
     result.warnings += _warnings(result, trials, plan)
     result.sentences[len(result.means) : len(result.means)] = _say_chance(trials, plan)
     return result
@@ -88,9 +78,7 @@ def compare(trials: DataFrame, plan: Plan) -> Result:
 
 def compare_scores(path: str | Path) -> Result:
     """Compare a table of scores; `read_scores` describes it and its errors."""
-    values, within, between = read_scores(path)
-    cells, groups, left_out = _in_cells(values, within, between, NO_SCORE)
-    return result_of(SCORE, cells, groups, left_out)
+    return result_of(SCORE, *_in_cells(read_scores(path), "no score"))
 
 
 def result_of(
@@ -109,11 +97,18 @@ def result_of(
     return result
 
 
-def _in_cells(
-    values: DataFrame, within: list[str], between: list[str], missing: str = "no trial"
-) -> tuple[DataFrame, Series | None, list[str]]:
+def _in_cells(values: DataFrame, missing: str) -> tuple[DataFrame, Series | None, list[str]]:
     """Return people by cells, their groups, and who is left out with the reason."""
     table = values.reset_index()
+    per_person = table.groupby("participant", observed=True)
+    factors = list(values.index.names[1:])
+    between = [name for name in factors if per_person[name].nunique().max() == 1]
+    within = [name for name in factors if name not in between]
+    if len(between) > 1 or len(within) > 3:
+        raise InputError(
+            f"{', '.join(within) or 'no factor'} vary within people, and "
+            f"{', '.join(between) or 'none'} between them; at most three and one can be compared"
+        )
     groups = None
     if between:
         groups = table.drop_duplicates("participant").set_index("participant")[between[0]]

@@ -30,7 +30,6 @@ LEVELS = (
 DURATIONS = ("duration_s", "response_s", "contact_s", "paused_s")
 NUMBERS = (*DURATIONS, "trial", "block", "early", "confidence", "words_per_minute")
 STRINGS = "identify"
-NO_SCORE = "no score"
 QUESTIONS = (
     STRINGS, "which", "odd", "match", "same-different", "detect", "rating", "magnitude", "adjust",
     "name", "free", "read",
@@ -404,17 +403,15 @@ def _warn_of_sources(trials: Trials) -> None:
                 trials.warnings.append(f"{count} {words}: no data about people.")
 
 
-def read_scores(path: str | Path) -> tuple[DataFrame, list[str], list[str]]:
+def read_scores(path: str | Path) -> DataFrame:
     """Read a table of scores: columns participant, one to four factors, and score.
 
-    A factor of which each person has one level is one between people. The last column holds the
-    scores if none is called score.
+    The last column holds the scores if none is called score.
 
     Returns
     -------
-    values, within, between
-        A row for each person and cell, with ``value``, and ``why`` it is missing if it is; and the
-        factors within people and between them.
+    DataFrame
+        A row for each person and cell, with ``value``, and ``why`` it is missing if it is.
 
     Raises
     ------
@@ -436,16 +433,9 @@ def read_scores(path: str | Path) -> tuple[DataFrame, list[str], list[str]]:
         table[name] = table[name].map(visible)
         check_alike(table[name], name)
         table[name] = in_order(table[name])
-    levels = table.groupby("participant", observed=True)[factors].nunique().max()
-    between = [name for name in factors if levels[name] == 1 < table[name].nunique()]
-    within = [name for name in factors if name not in between]
-    if len(between) > 1 or len(within) > 3:
-        raise InputError(
-            f"{sheet.name}: {', '.join(within)} vary within people, and {', '.join(between)} "
-            f"between them; at most three and one can be compared"
-        )
-    again = table.index[table.duplicated(["participant", *within])]
+    again = table.index[table.duplicated(["participant", *factors])]
     if len(again):
         raise InputError(f"{sheet.name}: line {again[0]} has a second score of a person in a cell")
+    factors = [name for name in factors if table[name].nunique() > 1]
     values = table.set_index(["participant", *factors])[[score]].set_axis(["value"], axis=1)
-    return values.assign(why=NO_SCORE), within, between
+    return values.assign(why="no score")

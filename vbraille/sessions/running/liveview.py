@@ -32,7 +32,30 @@ if TYPE_CHECKING:
 
 # Sentences begin with a word for their kind. Those of these kinds hold no stimulus and no answer.
 SAFE = frozenset(
-    ["begin", "break", "cue", "device", "display", "ended", "fault", "go", "hand", "last", "late", "missed", "pause", "place", "read", "ready", "repeat", "stop", "turned", "undo", "upright", "warning"]
+    [
+        "begin",
+        "break",
+        "cue",
+        "device",
+        "display",
+        "ended",
+        "fault",
+        "go",
+        "hand",
+        "last",
+        "late",
+        "missed",
+        "pause",
+        "place",
+        "read",
+        "ready",
+        "repeat",
+        "stop",
+        "turned",
+        "undo",
+        "upright",
+        "warning",
+    ]
 )
 # The address of the live view has its token in it.
 NEVER = frozenset(("live view", "record", "resume"))
