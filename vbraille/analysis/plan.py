@@ -85,17 +85,12 @@ def plan_of(
         trials.notes.append(f"{others} trials of other questions than {question} are not compared")
     asked = frame[frame["question"] == question]
     plan = planned or Plan(question, usual_measure(asked), ("condition",))
-    departures = []
-    if measure is not None and measure != plan.measure:
-        departures.append(f"The measure is {measure}; {plan.measure or 'none'} is planned.")
-        plan = replace(plan, measure=measure)
-    if factors is not None and tuple(factors) != plan.factors:
-        departures.append(
-            f"It is compared by {', '.join(factors)}; {', '.join(plan.factors) or 'none'} planned."
-        )
-        plan = replace(plan, factors=tuple(factors))
-    if trials.contents:
-        plan = replace(plan, departures=departures)
+    chosen = {"measure": measure, "factors": None if factors is None else tuple(factors)}
+    for name, value in chosen.items():
+        if value is not None and value != getattr(plan, name):
+            if planned:
+                plan.departures.append(f"The {name} is not as planned, {getattr(plan, name)}.")
+            plan = replace(plan, **{name: value})
     _check(plan, asked)
     if plan.measure == "threshold":
         plan = replace(plan, factors=_not_along(asked, plan.factors))

@@ -187,14 +187,13 @@ def _warnings(result: Result, asked: DataFrame, plan: Plan) -> list[str]:
     return made
 
 
-def chance_of(question: str, asked: DataFrame) -> float | None:
-    """Return the share of right answers by guessing; None if the answers are not limited."""
-    names = asked["presented"].nunique()
-    if question == "name" and names > 1:
-        return 1 / names
-    if question in CHOICES:
-        return float((1 / alternatives(asked)).mean())
-    return None
+def _say_chance(asked: DataFrame, plan: Plan) -> list[str]:
+    """Say how many right answers guessing gives, where the possible answers are known."""
+    offered = alternatives(asked) if plan.question in CHOICES else asked["presented"].nunique()
+    limited = plan.question in (*CHOICES, "name") and np.min(offered) > 1
+    if plan.measure != "right" or not limited:
+        return []
+    return [f"Guessing alone would give {100 * np.mean(1 / offered):.0f} %."]
 
 
 def people(count: int) -> str:
@@ -246,13 +245,6 @@ def _say_means(result: Result) -> list[str]:
             said = "no person has a value in every cell"
         made.append(f"{kind} {result.measure.name}{where}: {said}.")
     return made
-
-
-def _say_chance(asked: DataFrame, plan: Plan) -> list[str]:
-    chance = chance_of(plan.question, asked)
-    if chance is None or plan.measure != "right":
-        return []
-    return [f"Guessing alone would give {100 * chance:.0f} %."]
 
 
 def _say_effects(result: Result) -> list[str]:

@@ -6,8 +6,9 @@ right answers by difference. Before the answers, all thresholds from half the ra
 below them to half above are equally likely, as are all logarithms of the spread, and all guesses
 from 0 to 0.9 where they are free. Lapses are beta(1, 20), and 0.1 at most (Wichmann and Hill 2001).
 
-The estimate is the most likely point, found from the best one of the grid. The interval lies
-between quantiles of the threshold's own posterior (Schütt et al. 2016).
+The grid is drawn closer twice around what is likely: without this, intervals of steep functions
+hold the truth in 90 % only. The estimate is the most likely point, and the interval lies between
+quantiles of the threshold's own posterior (Schütt et al. 2016).
 """
 
 from __future__ import annotations
@@ -28,7 +29,8 @@ FEWEST_LEVELS = 3
 MOST_LAPSES = 0.1
 MOST_GUESSES = 0.9
 FEW_LAPSES = 20
-POINTS = {"threshold": 80, "spread": 20, "guess": 8, "lapse": 3}
+POINTS = {"threshold": 32, "spread": 16, "guess": 8, "lapse": 4}
+UNLIKELY = 12.0  # in log likelihood below the best
 EDGE = 1e-9
 LEVELS_AT_ONCE = 64  # so that the grid's table stays small
 
@@ -116,10 +118,12 @@ def find_threshold(
     def lost(point: Floats) -> float:
         return -log_posterior(dict(zip(axes, point.reshape(-1, 1), strict=True))).item()
 
+    bounds = [(values[0], values[-1]) for values in axes.values()]
+    for _ in range(2):
+        axes = _closer(axes, log_posterior(axes))
     found = log_posterior(axes)
     best = np.unravel_index(np.argmax(found), found.shape)
     start = [values[n] for values, n in zip(axes.values(), best, strict=True)]
-    bounds = [(values[0], values[-1]) for values in axes.values()]
     value, _, guesses, lapses = optimize.minimize(lost, start, method="L-BFGS-B", bounds=bounds).x
     ends = Grid(observer, axes).estimate("threshold", found)
     threshold = Threshold(value, min(ends.low, value), max(ends.high, value), guesses, lapses)
@@ -147,6 +151,16 @@ def _axes(at: Floats, guess: float | None, *, by_ratio: bool, most: float) -> di
         "guess": np.array(guesses),
         "lapse": np.linspace(0, MOST_LAPSES, POINTS["lapse"]),
     }
+
+
+def _closer(axes: dict[str, Floats], log_posterior: Floats) -> dict[str, Floats]:
+    """Return points over what is not unlikely."""
+    likely = np.nonzero(log_posterior > log_posterior.max() - UNLIKELY)
+    closer = {}
+    for at, (name, values) in zip(likely, axes.items(), strict=True):
+        first, last = max(at.min() - 1, 0), min(at.max() + 1, values.size - 1)
+        closer[name] = np.linspace(values[first], values[last], POINTS[name])[: values.size]
+    return closer
 
 
 def find_preferred(first: ArrayLike, second: ArrayLike, chose_first: ArrayLike) -> Threshold:
