@@ -9,12 +9,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 from pandas import DataFrame, Series
 
 from vbraille.analysis import stats
 from vbraille.analysis.read import LEVELS, SIGNALS, STRINGS, to_number
-from vbraille.analysis.tables import durations, places
+from vbraille.analysis.tables import compared, durations, places
 from vbraille.analysis.thresholds import Threshold, find_preferred, find_threshold
 
 SHARES, LOGS, PLAIN = "shares", "logarithms", "values"
@@ -133,7 +132,7 @@ def thresholds(trials: DataFrame, keys: list[str]) -> DataFrame:
     """
     level = level_of(trials)
     blank = trials["outcome"].isin(("false alarm", "correct rejection"))
-    levels = _differences(trials) if level == "difference" else trials.get(level)
+    levels = differences(trials) if level == "difference" else trials.get(level)
     rows = []
     for cell, own in trials[~blank].groupby(keys, observed=True):
         noises = trials.loc[blank & (trials["participant"] == cell[0]), "outcome"]
@@ -153,10 +152,9 @@ def thresholds(trials: DataFrame, keys: list[str]) -> DataFrame:
     return DataFrame(rows, columns=columns)
 
 
-def _differences(trials: DataFrame) -> Series:
-    """Return by how much the compared values differ."""
-    texts = trials["presented"].astype(str).str.replace(",", ".").str.split(expand=True)
-    values = texts.apply(pd.to_numeric, errors="coerce")
+def differences(trials: DataFrame) -> Series:
+    """Return by how much the compared values differ; missing where they do not."""
+    values = compared(trials)
     apart = values.max(axis=1) - values.min(axis=1)
     return apart.where(apart > 0)
 
@@ -184,13 +182,16 @@ def _with_why(column: str, found: Callable[[DataFrame, list[str]], DataFrame]) -
 
 def preferences(trials: DataFrame, keys: list[str]) -> DataFrame:
     """Return the preferred value of each person in each cell, with its interval."""
-    values = trials["presented"].str.replace(",", ".").str.split(expand=True).astype(float)
-    answered = _answered(trials)
+    values = compared(trials)
+    chose_first = np.isclose(values[0], _answered(trials))
+    trials = trials.assign(first=values[0], second=values.get(1), chose_first=chose_first)
     rows = []
     for cell, own in trials.groupby(keys, observed=True):
-        first, second = values.loc[own.index, 0], values.loc[own.index, 1]
-        found = find_preferred(first, second, np.isclose(first, answered[own.index]))
-        rows.append((*cell, len(own), found.value, found.low, found.high, found.why))
+        known = own.dropna(subset=["first", "second"])
+        found = Threshold(why="no two values were compared")
+        if len(known):
+            found = find_preferred(known["first"], known["second"], known["chose_first"])
+        rows.append((*cell, len(known), found.value, found.low, found.high, found.why))
     return DataFrame(rows, columns=[*keys, "comparisons", "preferred", "low", "high", "why"])
 
 

@@ -12,8 +12,8 @@ import numpy as np
 from vbraille.analysis import tables
 from vbraille.analysis.measures import (
     CHOICES,
-    _differences,
     detections,
+    differences,
     level_of,
     preferences,
     thresholds,
@@ -199,7 +199,7 @@ def all_tables(trials: Trials, plan: Plan, asked: DataFrame) -> dict[str, DataFr
     elif plan.measure in ("rating", "adjusted", "magnitude"):
         made["ratings"] = tables.ratings(asked, "answered", list(plan.factors) or ["condition"])
     if plan.question in CHOICES and plan.measure != "preferred":
-        made["levels"] = tables.by_difference(asked, _differences(asked))
+        made["levels"] = tables.by_difference(asked, differences(asked))
     if plan.question == "detect" and level_of(asked):
         made["levels"] = tables.by_difference(asked, asked[level_of(asked)])
     if plan.measure == "threshold":

@@ -277,9 +277,15 @@ def by_difference(trials: DataFrame, level: Series) -> DataFrame:
     return made.reset_index()
 
 
+def compared(trials: DataFrame) -> DataFrame:
+    """Return the values that trials compare, a column for each place; missing if they are none."""
+    texts = trials["presented"].astype(str).str.replace(",", ".").str.split(expand=True)
+    return texts.apply(pd.to_numeric, errors="coerce")
+
+
 def choices(trials: DataFrame) -> DataFrame:
     """Figure 3.12: how often each value was chosen of the comparisons that it was part of."""
-    offered = trials["presented"].str.replace(",", ".").str.split().explode().astype(float)
+    offered = compared(trials).stack().droplevel(1)
     chosen = to_number(trials["answered"])[offered.index]
     each = DataFrame({"value": offered, "chosen": np.isclose(offered, chosen)})
     each["parameter"] = trials.get("parameter", "value")
