@@ -128,10 +128,6 @@ def __getattr__(name: str) -> object:
 
     with needing_extras():
         found = getattr(import_module(place), its_name or name)
-    if hasattr(found, "__code__"):  # a function
-        from vbraille.typed import typed
-
-        found = typed(found)
     globals()[name] = found
     return found
 

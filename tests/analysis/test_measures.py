@@ -102,6 +102,12 @@ def test_preferred_values_at_an_end_are_limits(tmp_path):
     assert "an end of the range" in analysis.left_out[0]
 
 
+def test_comparisons_of_words_prefer_nothing(tmp_path):
+    rows = [{"participant": "P1", "question": "which", "presented": "ab cd", "answered": "ab"}] * 3
+    analysis = analysed(rows, tmp_path)
+    assert "no two values" in analysis.left_out[0]
+
+
 def test_identical_conditions_have_no_test():
     analysis = analyse([CASES / "F39-noise-F.csv"])
     assert analysis.result.pairs["p"].isna().all()

@@ -13,9 +13,8 @@ LETTERS = {"T0": 0.5, "T25": 0.56, "T100": 0.64}
 
 def plain_study(gap, spread, **changes):
     """A study of a value in two conditions that differ by so much."""
-    levels = {"condition": ["a", "b"]}
-    named = {"measure": "rating", "scale": "values", "levels": levels, "groups": []}
-    named |= {"group_factor": "", "middles": np.array([[0.0, gap]]), "trials": np.ones((1, 2))}
+    named = {"scale": "values", "factors": ["condition"], "levels": [["a", "b"]]}
+    named |= {"middles": np.array([[0.0, gap]]), "trials": np.ones((1, 2))}
     return Study(**(named | {"between": 1.0, "differing": spread} | changes))
 
 
@@ -32,7 +31,7 @@ def test_the_paired_t_test_has_its_known_power(gap, people):
 
 def test_groups_take_turns_and_are_tested_by_welch():
     study = plain_study(
-        0, 0.5, levels={}, groups=["x", "y"], group_factor="group",
+        0, 0.5, factors=["group"], levels=[["x", "y"]],
         middles=np.array([[0.0], [3.0]]), trials=np.ones((2, 1)),
     )  # fmt: skip
     (row,) = power(study, [12], studies=500)

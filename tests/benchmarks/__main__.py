@@ -17,7 +17,6 @@ PARTS = (
     "latero",
     "jumps",
     "sessions",
-    "adaptive",
     "analysis",
     "coverage",
     "reader",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import pandas as pd
+from pandas import DataFrame
 
 MOST_VALUES = 12
 MEANINGS = {
@@ -85,7 +85,7 @@ MEANINGS = {
 }
 
 
-def codebook(tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
+def codebook(tables: dict[str, DataFrame]) -> DataFrame:
     """Return a row for each column of each table: its meaning, and its values if they are few."""
     meanings = MEANINGS | _of_sessions()
     rows = []
@@ -97,7 +97,7 @@ def codebook(tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
             values = "; ".join(sorted(map(str, known))) if text else ""
             meaning = own.get(str(column)) or _other(name, str(column))
             rows.append((name, str(column), meaning, values))
-    return pd.DataFrame(rows, columns=["table", "column", "meaning", "values"])
+    return DataFrame(rows, columns=["table", "column", "meaning", "values"])
 
 
 def _of_sessions() -> dict[str, str]:

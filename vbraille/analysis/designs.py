@@ -5,11 +5,12 @@
 
 from __future__ import annotations
 
-from itertools import combinations, product
+from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pandas as pd
+from pandas import DataFrame, Series
 
 from vbraille.analysis import stats
 
@@ -81,7 +82,7 @@ def pairs_of(cube: Floats, levels: list[int], member: ArrayLike | None = None) -
             yield Pair(GROUP, first, second, test)
 
 
-def levels_of(cells: pd.DataFrame) -> list[list[str]]:
+def levels_of(cells: DataFrame) -> list[list[str]]:
     """Return the levels of each factor within people, in their order; none of groups alone."""
     if cells.shape[1] == 1:
         return []
@@ -89,25 +90,14 @@ def levels_of(cells: pd.DataFrame) -> list[list[str]]:
     return [list(dict.fromkeys(table[name])) for name in table]
 
 
-def crossed(cells: pd.DataFrame) -> pd.DataFrame:
-    """Return cells with a column for each combination of levels, in the order of the factors."""
-    levels = levels_of(cells)
-    if len(levels) < 2:
-        return cells
-    whole = pd.MultiIndex.from_tuples(list(product(*levels)), names=cells.columns.names)
-    return cells.reindex(columns=whole)
-
-
-def compare(
-    cells: pd.DataFrame, groups: pd.Series | None = None
-) -> tuple[pd.DataFrame, pd.DataFrame]:
+def compare(cells: DataFrame, groups: Series | None = None) -> tuple[DataFrame, DataFrame]:
     """Test effects and pairs of people's values.
 
     Parameters
     ----------
     cells
-        A row is a person, and a column a cell, named by one level of each factor. People with a
-        hole are in no test.
+        A row is a person, and a column a cell, named by one level of each factor; all combinations
+        have a column, those of the last factor first. People with a hole are in no test.
     groups
         Group of each person, whose name is that of the factor between people.
 
@@ -116,7 +106,7 @@ def compare(
     effects, pairs
         A row for each test, with p and with p corrected by Holm among the rows.
     """
-    whole = crossed(cells).dropna()
+    whole = cells.dropna()
     levels = levels_of(whole)
     names = [str(name) for name in whole.columns.names] if levels else []
     member = None
@@ -152,9 +142,9 @@ def _floats(test: FTest | TTest) -> dict[str, float | str]:
     return {name: x if name == "note" else float(x) for name, x in test._asdict().items()}
 
 
-def _corrected(rows: list[dict]) -> pd.DataFrame:
+def _corrected(rows: list[dict]) -> DataFrame:
     """Return a table of tests with Holm's p, and with intervals where there is an error."""
-    table = pd.DataFrame(rows)
+    table = DataFrame(rows)
     if "p" not in table:
         return table
     corrected, k = stats.holm(table["p"])
@@ -166,9 +156,9 @@ def _corrected(rows: list[dict]) -> pd.DataFrame:
     return table[[*table.columns.drop("note"), "note"]]
 
 
-def simple_effects(cells: pd.DataFrame, groups: pd.Series | None = None) -> pd.DataFrame:
+def simple_effects(cells: DataFrame, groups: Series | None = None) -> DataFrame:
     """Test the other factors at each level of each factor; p is corrected among all rows."""
-    whole = crossed(cells).dropna()
+    whole = cells.dropna()
     found = []
     factors = list(whole.columns.names) if levels_of(whole) else []
     for factor in factors if len(factors) > 1 or groups is not None else []:
@@ -181,7 +171,7 @@ def simple_effects(cells: pd.DataFrame, groups: pd.Series | None = None) -> pd.D
             found.append(compare(at)[0].assign(at=f"{groups.name} {level}"))
     tables = [table for table in found if "p" in table]
     if not tables:
-        return pd.DataFrame()
+        return DataFrame()
     made = pd.concat(tables, ignore_index=True).drop(columns="p_holm")
     made.insert(0, "at", made.pop("at"))
     return _corrected(made.to_dict("records"))

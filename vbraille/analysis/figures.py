@@ -10,14 +10,16 @@ from typing import TYPE_CHECKING
 
 import matplotlib
 import numpy as np
-import pandas as pd
 from matplotlib.figure import Figure
+from pandas import DataFrame, Series
 
 from vbraille.analysis.measures import LOGS, SHARES
 from vbraille.analysis.primary import plain
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from matplotlib.axes import Axes
 
     from vbraille.analysis.primary import Result
 
@@ -44,7 +46,7 @@ def means(result: Result) -> Figure:
         axes.set_yscale("log")
     axes.bar(at, times * shown["mean"], 0.6, color=".9", edgecolor="k")
     first = 0
-    groups = pd.Series("", result.cells.index) if result.groups is None else result.groups
+    groups = Series("", result.cells.index) if result.groups is None else result.groups
     for _, own in groups.groupby(groups):
         people = values[result.cells.index.isin(own.index)]
         places = np.arange(first, first + values.shape[1])
@@ -58,7 +60,7 @@ def means(result: Result) -> Figure:
     return figure
 
 
-def confusion(counts: pd.DataFrame) -> Figure:
+def confusion(counts: DataFrame) -> Figure:
     """Draw how often each was answered where another was presented, darker for more."""
     size = min(2 + 0.2 * counts.shape[1], 14), min(1.5 + 0.2 * counts.shape[0], 10)
     figure = Figure(figsize=size)
@@ -71,27 +73,31 @@ def confusion(counts: pd.DataFrame) -> Figure:
     return figure
 
 
-def over_time(table: pd.DataFrame) -> Figure:
+def _panels(count: int, high: float) -> tuple[Figure, list[Axes]]:
+    """Return a figure with some panels, three in a row."""
+    down = -(-count // ACROSS)
+    figure = Figure(figsize=(9, 1 + high * down), layout="constrained")
+    grid = list(figure.subplots(down, ACROSS, sharey=True, squeeze=False).flat)
+    for axes in grid[count:]:
+        axes.remove()
+    return figure, grid[:count]
+
+
+def over_time(table: DataFrame) -> Figure:
     """Draw the moving average of each person in each condition, figure 3.14."""
     runs = list(table.groupby(["participant", "condition"], observed=True))[:MOST_RUNS]
-    down = -(-len(runs) // ACROSS)
-    figure = Figure(figsize=(9, 1 + 1.3 * down), layout="constrained")
-    grid = figure.subplots(down, ACROSS, sharey=True, squeeze=False)
-    for axes, (names, run) in zip(grid.flat, runs, strict=False):
+    figure, panels = _panels(len(runs), 1.3)
+    for axes, (names, run) in zip(panels, runs, strict=True):
         many = len(run) > MOST_POINTS
         axes.plot(run["number"], 100 * run["right"], ".", color=".65", ms=3, rasterized=True)
         axes.plot(run["number"], 100 * run["average"], "k", lw=1, rasterized=many)
         axes.set_title(", ".join(map(str, names)), fontsize=7)
-    for axes in grid.flat[len(runs) :]:
-        axes.remove()
     figure.supxlabel("trial")
     figure.supylabel("right (%), mean of the last 10")
     return figure
 
 
-def _bars(
-    labels: pd.Series, parts: dict[str, pd.Series], what: str, unit: str, reach=None
-) -> Figure:
+def _bars(labels: Series, parts: dict[str, Series], what: str, unit: str, reach=None) -> Figure:
     """Draw a bar, or a group of bars, for each label."""
     figure = Figure(figsize=(min(2 + 0.35 * len(labels) * len(parts), 12), 3))
     axes = figure.subplots()
@@ -111,31 +117,31 @@ def _bars(
     return figure
 
 
-def legibility(table: pd.DataFrame) -> Figure:
+def legibility(table: DataFrame) -> Figure:
     """Draw legibility by character of each person in each condition, figure 4.7."""
     wide = table.pivot(index="participant", columns="condition", values="character_legibility")
     parts = {str(name): 100 * wide[name] for name in wide}
     return _bars(wide.index.to_series(), parts, "participant", "characters right (%)")
 
 
-def dots(table: pd.DataFrame) -> Figure:
+def dots(table: DataFrame) -> Figure:
     """Draw legibility by the number of dots of a character, figure 4.8."""
     shares = 100 * table["legibility"]
     reach = [shares - 100 * table["low"], 100 * table["high"] - shares]
     return _bars(table["level"], {"": shares}, "dots", "characters right (%)", reach)
 
 
-def errors(table: pd.DataFrame) -> Figure:
+def errors(table: DataFrame) -> Figure:
     """Draw the most frequent errors by dots, figure 4.8."""
     shown = table.head(MOST_KINDS)
     kinds = [
         ", ".join(f"{row[name]} {name}" for name in ("added", "removed", "moved") if row[name])
         for row in shown.to_dict("records")
     ]
-    return _bars(pd.Series(kinds), {"": 100 * shown["share"]}, "dots", "of all errors (%)")
+    return _bars(Series(kinds), {"": 100 * shown["share"]}, "dots", "of all errors (%)")
 
 
-def choices(table: pd.DataFrame) -> Figure:
+def choices(table: DataFrame) -> Figure:
     """Draw how often each value was chosen, figure 3.12."""
     shares = {"": 100 * table["share"]}
     return _bars(
@@ -143,39 +149,31 @@ def choices(table: pd.DataFrame) -> Figure:
     )
 
 
-def levels(table: pd.DataFrame) -> Figure:
+def levels(table: DataFrame) -> Figure:
     """Draw right answers and times by level, with their SD over people, figure 6.7."""
     figure = Figure(figsize=(8, 3), layout="constrained")
-    grid = figure.subplots(1, 2)
-    for axes, name, times, unit in (
-        (grid[0], "share", 100, "right (%)"),
-        (grid[1], "taken", 1, "time (s)"),
-    ):
-        middle = times * table["share" if name == "share" else "taken_s"]
-        spread = times * table["share_sd" if name == "share" else "taken_sd_s"]
-        axes.errorbar(table["level"], middle, spread, fmt="ko-", capsize=3, mfc="w")
+    shares = 100 * table["share"], 100 * table["share_sd"], "right (%)"
+    times = table["taken_s"], table["taken_sd_s"], "time (s)"
+    for axes, (mean, sd, unit) in zip(figure.subplots(1, 2), (shares, times), strict=True):
+        axes.errorbar(table["level"], mean, sd, fmt="ko-", capsize=3, mfc="w")
         axes.set_xlabel("level, with SD over people")
         axes.set_ylabel(unit)
     return figure
 
 
-def answers(table: pd.DataFrame) -> Figure:
+def answers(table: DataFrame) -> Figure:
     """Draw the distribution of answers to each name, figure 6.10."""
-    down = -(-len(table) // ACROSS)
-    figure = Figure(figsize=(9, 0.6 + 1.6 * down), layout="constrained")
-    grid = figure.subplots(down, ACROSS, sharey=True, squeeze=False)
-    for axes, (name, row) in zip(grid.flat, table.iterrows(), strict=False):
+    figure, panels = _panels(len(table), 1.6)
+    for axes, (name, row) in zip(panels, table.iterrows(), strict=True):
         greys = [".35" if column == name else ".85" for column in table]
         axes.bar(range(len(row)), 100 * row, color=greys, edgecolor="k")
         axes.set_xticks(range(len(row)), table.columns, rotation=90, fontsize=6)
         axes.set_title(str(name), fontsize=8)
-    for axes in grid.flat[len(table) :]:
-        axes.remove()
     figure.supylabel("answers (%)")
     return figure
 
 
-DRAWN: dict[str, Callable[[pd.DataFrame], Figure]] = {
+DRAWN: dict[str, Callable[[DataFrame], Figure]] = {
     "legibility": legibility,
     "dots": dots,
     "errors": errors,
@@ -187,7 +185,7 @@ DRAWN: dict[str, Callable[[pd.DataFrame], Figure]] = {
 """Figures by the names of the tables that they show; confusions have `confusion`."""
 
 
-def draw(result: Result | None, tables: dict[str, pd.DataFrame]) -> dict[str, bytes]:
+def draw(result: Result | None, tables: dict[str, DataFrame]) -> dict[str, bytes]:
     """Return the content of each figure by the name of its file; the means are a PNG as well."""
     files = {}
     with matplotlib.rc_context(STYLE):

@@ -9,11 +9,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
+from pandas import DataFrame, Series
 
 from vbraille.analysis import stats
 from vbraille.analysis.read import LEVELS, SIGNALS, STRINGS, to_number
-from vbraille.analysis.tables import durations, places
+from vbraille.analysis.tables import compared, durations, places
 from vbraille.analysis.thresholds import Threshold, find_preferred, find_threshold
 
 SHARES, LOGS, PLAIN = "shares", "logarithms", "values"
@@ -22,7 +22,7 @@ CHOICES = ("which", "odd", "match")
 SCORED = ("name", *CHOICES, "detect", "same-different")
 TO_ONE = ("contrast", "texture")  # levels from 0 to 1; others are lengths
 
-Values = Callable[[pd.DataFrame, list[str]], pd.DataFrame]
+Values = Callable[[DataFrame, list[str]], DataFrame]
 
 
 @dataclass(frozen=True)
@@ -52,42 +52,42 @@ class Measure:
     unit: str = ""
 
 
-def _means(numbers: Callable[[pd.DataFrame], pd.Series], why: str, *, log: bool = False) -> Values:
+def _means(numbers: Callable[[DataFrame], Series], why: str, *, log: bool = False) -> Values:
     """Return a function that averages numbers of trials, or their logarithms."""
 
-    def values(trials: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
+    def values(trials: DataFrame, keys: list[str]) -> DataFrame:
         made = numbers(trials)
         if log:
             made = np.log(made.where(made > 0))
         value = made.groupby([trials[key] for key in keys], observed=True).mean()
-        return pd.DataFrame({"value": value, "why": np.where(value.isna(), why, "")})
+        return DataFrame({"value": value, "why": np.where(value.isna(), why, "")})
 
     return values
 
 
-def _right(trials: pd.DataFrame) -> pd.Series:
+def _right(trials: DataFrame) -> Series:
     return trials["right"].astype(float)
 
 
-def _answered(trials: pd.DataFrame) -> pd.Series:
+def _answered(trials: DataFrame) -> Series:
     return to_number(trials["answered"])
 
 
-def _speed(trials: pd.DataFrame) -> pd.Series:
+def _speed(trials: DataFrame) -> Series:
     if "words_per_minute" not in trials:
-        return pd.Series(np.nan, trials.index)
+        return Series(np.nan, trials.index)
     return trials["words_per_minute"]
 
 
-def _characters(trials: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
+def _characters(trials: DataFrame, keys: list[str]) -> DataFrame:
     value = places(trials, keys).groupby(keys, observed=True)["right"].mean()
     everyone = trials.groupby(keys, observed=True).size().index
     value = value.reindex(everyone)
     why = "no answer as long as what was presented"
-    return pd.DataFrame({"value": value, "why": np.where(value.isna(), why, "")})
+    return DataFrame({"value": value, "why": np.where(value.isna(), why, "")})
 
 
-def detections(trials: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
+def detections(trials: DataFrame, keys: list[str]) -> DataFrame:
     """Return hits, false alarms and d′ of each person in each cell.
 
     Trials with nothing to detect have no condition: those of a person count in each.
@@ -109,13 +109,13 @@ def detections(trials: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
     return table.assign(d_prime=made)
 
 
-def _d_primes(trials: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
+def _d_primes(trials: DataFrame, keys: list[str]) -> DataFrame:
     made = detections(trials, keys).set_index(keys)["d_prime"]
     why = "no d′, as no trial had nothing to detect"
-    return pd.DataFrame({"value": made, "why": np.where(made.isna(), why, "")})
+    return DataFrame({"value": made, "why": np.where(made.isna(), why, "")})
 
 
-def level_of(trials: pd.DataFrame) -> str:
+def level_of(trials: DataFrame) -> str:
     """Return the column whose levels a threshold is found among; empty if none varies."""
     if trials["question"].isin(CHOICES).any():
         return "difference"
@@ -124,7 +124,7 @@ def level_of(trials: pd.DataFrame) -> str:
     return max(counts, key=lambda name: counts[name]) if max(counts.values(), default=0) > 1 else ""
 
 
-def thresholds(trials: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
+def thresholds(trials: DataFrame, keys: list[str]) -> DataFrame:
     """Return the threshold of each person in each cell, with its interval.
 
     Of detection it is where half of what is neither guessed nor lapsed is felt; of one of several,
@@ -132,7 +132,7 @@ def thresholds(trials: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
     """
     level = level_of(trials)
     blank = trials["outcome"].isin(("false alarm", "correct rejection"))
-    levels = _differences(trials) if level == "difference" else trials.get(level)
+    levels = differences(trials) if level == "difference" else trials.get(level)
     rows = []
     for cell, own in trials[~blank].groupby(keys, observed=True):
         noises = trials.loc[blank & (trials["participant"] == cell[0]), "outcome"]
@@ -149,48 +149,50 @@ def thresholds(trials: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
             )
         rows.append((*cell, len(own), len(noises), *found))
     columns = [*keys, "trials", "blanks", "threshold", *Threshold._fields[1:]]
-    return pd.DataFrame(rows, columns=columns)
+    return DataFrame(rows, columns=columns)
 
 
-def _differences(trials: pd.DataFrame) -> pd.Series:
-    """Return by how much the compared values differ."""
-    texts = trials["presented"].astype(str).str.replace(",", ".").str.split(expand=True)
-    values = texts.apply(pd.to_numeric, errors="coerce")
+def differences(trials: DataFrame) -> Series:
+    """Return by how much the compared values differ; missing where they do not."""
+    values = compared(trials)
     apart = values.max(axis=1) - values.min(axis=1)
     return apart.where(apart > 0)
 
 
-def alternatives(trials: pd.DataFrame) -> pd.Series:
+def alternatives(trials: DataFrame) -> Series:
     """Return among how many stimuli one was right: of a match, two."""
     offered = trials["presented"].str.split().str.len()
     return offered.mask(trials["question"] == "match", 2)
 
 
-def _guess(trials: pd.DataFrame) -> float | None:
+def _guess(trials: DataFrame) -> float | None:
     question = trials["question"].iloc[0]
     if question in CHOICES:
         return 1 / float(alternatives(trials).max())
     return None if question == "detect" else 0.0
 
 
-def _with_why(column: str, found: Callable[[pd.DataFrame, list[str]], pd.DataFrame]) -> Values:
-    def values(trials: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
+def _with_why(column: str, found: Callable[[DataFrame, list[str]], DataFrame]) -> Values:
+    def values(trials: DataFrame, keys: list[str]) -> DataFrame:
         table = found(trials, keys).set_index(keys)
         return table[[column, "why"]].rename(columns={column: "value"})
 
     return values
 
 
-def preferences(trials: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
+def preferences(trials: DataFrame, keys: list[str]) -> DataFrame:
     """Return the preferred value of each person in each cell, with its interval."""
-    values = trials["presented"].str.replace(",", ".").str.split(expand=True).astype(float)
-    answered = _answered(trials)
+    values = compared(trials)
+    chose_first = np.isclose(values[0], _answered(trials))
+    trials = trials.assign(first=values[0], second=values.get(1), chose_first=chose_first)
     rows = []
     for cell, own in trials.groupby(keys, observed=True):
-        first, second = values.loc[own.index, 0], values.loc[own.index, 1]
-        found = find_preferred(first, second, np.isclose(first, answered[own.index]))
-        rows.append((*cell, len(own), found.value, found.low, found.high, found.why))
-    return pd.DataFrame(rows, columns=[*keys, "comparisons", "preferred", "low", "high", "why"])
+        known = own.dropna(subset=["first", "second"])
+        found = Threshold(why="no two values were compared")
+        if len(known):
+            found = find_preferred(known["first"], known["second"], known["chose_first"])
+        rows.append((*cell, len(known), found.value, found.low, found.high, found.why))
+    return DataFrame(rows, columns=[*keys, "comparisons", "preferred", "low", "high", "why"])
 
 
 MEASURES = {
@@ -217,7 +219,7 @@ MEASURES = {
 }  # fmt: skip
 
 
-def usual_measure(trials: pd.DataFrame) -> str:
+def usual_measure(trials: DataFrame) -> str:
     """Return the name of the usual measure of what was asked; empty if there is none."""
     question = trials["question"].iloc[0]
     if question == "detect" and level_of(trials):

@@ -11,7 +11,7 @@ from vbraille.analysis.read import STRINGS, Trials
 from vbraille.version import __version__
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from pandas import DataFrame, Series
 
 DISTANCES = {
     "dot_width_mm": "dots {} mm wide",
@@ -20,7 +20,7 @@ DISTANCES = {
 }
 
 
-def span(counts: pd.Series | list[int], noun: str) -> str:
+def span(counts: Series | list[int], noun: str) -> str:
     """Return a number of things, or the least and the largest.
 
     >>> span([26, 26], "trial"), span([1], "break"), span([2, 3], "break")
@@ -53,7 +53,7 @@ def of_sessions(trials: Trials) -> list[str]:
     return made
 
 
-def _only(frame: pd.DataFrame, column: str) -> str:
+def _only(frame: DataFrame, column: str) -> str:
     """Return the value that all trials have; empty if they differ or have none."""
     values = frame[column].dropna().unique() if column in frame else []
     if len(values) != 1:
@@ -61,7 +61,7 @@ def _only(frame: pd.DataFrame, column: str) -> str:
     return f"{values[0]:g}" if isinstance(values[0], float) else str(values[0])
 
 
-def _display(frame: pd.DataFrame) -> list[str]:
+def _display(frame: DataFrame) -> list[str]:
     model = _only(frame, "model")
     if not model:
         return []
@@ -131,6 +131,7 @@ def of_tests(result: Result) -> list[str]:
 def methods(trials: Trials, result: Result | None) -> list[str]:
     """Return the paragraph, a sentence each."""
     tests = [] if result is None else of_tests(result)
-    ran = sorted({str(content.head.get("version", "")) for content in trials.contents} - {""})
+    runs = [event for content in trials.contents for event in content.events if event.kind == "run"]
+    ran = sorted({run.data.get("versions", {}).get("vbraille", "unknown") for run in runs})
     versions = f"Sessions were run with vbraille {', '.join(ran)}, and a" if ran else "A"
     return [*of_sessions(trials), *tests, f"{versions}nalysed with vbraille {__version__}."]

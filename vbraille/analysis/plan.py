@@ -15,7 +15,7 @@ from vbraille.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import pandas as pd
+    from pandas import DataFrame, Series
 
 
 @dataclass(frozen=True)
@@ -85,17 +85,12 @@ def plan_of(
         trials.notes.append(f"{others} trials of other questions than {question} are not compared")
     asked = frame[frame["question"] == question]
     plan = planned or Plan(question, usual_measure(asked), ("condition",))
-    departures = []
-    if measure is not None and measure != plan.measure:
-        departures.append(f"The measure is {measure}; {plan.measure or 'none'} is planned.")
-        plan = replace(plan, measure=measure)
-    if factors is not None and tuple(factors) != plan.factors:
-        departures.append(
-            f"It is compared by {', '.join(factors)}; {', '.join(plan.factors) or 'none'} planned."
-        )
-        plan = replace(plan, factors=tuple(factors))
-    if trials.contents:
-        plan = replace(plan, departures=departures)
+    chosen = {"measure": measure, "factors": None if factors is None else tuple(factors)}
+    for name, value in chosen.items():
+        if value is not None and value != getattr(plan, name):
+            if planned:
+                plan.departures.append(f"The {name} is not as planned, {getattr(plan, name)}.")
+            plan = replace(plan, **{name: value})
     _check(plan, asked)
     if plan.measure == "threshold":
         plan = replace(plan, factors=_not_along(asked, plan.factors))
@@ -103,13 +98,13 @@ def plan_of(
     return replace(plan, factors=varied)
 
 
-def asked_of(trials: Trials, plan: Plan) -> pd.DataFrame:
+def asked_of(trials: Trials, plan: Plan) -> DataFrame:
     """Return the trials of the planned question, with the levels of its factors in their order."""
     asked = trials.frame[trials.frame["question"] == plan.question]
     return asked.assign(**{name: in_order(_level_names(asked[name])) for name in plan.factors})
 
 
-def _level_names(values: pd.Series) -> pd.Series:
+def _level_names(values: Series) -> Series:
     """Return levels as text, numbers without superfluous places."""
     return values.map(lambda value: f"{value:g}" if isinstance(value, float) else str(value))
 
@@ -136,7 +131,7 @@ def _of_protocol(trials: Trials) -> Plan | None:
     )
 
 
-def _check(plan: Plan, asked: pd.DataFrame) -> None:
+def _check(plan: Plan, asked: DataFrame) -> None:
     """Refuse a measure or a factor that the trials do not have."""
     if plan.measure:
         known = [name for name, each in MEASURES.items() if plan.question in each.questions]
@@ -152,7 +147,7 @@ def _check(plan: Plan, asked: pd.DataFrame) -> None:
             raise InputError(f"{name} is missing in some trials; all need it to be compared by it")
 
 
-def _not_along(asked: pd.DataFrame, factors: tuple[str, ...]) -> tuple[str, ...]:
+def _not_along(asked: DataFrame, factors: tuple[str, ...]) -> tuple[str, ...]:
     """Return the factors without those along which a threshold is found."""
     level = level_of(asked)
     if level not in asked:

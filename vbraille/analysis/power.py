@@ -12,7 +12,9 @@ Studies are tested by the functions that analyse real ones.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
+from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 
 ENOUGH = 0.8
 LARGEST = 500
+PORTION = 2000  # studies at a time, so that memory does not grow with them
 MOST_LOG_ODDS = 40.0
 NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(80)
 
@@ -43,7 +46,7 @@ class PowerRow(NamedTuple):
     participants
         Number of people of a study.
     compared
-        Effect, or two levels; the measure, if nothing is compared.
+        Effect, or two levels; "mean" if nothing is compared.
     studies, power, low, high
         Number of studies, share of them that find it, and its 95 % interval; None of a mean.
     half_width
@@ -67,23 +70,19 @@ class Study:
     ----------
     scale
         "shares", "logarithms" or "values".
-    levels
-        Names of the levels of each factor within people, by the factor's name.
-    groups
-        Names of the groups, and of the factor between people; none if there is none.
+    factors, levels
+        Names of the factors, and of the levels of each; the one between people is the last.
     middles : float64[groups, cells]
-        a of equation (1).
+        a of equation (1); one group if there is no factor between people.
     trials : int[groups, cells]
         Trials of a person, of shares.
     between, differing
         σ and τ of equation (1).
     """
 
-    measure: str
     scale: str
-    levels: dict[str, list[str]]
-    groups: list[str]
-    group_factor: str
+    factors: list[str]
+    levels: list[list[str]]
     middles: Floats
     trials: Floats
     between: float
@@ -124,10 +123,13 @@ def study_of(
     conditions = [condition.name for condition in protocol.conditions]
     along = plan.measure == "threshold" and not plan.factors
     names = conditions[:1] if along else conditions
-    known = [f"{group}:{name}".strip(":") for group in groups for name in names]
+    label = "{group}:{name}" if len(names) > 1 else "{group}"
+    known = [
+        label.format(group=group, name=name).strip(":") or plan.measure
+        for group in groups
+        for name in names
+    ]
     values = dict(effect)
-    if len(known) == 1 and list(values) == [plan.measure]:
-        values = {known[0]: values[plan.measure]}
     if len(groups) > 1 and set(values) == set(names):
         values = {f"{group}:{name}": values[name] for group in groups for name in names}
     if set(values) != set(known):
@@ -138,27 +140,19 @@ def study_of(
         raise InputError(f"--effect has a {MEASURES[plan.measure].name} of 0; each must be above 0")
     spread = np.hypot(between, differing)
     middles = np.array([_middle(scale, values[name], spread) for name in known])
-    factors = {factor.name: factor for factor in protocol.factors}
-    within = {
-        name: [level.name for level in factor.levels]
-        for name, factor in factors.items()
-        if not factor.between
-    }
-    between_names = [name for name, factor in factors.items() if factor.between]
-    if not factors and len(names) > 1:
-        within = {"condition": names}
+    factors = [factor for factor in protocol.factors if not factor.between]
+    levels = [[level.name for level in factor.levels] for factor in factors]
+    factors = [factor.name for factor in factors]
+    if (len(names) > 1 and prod(map(len, levels)) != len(names)) or not factors:
+        factors, levels = ["condition"], [names]
+    if len(names) == 1:
+        factors, levels = [], []
+    if len(groups) > 1:
+        factors.append("-".join(factor.name for factor in protocol.factors if factor.between))
+        levels.append(groups)
     shape = len(groups), len(names)
-    return Study(
-        plan.measure,
-        scale,
-        within,
-        [group for group in groups if group],
-        "-".join(between_names),
-        middles.reshape(shape),
-        _trials(protocol, groups, names, seed) if scale == SHARES else np.ones(shape),
-        between,
-        differing,
-    )
+    trials = _trials(protocol, groups, names, seed) if scale == SHARES else np.ones(shape)
+    return Study(scale, factors, levels, middles.reshape(shape), trials, between, differing)
 
 
 def _middle(scale: str, value: float, spread: float) -> float:
@@ -207,41 +201,43 @@ def power(
     InputError
         If a size is too small to be tested.
     """
-    least = stats.FEWEST * max(1, len(study.groups))
-    if min(sizes) < least or max(sizes) > LARGEST:
-        raise InputError(f"--participants must be {least} to {LARGEST}")
+    groups = len(study.middles)
+    if min(sizes) < stats.FEWEST * groups or max(sizes) > LARGEST:
+        raise InputError(f"--participants must be {stats.FEWEST * groups} to {LARGEST}")
     for size in sizes:
         random = np.random.default_rng([seed, size])
-        values = simulate(study, size, studies, random)
-        member = np.arange(size) % len(study.middles) if study.groups else None
-        counts = [len(names) for names in study.levels.values()]
-        if not counts and member is None:
-            interval = stats.mean_share if study.scale == SHARES else stats.mean_interval
-            low, high = interval(values[..., 0])
-            width = float(np.nanmean(high - low) / 2)
-            yield PowerRow(size, MEASURES[study.measure].name, studies, half_width=width)
-            continue
-        for name, p in _tested(study, values, counts, member):
-            found = int((p <= stats.ALPHA).sum())
-            low, high = stats.wilson(found, studies)
-            yield PowerRow(size, name, studies, found / studies, float(low), float(high))
+        found: Counter[str] = Counter()
+        widths: list[float] = []
+        for first in range(0, studies, PORTION):
+            values = simulate(study, size, min(PORTION, studies - first), random)
+            if not study.factors:
+                interval = stats.mean_share if study.scale == SHARES else stats.mean_interval
+                low, high = interval(values[..., 0])
+                widths += (high - low).tolist()
+                continue
+            for name, p in _tested(study, values):
+                found[name] += int((p <= stats.ALPHA).sum())
+        if not study.factors:
+            yield PowerRow(size, "mean", studies, half_width=float(np.nanmean(widths) / 2))
+        for name, count in found.items():
+            low, high = stats.wilson(count, studies)
+            yield PowerRow(size, name, studies, count / studies, float(low), float(high))
 
 
-def _tested(
-    study: Study, values: Floats, counts: list[int], member
-) -> Iterator[tuple[str, Floats]]:
+def _tested(study: Study, values: Floats) -> Iterator[tuple[str, Floats]]:
     """Return the name of each test, and its corrected p in each study."""
-    factors = [*study.levels, study.group_factor]
-    levels = [*study.levels.values(), study.groups]
+    groups = len(study.middles)
+    member = np.arange(values.shape[1]) % groups if groups > 1 else None
+    counts = [len(names) for names in study.levels][: len(study.levels) - (groups > 1)]
     effects = list(designs.effects_of(values, counts, member))
     pairs = list(designs.pairs_of(values, counts, member))
     if len(effects) > 1 or len(pairs) > 1:
         corrected, _ = stats.holm(np.stack([effect.test.p for effect in effects], axis=-1))
         for n, effect in enumerate(effects):
-            yield " × ".join(factors[place] for place in effect.factors), corrected[..., n]
+            yield " × ".join(study.factors[place] for place in effect.factors), corrected[..., n]
     corrected, _ = stats.holm(np.stack([pair.test.p for pair in pairs], axis=-1))
     for n, pair in enumerate(pairs):
-        own = levels[pair.factor]
+        own = study.levels[pair.factor]
         yield f"{own[pair.first]} and {own[pair.second]}", corrected[..., n]
 
 

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from pandas import DataFrame, Series
 
 from vbraille.analysis import designs, stats
 from vbraille.analysis.measures import CHOICES, LOGS, PLAIN, SHARES, Measure, alternatives
-from vbraille.analysis.read import NO_SCORE, read_scores
+from vbraille.analysis.read import in_order, read_scores
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
@@ -44,18 +45,18 @@ class Result:
     """
 
     measure: Measure
-    cells: pd.DataFrame
-    groups: pd.Series | None
-    means: pd.DataFrame
-    effects: pd.DataFrame
-    pairs: pd.DataFrame
-    simple: pd.DataFrame
+    cells: DataFrame
+    groups: Series | None
+    means: DataFrame
+    effects: DataFrame
+    pairs: DataFrame
+    simple: DataFrame
     left_out: list[str]
     warnings: list[str] = field(default_factory=list)
     sentences: list[str] = field(default_factory=list)
 
 
-def compare(trials: pd.DataFrame, plan: Plan) -> Result:
+def compare(trials: DataFrame, plan: Plan) -> Result:
     """Make the planned comparison.
 
     Parameters
@@ -68,18 +69,8 @@ def compare(trials: pd.DataFrame, plan: Plan) -> Result:
     InputError
         If more than three factors vary within people, or more than one between them.
     """
-    factors = list(plan.factors)
-    per_person = trials.groupby("participant", observed=True)
-    between = [name for name in factors if per_person[name].nunique().max() == 1]
-    within = [name for name in factors if name not in between]
-    if len(between) > 1 or len(within) > 3:
-        raise InputError(
-            f"{', '.join(within) or 'no factor'} vary within people, and "
-            f"{', '.join(between) or 'none'} between them; at most three and one can be compared"
-        )
-    values = plan.of.values(trials, ["participant", *factors])
-    cells, groups, left_out = _in_cells(values, within, between)
-    result = result_of(plan.of, cells, groups, left_out)
+    values = plan.of.values(trials, ["participant", *plan.factors])
+    result = result_of(plan.of, *_in_cells(values, "no trial"))
     result.warnings += _warnings(result, trials, plan)
     result.sentences[len(result.means) : len(result.means)] = _say_chance(trials, plan)
     return result
@@ -87,20 +78,18 @@ def compare(trials: pd.DataFrame, plan: Plan) -> Result:
 
 def compare_scores(path: str | Path) -> Result:
     """Compare a table of scores; `read_scores` describes it and its errors."""
-    values, within, between = read_scores(path)
-    cells, groups, left_out = _in_cells(values, within, between, NO_SCORE)
-    return result_of(SCORE, cells, groups, left_out)
+    return result_of(SCORE, *_in_cells(read_scores(path), "no score"))
 
 
 def result_of(
-    measure: Measure, cells: pd.DataFrame, groups: pd.Series | None, left_out: list[str]
+    measure: Measure, cells: DataFrame, groups: Series | None, left_out: list[str]
 ) -> Result:
     """Test people's values in cells, and say what was found; `Result` describes the arguments."""
-    effects = pairs = pd.DataFrame()
+    effects = pairs = DataFrame()
     if cells.shape[1] > 1 or groups is not None:
         effects, pairs = designs.compare(cells, groups)
     if len(effects) == 1 and len(pairs) == 1:
-        effects = pd.DataFrame()  # its F is the t of the only pair, squared
+        effects = DataFrame()  # its F is the t of the only pair, squared
     means = _means(cells, groups, measure.scale)
     simple = designs.simple_effects(cells, groups)
     result = Result(measure, cells, groups, means, effects, pairs, simple, left_out)
@@ -108,44 +97,44 @@ def result_of(
     return result
 
 
-def _in_cells(
-    values: pd.DataFrame, within: list[str], between: list[str], missing: str = "no trial"
-) -> tuple[pd.DataFrame, pd.Series | None, list[str]]:
+def _in_cells(values: DataFrame, missing: str) -> tuple[DataFrame, Series | None, list[str]]:
     """Return people by cells, their groups, and who is left out with the reason."""
+    table = values.reset_index()
+    per_person = table.groupby("participant", observed=True)
+    factors = list(values.index.names[1:])
+    between = [name for name in factors if per_person[name].nunique().max() == 1]
+    within = [name for name in factors if name not in between]
+    if len(between) > 1 or len(within) > 3:
+        raise InputError(
+            f"{', '.join(within) or 'no factor'} vary within people, and "
+            f"{', '.join(between) or 'none'} between them; at most three and one can be compared"
+        )
     groups = None
     if between:
-        groups = values.reset_index(between[0])[between[0]].astype(str)
-        groups = groups[~groups.index.get_level_values(0).duplicated()]
-        groups.index = groups.index.get_level_values(0)
-        values = values.droplevel(between[0])
+        groups = table.drop_duplicates("participant").set_index("participant")[between[0]]
     if within:
-        wide = designs.crossed(_plain(values["value"].unstack(within)))
-        why = designs.crossed(_plain(values["why"].unstack(within))).fillna(missing)
+        levels = [list(in_order(table[name]).cat.categories) for name in within]
+        cells = pd.MultiIndex.from_product(levels, names=within)
+        if len(within) == 1:
+            cells = cells.get_level_values(0)
+        wide = table.pivot(index="participant", columns=list(cells.names), values="value")
+        why = table.pivot(index="participant", columns=list(cells.names), values="why")
+        wide, why = wide.reindex(columns=cells), why.reindex(columns=cells).fillna(missing)
     else:
-        wide = values[["value"]]
-        why = values[["why"]].set_axis(wide.columns, axis=1)
+        wide, why = (table.set_index("participant")[[name]] for name in ("value", "why"))
+        why.columns = wide.columns
     left_out = []
     for person in wide.index[wide.isna().any(axis=1)]:
         reasons: dict[str, list[str]] = {}
         for name in wide.columns[wide.loc[person].isna()]:
-            reasons.setdefault(str(why.loc[person, name]), []).append(cell_words(name))
+            reasons.setdefault(why.loc[person, name], []).append(cell_words(name))
         told = [
             f"{reason} in {', '.join(names)}" if within else reason
             for reason, names in reasons.items()
         ]
         left_out.append(f"{person}: {'; '.join(told)}")
-    cells = wide.dropna()
-    return cells, None if groups is None else groups[cells.index], left_out
-
-
-def _plain(wide: pd.DataFrame) -> pd.DataFrame:
-    """Return a frame whose names are text, and not categories."""
-    if wide.columns.nlevels == 1:
-        wide.columns = pd.Index(wide.columns.astype(str), name=wide.columns.name)
-    else:
-        names = [tuple(map(str, name)) for name in wide.columns]
-        wide.columns = pd.MultiIndex.from_tuples(names, names=wide.columns.names)
-    return wide
+    kept = wide.dropna()
+    return kept, None if groups is None else groups[kept.index].astype(str), left_out
 
 
 def cell_words(name: str | tuple[str, ...]) -> str:
@@ -153,7 +142,7 @@ def cell_words(name: str | tuple[str, ...]) -> str:
     return name if isinstance(name, str) else ", ".join(name)
 
 
-def _means(cells: pd.DataFrame, groups: pd.Series | None, scale: str) -> pd.DataFrame:
+def _means(cells: DataFrame, groups: Series | None, scale: str) -> DataFrame:
     """Return the mean of each cell with its interval, over the people of the tests."""
     parts = [("", cells)]
     if groups is not None:
@@ -168,10 +157,10 @@ def _means(cells: pd.DataFrame, groups: pd.Series | None, scale: str) -> pd.Data
             mean = values.mean() if values.size else np.nan
             numbers = np.array([mean, *interval(values)] if values.size else [np.nan] * 3)
             rows.append((name, values.size, *(np.exp(numbers) if scale == LOGS else numbers)))
-    return pd.DataFrame(rows, columns=["cell", "participants", "mean", "low", "high"])
+    return DataFrame(rows, columns=["cell", "participants", "mean", "low", "high"])
 
 
-def _warnings(result: Result, asked: pd.DataFrame, plan: Plan) -> list[str]:
+def _warnings(result: Result, asked: DataFrame, plan: Plan) -> list[str]:
     """Say where the tests are known to find differences that are not there."""
     made = []
     keys = ["participant", *plan.factors]
@@ -198,14 +187,13 @@ def _warnings(result: Result, asked: pd.DataFrame, plan: Plan) -> list[str]:
     return made
 
 
-def chance_of(question: str, asked: pd.DataFrame) -> float | None:
-    """Return the share of right answers by guessing; None if the answers are not limited."""
-    names = asked["presented"].nunique()
-    if question == "name" and names > 1:
-        return 1 / names
-    if question in CHOICES:
-        return float((1 / alternatives(asked)).mean())
-    return None
+def _say_chance(asked: DataFrame, plan: Plan) -> list[str]:
+    """Say how many right answers guessing gives, where the possible answers are known."""
+    offered = alternatives(asked) if plan.question in CHOICES else asked["presented"].nunique()
+    limited = plan.question in (*CHOICES, "name") and np.min(offered) > 1
+    if plan.measure != "right" or not limited:
+        return []
+    return [f"Guessing alone would give {100 * np.mean(1 / offered):.0f} %."]
 
 
 def people(count: int) -> str:
@@ -248,25 +236,15 @@ def _say_means(result: Result) -> list[str]:
     kind = "Geometric mean" if result.measure.scale == LOGS else "Mean"
     for row in result.means.itertuples():
         where = "" if len(result.means) == 1 else f", {row.cell}"
-        text = f"{kind} {result.measure.name}{where}: "
+        mean, low, high = (_number(result.measure, each) for each in (row.mean, row.low, row.high))
+        how = f"95 % interval {low} to {high}"
+        if np.isnan(row.low):
+            how = "all alike" if row.participants >= stats.FEWEST else "too few for an interval"
+        said = f"{mean} ({people(row.participants)}, {how})"
         if not row.participants:
-            made.append(text + "no one has a value in every cell.")
-        elif np.isnan(row.low):
-            why = "all alike" if row.participants >= stats.FEWEST else "too few for an interval"
-            number = _number(result.measure, row.mean)
-            made.append(f"{text}{number} ({people(row.participants)}, {why}).")
-        else:
-            ends = f"{_number(result.measure, row.low)} to {_number(result.measure, row.high)}"
-            number = _number(result.measure, row.mean)
-            made.append(f"{text}{number} (95 % interval {ends}; {people(row.participants)}).")
+            said = "no person has a value in every cell"
+        made.append(f"{kind} {result.measure.name}{where}: {said}.")
     return made
-
-
-def _say_chance(asked: pd.DataFrame, plan: Plan) -> list[str]:
-    chance = chance_of(plan.question, asked)
-    if chance is None or plan.measure != "right":
-        return []
-    return [f"Guessing alone would give {100 * chance:.0f} %."]
 
 
 def _say_effects(result: Result) -> list[str]:

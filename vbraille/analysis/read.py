@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from pandas import DataFrame, Series
 
 from vbraille.braille.spelling import LETTERS
 from vbraille.csvfiles import parse_csv
@@ -29,11 +30,14 @@ LEVELS = (
 DURATIONS = ("duration_s", "response_s", "contact_s", "paused_s")
 NUMBERS = (*DURATIONS, "trial", "block", "early", "confidence", "words_per_minute")
 STRINGS = "identify"
-NO_SCORE = "no score"
 QUESTIONS = (
     STRINGS, "which", "odd", "match", "same-different", "detect", "rating", "magnitude", "adjust",
     "name", "free", "read",
 )  # fmt: skip
+USUAL = {
+    "condition": "all", "protocol": "", "block": np.nan, "trial": np.nan, "question": None,
+    "string_set": None, "outcome": None, "correct": np.nan, "practice": 0, "catch": None,
+}  # fmt: skip
 SIGNALS = {"detect": ("yes", "no"), "same-different": ("different", "same")}
 GOOD = ("right", "hit", "correct rejection")
 OUTCOMES = (*GOOD, "wrong", "miss", "false alarm")
@@ -62,7 +66,7 @@ class Trials:
         Sessions, for the methods.
     """
 
-    frame: pd.DataFrame
+    frame: DataFrame
     notes: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
@@ -73,7 +77,7 @@ class Trials:
 @dataclass
 class _Source:
     name: str
-    table: pd.DataFrame
+    table: DataFrame
     said: str
     content: Content | None = None
 
@@ -109,10 +113,9 @@ def read_trials(
     _drop_unanswered(trials)
     _read_answers(trials)
     if protocol is not None:
-        _keep(trials, "protocol", [protocol])
+        _keep(trials, "protocol", protocol, kept=True)
     for person, reason in (exclude or {}).items():
-        _check_known(trials.frame, "participant", person)
-        trials.frame = trials.frame[trials.frame["participant"] != person]
+        _keep(trials, "participant", person, kept=False)
         trials.left_out.append(f"{person}: {reason}")
     if trials.frame.empty:
         raise InputError("no trial is left; see what was excluded")
@@ -124,7 +127,7 @@ def read_trials(
     return trials
 
 
-def in_order(values: pd.Series) -> pd.Series:
+def in_order(values: Series) -> Series:
     """Return names as categories in natural order: T0, T25, T100."""
     names = values.astype(str)
     kinds = pd.CategoricalDtype(sorted(names.unique(), key=natural), ordered=True)
@@ -139,19 +142,23 @@ def _load(path: Path, name: str) -> _Source:
         from vbraille.sessions.record import record, trials
 
         rows = [{key: str(cell) for key, cell in row.items()} for row in trials.rows(path)]
-        table = _typed(pd.DataFrame(rows, dtype=object), name)
+        table = _typed(DataFrame(rows, dtype=object), name)
         table["session"] = name
         return _Source(name, table, f"{said}, {len(rows)} trials", record.read(path))
     sheet = parse_csv(data, name)
-    table = pd.DataFrame(sheet.rows, sheet.lines, list(sheet.columns), dtype=object)
+    table = DataFrame(sheet.rows, sheet.lines, list(sheet.columns), dtype=object)
     for column in NEEDED:
         if column not in table:
             raise InputError(f"{name} has no column {column}; it has {', '.join(table)}")
     table = _typed(table, name)
-    numbered = "trial" in table
+    again = table.index[table.duplicated()] if "trial" in table else []
+    if len(again):
+        raise InputError(
+            f"{name}: line {again[0]} is the same as a line above it; give each trial once, and "
+            f"tell sessions apart in a column session"
+        )
     if "session" not in table:
         table["session"] = name
-    _check_once(table, name, numbered=numbered)
     return _Source(name, table, f"{said}, {len(table)} rows")
 
 
@@ -176,27 +183,17 @@ def _names(paths: list[Path]) -> list[str]:
     ]
 
 
-def _check_once(table: pd.DataFrame, name: str, *, numbered: bool) -> None:
-    """Refuse a trial that a table holds twice, as far as trials have numbers."""
-    again = table.index[table.duplicated()] if numbered else []
-    if len(again):
-        raise InputError(
-            f"{name}: line {again[0]} is the same as a line above it; give each trial once, and "
-            f"tell sessions apart in a column session"
-        )
-
-
-def _typed(table: pd.DataFrame, name: str) -> pd.DataFrame:
+def _typed(table: DataFrame, name: str) -> DataFrame:
     """Return a table with missing cells, and with numbers in columns that have nothing else."""
     made = {}
     for column in table:
         cells = table[column]
         cells = cells.mask(cells.isin(MISSING))
         made[column] = cells if column in TEXTS else _numbers(cells, str(column), name)
-    return pd.DataFrame(made, table.index)
+    return DataFrame(made, table.index)
 
 
-def _numbers(cells: pd.Series, column: str, name: str) -> pd.Series:
+def _numbers(cells: Series, column: str, name: str) -> Series:
     known = cells.dropna()
     good = known.drop_duplicates().astype(str).str.fullmatch(_NUMBER)
     if good.all():
@@ -213,7 +210,7 @@ def _numbers(cells: pd.Series, column: str, name: str) -> pd.Series:
     return numbers
 
 
-def to_number(values: pd.Series) -> pd.Series:
+def to_number(values: Series) -> Series:
     """Return numbers, with decimal points or commas; what is none is missing."""
     texts = values.astype(object).map(lambda value: str(value).replace(",", "."), "ignore")
     return pd.to_numeric(texts, errors="coerce").astype(float)
@@ -241,7 +238,7 @@ def _check_copies(sources: list[_Source]) -> None:
             people[person].append(source)
 
 
-def _same_trials(one: pd.DataFrame, other: pd.DataFrame, person: str) -> bool:
+def _same_trials(one: DataFrame, other: DataFrame, person: str) -> bool:
     """Tell whether two tables have the same answers of a person, by their times or by all cells."""
     parts = [table[table["participant"] == person] for table in (one, other)]
     parts = [part.dropna(subset=["answered"]) for part in parts]
@@ -255,18 +252,19 @@ def _same_trials(one: pd.DataFrame, other: pd.DataFrame, person: str) -> bool:
 def _fill(trials: Trials) -> None:
     """Add the columns that a table may leave out, and refuse names that are missing."""
     frame = trials.frame
-    if "condition" not in frame:
-        frame["condition"] = "all"
+    for name, usual in USUAL.items():
+        if name not in frame:
+            frame[name] = usual
+    numbers = frame.groupby("session").cumcount() + 1.0
     pairs = frame["presented"].astype(str).str.fullmatch(rf"{_NUMBER}\s+{_NUMBER}")
-    asked = frame["question"] if "question" in frame else pd.Series(np.nan, frame.index)
-    usual = pd.Series(np.where(pairs, "which", STRINGS), frame.index)
-    frame["question"] = asked.astype(object).fillna(usual)
+    kinds = Series(np.where(pairs, "which", STRINGS), frame.index)
+    known = {"protocol": "", "block": 0.0, "trial": numbers, "question": kinds}
+    known["string_set"] = frame["presented"]
+    for name, values in known.items():
+        frame[name] = frame[name].fillna(values)
     unknown = sorted(set(frame["question"]) - set(QUESTIONS))
     if unknown:
         raise InputError(f"unknown question {unknown[0]!r}; known: {', '.join(QUESTIONS)}")
-    if "protocol" not in frame:
-        frame["protocol"] = ""
-    frame["protocol"] = frame["protocol"].fillna("")
     for name in ("participant", "condition", "session", "presented"):
         holes = int(frame[name].isna().sum())
         if holes:
@@ -274,11 +272,6 @@ def _fill(trials: Trials) -> None:
                 f"{name} is missing in {holes} rows; {', '.join(sorted(MISSING)[1:])} and an empty "
                 f"cell name nothing"
             )
-    if "block" not in frame:
-        frame["block"] = 0
-    frame["block"] = frame["block"].fillna(0)
-    numbers = frame.groupby("session").cumcount() + 1.0
-    frame["trial"] = frame["trial"].fillna(numbers) if "trial" in frame else numbers
 
 
 def _join_names(trials: Trials, columns: Iterable[str]) -> None:
@@ -296,11 +289,10 @@ def _join_names(trials: Trials, columns: Iterable[str]) -> None:
 
 def _drop_unanswered(trials: Trials) -> None:
     frame = trials.frame
-    if "practice" in frame:
-        practice = frame["practice"].eq(1)
-        if practice.any():
-            trials.notes.append(f"{practice.sum()} trials of practice are left out")
-        frame = frame[~practice]
+    practice = frame["practice"].eq(1)
+    if practice.any():
+        trials.notes.append(f"{practice.sum()} trials of practice are left out")
+    frame = frame[~practice]
     unanswered = frame["answered"].isna()
     for person, count in frame.loc[unanswered, "participant"].value_counts(sort=False).items():
         trials.notes.append(f"{person}: {count} trials without an answer are left out")
@@ -313,27 +305,21 @@ def _read_answers(trials: Trials) -> None:
     """Bring presented and answered into one spelling, and tell which answers are right."""
     frame = trials.frame
     strings = frame["question"] == STRINGS
-    if "string_set" not in frame:
-        frame["string_set"] = np.nan
-    frame["string_set"] = frame["string_set"].astype(object).fillna(frame["presented"])
     for column in ("presented", "answered", "string_set"):
         known = frame.loc[strings, column].unique()
         cells = {text: visible(text.translate(_BLANK)).lower() for text in known}
         cells = {text: plain.translate(_CELLS) for text, plain in cells.items()}
         frame.loc[strings, column] = frame.loc[strings, column].map(cells)
     frame["right"] = frame["presented"] == frame["answered"]
-    if "correct" in frame:
-        said = frame["correct"]
-        odds = int((strings & said.notna() & (said != frame["right"])).sum())
-        if odds:
-            trials.notes.append(f"correct disagrees with the answer in {odds} rows: answers count")
-    given = frame["outcome"] if "outcome" in frame else pd.Series(np.nan, frame.index)
-    frame["outcome"] = given.astype(object)
+    said = frame["correct"]
+    odds = int((strings & said.notna() & (said != frame["right"])).sum())
+    if odds:
+        trials.notes.append(f"correct disagrees with the answer in {odds} rows: answers count")
     _name_answers(trials, frame["question"] == "name")
     for question, rows in frame[~strings].groupby("question"):
         if question in SIGNALS:
             frame.loc[rows.index, "outcome"] = _detected(rows, *SIGNALS[str(question)])
-        elif "correct" in rows:
+        else:
             scored = rows["correct"].map({1: "right", 0: "wrong"})
             frame.loc[rows.index, "outcome"] = rows["outcome"].fillna(scored)
     outcome = frame["outcome"]
@@ -344,7 +330,7 @@ def _read_answers(trials: Trials) -> None:
     frame["right"] = frame["right"].where(~told, outcome.isin(GOOD))
 
 
-def _name_answers(trials: Trials, named: pd.Series) -> None:
+def _name_answers(trials: Trials, named: Series) -> None:
     """Spell names that were answered as they were presented, whatever their case."""
     frame = trials.frame
     if not named.any():
@@ -361,7 +347,7 @@ def _name_answers(trials: Trials, named: pd.Series) -> None:
     frame.loc[named, "right"] = frame.loc[named, "presented"] == frame.loc[named, "answered"]
 
 
-def _detected(rows: pd.DataFrame, signal: str, noise: str) -> pd.Series:
+def _detected(rows: DataFrame, signal: str, noise: str) -> Series:
     """Return the outcome of each answer, as given, or by what was presented."""
     answered = rows["answered"].str.lower()
     wrong = answered[~answered.isin([signal, noise])]
@@ -384,26 +370,24 @@ def _detected(rows: pd.DataFrame, signal: str, noise: str) -> pd.Series:
     return outcome
 
 
-def _check_known(frame: pd.DataFrame, column: str, name: str) -> None:
-    known = sorted(frame[column].astype(str).unique(), key=natural)
+def _keep(trials: Trials, column: str, name: str, *, kept: bool) -> None:
+    """Keep the trials that have a name, or those that have not."""
+    known = sorted(trials.frame[column].unique(), key=natural)
     if name not in known:
         raise InputError(f"no {column} {name!r} has answered; known: {', '.join(known)}")
+    rows = (trials.frame[column] == name) == kept
+    trials.frame = trials.frame[rows].copy()
+    trials.contents = [
+        each
+        for each in trials.contents
+        if (name in (each.head["protocol"], each.plan.participant)) == kept
+    ]
+    if kept and not rows.all():
+        trials.notes.append(f"{(~rows).sum()} trials of another {column} are left out")
 
 
-def _keep(trials: Trials, column: str, names: list[str]) -> None:
-    for name in names:
-        _check_known(trials.frame, column, name)
-    kept = trials.frame[column].isin(names)
-    if not kept.all():
-        trials.notes.append(f"{(~kept).sum()} trials of another {column} are left out")
-    trials.frame = trials.frame[kept].copy()
-    trials.contents = [each for each in trials.contents if each.head.get(column) in names]
-
-
-def caught(frame: pd.DataFrame) -> pd.Series:
+def caught(frame: DataFrame) -> Series:
     """Tell which trials only keep watch over the participant."""
-    if "catch" not in frame:
-        return pd.Series(False, frame.index)
     return frame["catch"].notna() & ~frame["question"].eq("detect")
 
 
@@ -419,17 +403,15 @@ def _warn_of_sources(trials: Trials) -> None:
                 trials.warnings.append(f"{count} {words}: no data about people.")
 
 
-def read_scores(path: str | Path) -> tuple[pd.DataFrame, list[str], list[str]]:
+def read_scores(path: str | Path) -> DataFrame:
     """Read a table of scores: columns participant, one to four factors, and score.
 
-    A factor of which each person has one level is one between people. The last column holds the
-    scores if none is called score.
+    The last column holds the scores if none is called score.
 
     Returns
     -------
-    values, within, between
-        A row for each person and cell, with ``value``, and ``why`` it is missing if it is; and the
-        factors within people and between them.
+    DataFrame
+        A row for each person and cell, with ``value``, and ``why`` it is missing if it is.
 
     Raises
     ------
@@ -437,7 +419,7 @@ def read_scores(path: str | Path) -> tuple[pd.DataFrame, list[str], list[str]]:
         If it is no such table.
     """
     sheet = parse_csv(_content(Path(path)), Path(path).name)
-    table = pd.DataFrame(sheet.rows, sheet.lines, list(sheet.columns), dtype=object)
+    table = DataFrame(sheet.rows, sheet.lines, list(sheet.columns), dtype=object)
     if "participant" not in table or table.shape[1] < 3 or table.empty:
         raise InputError(f"{sheet.name} needs columns participant, what was varied, and score")
     score = "score" if "score" in table else str(table.columns[-1])
@@ -451,16 +433,9 @@ def read_scores(path: str | Path) -> tuple[pd.DataFrame, list[str], list[str]]:
         table[name] = table[name].map(visible)
         check_alike(table[name], name)
         table[name] = in_order(table[name])
-    levels = table.groupby("participant", observed=True)[factors].nunique().max()
-    between = [name for name in factors if levels[name] == 1 < table[name].nunique()]
-    within = [name for name in factors if name not in between]
-    if len(between) > 1 or len(within) > 3:
-        raise InputError(
-            f"{sheet.name}: {', '.join(within)} vary within people, and {', '.join(between)} "
-            f"between them; at most three and one can be compared"
-        )
-    again = table.index[table.duplicated(["participant", *within])]
+    again = table.index[table.duplicated(["participant", *factors])]
     if len(again):
         raise InputError(f"{sheet.name}: line {again[0]} has a second score of a person in a cell")
+    factors = [name for name in factors if table[name].nunique() > 1]
     values = table.set_index(["participant", *factors])[[score]].set_axis(["value"], axis=1)
-    return values.assign(why=NO_SCORE), within, between
+    return values.assign(why="no score")

@@ -12,8 +12,8 @@ import numpy as np
 from vbraille.analysis import tables
 from vbraille.analysis.measures import (
     CHOICES,
-    _differences,
     detections,
+    differences,
     level_of,
     preferences,
     thresholds,
@@ -26,7 +26,7 @@ from vbraille.version import __version__
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    import pandas as pd
+    from pandas import DataFrame
 
     from vbraille.analysis.plan import Plan
 
@@ -70,7 +70,7 @@ class Analysis:
 
     title: str
     result: Result | None
-    tables: dict[str, pd.DataFrame]
+    tables: dict[str, DataFrame]
     warnings: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
@@ -150,19 +150,19 @@ class Analysis:
         )
 
 
-def _csv(table: pd.DataFrame) -> bytes:
+def _csv(table: DataFrame) -> bytes:
     return table.to_csv(index=False, lineterminator="\n").encode()
 
 
-def _with_index(name: str, table: pd.DataFrame) -> pd.DataFrame:
+def _with_index(name: str, table: DataFrame) -> DataFrame:
     return table.rename_axis("presented").reset_index() if name.startswith(INDEXED) else table
 
 
-def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
+def _records(table: DataFrame) -> list[dict[str, Any]]:
     return json.loads(table.to_json(orient="records", double_precision=15))
 
 
-def _shown(caption: str, table: pd.DataFrame) -> dict[str, Any]:
+def _shown(caption: str, table: DataFrame) -> dict[str, Any]:
     """Return a table as the page shows it: as text, and its first rows."""
     more = f" (first {MOST_ROWS} of {len(table)} rows)" if len(table) > MOST_ROWS else ""
     full = table.loc[:, [bool(table[name].astype(str).str.strip().any()) for name in table]]
@@ -180,10 +180,10 @@ def _text(value: object) -> str:
     return str(value)
 
 
-def all_tables(trials: Trials, plan: Plan, asked: pd.DataFrame) -> dict[str, pd.DataFrame]:
+def all_tables(trials: Trials, plan: Plan, asked: DataFrame) -> dict[str, DataFrame]:
     """Return the tables of the planned question, by the names of their files."""
     keys = ["participant", *plan.factors]
-    made: dict[str, pd.DataFrame] = {}
+    made: dict[str, DataFrame] = {}
     if plan.question == STRINGS:
         made = string_tables(asked)
     elif plan.question == "name":
@@ -199,7 +199,7 @@ def all_tables(trials: Trials, plan: Plan, asked: pd.DataFrame) -> dict[str, pd.
     elif plan.measure in ("rating", "adjusted", "magnitude"):
         made["ratings"] = tables.ratings(asked, "answered", list(plan.factors) or ["condition"])
     if plan.question in CHOICES and plan.measure != "preferred":
-        made["levels"] = tables.by_difference(asked, _differences(asked))
+        made["levels"] = tables.by_difference(asked, differences(asked))
     if plan.question == "detect" and level_of(asked):
         made["levels"] = tables.by_difference(asked, asked[level_of(asked)])
     if plan.measure == "threshold":
@@ -209,7 +209,7 @@ def all_tables(trials: Trials, plan: Plan, asked: pd.DataFrame) -> dict[str, pd.
     return made | {"trials": trials.frame.astype({"right": int})}
 
 
-def string_tables(trials: pd.DataFrame) -> dict[str, pd.DataFrame]:
+def string_tables(trials: DataFrame) -> dict[str, DataFrame]:
     """Return the tables of strings by the names of their files."""
     each = tables.places(trials)
     own = tables.legibility(trials, each)
@@ -237,7 +237,7 @@ def string_tables(trials: pd.DataFrame) -> dict[str, pd.DataFrame]:
     return made
 
 
-def tables_of(result: Result) -> dict[str, pd.DataFrame]:
+def tables_of(result: Result) -> dict[str, DataFrame]:
     """Return the tables of a comparison, by the names of their files."""
     cells = result.cells.copy()
     if cells.shape[1] > 1:

@@ -24,6 +24,7 @@ FEWEST = 3
 NO_SPREAD = 1e-9
 NO_TRACE = 1e-14
 LARGEST_D = 40.0
+QUIET = np.errstate(divide="ignore", invalid="ignore")
 TOO_FEW = "no test of fewer than 3 people"
 SAME_DIFFERENCE = "no test: the difference is the same for everyone"
 SAME_VALUE = "no test: everyone in a group has the same value"
@@ -100,31 +101,18 @@ def t_interval(
     return value - reach, value + reach
 
 
-def _mean_error(values: Floats) -> tuple[Floats, Floats]:
-    """Return mean and standard error over people; NaN without an interval."""
-    people = values.shape[-1]
-    mean = values.mean(axis=-1)
-    if people < FEWEST:
-        return mean, np.full_like(mean, np.nan)
-    error = values.std(axis=-1, ddof=1) / np.sqrt(people)
-    return mean, np.where(np.ptp(values, axis=-1) >= NO_SPREAD, error, np.nan)
-
-
 def mean_interval(values: ArrayLike) -> tuple[Floats, Floats]:
     """Return Student's interval of the mean over people; NaN of fewer than 3, or all alike."""
-    values = np.asarray(values, np.float64)
-    return t_interval(*_mean_error(values), values.shape[-1] - 1)
+    mean, error, _, df, *_ = paired(values)
+    return t_interval(mean, error, df)
 
 
+@QUIET
 def mean_share(shares: ArrayLike) -> tuple[Floats, Floats]:
     """Return the interval of the mean share over people, by Student's t on the logit scale."""
-    shares = np.asarray(shares, np.float64)
-    mean, error = _mean_error(shares)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        low, high = t_interval(
-            special.logit(mean), error / (mean * (1 - mean)), shares.shape[-1] - 1
-        )
-    return special.expit(low), special.expit(high)
+    mean, error, _, df, *_ = paired(shares)
+    ends = t_interval(special.logit(mean), error / (mean * (1 - mean)), df)
+    return special.expit(ends[0]), special.expit(ends[1])
 
 
 def wilson(right: ArrayLike, trials: ArrayLike) -> tuple[Floats, Floats]:
@@ -164,20 +152,16 @@ def d_prime_differencing(hit_rate: ArrayLike, false_rate: ArrayLike) -> Floats:
     return np.where(hit_rate > false_rate, (low + high) / 2, 0.0)
 
 
+@QUIET
 def _t_test(value: Floats, error: Floats, df: ArrayLike, size: Floats, made, note: str) -> TTest:
-    with np.errstate(divide="ignore", invalid="ignore"):
-        t = np.where(made, value / error, np.nan)
-        size = np.where(made, size, np.nan)
-    blank = np.where(made, 0.0, np.nan)
+    """Return a test, with NaN where it is not made."""
+    none = np.where(made, 0.0, np.nan)
+    t = value / error + none
     note = "" if np.any(made) else note
-    return TTest(value, error + blank, t, df + blank, _p_of_t(t, df), size, note)
+    return TTest(value, error + none, t, df + none, _p_of_t(t, df), size + none, note)
 
 
-def _unmade(value: Floats, note: str) -> TTest:
-    none = np.full_like(value, np.nan)
-    return TTest(value, none, none, none, none, none, note)
-
-
+@QUIET
 def paired(gaps: ArrayLike) -> TTest:
     """Test differences of people by the paired t-test.
 
@@ -189,15 +173,17 @@ def paired(gaps: ArrayLike) -> TTest:
     gaps = np.asarray(gaps, np.float64)
     people = gaps.shape[-1]
     if people < FEWEST:
-        return _unmade(gaps.mean(axis=-1) if people else np.full(gaps.shape[:-1], np.nan), TOO_FEW)
+        gaps = np.concatenate([gaps, np.full((*gaps.shape[:-1], FEWEST - people), np.nan)], -1)
+        value = np.nansum(gaps, axis=-1) / people if people else gaps[..., 0]
+        return _t_test(value, value, np.nan, value, False, TOO_FEW)
     value = gaps.mean(axis=-1)
     spread = gaps.std(axis=-1, ddof=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        size = value / spread * (1 - 3 / (4 * (people - 1) - 1))
+    size = value / spread * (1 - 3 / (4 * (people - 1) - 1))
     made = np.ptp(gaps, axis=-1) >= NO_SPREAD
     return _t_test(value, spread / np.sqrt(people), people - 1, size, made, SAME_DIFFERENCE)
 
 
+@QUIET
 def welch(first: ArrayLike, second: ArrayLike) -> TTest:
     """Test the difference of two groups by Welch's t-test.
 
@@ -206,22 +192,16 @@ def welch(first: ArrayLike, second: ArrayLike) -> TTest:
     first, second : float64[..., people]
         Value of each person of a group.
     """
-    groups = [np.asarray(group, np.float64) for group in (first, second)]
-    if min(group.shape[-1] for group in groups) == 0:
-        return _unmade(np.full(groups[0].shape[:-1], np.nan), TOO_FEW)
-    value = groups[0].mean(axis=-1) - groups[1].mean(axis=-1)
-    if min(group.shape[-1] for group in groups) < FEWEST:
-        return _unmade(value, TOO_FEW)
-    degrees = [group.shape[-1] - 1 for group in groups]
-    variances = [group.var(axis=-1, ddof=1) for group in groups]
-    squares = [variance / (df + 1) for variance, df in zip(variances, degrees, strict=True)]
-    total = squares[0] + squares[1]
-    made = np.minimum(*(np.ptp(group, axis=-1) for group in groups)) >= NO_SPREAD
-    pooled = (degrees[0] * variances[0] + degrees[1] * variances[1]) / sum(degrees)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        df = total**2 / (squares[0] ** 2 / degrees[0] + squares[1] ** 2 / degrees[1])
-        size = value / np.sqrt(pooled) * (1 - 3 / (4 * sum(degrees) - 1))
-    return _t_test(value, np.sqrt(total), df, size, made, SAME_VALUE)
+    one, other = paired(first), paired(second)
+    degrees = np.array([np.shape(first)[-1] - 1, np.shape(second)[-1] - 1])
+    value = one.value - other.value
+    squares = np.stack([one.error**2, other.error**2], axis=-1)
+    total = squares.sum(axis=-1)
+    df = total**2 / (squares**2 / degrees).sum(axis=-1)
+    pooled = (squares * (degrees + 1) * degrees).sum(axis=-1) / degrees.sum()
+    size = value / np.sqrt(pooled) * (1 - 3 / (4 * degrees.sum() - 1))
+    note = TOO_FEW if degrees.min() < FEWEST - 1 else SAME_VALUE
+    return _t_test(value, np.sqrt(total), df, size, ~np.isnan(total), note)
 
 
 def holm(p: ArrayLike) -> tuple[Floats, Floats]:
@@ -315,52 +295,52 @@ def _in_groups(values: ArrayLike, member: ArrayLike | None) -> tuple[Floats, NDA
     return values, member, np.stack(means, axis=-2)
 
 
+@QUIET
 def _spherical(squares: Floats, residuals: Floats, df: int, times: int) -> FTest:
     """Test a sum of squares against residuals float64[..., people, contrasts]."""
     width = residuals.shape[-1]
     spread = np.swapaxes(residuals, -1, -2) @ residuals / df
     trace = np.trace(spread, axis1=-2, axis2=-1)
     made = trace >= NO_TRACE
-    with np.errstate(divide="ignore", invalid="ignore"):
-        epsilon = np.where(made, trace**2 / (width * (spread**2).sum(axis=(-1, -2))), np.nan)
-        f = np.where(made, squares / times / trace, np.nan)
-    df1 = width * times
-    df2 = width * df
+    none = np.where(made, 0.0, np.nan)
+    epsilon = trace**2 / (width * (spread**2).sum(axis=(-1, -2))) + none
+    f = squares / times / trace + none
+    df1 = width * times + none
+    df2 = width * df + none
+    corrected = epsilon * df1, epsilon * df2
     return FTest(
         f,
-        epsilon * df1,
-        epsilon * df2,
-        special.fdtrc(epsilon * df1, epsilon * df2, f),
+        *corrected,
+        special.fdtrc(*corrected, f),
         epsilon,
-        np.where(made, df1, np.nan),
-        np.where(made, df2, np.nan),
+        df1,
+        df2,
         special.fdtrc(df1, df2, f),
-        squares / np.where(made, squares + trace * df, np.nan),
+        squares / (squares + trace * df) + none,
         "" if np.any(made) else NO_SCATTER,
     )
 
 
+@QUIET
 def welch_f(groups: list[Floats]) -> FTest:
     """Test whether groups have the same mean by Welch's F; float64[..., people] each."""
     count = len(groups)
     sizes = np.array([group.shape[-1] for group in groups])
-    means = np.stack([group.mean(axis=-1) for group in groups], axis=-1)
-    none = np.full(means.shape[:-1], np.nan)
-    if sizes.min() < FEWEST:
-        return FTest(*[none] * 9, TOO_FEW)
-    spread = np.stack([np.ptp(group, axis=-1) for group in groups], axis=-1).min(axis=-1)
-    made = spread >= NO_SPREAD
-    variances = np.stack([group.var(axis=-1, ddof=1) for group in groups], axis=-1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        weights = sizes / variances
-        total = weights.sum(axis=-1, keepdims=True)
-        centre = (weights * means).sum(axis=-1, keepdims=True) / total
-        uneven = ((1 - weights / total) ** 2 / (sizes - 1)).sum(axis=-1)
-        between = (weights * (means - centre) ** 2).sum(axis=-1) / (count - 1)
-        f = np.where(made, between / (1 + 2 * (count - 2) / (count**2 - 1) * uneven), np.nan)
-        df2 = np.where(made, (count**2 - 1) / 3 / uneven, np.nan)
-    df1 = np.where(made, count - 1.0, np.nan)
-    p = special.fdtrc(df1, df2, f)
+    means, errors = (
+        np.stack([getattr(paired(group), name) for group in groups], axis=-1)
+        for name in ("value", "error")
+    )
+    weights = 1 / errors**2
+    total = weights.sum(axis=-1, keepdims=True)
+    centre = (weights * means).sum(axis=-1, keepdims=True) / total
+    uneven = ((1 - weights / total) ** 2 / (sizes - 1)).sum(axis=-1)
+    between = (weights * (means - centre) ** 2).sum(axis=-1) / (count - 1)
+    f = between / (1 + 2 * (count - 2) / (count**2 - 1) * uneven)
+    df1 = count - 1 + 0 * uneven
+    df2 = (count**2 - 1) / 3 / uneven
     squares = (sizes * (means - means @ sizes[:, None] / sizes.sum()) ** 2).sum(axis=-1)
-    size = np.where(made, squares / (squares + variances @ (sizes - 1)), np.nan)
-    return FTest(f, df1, df2, p, none, none, none, none, size, "" if np.any(made) else SAME_VALUE)
+    size = squares / (squares + errors**2 @ (sizes * (sizes - 1)))
+    none = np.full_like(f, np.nan)
+    note = TOO_FEW if sizes.min() < FEWEST else SAME_VALUE
+    note = "" if np.isfinite(f).any() else note
+    return FTest(f, df1, df2, special.fdtrc(df1, df2, f), none, none, none, none, size, note)

@@ -9,6 +9,7 @@ from itertools import product
 
 import numpy as np
 import pandas as pd
+from pandas import DataFrame, Series
 
 from vbraille.analysis import stats
 from vbraille.analysis.read import in_order, to_number
@@ -32,35 +33,35 @@ def cell_name(cells: str) -> str:
     return cells
 
 
-def places(trials: pd.DataFrame, keys: list[str] = CELL) -> pd.DataFrame:
+def places(trials: DataFrame, keys: list[str] = CELL) -> DataFrame:
     """Return a row for each place of each string whose answer is as long as it."""
     lengths = trials["presented"].str.len()
     whole = trials[lengths == trials["answered"].str.len()]
     times = lengths[whole.index].to_numpy()
-    each = pd.DataFrame({key: whole[key].repeat(times) for key in keys}).reset_index(drop=True)
+    each = DataFrame({key: whole[key].repeat(times) for key in keys}).reset_index(drop=True)
     for column in ("presented", "answered"):
         each[column] = pd.Categorical(list("".join(whole[column])))
     return each.assign(right=each["presented"].astype(str) == each["answered"].astype(str))
 
 
-def durations(trials: pd.DataFrame) -> pd.Series:
+def durations(trials: DataFrame) -> Series:
     """Return durations of whole trials: neither paused nor answered early."""
     if "duration_s" not in trials:
-        return pd.Series(np.nan, trials.index)
-    whole = pd.Series(True, trials.index)
+        return Series(np.nan, trials.index)
+    whole = Series(True, trials.index)
     for column in ("paused_s", "early"):
         if column in trials:
             whole &= trials[column].fillna(0) == 0
     return trials["duration_s"].where(whole).astype(float)
 
 
-def taken_s(trials: pd.DataFrame) -> pd.Series:
+def taken_s(trials: DataFrame) -> Series:
     """Return durations, or times to the answer where there is none."""
-    none = pd.Series(np.nan, trials.index)
+    none = Series(np.nan, trials.index)
     return trials.get("duration_s", none).fillna(trials.get("response_s", none)).astype(float)
 
 
-def legibility(trials: pd.DataFrame, each: pd.DataFrame) -> pd.DataFrame:
+def legibility(trials: DataFrame, each: DataFrame) -> DataFrame:
     """Table 3.1: people by conditions, with Wilson's interval of each."""
     timed = trials.assign(duration=durations(trials))
     made = timed.groupby(CELL, observed=True).agg(
@@ -76,7 +77,7 @@ def legibility(trials: pd.DataFrame, each: pd.DataFrame) -> pd.DataFrame:
     return made.reset_index()
 
 
-def averages(own: pd.DataFrame) -> pd.DataFrame:
+def averages(own: DataFrame) -> DataFrame:
     """Return the last row of table 3.1 for each condition: means over people of their own means.
 
     As in the thesis, a person without a trial in a condition counts as 0 in its mean of trials.
@@ -98,10 +99,10 @@ def averages(own: pd.DataFrame) -> pd.DataFrame:
                 "duration_mean_s": part["duration_mean_s"].mean(),
             }
         )
-    return pd.DataFrame(rows)
+    return DataFrame(rows)
 
 
-def by_level(rows: pd.DataFrame, level: str) -> pd.DataFrame:
+def by_level(rows: DataFrame, level: str) -> DataFrame:
     """Tables 3.2 and 3.3: a mean over people for each character, string or number of dots.
 
     A person's own mean is that of the conditions, so that each condition weighs the same.
@@ -112,35 +113,35 @@ def by_level(rows: pd.DataFrame, level: str) -> pd.DataFrame:
     people = own.groupby(level=0, observed=True)
     made["participants"] = people.size()
     made["legibility"] = people.mean()
-    ends = people.apply(lambda shares: pd.Series(stats.mean_share(shares), ["low", "high"]))
+    ends = people.apply(lambda shares: Series(stats.mean_share(shares), ["low", "high"]))
     made = made.join(ends.unstack())
     return made.rename_axis("level").reset_index()
 
 
-def named_levels(rows: pd.DataFrame, level: str) -> pd.DataFrame:
+def named_levels(rows: DataFrame, level: str) -> DataFrame:
     """Return `by_level` with the names of cells."""
     made = by_level(rows, level)
     made.insert(0, "name", made["level"].astype(str).map(cell_name))
     return made
 
 
-def _masks(cells: pd.Series) -> pd.Series:
+def _masks(cells: Series) -> Series:
     codes = np.array([ord(cell) - UNICODE_BLANK for cell in cells.cat.categories])
-    return pd.Series(codes[cells.cat.codes], cells.index)
+    return Series(codes[cells.cat.codes], cells.index)
 
 
-def is_braille(each: pd.DataFrame) -> bool:
+def is_braille(each: DataFrame) -> bool:
     """Tell whether every presented place is a cell, so that its dots can be counted."""
     known = [0 <= ord(cell) - UNICODE_BLANK < 256 for cell in each["presented"].cat.categories]
     return bool(known) and all(known)
 
 
-def by_dots(each: pd.DataFrame) -> pd.DataFrame:
+def by_dots(each: DataFrame) -> DataFrame:
     """Return legibility by the number of dots of a character, figure 4.8."""
     return by_level(each.assign(dots=np.bitwise_count(_masks(each["presented"]))), "dots")
 
 
-def errors(each: pd.DataFrame) -> pd.DataFrame:
+def errors(each: DataFrame) -> DataFrame:
     """Return errors by dots added, removed and moved, figure 4.8; other signs are no such error."""
     wrong = each[~each["right"]]
     told = wrong["answered"].astype(str).map(ord).between(UNICODE_BLANK, UNICODE_BLANK + 255)
@@ -149,12 +150,12 @@ def errors(each: pd.DataFrame) -> pd.DataFrame:
     added = np.bitwise_count(said & ~shown)
     removed = np.bitwise_count(shown & ~said)
     moved = np.minimum(added, removed)
-    kinds = pd.DataFrame({"added": added - moved, "removed": removed - moved, "moved": moved})
+    kinds = DataFrame({"added": added - moved, "removed": removed - moved, "moved": moved})
     made = kinds.value_counts().rename("count").reset_index()
     return made.assign(share=made["count"] / max(len(wrong), 1))
 
 
-def confusion(presented: pd.Series, answered: pd.Series) -> pd.DataFrame:
+def confusion(presented: Series, answered: Series) -> DataFrame:
     """Tables 3.5, 4.1, 6.3 and 6.4: presented in rows, answered in columns, in the same order."""
     made = pd.crosstab(in_order(presented), in_order(answered))
     made.columns, made.index = made.columns.astype(str), made.index.astype(str)
@@ -162,12 +163,12 @@ def confusion(presented: pd.Series, answered: pd.Series) -> pd.DataFrame:
     return made[[*both, *made.columns.difference(both)]]
 
 
-def of_cells(counts: pd.DataFrame) -> pd.DataFrame:
+def of_cells(counts: DataFrame) -> DataFrame:
     """Return a confusion matrix with the names of cells."""
     return counts.rename(index=cell_name, columns=cell_name)
 
 
-def information(counts: pd.DataFrame) -> dict[str, float]:
+def information(counts: DataFrame) -> dict[str, float]:
     """Table 3.4: accuracy, Cohen's kappa, and bits transmitted as the thesis counts them."""
     shares = counts.to_numpy() / counts.to_numpy().sum()
     shown = shares.sum(axis=1)
@@ -190,17 +191,17 @@ def information(counts: pd.DataFrame) -> dict[str, float]:
     }
 
 
-def all_information(each: pd.DataFrame) -> pd.DataFrame:
+def all_information(each: DataFrame) -> DataFrame:
     """Return `information` of all conditions together and of each."""
     parts = {ALL: each} | dict(list(each.groupby("condition", observed=True)))
     rows = [
         {"condition": name} | information(confusion(part["presented"], part["answered"]))
         for name, part in parts.items()
     ]
-    return pd.DataFrame(rows[:1] if len(rows) == 2 else rows)
+    return DataFrame(rows[:1] if len(rows) == 2 else rows)
 
 
-def over_time(trials: pd.DataFrame) -> pd.DataFrame:
+def over_time(trials: DataFrame) -> DataFrame:
     """Figure 3.14: moving average of the last trials of a person in a condition."""
     made = trials[[*RUN, "block", "trial", "right"]]
     runs = made.groupby(RUN, observed=True)["right"]
@@ -208,49 +209,47 @@ def over_time(trials: pd.DataFrame) -> pd.DataFrame:
     return made.assign(number=runs.cumcount() + 1, average=average)
 
 
-def fatigue(trials: pd.DataFrame) -> pd.DataFrame:
+def fatigue(trials: DataFrame) -> DataFrame:
     """Compare each person's first half of the trials with the second by the paired t-test."""
     people = trials.groupby("participant", observed=True)
     half = np.where(people.cumcount() < people["right"].transform("size") // 2, "first", "second")
     shares = trials.groupby(["participant", half], observed=True)["right"].mean().unstack()
     shares = shares.reindex(columns=["first", "second"]).dropna()
-    test = stats.paired(shares["first"] - shares["second"])
-    ends = stats.t_interval(test.value, test.error, test.df)
-    means = {"first_half": shares["first"].mean(), "second_half": shares["second"].mean()}
-    return _row({"participants": len(shares)} | means, test, ends)
+    made = _tested(shares["first"] - shares["second"])
+    return made.assign(first_half=shares["first"].mean(), second_half=shares["second"].mean())
 
 
-def duration_legibility(trials: pd.DataFrame) -> pd.DataFrame:
+def duration_legibility(trials: DataFrame) -> DataFrame:
     """Correlate durations with right answers in each person, and average over people (3.4.2).
 
     The mean is of Fisher's z, with Student's interval, and told as r.
     """
     timed = trials.assign(duration=durations(trials)).dropna(subset=["duration"])
-    own = []
-    for _, part in timed.groupby("participant", observed=True):
-        if len(part) >= 4 and part["right"].nunique() > 1 and part["duration"].nunique() > 1:
-            own.append(np.arctanh(np.corrcoef(part["duration"], part["right"])[0, 1]))
-    if not own:
-        return pd.DataFrame()
-    test = stats.paired(own)
-    ends = stats.t_interval(test.value, test.error, test.df)
-    test = test._replace(value=np.tanh(test.value))
-    return _row({"participants": len(own)}, test, np.tanh(ends))
+    own = [
+        np.corrcoef(part["duration"], part["right"])[0, 1]
+        for _, part in timed.groupby("participant", observed=True)
+        if len(part) > 3 and part["right"].nunique() > 1 and part["duration"].nunique() > 1
+    ]
+    made = _tested(np.arctanh(own))
+    ends = ["value", "low", "high"]
+    return made.assign(**np.tanh(made[ends]))[made["participants"] > 0]
 
 
-def _row(row: dict, test: stats.TTest, ends) -> pd.DataFrame:
-    low, high = ends
+def _tested(values) -> DataFrame:
+    """Return a row with the mean of people's values, its interval, and its test by t."""
+    test = stats.paired(values)
+    low, high = stats.t_interval(test.value, test.error, test.df)
     told = {"value": test.value, "low": low, "high": high, "t": test.t, "df": test.df, "p": test.p}
     numbers = {name: float(value) for name, value in told.items()}
-    return pd.DataFrame([row | numbers | {"note": test.note}])
+    return DataFrame([{"participants": len(values)} | numbers | {"note": test.note}])
 
 
-def by_factors(trials: pd.DataFrame, factors: list[str]) -> pd.DataFrame:
+def by_factors(trials: DataFrame, factors: list[str]) -> DataFrame:
     """Table 6.2: right answers in each cell, and over all levels of each factor."""
     rows = []
     levels = [[*sorted(trials[name].unique()), ALL] for name in factors]
     for cell in product(*levels):
-        kept = pd.Series(True, trials.index)
+        kept = Series(True, trials.index)
         for name, level in zip(factors, cell, strict=True):
             kept &= (trials[name] == level) | (level == ALL)
         part = trials[kept]
@@ -259,15 +258,15 @@ def by_factors(trials: pd.DataFrame, factors: list[str]) -> pd.DataFrame:
             row = dict(zip(factors, cell, strict=True))
             counts = {"participants": len(own), "trials": len(part), "right": part["right"].sum()}
             rows.append(row | counts | {"share": own.mean(), "taken_s": taken_s(part).mean()})
-    return pd.DataFrame(rows)
+    return DataFrame(rows)
 
 
-def distribution(counts: pd.DataFrame) -> pd.DataFrame:
+def distribution(counts: DataFrame) -> DataFrame:
     """Tables 6.3 and 6.4, figure 6.10: answers to each name as shares of its trials."""
     return counts.div(counts.sum(axis=1), axis=0)
 
 
-def by_difference(trials: pd.DataFrame, level: pd.Series) -> pd.DataFrame:
+def by_difference(trials: DataFrame, level: Series) -> DataFrame:
     """Figure 6.7: right answers and times at each level, with their SD over people."""
     timed = trials.assign(level=level.round(9), taken_s=taken_s(trials))
     own = timed.dropna(subset=["level"]).groupby(["level", "participant"], observed=True)
@@ -278,17 +277,23 @@ def by_difference(trials: pd.DataFrame, level: pd.Series) -> pd.DataFrame:
     return made.reset_index()
 
 
-def choices(trials: pd.DataFrame) -> pd.DataFrame:
+def compared(trials: DataFrame) -> DataFrame:
+    """Return the values that trials compare, a column for each place; missing if they are none."""
+    texts = trials["presented"].astype(str).str.replace(",", ".").str.split(expand=True)
+    return texts.apply(pd.to_numeric, errors="coerce")
+
+
+def choices(trials: DataFrame) -> DataFrame:
     """Figure 3.12: how often each value was chosen of the comparisons that it was part of."""
-    offered = trials["presented"].str.replace(",", ".").str.split().explode().astype(float)
+    offered = compared(trials).stack().droplevel(1)
     chosen = to_number(trials["answered"])[offered.index]
-    each = pd.DataFrame({"value": offered, "chosen": np.isclose(offered, chosen)})
+    each = DataFrame({"value": offered, "chosen": np.isclose(offered, chosen)})
     each["parameter"] = trials.get("parameter", "value")
     made = each.groupby(["parameter", "value"])["chosen"].agg(presented="size", chosen="sum")
     return made.assign(share=made["chosen"] / made["presented"]).reset_index()
 
 
-def ratings(trials: pd.DataFrame, column: str, keys: list[str]) -> pd.DataFrame:
+def ratings(trials: DataFrame, column: str, keys: list[str]) -> DataFrame:
     """Return means over people of their own mean ratings, with medians of all ratings."""
     rated = trials.assign(rating=to_number(trials[column])).dropna(subset=["rating"])
     rows = []
@@ -298,10 +303,10 @@ def ratings(trials: pd.DataFrame, column: str, keys: list[str]) -> pd.DataFrame:
         row = dict(zip(keys, cell, strict=True))
         row |= {"participants": len(own), "ratings": len(part), "mean": own.mean()}
         rows.append(row | {"low": low, "high": high, "median": part["rating"].median()})
-    return pd.DataFrame(rows)
+    return DataFrame(rows)
 
 
-def patterns(trials: pd.DataFrame) -> pd.DataFrame:
+def patterns(trials: DataFrame) -> DataFrame:
     """Count reading patterns, figure 3.15, and average the speeds of the hand."""
     known = trials.dropna(subset=["pattern"])
     counts = pd.crosstab([known[name] for name in CELL], known["pattern"])

@@ -6,8 +6,9 @@ right answers by difference. Before the answers, all thresholds from half the ra
 below them to half above are equally likely, as are all logarithms of the spread, and all guesses
 from 0 to 0.9 where they are free. Lapses are beta(1, 20), and 0.1 at most (Wichmann and Hill 2001).
 
-The grid is drawn closer twice around what is likely. The estimate is the most likely point, and the
-interval lies between quantiles of the threshold's own posterior (Schütt et al. 2016).
+The grid is drawn closer twice around what is likely: without this, intervals of steep functions
+hold the truth in 90 % only. The estimate is the most likely point, and the interval lies between
+quantiles of the threshold's own posterior (Schütt et al. 2016).
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ FEW_LAPSES = 20
 POINTS = {"threshold": 32, "spread": 16, "guess": 8, "lapse": 4}
 UNLIKELY = 12.0  # in log likelihood below the best
 EDGE = 1e-9
-LEVELS_AT_ONCE = 32  # so that the grid's table stays small
+LEVELS_AT_ONCE = 64  # so that the grid's table stays small
 
 
 class Threshold(NamedTuple):
@@ -102,32 +103,27 @@ def find_threshold(
     if np.cov(at, yes / trials, fweights=trials)[0, 1] <= 0:
         return Threshold(why="answers do not rise with the level")
     observer = _weibull if by_ratio else _logistic
-    axes = _first_axes(at, guess, by_ratio=by_ratio, most=most)
-    bounds = [(values[0], values[-1]) for values in axes.values()]
+    axes = _axes(at, guess, by_ratio=by_ratio, most=most)
 
-    def log_posterior(axes: dict[str, Floats]) -> Floats:
-        grid = Grid(observer, axes)
-        shape = [-1 if name == "guess" else 1 for name in axes]
-        guesses = np.clip(axes["guess"], EDGE, 1).reshape(shape)
-        lapses = axes["lapse"].reshape([-1 if name == "lapse" else 1 for name in axes])
-        total = special.xlogy(blanks[0], guesses)
-        total = total + special.xlog1py(blanks[1] - blanks[0], -guesses)
-        total = total + (FEW_LAPSES - 1) * np.log1p(-lapses)
+    def log_posterior(points: dict[str, Floats]) -> Floats:
+        guesses = np.clip(points["guess"], EDGE, 1)[:, np.newaxis]
+        total = special.xlogy(blanks[0], guesses) + special.xlog1py(blanks[1] - blanks[0], -guesses)
+        total = total + (FEW_LAPSES - 1) * np.log1p(-points["lapse"])
         for first in range(0, at.size, LEVELS_AT_ONCE):
             part = slice(first, first + LEVELS_AT_ONCE)
+            grid = Grid(observer, points)
             total = total + grid.log_likelihood(at[part], yes[part], trials[part])
         return total
 
+    def lost(point: Floats) -> float:
+        return -log_posterior(dict(zip(axes, point.reshape(-1, 1), strict=True))).item()
+
+    bounds = [(values[0], values[-1]) for values in axes.values()]
     for _ in range(2):
         axes = _closer(axes, log_posterior(axes))
     found = log_posterior(axes)
     best = np.unravel_index(np.argmax(found), found.shape)
     start = [values[n] for values, n in zip(axes.values(), best, strict=True)]
-    point = {name: np.array([0.0]) for name in axes}
-
-    def lost(values: Floats) -> float:
-        return -log_posterior(dict(zip(point, values.reshape(-1, 1), strict=True))).item()
-
     value, _, guesses, lapses = optimize.minimize(lost, start, method="L-BFGS-B", bounds=bounds).x
     ends = Grid(observer, axes).estimate("threshold", found)
     threshold = Threshold(value, min(ends.low, value), max(ends.high, value), guesses, lapses)
@@ -138,9 +134,7 @@ def find_threshold(
     return threshold
 
 
-def _first_axes(
-    at: Floats, guess: float | None, *, by_ratio: bool, most: float
-) -> dict[str, Floats]:
+def _axes(at: Floats, guess: float | None, *, by_ratio: bool, most: float) -> dict[str, Floats]:
     """Return points over everything that the levels could show; spreads as logarithms."""
     low, high = at[0], at[-1]
     reach = high - low
@@ -161,13 +155,11 @@ def _first_axes(
 
 def _closer(axes: dict[str, Floats], log_posterior: Floats) -> dict[str, Floats]:
     """Return points over what is not unlikely."""
-    likely = log_posterior > log_posterior.max() - UNLIKELY
+    likely = np.nonzero(log_posterior > log_posterior.max() - UNLIKELY)
     closer = {}
-    for place, (name, values) in enumerate(axes.items()):
-        at = np.flatnonzero(likely.any(axis=tuple({0, 1, 2, 3} - {place})))
-        first, last = max(at[0] - 1, 0), min(at[-1] + 1, values.size - 1)
-        count = POINTS[name] if values.size > 1 else 1
-        closer[name] = np.linspace(values[first], values[last], count)
+    for at, (name, values) in zip(likely, axes.items(), strict=True):
+        first, last = max(at.min() - 1, 0), min(at.max() + 1, values.size - 1)
+        closer[name] = np.linspace(values[first], values[last], POINTS[name])[: values.size]
     return closer
 
 
