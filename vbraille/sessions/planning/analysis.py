@@ -21,10 +21,10 @@ APART = ("which", "odd", "match", "same-different", "detect")
 MEASURES = {
     "legibility": Measure("legibility of strings", ("identify",)),
     "characters": Measure("legibility of characters", ("identify",)),
-    "duration": Measure("duration of right answers", ("identify",)),
+    "duration": Measure("duration of right answers", ("identify", "name", "which", "odd", "match")),
     "right": Measure("right answers", (*APART, "name")),
     "threshold": Measure("threshold", ("detect", "which", "odd", "match", "identify")),
-    "d_prime": Measure("d′", ("detect", "same-different", "which")),
+    "d_prime": Measure("d′", ("detect", "same-different")),
     "preferred": Measure("preferred value", ("which",)),
     "rating": Measure("rating", ("rating",)),
     "magnitude": Measure("magnitude", ("magnitude",)),
