@@ -310,12 +310,12 @@ def _read_answers(trials: Trials) -> None:
         cells = {text: visible(text.translate(_BLANK)).lower() for text in known}
         cells = {text: plain.translate(_CELLS) for text, plain in cells.items()}
         frame.loc[strings, column] = frame.loc[strings, column].map(cells)
+    _name_answers(frame, frame["question"] == "name")
     frame["right"] = frame["presented"] == frame["answered"]
     said = frame["correct"]
     odds = int((strings & said.notna() & (said != frame["right"])).sum())
     if odds:
         trials.notes.append(f"correct disagrees with the answer in {odds} rows: answers count")
-    _name_answers(trials, frame["question"] == "name")
     for question, rows in frame[~strings].groupby("question"):
         if question in SIGNALS:
             frame.loc[rows.index, "outcome"] = _detected(rows, *SIGNALS[str(question)])
@@ -330,21 +330,14 @@ def _read_answers(trials: Trials) -> None:
     frame["right"] = frame["right"].where(~told, outcome.isin(GOOD))
 
 
-def _name_answers(trials: Trials, named: Series) -> None:
+def _name_answers(frame: DataFrame, named: Series) -> None:
     """Spell names that were answered as they were presented, whatever their case."""
-    frame = trials.frame
-    if not named.any():
-        return
-    presented = {name: visible(name) for name in frame.loc[named, "presented"].unique()}
-    check_alike(presented.values(), "presented")
-    known = {likeness(name): name for name in presented.values()}
-    answered = {
-        name: known.get(likeness(name), visible(name))
-        for name in frame.loc[named, "answered"].unique()
-    }
-    frame.loc[named, "presented"] = frame.loc[named, "presented"].map(presented)
-    frame.loc[named, "answered"] = frame.loc[named, "answered"].map(answered)
-    frame.loc[named, "right"] = frame.loc[named, "presented"] == frame.loc[named, "answered"]
+    rows = frame[named]
+    check_alike(map(visible, rows["presented"].unique()), "presented")
+    known = {likeness(name): visible(name) for name in rows["presented"].unique()}
+    for column in ("presented", "answered"):
+        spelled = {each: known.get(likeness(each), visible(each)) for each in rows[column].unique()}
+        frame.loc[named, column] = rows[column].map(spelled)
 
 
 def _detected(rows: DataFrame, signal: str, noise: str) -> Series:
