@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
@@ -103,7 +104,8 @@ def read_trials(
         If something cannot be read, is there twice, or nothing is left.
     """
     files = [Path(path) for path in paths]
-    sources = [_load(path, name) for path, name in zip(files, _names(files), strict=True)]
+    with ThreadPoolExecutor() as pool:  # ticks of sessions are inflated beside each other
+        sources = list(pool.map(_load, files, _names(files)))
     _check_copies(sources)
     frame = pd.concat([source.table for source in sources], ignore_index=True)
     trials = Trials(frame, sources=[source.said for source in sources])
