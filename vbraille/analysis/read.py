@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
@@ -104,8 +103,7 @@ def read_trials(
         If something cannot be read, is there twice, or nothing is left.
     """
     files = [Path(path) for path in paths]
-    with ThreadPoolExecutor() as pool:  # ticks of sessions are inflated beside each other
-        sources = list(pool.map(_load, files, _names(files)))
+    sources = [_load(path, name) for path, name in zip(files, _names(files), strict=True)]
     _check_copies(sources)
     frame = pd.concat([source.table for source in sources], ignore_index=True)
     trials = Trials(frame, sources=[source.said for source in sources])
