@@ -27,7 +27,7 @@ TOLD = (
     "vbraille.analysis",
     "vbraille.files",
     "vbraille.reading.frames",
-    "vbraille.reading.device",
+    "vbraille.reading.opening",
     "vbraille.render.braille.style",
     "vbraille.sessions.session",
     "vbraille.testing.standins",

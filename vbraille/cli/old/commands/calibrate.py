@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, Self
 
 from vbraille.cli.old.exploring import opened_in_time
+from vbraille.cli.old.reading.keyboard import STOPPED, Keyboard
+from vbraille.cli.old.reading.keys import spoken
 from vbraille.cli.old.terminal import print_json, say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.calibration import LEAST_GAIN, Calibration, Tried
@@ -17,8 +19,6 @@ from vbraille.engine.checkup import ActuatorSwings
 from vbraille.engine.clock import RealClock
 from vbraille.errors import DeviceError, InputError
 from vbraille.files import settings_path
-from vbraille.reading.keyboard import STOPPED, Keyboard
-from vbraille.reading.keys import spoken
 from vbraille.signals import EAR
 
 if TYPE_CHECKING:
