@@ -5,23 +5,7 @@ from pathlib import Path
 
 from tests.scene import keyspage
 from vbraille.config.options import BOOK, FILE, PROFILE, held_in
-<<<<<<< HEAD
-from vbraille.reading.commands.game import COMMANDS as PLAYING
-from vbraille.reading.commands.scene import COMMANDS as FEELING
-from vbraille.reading.commands.table import COMMANDS as READING
-=======
 from vbraille.reading.commands import Where, keys_of, spoken, table
-from vbraille.render import Tuning
-from vbraille.sessions.planning.protocol import Protocol, ProtocolFile
-from vbraille.sessions.record.events import (
-    OTHER,
-    AnyEvent,
-    AnyTime,
-    InTrial,
-    Presented,
-    WithStimulus,
-)
->>>>>>> main
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -65,19 +49,10 @@ def _keys(where):
 TABLES = (
     ("settings.md", list(_read())),
     ("settings.md", list(_profile())),
-<<<<<<< HEAD
-    ("keys.md", list(_keys(READING))),
-    ("feeling.md", list(_keys(FEELING))),
-    ("playing.md", list(_keys(PLAYING))),
-=======
     ("keys.md", list(_keys(Where.BOOK))),
     ("feeling.md", list(_keys(Where.PICTURE))),
     ("playing.md", list(_keys(Where.GAME))),
-    ("session-format.md", list(_events())),
-    *(("protocols.md", rows) for rows in protocol_tables()),
->>>>>>> main
 )
-PARTS = ()
 
 
 def with_table(text, rows, *, shown=True):
