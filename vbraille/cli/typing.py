@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from vbraille.reading.keys import Keyboard
@@ -11,6 +10,7 @@ from vbraille.reading.prompt import Prompt
 from vbraille.sessions.running.answers import Line, Press, Typed
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Self
 
 _NAMES = {"\t": "tab"}  # of keys, by the characters that they type

@@ -13,8 +13,7 @@ def test_answers_are_edited_and_commands_typed(tmp_path):
     with Terminal("session", "resume", sat.session.path, *ARGUMENTS) as terminal:
         terminal.until(r"read: ")
         terminal.type("cc\x1b[D\x1b[D\x1b[3~a\n")  # left, left, delete
-        terminal.until(r"answer: trial 1 of 3, a c\r?\n")
-        terminal.until(r"confidence: .*type 1 to 4")
+        terminal.until(r"(?s)answer: trial 1 of 3, a c\r?\n.*confidence: .*type 1 to 4")
         terminal.type("3\n")
         terminal.until(r"cue: trial 2")
         terminal.type("note the fan is on\n")
