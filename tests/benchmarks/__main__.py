@@ -8,6 +8,7 @@ PARTS = (
     "text",
     "seek",
     "engine",
+    "tick",
     "sessions",
     "analysis",
     "coverage",
