@@ -107,7 +107,7 @@ def find_driver(spec: str) -> EntryPoint:
     found = entry_points(group=GROUP, name=kind) if kind else ()
     if not found:
         kinds = ", ".join(sorted(entry_points(group=GROUP).names))
-        raise InputError(f"there is no device kind {kind!r}; there are {kinds}")
+        raise InputError(f"unknown device kind {kind!r}; known: {kinds}")
     return next(iter(found))
 
 
