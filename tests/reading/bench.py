@@ -47,6 +47,9 @@ class NoKeyboard:
 
     attached, must_stop = True, False
 
+    def catch_interrupts(self, *, caught):
+        pass
+
     def pressed(self, _wait_s):
         return []
 
