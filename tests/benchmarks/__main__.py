@@ -6,9 +6,7 @@ from importlib import import_module
 PARTS = (
     "render",
     "text",
-    "seek",
     "books",
-    "opening",
     "lines",
     "wire",
     "engine",
@@ -23,13 +21,10 @@ PARTS = (
     "coverage",
     "trials_coverage",
     "reader",
-    "turning",
-    "conventional",
+    "reading",
     "straying",
     "figure",
     "scene",
-    "feel",
-    "key",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

@@ -54,6 +54,11 @@ class NoKeyboard:
         return []
 
 
+def book_of(text, width):
+    """A text laid out in lines of so many cells."""
+    return Layout(Book(Source(Document.from_text(text)), BrailleTable("en-ueb-g1.ctb")), width)
+
+
 class Reading:
     """A text under a simulated hand; a context manager."""
 

@@ -27,7 +27,7 @@ class Slow:
     def __init__(self):
         self.done = []
 
-    def say(self, sentence, cue=None):
+    def say(self, sentence, _cue=None):
         time.sleep(0.2)
         self.done.append(sentence)
 
