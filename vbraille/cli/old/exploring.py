@@ -20,7 +20,7 @@ from vbraille.cli.old.reading.outputs import (
 )
 from vbraille.cli.old.terminal import say_line
 from vbraille.devices.registry import opened_device
-from vbraille.engine.host import OPEN_S, OPENING, too_slow
+from vbraille.engine.host import OPEN_S, too_slow
 from vbraille.signals import EAR
 from vbraille.simulation.specs import has_hand
 
@@ -45,7 +45,7 @@ def opened_in_time(spec: str, wanted: Display | None) -> Iterator[Device]:
     """
 
     def late(*_: object) -> None:
-        raise too_slow(spec, OPENING)
+        raise too_slow(spec)
 
     before = signal.signal(signal.SIGALRM, late)
     try:

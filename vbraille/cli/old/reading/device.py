@@ -42,9 +42,7 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
-    from vbraille.engine.mailbox import Extent
     from vbraille.engine.record import Tally
-    from vbraille.engine.spawning import Spawned
     from vbraille.layout.pages import Layout, Line
     from vbraille.render.braille.style import BrailleStyle, StyleChanges
     from vbraille.simulation.steering import Pointer, Steering
@@ -158,9 +156,9 @@ class OpenDevice:
         clock: Clock | None = None,
         say: Callable[[str], None] = lambda _: None,
         attended: bool = False,
-        begun: tuple[Spawned, Steering] | None = None,
+        begun: Any = None,
         pointer: Pointer | None = None,
-        on_share: Callable[[int, Extent], None] | None = None,
+        on_share: Any = None,
     ) -> None:
         self.placing = Placing.DONE
         self._wanted = wanted

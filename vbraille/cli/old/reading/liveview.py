@@ -19,7 +19,7 @@ from vbraille.cli.old.reading.position import line_name, percent
 from vbraille.cli.old.reading.reader import Reader
 from vbraille.config.settings import KNOBS, say_mapping
 from vbraille.devices.base import Placing
-from vbraille.devices.events import Back, Changed, Silent, Stalled, Stranger, Unplugged
+from vbraille.devices.events import Back, Silent, Stalled, Stranger, Unplugged
 from vbraille.errors import InputError
 from vbraille.live.messages import (
     BesideShown,
@@ -71,7 +71,7 @@ _PLACES: Final = {
     Placing.STOP: "place: the carriage has to be shown its place",
 }
 _GONE: Final = (Unplugged, Silent, Stalled, Stranger)
-_BACK: Final = (Back, Changed)
+_BACK: Final = (Back,)
 
 
 class LastSentences:
