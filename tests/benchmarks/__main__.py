@@ -6,8 +6,6 @@ from importlib import import_module
 PARTS = (
     "render",
     "text",
-    "books",
-    "lines",
     "engine",
     "sessions",
     "adaptive",
