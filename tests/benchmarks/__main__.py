@@ -6,25 +6,16 @@ from importlib import import_module
 PARTS = (
     "render",
     "text",
-    "seek",
-    "books",
-    "opening",
-    "lines",
     "engine",
+    "tick",
     "sessions",
-    "adaptive",
-    "power",
     "analysis",
     "coverage",
-    "trials_coverage",
     "reader",
-    "turning",
-    "conventional",
+    "reading",
     "straying",
     "figure",
     "scene",
-    "feel",
-    "key",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

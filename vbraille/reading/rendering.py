@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.feeling.paths import PosedPath
-    from vbraille.layout.pages import Layout, Line
+    from vbraille.layout import Layout, Line
     from vbraille.render import Model
     from vbraille.scene.scene import Canvas
     from vbraille.simulation.hand import Hand
@@ -108,7 +108,7 @@ def render_reading(
                 recorder.describe(
                     model=model,
                     rate_hz=rate_hz,
-                    first_line=stretch.lines[0].number,
+                    first_line=layout.number(stretch.lines[0]),
                     source=source.name,
                     sha256=source.sha256(),
                 )
