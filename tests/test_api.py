@@ -27,7 +27,7 @@ TOLD = (
     "vbraille.analysis",
     "vbraille.files",
     "vbraille.reading.frames",
-    "vbraille.reading.device",
+    "vbraille.reading.opening",
     "vbraille.render.braille.style",
     "vbraille.sessions.session",
     "vbraille.testing.standins",
@@ -91,21 +91,6 @@ def test_the_notebook_runs(tmp_path, monkeypatch):
     assert known["recording"].frames.max() == pytest.approx(1.0, abs=0.05)
     assert len(known["results"].tables["legibility"]) == 1
     assert known["scene"]._repr_png_()[:4] == b"\x89PNG"
-
-
-def test_a_session_that_never_ran_lets_its_device_go(tmp_path):
-    closed = []
-
-    class Engine:
-        def close(self):
-            closed.append(True)
-
-    with vbraille.Session.create(
-        "letters", "P01", folder=tmp_path / "P01", seed=1, engine=lambda *_: Engine()
-    ) as session:
-        assert not closed
-    assert closed
-    assert not session.folder.exists()
 
 
 @heavy  # pyright takes seconds
@@ -239,45 +224,6 @@ def test_a_device_whose_lines_are_never_done_says_why():
         with pytest.raises(vbraille.DeviceError, match="its driver says -span_mm / 2 at its left"):
             next(lines)
     assert "the next line comes at the left stop, which is at -3.8 mm" in said[0]
-
-
-TWO = """
-format = 1
-name = "two"
-title = "Two letters"
-source = "ours"
-model = "vbd"
-[design]
-kind = "combinations"
-characters = ["a", "c"]
-length = 1
-"""
-
-
-def test_answers_and_folders_of_a_session_that_cannot_be_used_are_said(tmp_path):
-    Path(tmp_path, "two.toml").write_text(TWO)
-    fast = vbraille.Conditions(fast=True, hand="sweep:150")
-
-    def create():
-        return vbraille.Session.create(
-            tmp_path / "two.toml", "P01", folder=tmp_path / "P01", seed=1, conditions=fast
-        )
-
-    assert repr(create().progress) == "<Progress: 0 of 2 trials have answers>"
-    with pytest.raises(
-        vbraille.InputError, match=r"^simulate:0\.3 is no file; give typed, simulated:N"
-    ):
-        create().run("simulate:0.3")
-    session = create()
-    with pytest.raises(vbraille.InputError, match=r"^the answer to trial 1 is 5; it must be a"):
-        session.run(lambda _trial: 5)
-    with pytest.raises(
-        vbraille.InputError, match="is there already; give a new directory with ‹fo"
-    ):
-        create()
-    done = vbraille.Session.resume(tmp_path / "P01").run(lambda trial: trial.presented).progress
-    assert (done.done, done.planned, done.ended) == (2, 2, True)
-    assert repr(done) == "<Progress: 2 of 2 trials have answers, ended>"
 
 
 WRONG = (None, 3.5, True, b"x", [], {}, object(), np.array(["a"]), float("nan"))

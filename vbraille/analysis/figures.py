@@ -76,8 +76,9 @@ def confusion(counts: DataFrame) -> Figure:
 def _panels(count: int, high: float) -> tuple[Figure, list[Axes]]:
     """Return a figure with some panels, three in a row."""
     down = -(-count // ACROSS)
-    figure = Figure(figsize=(9, 1 + high * down), layout="constrained")
-    grid = list(figure.subplots(down, ACROSS, sharey=True, squeeze=False).flat)
+    figure = Figure(figsize=(9, 1 + high * down))
+    space = {"hspace": 0.7, "wspace": 0.1}
+    grid = list(figure.subplots(down, ACROSS, sharey=True, squeeze=False, gridspec_kw=space).flat)
     for axes in grid[count:]:
         axes.remove()
     return figure, grid[:count]
@@ -151,7 +152,7 @@ def choices(table: DataFrame) -> Figure:
 
 def levels(table: DataFrame) -> Figure:
     """Draw right answers and times by level, with their SD over people, figure 6.7."""
-    figure = Figure(figsize=(8, 3), layout="constrained")
+    figure = Figure(figsize=(8, 3))
     shares = 100 * table["share"], 100 * table["share_sd"], "right (%)"
     times = table["taken_s"], table["taken_sd_s"], "time (s)"
     for axes, (mean, sd, unit) in zip(figure.subplots(1, 2), (shares, times), strict=True):

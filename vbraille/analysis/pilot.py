@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ProcessPoolExecutor
+from itertools import repeat
 from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -49,17 +50,9 @@ def pilot(
     names = [f"SIM{number:03}" for number in range(1, participants + 1)]
     paths = [folder / f"{name}.session" for name in names]
     with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
-        running = [
-            pool.submit(conduct, protocol, name, path, answers, seed)
-            for name, path in zip(names, paths, strict=True)
-        ]
-        try:
-            for done, session in enumerate(running, 1):
-                session.result()
-                report(done, participants)
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
+        same = repeat(protocol), names, paths, repeat(answers), repeat(seed)
+        for done, _ in enumerate(pool.map(conduct, *same), 1):
+            report(done, participants)
     analyse(paths).write(folder / "report")
     return folder / "report"
 

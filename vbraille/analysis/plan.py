@@ -31,11 +31,11 @@ class Plan:
     factors
         Columns of the trials whose levels are compared.
     too_fast_s, too_slow_s
-        Trials that took less, or more, are left out; None for no limit.
+        Trials that took less, or more, are left out.
     catch_right
-        Least share of a person's catch trials that are right; None for no limit.
-    participants, stop
-        Number of people that was planned, and the rule by which the study stops.
+        Least share of a person's catch trials that are right.
+    participants
+        Number of people that was planned; None if none was.
     departures
         Sentences on what was chosen otherwise than planned.
     """
@@ -43,11 +43,10 @@ class Plan:
     question: str
     measure: str
     factors: tuple[str, ...]
-    too_fast_s: float | None = None
-    too_slow_s: float | None = None
-    catch_right: float | None = None
+    too_fast_s: float = 0.0
+    too_slow_s: float = np.inf
+    catch_right: float = 0.0
     participants: int | None = None
-    stop: str = ""
     departures: list[str] = field(default_factory=list)
 
     @property
@@ -123,11 +122,10 @@ def _of_protocol(trials: Trials) -> Plan | None:
         protocol.asks.kind,
         planned.measure or "",
         tuple(columns),
-        planned.too_fast_s,
-        planned.too_slow_s,
-        planned.catch_right,
+        planned.too_fast_s or 0.0,
+        planned.too_slow_s or np.inf,
+        planned.catch_right or 0.0,
         planned.participants,
-        planned.stop,
     )
 
 
@@ -174,7 +172,7 @@ def leave_out(trials: Trials, plan: Plan) -> None:
         right = frame.loc[watched, "right"]
         trials.notes.append(f"{right.size} catch trials are left out, {right.sum()} of them right")
         shares = right.groupby(frame["participant"], observed=True).mean()
-        for person, share in shares[shares < (plan.catch_right or 0)].items():
+        for person, share in shares[shares < plan.catch_right].items():
             trials.left_out.append(f"{person}: {100 * share:.0f} % of catch trials right")
             frame = frame[frame["participant"] != person]
     frame = frame[~caught(frame)]
@@ -184,8 +182,8 @@ def leave_out(trials: Trials, plan: Plan) -> None:
             trials.notes.append(f"{(~kept).sum()} trials are marked as not analysed, and left out")
         frame = frame[kept]
     taken = taken_s(frame)
-    fast = taken < (plan.too_fast_s or 0)
-    slow = taken > (plan.too_slow_s or np.inf)
+    fast = taken < plan.too_fast_s
+    slow = taken > plan.too_slow_s
     for wrong, word, limit in ((fast, "less", plan.too_fast_s), (slow, "more", plan.too_slow_s)):
         if wrong.any():
             trials.notes.append(

@@ -74,14 +74,6 @@ class Trials:
     contents: list[Content] = field(default_factory=list)
 
 
-@dataclass
-class _Source:
-    name: str
-    table: DataFrame
-    said: str
-    content: Content | None = None
-
-
 def read_trials(
     paths: Sequence[str | Path],
     *,
@@ -103,11 +95,11 @@ def read_trials(
         If something cannot be read, is there twice, or nothing is left.
     """
     files = [Path(path) for path in paths]
-    sources = [_load(path, name) for path, name in zip(files, _names(files), strict=True)]
-    _check_copies(sources)
-    frame = pd.concat([source.table for source in sources], ignore_index=True)
-    trials = Trials(frame, sources=[source.said for source in sources])
-    trials.contents = [source.content for source in sources if source.content is not None]
+    trials = Trials(DataFrame())
+    tables = {name: _load(path, name, trials) for name, path in _named(files).items()}
+    trials.frame = _typed(pd.concat(tables))
+    _check_copies(trials.frame)
+    trials.frame = trials.frame.reset_index(drop=True)
     _fill(trials)
     _join_names(trials, ["participant", "condition"])
     _drop_unanswered(trials)
@@ -134,32 +126,29 @@ def in_order(values: Series) -> Series:
     return names.astype(kinds)
 
 
-def _load(path: Path, name: str) -> _Source:
-    """Read a session or a table."""
+def _load(path: Path, name: str, trials: Trials) -> DataFrame:
+    """Read a session or a table as text, a row for each line."""
     data = _content(path)
-    said = f"{name}: SHA-256 {sha256(data).hexdigest()[:16]}…"
+    trials.sources.append(f"{name}: SHA-256 {sha256(data).hexdigest()[:16]}…")
     if data.startswith(_SQLITE):
-        from vbraille.sessions.record import record, trials
+        from vbraille.sessions.record import record
+        from vbraille.sessions.record.trials import rows
 
-        rows = [{key: str(cell) for key, cell in row.items()} for row in trials.rows(path)]
-        table = _typed(DataFrame(rows, dtype=object), name)
-        table["session"] = name
-        return _Source(name, table, f"{said}, {len(rows)} trials", record.read(path))
+        trials.contents.append(record.read(path))
+        cells = [{key: str(cell) for key, cell in row.items()} for row in rows(path)]
+        return DataFrame(cells, dtype=object).assign(session=name)
     sheet = parse_csv(data, name)
     table = DataFrame(sheet.rows, sheet.lines, list(sheet.columns), dtype=object)
     for column in NEEDED:
         if column not in table:
             raise InputError(f"{name} has no column {column}; it has {', '.join(table)}")
-    table = _typed(table, name)
     again = table.index[table.duplicated()] if "trial" in table else []
     if len(again):
         raise InputError(
             f"{name}: line {again[0]} is the same as a line above it; give each trial once, and "
             f"tell sessions apart in a column session"
         )
-    if "session" not in table:
-        table["session"] = name
-    return _Source(name, table, f"{said}, {len(table)} rows")
+    return table if "session" in table else table.assign(session=name)
 
 
 def _content(path: Path) -> bytes:
@@ -171,42 +160,39 @@ def _content(path: Path) -> bytes:
         raise InputError(f"{path}: {error.strerror}") from None
 
 
-def _names(paths: list[Path]) -> list[str]:
-    """Return the name of each file, with its folder where two have the same name."""
+def _named(paths: list[Path]) -> dict[str, Path]:
+    """Return files by their names, with the folder where two have the same name."""
     names = [path.name for path in paths]
+    named = {path.name if names.count(path.name) == 1 else str(path): path for path in paths}
     if len({path.resolve() for path in paths}) < len(paths):
         again = next(name for name in names if names.count(name) > 1)
         raise InputError(f"{again} is given twice; give it once")
-    return [
-        name if names.count(name) == 1 else str(path)
-        for name, path in zip(names, paths, strict=True)
-    ]
+    return named
 
 
-def _typed(table: DataFrame, name: str) -> DataFrame:
+def _typed(table: DataFrame) -> DataFrame:
     """Return a table with missing cells, and with numbers in columns that have nothing else."""
     made = {}
     for column in table:
-        cells = table[column]
-        cells = cells.mask(cells.isin(MISSING))
-        made[column] = cells if column in TEXTS else _numbers(cells, str(column), name)
+        cells = table[column].mask(table[column].isin(MISSING))
+        made[column] = cells if column in TEXTS else _numbers(cells, str(column))
     return DataFrame(made, table.index)
 
 
-def _numbers(cells: Series, column: str, name: str) -> Series:
+def _numbers(cells: Series, column: str) -> Series:
+    """Return a column as numbers, if all that is there is one; its index names file and line."""
     known = cells.dropna()
-    good = known.drop_duplicates().astype(str).str.fullmatch(_NUMBER)
+    good = known.drop_duplicates().astype(str).str.fullmatch(_NUMBER).astype(bool)
     if good.all():
         numbers = to_number(cells)
         wrong = numbers.index[np.isinf(numbers) | ((numbers < 0) & (column in DURATIONS))]
     elif column in (*NUMBERS, "score"):
-        wrong = good.index[~good.astype(bool)]
+        wrong = good.index[~good]
     else:
         return cells
     if len(wrong):
-        raise InputError(
-            f"{name}: line {wrong[0]} has {column} {known[wrong[0]]!r}; give a number, or nothing"
-        )
+        (name, line), value = wrong[0], known[wrong[0]]
+        raise InputError(f"{name}: line {line} has {column} {value!r}; give a number, or nothing")
     return numbers
 
 
@@ -216,37 +202,35 @@ def to_number(values: Series) -> Series:
     return pd.to_numeric(texts, errors="coerce").astype(float)
 
 
-def _check_copies(sources: list[_Source]) -> None:
+def _check_copies(frame: DataFrame) -> None:
     """Refuse a session, or the trials of a person, that two files hold."""
     sessions: dict[str, str] = {}
-    people: dict[str, list[_Source]] = {}
-    for source in sources:
-        for session in source.table["session"].dropna().unique():
-            other = sessions.setdefault(session, source.name)
-            if other != source.name:
+    people: dict[str, dict[str, DataFrame]] = {}
+    for name, table in frame.groupby(level=0, sort=False):
+        for session in table["session"].dropna().unique():
+            other = sessions.setdefault(session, name)
+            if other != name:
                 raise InputError(
-                    f"{other} and {source.name} both hold the session {session}; give one, or give "
+                    f"{other} and {name} both hold the session {session}; give one, or give "
                     f"sessions other names in the column session"
                 )
-        for person in source.table["participant"].dropna().unique():
-            for other in people.setdefault(person, []):
-                if _same_trials(source.table, other.table, person):
+        for person, part in table.dropna(subset=["answered"]).groupby("participant"):
+            for other, earlier in people.setdefault(person, {}).items():
+                if _same_trials(part, earlier):
                     raise InputError(
-                        f"{other.name} and {source.name} hold the same trials of {person}; give "
-                        f"one of them"
+                        f"{other} and {name} hold the same trials of {person}; give one of them"
                     )
-            people[person].append(source)
+            people[person][name] = part
 
 
-def _same_trials(one: DataFrame, other: DataFrame, person: str) -> bool:
+def _same_trials(*parts: DataFrame) -> bool:
     """Tell whether two tables have the same answers of a person, by their times or by all cells."""
-    parts = [table[table["participant"] == person] for table in (one, other)]
-    parts = [part.dropna(subset=["answered"]) for part in parts]
-    if "answer_time" in one and "answer_time" in other:
-        return bool(parts[0]["answer_time"].isin(parts[1]["answer_time"].dropna()).any())
-    shared = [name for name in one if name in other and name != "session"]
-    rows = [sorted(map(tuple, part[shared].astype(str).to_numpy().tolist())) for part in parts]
-    return bool(rows[0]) and rows[0] == rows[1]
+    one, other = (part.dropna(axis=1, how="all").drop(columns="session") for part in parts)
+    shared = one.columns.intersection(other.columns)
+    if "answer_time" in shared:
+        return bool(one["answer_time"].dropna().isin(other["answer_time"]).any())
+    rows = [sorted(part[shared].astype(str).to_numpy().tolist()) for part in (one, other)]
+    return rows[0] == rows[1]
 
 
 def _fill(trials: Trials) -> None:
@@ -310,12 +294,12 @@ def _read_answers(trials: Trials) -> None:
         cells = {text: visible(text.translate(_BLANK)).lower() for text in known}
         cells = {text: plain.translate(_CELLS) for text, plain in cells.items()}
         frame.loc[strings, column] = frame.loc[strings, column].map(cells)
+    _name_answers(frame, frame["question"] == "name")
     frame["right"] = frame["presented"] == frame["answered"]
     said = frame["correct"]
     odds = int((strings & said.notna() & (said != frame["right"])).sum())
     if odds:
         trials.notes.append(f"correct disagrees with the answer in {odds} rows: answers count")
-    _name_answers(trials, frame["question"] == "name")
     for question, rows in frame[~strings].groupby("question"):
         if question in SIGNALS:
             frame.loc[rows.index, "outcome"] = _detected(rows, *SIGNALS[str(question)])
@@ -330,21 +314,14 @@ def _read_answers(trials: Trials) -> None:
     frame["right"] = frame["right"].where(~told, outcome.isin(GOOD))
 
 
-def _name_answers(trials: Trials, named: Series) -> None:
+def _name_answers(frame: DataFrame, named: Series) -> None:
     """Spell names that were answered as they were presented, whatever their case."""
-    frame = trials.frame
-    if not named.any():
-        return
-    presented = {name: visible(name) for name in frame.loc[named, "presented"].unique()}
-    check_alike(presented.values(), "presented")
-    known = {likeness(name): name for name in presented.values()}
-    answered = {
-        name: known.get(likeness(name), visible(name))
-        for name in frame.loc[named, "answered"].unique()
-    }
-    frame.loc[named, "presented"] = frame.loc[named, "presented"].map(presented)
-    frame.loc[named, "answered"] = frame.loc[named, "answered"].map(answered)
-    frame.loc[named, "right"] = frame.loc[named, "presented"] == frame.loc[named, "answered"]
+    rows = frame[named]
+    check_alike(map(visible, rows["presented"].unique()), "presented")
+    known = {likeness(name): visible(name) for name in rows["presented"].unique()}
+    for column in ("presented", "answered"):
+        spelled = {each: known.get(likeness(each), visible(each)) for each in rows[column].unique()}
+        frame.loc[named, column] = rows[column].map(spelled)
 
 
 def _detected(rows: DataFrame, signal: str, noise: str) -> Series:
@@ -420,22 +397,25 @@ def read_scores(path: str | Path) -> DataFrame:
     """
     sheet = parse_csv(_content(Path(path)), Path(path).name)
     table = DataFrame(sheet.rows, sheet.lines, list(sheet.columns), dtype=object)
+    table = pd.concat({sheet.name: table})
     if "participant" not in table or table.shape[1] < 3 or table.empty:
         raise InputError(f"{sheet.name} needs columns participant, what was varied, and score")
     score = "score" if "score" in table else str(table.columns[-1])
     table = table.mask(table.isin(MISSING))
-    table[score] = _numbers(table[score], "score", sheet.name)
+    table[score] = _numbers(table[score], "score")
     factors = [name for name in table if name not in ("participant", score)]
     for name in ("participant", *factors):
         if table[name].isna().any():
-            line = table.index[table[name].isna()][0]
+            _, line = table.index[table[name].isna()][0]
             raise InputError(f"{sheet.name}: line {line} has no {name}")
         table[name] = table[name].map(visible)
         check_alike(table[name], name)
         table[name] = in_order(table[name])
     again = table.index[table.duplicated(["participant", *factors])]
     if len(again):
-        raise InputError(f"{sheet.name}: line {again[0]} has a second score of a person in a cell")
+        raise InputError(
+            f"{sheet.name}: line {again[0][1]} has a second score of a person in a cell"
+        )
     factors = [name for name in factors if table[name].nunique() > 1]
     values = table.set_index(["participant", *factors])[[score]].set_axis(["value"], axis=1)
     return values.assign(why="no score")

@@ -265,13 +265,16 @@ def methods(paths: tuple[str, ...]) -> None:
 
 @command.command()
 @click.argument("participant")
-@click.argument("paths", type=click.Path(exists=True), nargs=-1, metavar="[FOLDER]...")
+@click.argument("paths", type=click.Path(), nargs=-1, metavar="[FOLDER]...")
 @options.takes(options.option("--yes", is_flag=True, help="Do not ask."))
 def withdraw(participant: str, paths: tuple[str, ...], yes: bool) -> int:
     """Remove all data of a participant from folders."""
     from vbraille.sessions.record.withdraw import withdrawal
 
     folders = [Path(path) for path in paths or (".",)]
+    for folder in folders:
+        if not folder.is_dir():
+            raise InputError(f"there is no folder {folder}")
     found = withdrawal(folders, participant)
     for line in found.lines:
         say(line)
@@ -303,13 +306,18 @@ class _typing(ExitStack):  # noqa: N801  (used as a function)
         """Open it."""
         speak: Callable[[str], None] = _say_nothing
         if self._speech:
-            from vbraille.reading.speech import Speech
+            from vbraille.reading.outputs import Behind, Speech
 
-            spoken = Speech()
+            spoken = Behind("speech", Speech, _say)
             self.callback(spoken.close)
             speak = spoken.say
         if not self._typed:
             return None, lambda sentence: (_say(sentence), speak(sentence))
+        if sys.stdin is not None and sys.stdin.isatty():
+            from vbraille.cli.typing import TypedKeys
+
+            keys = self.enter_context(TypedKeys(speak))
+            return keys, keys.say
         from vbraille.sessions.running.answers import Typed
 
         return Typed(), lambda sentence: (_say(sentence), speak(sentence))

@@ -248,7 +248,8 @@ class _Table:
         edges = self._edges_mm(trial.stimuli[0])
         if not edges:
             return {}
-        ticks = read_ticks(db, cues[-1].data["line"], cues[-1].data["line"])
+        line = cues[-1].data["line"]
+        ticks = read_ticks(db, line, line, ("line", "time_ns", "x_mm"))
         found = duration(ticks, edges[0], protocol.wanted.span_mm)
         if found is None:
             return {}

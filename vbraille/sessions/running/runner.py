@@ -10,6 +10,9 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from vbraille.braille.spelling import ordinal, say_cells
 from vbraille.devices.events import Knob
 from vbraille.engine.host import HostDiedError
@@ -247,15 +250,19 @@ class Runner:
 
     def _begin(self, **told: Any) -> None:
         """Wait for the first tick, and write that the run has begun."""
+        self._record.write_ticks()  # those of an engine that died: ticks of each run begin at 0
+        first: list[NDArray[np.void]] = []
         early: list[Happening] = []
         if isinstance(self.device, SessionDevice):
             while self.device.newest is None:
                 ticks, happened = self.device.poll()
-                self._record.add_ticks(ticks)
+                first.append(ticks)
                 early += happened
         self._began_s, self._before_s = self.now_s, self.progress.t_s
         self._free_s = -1e9
         self.log("run", **told)
+        for ticks in filter(len, first):
+            self._record.add_ticks(ticks)
         for happening in early:
             self._take(happening)
 
