@@ -6,29 +6,36 @@ import difflib
 import math
 import re
 import tomllib
-from collections import Counter
-from collections.abc import Iterable, Iterator
-from typing import TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import msgspec
 from msgspec import inspect
 
 from vbraille.errors import InputError
 
-Kind = TypeVar("Kind")
-Path = list[str | int]
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
 
-_HEADER = re.compile(r"\s*(\[\[?)\s*([\w.-]+)\s*\]\]?\s*(?:#.*)?$")
-_KEY = re.compile(r"\s*([\w-]+)\s*=")
+Kind = TypeVar("Kind")
+# The keys of tables and the indices of items that lead to a value.
+Path = tuple[str | int, ...]
+
+_PART = r"""(?:[\w-]+|"[^"]*"|'[^']*')"""
+_NAME = rf"{_PART}(?:\s*\.\s*{_PART})*"
+_HEADER = re.compile(rf"\s*(\[\[?)\s*({_NAME})\s*\]")
+_KEY = re.compile(rf"\s*({_NAME})\s*=")
+_UNIT = re.compile(r"_(?:(?:mm|deg)(?:_s)?|hz)$")
+_DEEP = re.compile(r"(?:[\w-]++[ \t]*+\.[ \t]*+){100}")
 _STEP = re.compile(r"\.([\w-]+)|\[(\d+)\]")
 _WORDS = {
-    "`int`": "a whole number",
-    "`float`": "a number",
-    "`bool`": "true or false",
-    "`str`": "a text in quotation marks",
-    "`array`": "a list in brackets",
-    "`object`": "a table",
+    "int": "a whole number",
+    "float": "a number",
+    "bool": "true or false",
+    "str": "a text in quotation marks",
+    "array": "a list in brackets",
+    "object": "a table",
 }
+_MOST_WHOLE = 2**63 - 1  # of TOML
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -48,8 +55,97 @@ class WrongValue(ValueError):
 
     def __init__(self, path: str, problem: str) -> None:
         super().__init__(f"{path}: {problem}")
-        self.path: Path = [int(step) if step.isdigit() else step for step in path.split(".")]
+        self.path: Path = tuple(int(step) if step.isdigit() else step for step in path.split("."))
         self.problem = problem
+
+
+class TomlFile:
+    """The text of a TOML file, with the file's name for messages.
+
+    Raises
+    ------
+    InputError
+        If the text is not TOML, or has a number that is not finite or control characters.
+    """
+
+    def __init__(self, text: str, where: str) -> None:
+        self.text, self.where = text, where
+        if _DEEP.search(text):  # tomllib takes time and memory by all parts before each
+            raise InputError(f"{where} nests its tables too deep; make it flatter")
+        try:
+            self.tree = tomllib.loads(text)
+        except (ValueError, RecursionError) as error:
+            raise InputError(f"{where} is not TOML: {error}") from None
+        for path, value in _leaves(self.tree, ()):
+            if isinstance(value, str) and not re.sub(r"\s", " ", value).isprintable():
+                self.fail(path, "has control characters; leave them out")
+            if isinstance(value, float) and not math.isfinite(value):
+                self.fail(path, f"is {value}; it must be a number")
+            if isinstance(value, int) and abs(value) > _MOST_WHOLE:
+                self.fail(path, "is too large a number")
+
+    def read(self, kind: type[Kind], under: Path = ()) -> Kind:
+        """Convert the file, or the part of it that a path leads to.
+
+        Raises
+        ------
+        InputError
+            If a key or a value cannot be used.
+        """
+        try:
+            return msgspec.convert(self.at(under), kind)
+        except msgspec.ValidationError as error:
+            path, problem = _explain(error, kind, self.at(under))
+            self.fail((*under, *path), problem)
+
+    def names(self, *path: str | int) -> tuple[str, ...]:
+        """Keys of a table of the file; none if it is not there.
+
+        Raises
+        ------
+        InputError
+            If there is something else than a table.
+        """
+        table = self.at(path)
+        if table is not None and not isinstance(table, dict):
+            self.fail(path, "must be a table")
+        return tuple(table or ())
+
+    def at(self, path: Path) -> Any:
+        """Value at a path; None if there is none."""
+        value: Any = self.tree
+        try:
+            for step in path:
+                value = value[step]
+        except (KeyError, IndexError, TypeError):
+            return None
+        return value
+
+    def lines(self) -> dict[Path, int]:
+        """Lines of tables and keys, from 1, by the paths that lead to them."""
+        return lines_of(self.text)
+
+    def fail(self, path: Path, problem: str) -> NoReturn:
+        """Refuse the file for the value at a path.
+
+        Raises
+        ------
+        InputError
+            In any case; the sentence names the line.
+        """
+        raise self.refused(path, problem)
+
+    def refused(self, path: Path, problem: str) -> InputError:
+        """Error on the value at a path, with the file and the line."""
+        table = self.at(path)
+        if isinstance(table, dict):
+            path = (*path, *_key_said(problem, table))
+        keys = [step for step in path if isinstance(step, str)]
+        name = ""
+        if keys and not _key_said(problem, keys[-1:]):
+            number = f" {path[-1] + 1}" if isinstance(path[-1], int) else ""
+            name = f"{keys[-1]}{number}: "
+        return InputError(f"{self.where} line {line_of(self.text, path)}: {name}{problem}")
 
 
 def read_toml(text: str, kind: type[Kind], where: str) -> Kind:
@@ -60,100 +156,118 @@ def read_toml(text: str, kind: type[Kind], where: str) -> Kind:
     InputError
         If the text is not TOML, or a key or a value cannot be used.
     """
-    try:
-        tree = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError(f"{where} is not TOML: {error}") from None
-    for path, value in _leaves(tree, []):
-        if isinstance(value, float) and not math.isfinite(value):
-            raise _refused(text, where, path, f"is {value}; it must be a number")
-        if isinstance(value, str) and not value.replace("\n", " ").isprintable():
-            raise _refused(text, where, path, "has control characters; leave them out")
-    try:
-        return msgspec.convert(tree, kind)
-    except msgspec.ValidationError as error:
-        raise _refused(text, where, *_explain(error, kind)) from None
+    return TomlFile(text, where).read(kind)
 
 
 def located(text: str, where: str, error: WrongValue) -> InputError:
     """Return the error of a wrong value with the file and the line."""
-    return _refused(text, where, error.path, error.problem)
+    return TomlFile(text, where).refused(error.path, error.problem)
 
 
 def which(name: str, names: Iterable[str]) -> str:
-    """Return the end of a sentence on an unknown name: the nearest one, and all that there are."""
+    """Return the end of a sentence on an unknown name: the nearest one, or all that there are."""
     known = sorted(names)
     near = difflib.get_close_matches(name, known, 1)
     return f"; did you mean {near[0]}?" if near else f"; known: {', '.join(known)}"
 
 
-def _refused(text: str, where: str, path: Path, problem: str) -> InputError:
-    keys = [step for step in path if isinstance(step, str)]
-    key = f"{keys[-1]}: " if keys else ""
-    return InputError(f"{where} line {line_of(text, path)}: {key}{problem}")
+def lines_of(text: str) -> dict[Path, int]:
+    """Line, from 1, of each table, item of an array of tables, and key, by its path."""
+    found: dict[Path, int] = {}
+    table: Path = ()
+    counts: dict[Path, int] = {}  # index of the newest table under each [[name]]
+    for number, line in enumerate(text.splitlines(), 1):
+        if header := _HEADER.match(line):
+            table = ()
+            for part in re.findall(_PART, header[2]):
+                table = (
+                    *((*table, counts[table]) if table in counts else table),
+                    part.strip("\"'"),
+                )
+            found.setdefault(table, number)
+            if header[1] == "[[":
+                counts[table] = counts.get(table, -1) + 1
+            if table in counts:
+                table = (*table, counts[table])
+                found.setdefault(table, number)
+        elif key := _KEY.match(line):
+            parts = (part.strip("\"'") for part in re.findall(_PART, key[1]))
+            found.setdefault((*table, *parts), number)
+    return found
+
+
+def line_of(text: str, path: Iterable[str | int]) -> int:
+    """Line, from 1, of the value that a path leads to, or of what it is in."""
+    lines, at = lines_of(text), tuple(path)
+    while at and at not in lines:
+        at = at[:-1]
+    return lines.get(at, 1)
 
 
 def _leaves(value: object, path: Path) -> Iterator[tuple[Path, object]]:
     """Go through all values that hold no others, with their paths."""
-    if isinstance(value, dict):
-        for key, inner in value.items():
-            yield from _leaves(inner, [*path, key])
-    elif isinstance(value, list):
-        for number, inner in enumerate(value):
-            yield from _leaves(inner, [*path, number])
-    else:
-        yield path, value
-
-
-def line_of(text: str, path: Path) -> int:
-    """Return the line, from 1, of the key that a path leads to, or of the table that it is in."""
-    found = 1
-    table: Path = []
-    counts: Counter[str] = Counter()
-    for number, line in enumerate(text.splitlines(), 1):
-        if header := _HEADER.match(line):
-            table = list(header[2].split("."))
-            if header[1] == "[[":
-                table.append(counts[header[2]])
-                counts[header[2]] += 1
-            here = table
-        elif key := _KEY.match(line):
-            here = [*table, key[1]]
+    left = [(path, value)]
+    while left:
+        path, value = left.pop()
+        if isinstance(value, dict):
+            left += [((*path, key), inner) for key, inner in value.items()]
+        elif isinstance(value, list):
+            left += [((*path, number), inner) for number, inner in enumerate(value)]
         else:
-            continue
-        if here == path[: len(here)]:
-            found = number
-    return found
+            yield path, value
 
 
-def _explain(error: msgspec.ValidationError, kind: type) -> tuple[Path, str]:
+def _key_said(problem: str, table: Iterable[str]) -> Path:
+    """Key of a table whose words, without its unit, begin a problem; empty if none does."""
+    for key in sorted(table, key=len, reverse=True):
+        words = _UNIT.sub("", key).replace("_", " ")
+        if re.match(rf"{re.escape(words)}(?!\w)", problem.replace("_", " ")):
+            return (key,)
+    return ()
+
+
+def _explain(error: msgspec.ValidationError, kind: type, tree: Any) -> tuple[Path, str]:
     """Return the path to what is wrong, and the words for it."""
     message, _, steps = str(error).partition(" - at `$")
-    path: Path = [int(item) if item else key for key, item in _STEP.findall(steps)]
-    if isinstance(error.__cause__, WrongValue):
-        return path + error.__cause__.path, error.__cause__.problem
+    path: Path = tuple(int(item) if item else key for key, item in _STEP.findall(steps))
+    cause = error.__cause__
+    if isinstance(cause, WrongValue):
+        return path + cause.path, cause.problem
+    if isinstance(cause, ValueError):
+        return path, str(cause)
     if match := re.match(r"Object contains unknown field `(.*)`", message):
-        return [*path, match[1]], f"there is no such key{which(match[1], _known_keys(kind, path))}"
+        return (
+            *path,
+            match[1],
+        ), f"there is no such key{which(match[1], _known_keys(kind, path, tree))}"
     if match := re.match(r"Object missing required field `(.*)`", message):
         return path, f"{match[1]} is missing"
     if match := re.match(r"Invalid (?:enum )?value (.*)", message):
         known = [str(each) for each in _known_values(kind, path)]
-        return path, f"is {match[1]}" + which(match[1].strip("'"), known)
-    message = message.replace(" | null", "")
-    for word, plain in _WORDS.items():
-        message = message.replace(word, plain)
-    return path, message.replace("Expected", "must be").replace(", got", ", and is")
+        return path, f"is {match[1]}{which(match[1].strip(chr(39)), known)}"
+    message = re.sub(r"`(\w[^`]*)`", _plain, message)
+    return path, message.replace("Expected", "must be").replace(", got", ", not")
 
 
-def _known_keys(kind: type, path: Path) -> list[str]:
-    """Return the keys that the table at a path may have."""
+def _plain(names: re.Match[str]) -> str:
+    """Words for the types that msgspec names."""
+    parts = names[1].split(" | ")
+    return " or ".join(_WORDS.get(part, f"`{part}`") for part in parts if part != "null")
+
+
+def _known_keys(kind: type, path: Path, tree: Any) -> list[str]:
+    """Return the keys that the table at a path may have, by its kind if there are several."""
+    for step in path:
+        tree = tree[step]
     structs = [each for each in _types_at(kind, path) if isinstance(each, inspect.StructType)]
-    return [field.encode_name for each in structs for field in each.fields]
+    own = [each for each in structs if not each.tag_field or tree.get(each.tag_field) == each.tag]
+    tags = [each.tag_field for each in own if each.tag_field]
+    return [*tags, *(field.encode_name for each in own for field in each.fields)]
 
 
-def _known_values(kind: type, path: Path) -> list[str]:
+def _known_values(kind: type, path: Path) -> list[Any]:
     """Return the values that a key may have, or the kinds that a table may be of."""
-    values = []
+    values: list[Any] = []
     for each in _types_at(kind, path):
         values += each.values if isinstance(each, inspect.LiteralType) else []
     tables = [each for each in _types_at(kind, path[:-1]) if isinstance(each, inspect.StructType)]
@@ -161,22 +275,25 @@ def _known_values(kind: type, path: Path) -> list[str]:
 
 
 def _types_at(kind: type, path: Path) -> list[inspect.Type]:
-    """Return the types that the value at a path may have."""
+    """Return the types that the value at a path may have, members of unions each by itself."""
     types = [inspect.type_info(kind)]
-    for step in path:
-        below = []
-        for each in _plain_types(types):
-            if isinstance(each, inspect.StructType):
+    for step in (*path, None):
+        types = [
+            member
+            for each in types
+            for member in (each.types if isinstance(each, inspect.UnionType) else (each,))
+        ]
+        if step is None:
+            break
+        below: list[inspect.Type] = []
+        for each in types:
+            if isinstance(each, inspect.StructType) and each.array_like:
+                below.append(each.fields[int(step)].type)
+            elif isinstance(each, inspect.StructType):
                 below += [field.type for field in each.fields if field.encode_name == step]
+            elif isinstance(each, inspect.DictType):
+                below.append(each.value_type)
             elif hasattr(each, "item_type"):
                 below.append(each.item_type)
         types = below
-    return _plain_types(types)
-
-
-def _plain_types(types: list[inspect.Type]) -> list[inspect.Type]:
-    """Return the types, with the members of unions in place of the unions."""
-    found = []
-    for each in types:
-        found += each.types if isinstance(each, inspect.UnionType) else [each]
-    return found
+    return types

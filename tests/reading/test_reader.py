@@ -1,221 +1,202 @@
-"""A reader on the manual clock: lines, commands, and what is said."""
+"""A book under the hand, with time turned by hand: lines, pages, jumps, tuning."""
 
-import io
-from dataclasses import replace
+import sys
 
 import numpy as np
 import pytest
 
-from tests.engine.test_loop import Recording, biggest_step, run, straight
-from vbraille.engine.clock import ManualClock
-from vbraille.engine.loop import LocalEngine
+from tests.reading.bench import TWO, Reading
 from vbraille.errors import InputError
-from vbraille.layout.pages import Layout
-from vbraille.reading.commands.table import BOUND
-from vbraille.reading.outputs import Echo
-from vbraille.reading.reader import Reader
-from vbraille.render import STRESS2, Tuning
-from vbraille.simulation.hand import Sweep
-from vbraille.translate import Book, BrailleTable, Document
-from vbraille.translate.braillefiles.lines import open_brf
+from vbraille.reading.outputs import Cue
 
-SPAN_MM = 10.8
-TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
+WORDS = " ".join(f"word{n}" for n in range(400))
+ROWS = "\n\n".join(f"row {n} of the text" for n in range(40))
 
 
-class Device(Recording):
-    """A device that counts how often it was told that it is at its left stop."""
-
-    zeroed = 0
-
-    def set_zero(self) -> None:
-        self.zeroed += 1
+def test_a_hand_reads_line_after_line_to_the_end():
+    with Reading("one two three four five six seven eight nine ten", attended=False) as reading:
+        while not reading.reader.done:
+            reading.run(0.1)
+        assert reading.line == reading.reader.layout.count() == reading.reader.lines_read
 
 
-class Bench:
-    """A reader with its device, and all that it says."""
+def test_a_person_at_the_end_may_go_back():
+    with Reading("one") as reading:
+        assert "end of the text" in reading.run(3)
+        assert reading.press("p") == ["no previous line"]
+        assert not reading.reader.done
 
-    def __init__(
-        self,
-        text=TEXT,
-        hand=None,
-        tuning=STRESS2.style.tuning,
-        width=20,
-        book=None,
-        rate_hz=1000.0,
-        keep_lines=False,
-        **options,
+
+@pytest.mark.parametrize(("first", "last"), [(9, None), (400, 401)])
+def test_a_line_past_the_end_is_refused(first, last):
+    with (
+        pytest.raises(InputError, match=f"line {first} is past the end"),
+        Reading("one two", lines=(first, last)),
     ):
-        self.clock = ManualClock()
-        self.device = Device(self.clock, hand, rate_hz=rate_hz)
-        self.engine = LocalEngine(
-            self.device, self.clock, rate_hz=rate_hz, poll_ticks=round(rate_hz / 100)
-        )
-        self.loop = self.engine
-        self.said: list[str] = []
-        if book is None:
-            document = Document.from_text(text, keep_lines=keep_lines)
-            book = Book(document, BrailleTable("en-ueb-g2.ctb"))
-        self.layout = Layout(book, width)
-        self.reader = Reader(
-            self.layout,
-            self.engine,
-            model=replace(STRESS2, style=replace(STRESS2.style, tuning=tuning)),
-            say=self.said.append,
-            steering=self.device.steering,
-            **{"bound": BOUND, **options},
-        )
-        self.reader.start()
-
-    def run(self, seconds=60.0):
-        for _ in range(int(seconds * 100)):
-            if self.reader.done:
-                return
-            self.reader.step(self.engine.poll())
-
-    def press(self, keys):
-        before = len(self.said)
-        for key in keys:
-            self.reader.press(key)
-        return self.said[before:]
+        pass
 
 
-@pytest.mark.no_cover
-def test_the_hand_s_return_brings_the_next_line_until_the_end():
-    bench = Bench(hand=Sweep(100), echo=Echo.BOTH)
-    bench.run()
-    assert bench.reader.done
-    assert bench.reader.lines == 3
-    lines = list(bench.layout.lines())
-    assert [s for s in bench.said if not s.startswith("speed")] == [
-        said
-        for line in lines
-        for said in (
-            f"line: {line.number}",
-            f"cells: {line.printed.to_unicode()}",
-            f"text: {line.text}",
-        )
-    ]
-    assert biggest_step(bench.device.sent) < 1  # a frame a tick, and the hand's own motion only
+def test_keys_do_not_leave_the_lines_that_are_read():
+    with Reading(WORDS, lines=(3, 5), hand="sweep:1") as reading:
+        assert reading.line == 3
+        assert reading.press("p") == ["no previous line"]
+        assert reading.press("n", "n") == ["line 4", "line 5"]
+        assert reading.press("n") == ["no next line"]
+        reading.press("g")
+        assert reading.type("40%")[-1] == "outside the lines being read"
 
 
-def test_a_text_that_is_braille_already_is_read_like_any_other():
-    braille = open_brf(io.BytesIO(b",read ,me\n  #c"), "text")
-    bench = Bench(book=Book(braille), hand=Sweep(400), echo=Echo.BOTH)
-    bench.run()
-    assert bench.reader.done
-    assert [said for said in bench.said if not said.startswith("speed")] == [
-        "line: 1",
-        "cells: ⠠⠗⠑⠁⠙⠀⠠⠍⠑",
-        "text: ,read ,me",
-        "line: 2",
-        "cells: ⠀⠀⠼⠉",
-        "text: #c",
-    ]
+def test_a_line_that_is_longer_than_the_hand_goes_comes_in_parts():
+    with Reading(WORDS, width=60, hand="sweep:1") as reading:
+        width = reading.reader.surface.width
+        assert reading.press("right") == [f"from cell {width + 1}"]
+        reading.press("right", "right")
+        assert reading.line == 2
+        reading.press("left")
+        assert reading.line == 1
+        assert reading.reader.surface.part.first == 60 // width * width
 
 
-@pytest.mark.parametrize(
-    ("echo", "labels"), [("none", []), ("text", ["line", "text"]), ("cells", ["line", "cells"])]
-)
-def test_echo(echo, labels):
-    bench = Bench(echo=Echo(echo))
-    assert [said.split(":")[0] for said in bench.said] == labels
+def test_what_is_under_the_finger_stays_there_when_distances_change():
+    with Reading(WORDS, hand="sweep:1") as reading:
+        reading.press("n", "n")
+        reading.finger(100.0)
+        before = reading.reader.place
+        for key in "sSjJdDx":
+            reading.press(key)
+            reading.run(0.3)
+            assert abs(reading.reader.place - before) <= 2, key  # a contraction stands for two
 
 
-def test_a_range_of_lines():
-    bench = Bench(hand=Sweep(200), echo=Echo.TEXT, first=2, last=2)
-    bench.run()
-    assert bench.said[:2] == ["line: 2", "text: four five six"]
-    assert bench.reader.lines == 1
+def test_a_tuning_is_undone_and_refused_in_one_sentence():
+    with Reading(WORDS, hand="sweep:1") as reading:
+        style = reading.reader.style
+        assert reading.press("U") == ["nothing to undo"]
+        assert reading.press("T") == ["texture: 0.9"]
+        assert reading.press("#") == ["mapping: " + reading.reader.style.mapping.name]
+        reading.press("U", "U")
+        assert reading.reader.style == style
+        said = [reading.press("j") for _ in range(600)]
+        assert all(len(each) == 1 for each in said)
+        assert reading.reader.style.geometry.cell_gap_mm > style.geometry.cell_gap_mm
 
 
-def test_a_range_past_the_end_is_refused():
-    with pytest.raises(InputError, match=r"ends at line \d+; line 9 is past that"):
-        Bench(first=9)
+def test_only_one_line_has_no_straying():
+    with Reading("one", hand="sweep:1") as reading:
+        for key in "=()":
+            assert reading.press(key) == ["only one line is shown; nothing to change"]
 
 
-@pytest.mark.no_cover
-def test_with_keys_only_a_key_brings_the_next_line():
-    bench = Bench(hand=Sweep(300), advance=False, echo=Echo.TEXT)
-    bench.run(10)
-    assert not bench.reader.done
-    assert bench.press("n") == ["line: 2", "text: four five six"]
+def test_a_change_by_a_key_fades_and_never_jumps():
+    with Reading(WORDS, hand="sweep:1") as reading:
+        reading.finger(60.0)
+        frames = []
+        engine = reading.device.engine
+        for key in ("n", "T", "C", "s", "#", "n"):
+            reading.press(key)
+            for _ in range(10):
+                ticks = engine.poll()
+                frames.append(ticks["frame"].copy())
+        steps = np.abs(np.diff(np.concatenate(frames), axis=0)).max()
+        assert steps < 0.03
 
 
-def test_at_a_terminal_the_end_of_the_text_waits_for_keys():
-    bench = Bench(hand=Sweep(300), stay=True, echo=Echo.TEXT, first=3)
-    bench.run(10)
-    assert not bench.reader.done
-    assert bench.said[-1] == "end of text; p goes back, q stops"
-    assert bench.said.count(bench.said[-1]) == 1
-    assert bench.press("p") == ["first line"]
-    bench.press("q")
-    assert bench.reader.done
+def test_from_a_key_to_the_frame_are_few_calls():
+    with Reading(ROWS, hand="sweep:1") as reading:
+        reading.press("n", "p", "e")
+        calls, modules = 0, set()
+
+        def count(frame, event, _):
+            nonlocal calls
+            name = frame.f_globals.get("__name__", "")
+            if event == "call" and name.startswith("vbraille.reading") and "texts" not in name:
+                calls += 1
+                modules.add(name)
+
+        sys.setprofile(count)
+        try:
+            reading.press("n")
+        finally:
+            sys.setprofile(None)
+        assert calls <= 80
+        assert len(modules) <= 8
 
 
-def test_next_and_previous_line_and_their_ends():
-    bench = Bench(echo=Echo.TEXT)
-    assert bench.press("p") == ["first line"]
-    assert bench.press("n")[0] == "line: 2"
-    assert bench.press(["down"])[0] == "line: 3"
-    assert bench.press("n") == ["last line"]
-    assert bench.press(["up"])[0] == "line: 2"
+def test_time_brings_the_next_line_and_a_pause_does_not_count():
+    with Reading(WORDS, hand="sweep:1") as reading:
+        assert reading.press("v") == ["autoscroll: 8.0 cells a second"]
+        now_s, reader = 100.0, reading.reader
+        reader.idle(now_s)
+        cells = len(reader.line)
+        for _ in range(round(cells / 8 / 0.2) + 1):
+            now_s += 0.2
+            reader.idle(now_s)
+        assert reading.line == 2
+        reading.press(" ")
+        for _ in range(100):
+            now_s += 0.2
+            reader.idle(now_s)
+        assert reading.line == 2
 
 
-def test_the_word_is_the_one_under_the_middle_of_the_array():
-    bench = Bench()
-    assert bench.press("w") == ["word: none here"]  # it is not known yet where the hand is
-    pitch = STRESS2.style.geometry.cell_pitch_mm
-    cells = {}
-    line = bench.layout.line(1)
-    for cell in range(len(line)):
-        bench.device.move(
-            straight((0, cell * pitch + 3 - SPAN_MM / 2), (1, cell * pitch + 3 - SPAN_MM / 2))
-        )
-        run(bench.loop, 1)
-        cells[cell] = bench.press("w")[0]
-    assert cells[0] == cells[1] == "word: none here"  # the indent
-    words = [cells[cell].removeprefix("word: ") for cell in range(len(line))]
-    assert [w for n, w in enumerate(words) if w != "none here" and w != words[n - 1]] == [
-        "one",
-        "two",
-        "three",
-    ]
+# A page on a carriage of two axes
 
 
-def test_pause_and_go_on():
-    bench = Bench(hand=Sweep(40))
-    bench.run(1)
-    assert not bench.loop.resting
-    assert bench.press(" ") == ["paused"]
-    bench.run(0.03)
-    assert bench.loop.resting
-    assert bench.press(" ") == ["reading"]
-    bench.run(0.5)
-    assert not bench.loop.resting
+def test_the_line_under_the_finger_is_the_line_that_is_read():
+    with Reading(ROWS, TWO, hand="sweep:1") as reading:
+        pitch_mm = reading.reader.style.geometry.line_pitch_mm
+        reading.finger(20.0, 3.5 * pitch_mm)
+        assert reading.line == 4
+        # It strays within the band beyond the line's edge.
+        reading.finger(20.0, 4.0 * pitch_mm + 0.4 * reading.reader.style.straying.band * pitch_mm)
+        assert reading.line == 4
+        reading.finger(20.0, 4.6 * pitch_mm)
+        assert reading.line == 5
 
 
-def test_each_turn_is_said_in_one_line_shown_and_kept_in_bounds():
-    bench = Bench(tuning=Tuning(texture=0.8, contrast=0.15))
-    bench.device.move(straight((0, 25.0), (60, 25.0)))
-    run(bench.loop, 0.5)
-    before = bench.loop.output.copy()
-    assert bench.press("ttt") == ["texture: 0.9", "texture: 1", "texture: 1, the most"]
-    assert bench.press("CCC") == ["contrast: 0.05", "contrast: 0", "contrast: 0, the least"]
-    assert bench.press("Tcc") == ["texture: 0.9", "contrast: 0.1", "contrast: 0.2"]
-    assert bench.reader.style.tuning == Tuning(texture=0.9, contrast=0.2)
-    run(bench.loop, 0.5)
-    assert np.abs(bench.loop.output - before).max() > 0.01
+@pytest.mark.parametrize("key", ["n", "p", ">", "<"])
+def test_a_jump_brings_its_line_into_the_row_of_the_finger(key):
+    with Reading(ROWS, TWO, hand="sweep:1") as reading:
+        pitch_mm = reading.reader.style.geometry.line_pitch_mm
+        reading.finger(20.0, 5.5 * pitch_mm)
+        before = reading.line
+        reading.press(key)
+        wanted = {"n": before + 1, "p": before - 1, "<": 1}
+        assert reading.line == wanted.get(key, reading.reader.layout.count())
+        assert reading.reader.surface.row == 5
+        reading.run(0.5)
+        assert reading.reader.surface.row == 5
 
 
-@pytest.mark.no_cover
-def test_a_hand_too_fast_for_texture_is_told_once():
-    def told(speed, tuning=STRESS2.style.tuning):
-        bench = Bench(text="one", hand=Sweep(speed), tuning=tuning)
-        bench.run()
-        return [said for said in bench.said if said.startswith("speed")]
+def test_a_finger_that_stays_below_the_page_turns_it_once():
+    with Reading(ROWS, TWO, hand="sweep:1") as reading:
+        surface, pitch_mm = reading.reader.surface, reading.reader.style.geometry.line_pitch_mm
+        rows = surface.rows
+        reading.finger(20.0, 0.5 * pitch_mm)
+        below_mm = reading.device.display.height_mm - 1
+        said = reading.finger(20.0, below_mm) + reading.run(2.0)
+        assert said.count(f"page: lines {rows + 1} to {2 * rows}") == 1
+        assert not [each for each in said if each.startswith(f"page: lines {2 * rows + 1}")]
+        reading.finger(20.0, 0.5 * pitch_mm)
+        assert reading.line == rows + 1
+        assert Cue.PAGE_END in reading.heard.cues
 
-    assert told(70) == []
-    assert len(told(80)) == 1
-    assert "below 74 mm/s" in told(80)[0]
-    assert told(80, Tuning(texture=0)) == []
+
+def test_pages_turn_by_keys_and_the_first_is_a_whole_one():
+    with Reading(ROWS, TWO, hand="sweep:1") as reading:
+        rows = reading.reader.surface.rows
+        assert reading.press("[") == ["no previous page"]
+        assert reading.press("]")[0] == f"page: lines {rows + 1} to {2 * rows}"
+        assert reading.press("[")[0] == f"page: lines 1 to {rows}"
+        while reading.press("]")[0] != "no next page":
+            pass
+        assert reading.reader.surface.lines[-1] == reading.reader.layout.last()
+
+
+def test_straying_and_its_band_are_changed_and_taken_back():
+    with Reading(ROWS, TWO, hand="sweep:1") as reading:
+        before = reading.reader.style
+        assert reading.press("=") == ["shown: what lies under each contactor"]
+        assert reading.reader.style.straying.manner == "free"
+        reading.press(")", "U", "U")
+        assert reading.reader.style == before

@@ -44,7 +44,8 @@ class Person:
                 return Press() if line is KEY else Line(line)
         time.sleep(wait_s)
         self.waited += 1
-        assert self.waited < (1500 if wait_s else 300), f"{pattern!r} is never said: {self.said[-20:]}"
+        most = 1500 if wait_s else 300
+        assert self.waited < most, f"{pattern!r} is never said: {self.said[-20:]}"
         return None
 
 

@@ -15,9 +15,8 @@ import numpy as np
 
 from vbraille.braille.cells import PLACES, mask_of
 from vbraille.braille.spelling import to_braille
-from vbraille.render.braille.mappings import MAPPINGS, NONE
+from vbraille.render.braille.mappings import MAPPINGS, NONE, single_row
 from vbraille.render.braille.models import STRESS2, VBD
-from vbraille.render.braille.reference import SWINGS, deflections
 from vbraille.render.braille.style import Profile
 
 if TYPE_CHECKING:
@@ -143,7 +142,7 @@ def page(
     parts = [_dots(line, n * geometry.line_pitch_mm, geometry, six) for n, line in enumerate(lines)]
     line, array = lines[line_index], model.display
     row, column = (grid.ravel() for grid in np.indices(array.shape))
-    frame = deflections(x_mm, line.masks, style, array)
+    frame = style.render(line.masks, array).path(np.array([x_mm]))[0]
     top = line_index * geometry.line_pitch_mm + _first_row_mm(model)
     parts.append(
         {
@@ -204,6 +203,7 @@ LEVELS = {Profile.RAISED_COSINE: (0.0, 0.25, 1.0), Profile.HALF_SINE: (0.0, 1.0)
 STRAIN_WIDTHS_MM = (0.5, 1.0, 2.0)
 # The letter of fig. 4.5, z: dots in all three rows and in both columns, no two rows alike.
 LETTER = np.array([0b110101], np.uint8)
+_ONE_DOT = np.array([1], np.uint8)
 
 
 def profile(model: Model) -> FigureTable:
@@ -266,9 +266,7 @@ def mapping(
     geometry, tuning = style.geometry, style.tuning
     extent = geometry.extent_mm(len(masks))
     x = _grid(-1.0, extent + 1.0, _step_mm(geometry.dot_width_mm))
-    frames = [
-        deflections(x, masks, replace(style, mapping=way), column)[:, :, 0] for way in methods
-    ]
+    frames = [replace(style, mapping=way).render(masks, column).path(x)[:, :, 0] for way in methods]
     columns = {
         "method": np.repeat([method.name for method in methods], x.size),
         "x_mm": np.tile(x, len(methods)),
@@ -346,12 +344,22 @@ def strain(geometry: Geometry, tuning: Tuning) -> FigureTable:
 def _swing(
     u_mm: ArrayLike, width_mm: float, shape: Profile, tuning: Tuning
 ) -> NDArray[np.floating]:
-    return tuning.contrast * SWINGS[shape](u_mm, width_mm, tuning)
+    """Swing of a dot at distances from its left edge, float[n] or float[m, n]."""
+    geometry = replace(VBD.style.geometry, dot_width_mm=width_mm)
+    style = replace(
+        VBD.style, profile=shape, mapping=single_row(1), geometry=geometry, tuning=tuning
+    )
+    one = replace(VBD.display, columns=1)
+    places_mm = np.asarray(u_mm, np.float64)
+    return style.render(_ONE_DOT, one).path(places_mm.ravel())[:, 0, 0].reshape(places_mm.shape)
 
 
-def _grid(low: float, high: float, step: float) -> NDArray[np.floating]:
+def _grid(low: float, high: float, step: float) -> NDArray[np.float64]:
     """Make the multiples of a step from `low` to `high`, 0 among them."""
-    return np.arange(math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9) + 1) * step
+    return np.asarray(
+        np.arange(math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9) + 1) * step,
+        np.float64,
+    )
 
 
 def _step_mm(width_mm: float) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import secrets
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack, closing
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self
 from msgspec import Meta, Struct, ValidationError, convert, structs
 
 from vbraille.errors import InputError, VbrailleError
+from vbraille.names import likeness
 from vbraille.sessions.planning.loading import load_protocol
 from vbraille.sessions.planning.plan import Plan, make_plan
 from vbraille.sessions.planning.protocol import Protocol
@@ -288,7 +288,8 @@ def nearly_same(folder: Path, participant: str) -> str | None:
     known = {_participant_of(path) for path in folder.glob("*.session")} - {""}
     if participant in known:
         return None
-    return next((each for each in sorted(known) if _plain(each) == _plain(participant)), None)
+    own = likeness(participant, person=True)
+    return next((each for each in sorted(known) if likeness(each, person=True) == own), None)
 
 
 def next_number(path: Path, participant: str) -> int:
@@ -304,10 +305,6 @@ def _participant_of(path: Path) -> str:
             return db.execute("SELECT participant FROM session").fetchone()[0]
     except (VbrailleError, OSError):
         return ""
-
-
-def _plain(participant: str) -> str:
-    return re.sub(r"(?<![0-9])0+(?=[0-9])", "", re.sub("[^0-9a-z]", "", participant.lower()))
 
 
 def free_path(participant: str, protocol: str) -> Path:
@@ -369,7 +366,13 @@ def _open_answers(given: Any, conditions: Conditions, progress: Progress) -> Ans
     from vbraille.sessions.running.answers import Typed, answers_of
 
     spec = conditions.answers if given is None or isinstance(given, str) else given
-    source = answers_of(spec, progress.protocol, progress.plan, progress.script_line)
+    kind, _, habits = spec.partition(":") if isinstance(spec, str) else ("", "", "")
+    if kind == "simulated":
+        from vbraille.sessions.running.reader import simulated_answers
+
+        source: Answers = simulated_answers(progress.protocol, progress.plan, habits)
+    else:
+        source = answers_of(spec, progress.script_line)
     if conditions.fast and isinstance(source, Typed):
         raise InputError("--fast is for answers that are not typed; give --answers simulated")
     if conditions.fast and not is_simulated(conditions.device):
@@ -400,7 +403,7 @@ def _open_apparatus(
     if monitor is not None:
         from vbraille.sessions.running.liveview import SessionView
 
-        view = stack.enter_context(SessionView(protocol, conditions, *monitor, say=say))
+        view = stack.enter_context(SessionView(protocol, *monitor, fast=conditions.fast, say=say))
         say = view.say
     pins = None
     if protocol.needs_pins and not source.felt and not conditions.fast:
@@ -442,6 +445,7 @@ def _run(
     before_rest: Callable[[], None],
 ) -> None:
     """Run a session, close its device, and write what went wrong with that."""
+    from vbraille.sessions.running.commands import COMMANDS
     from vbraille.sessions.running.device import SessionDevice
     from vbraille.sessions.running.runner import Runner
 
@@ -451,6 +455,7 @@ def _run(
         progress,
         source,
         device,
+        commands=COMMANDS,
         pins=pins,
         real=not conditions.fast,
         say=say,

@@ -59,8 +59,8 @@ def test_the_same_seed_gives_the_same_answers(tmp_path):
 
 
 def test_lapses_are_answered_by_chance_and_false_alarms_with_yes(tmp_path):
-    detect = MINI + "[question]\nkind = 'detect'\n"
-    alarmed = made(tmp_path, detect.replace("strings", "catch = { every = 2, show = 'blank' }\nstrings"))
+    caught = MINI.replace("strings", "catch = { every = 2, show = 'blank' }\nstrings")
+    alarmed = made(tmp_path, caught + "[question]\nkind = 'detect'\n")
     alarmed.sit(answers="simulated:0,false-alarms=1")
     assert {event.data["answer"] for event in alarmed.of("answer")} == {"yes"}
 

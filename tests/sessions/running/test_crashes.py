@@ -10,6 +10,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -67,7 +68,7 @@ def test_no_answer_is_lost_or_asked_again_however_often_it_is_killed(started, tm
             if found := re.match(r"answer: (trial \d+) of 9, (.*)", line):
                 told[found[1]] = found[2]
             if found := re.match(r"cue: (trial \d+) of", line):
-                assert found[1] not in told, "a trial whose answer was said to be in was shown again"
+                assert found[1] not in told, "its answer was said to be in, and it is shown again"
                 cues.append(found[1])
         if any(event.kind == "end" for event in sat.events):
             break
@@ -90,7 +91,7 @@ def test_a_killed_host_process_leaves_no_array_moving(started, tmp_path):
     process.kill()
     process.wait()
     end = time.monotonic() + 10
-    while any(os.path.exists(f"/proc/{child}") for child in children):
+    while any(Path(f"/proc/{child}").exists() for child in children):
         assert time.monotonic() < end, "the process that drives the device goes on alone"
         time.sleep(0.05)
 

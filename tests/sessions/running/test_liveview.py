@@ -39,7 +39,7 @@ def told(monkeypatch):
 
         addresses = ("live view: http://127.0.0.1:1/#secret",)
         take = notes = staticmethod(list)
-        watch = staticmethod(lambda reader: None)
+        watch = staticmethod(lambda _reader: None)
         tell = staticmethod(states.append)
 
     monkeypatch.setattr(liveview, "LiveView", View)
@@ -76,12 +76,14 @@ def test_an_open_page_is_told_what_is_under_the_hand(tmp_path, told):
 
 @pytest.mark.parametrize("how", [{"fast": True}, {"paper": True}])
 def test_there_is_no_live_view_without_a_device_in_real_time(tmp_path, how):
-    protocol = LETTERS.replace(HEAD, HEAD + 'medium = "paper"\n') if how.pop("paper", 0) else LETTERS
+    paper = LETTERS.replace(HEAD, HEAD + 'medium = "paper"\n')
+    protocol = paper if how.pop("paper", False) else LETTERS
     with pytest.raises(InputError, match="monitor"):
         made(tmp_path, protocol).sit(answers=["ac"], monitor=(None, None), **{"fast": False, **how})
 
 
-def test_a_page_that_fails_does_not_end_the_session(tmp_path, told, monkeypatch):
+@pytest.mark.usefixtures("told")
+def test_a_page_that_fails_does_not_end_the_session(tmp_path, monkeypatch):
     def fail(_state):
         raise RuntimeError("the page is gone")
 

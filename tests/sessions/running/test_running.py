@@ -48,7 +48,8 @@ def test_nothing_of_a_stimulus_or_a_condition_is_said_before_its_answer(tmp_path
 
 def test_an_answer_is_taken_back_and_typed_again(tmp_path):
     sat = made(tmp_path).sit(
-        ("cue", "undo"), ("read:", "ac"), ("cue: trial 2", "undo"), ("undo: trial 1", "ca"), ("read:", "aa"), ("read:", "aa"), ("last", "undo"),
+        ("cue", "undo"), ("read:", "ac"), ("cue: trial 2", "undo"), ("undo: trial 1", "ca"),
+        ("read:", "aa"), ("read:", "aa"), ("last", "undo"),
         ("undo: trial 3", "cc"), ("last", "stop"),
     )  # fmt: skip
     assert answered(sat)[:2] == [(1, "⠁⠉"), (1, "⠉⠁")]
@@ -83,7 +84,8 @@ def test_a_session_goes_on_with_the_last_runs_device_and_answers_which_it_says(t
 
 
 def test_a_confidence_is_asked_alone_after_a_stop(tmp_path):
-    sat = made(tmp_path, MINI + SURE).sit(("read:", "ac"), ("confidence", "9"), ("no answer", "stop"))
+    sat = made(tmp_path, MINI + SURE)
+    sat.sit(("read:", "ac"), ("confidence", "9"), ("no answer", "stop"))
     assert answered(sat) == [(1, "⠁⠉")]
     assert any("kept without" in sentence for sentence in sat.said)
     sat.sit(("confidence", "3"), ("read:", "ca; 2"), ("cue", "stop"))
@@ -207,8 +209,9 @@ def test_the_participants_key_ends_reading(tmp_path, key):
 def test_a_word_that_is_a_command_and_a_string_is_asked_about(tmp_path):
     protocol = MINI.replace('"ac", "ca", "aa"', '"go"').replace('"vbd"', '"stress2"')
     sat = made(tmp_path, protocol + "repeats = 2\n").sit(
-        ("read:", "Go"), ("answer Go", "answer go"), ("read:", "go on"), ("no answer", "command stop")
-    )
+        ("read:", "Go"), ("answer Go", "answer go"), ("read:", "go on"),
+        ("no answer", "command stop"),
+    )  # fmt: skip
     assert shown(sat) == ["go", "go"]
     assert len(sat.of("answer")) == 1
     assert sat.of("stop")

@@ -265,13 +265,16 @@ def methods(paths: tuple[str, ...]) -> None:
 
 @command.command()
 @click.argument("participant")
-@click.argument("paths", type=click.Path(exists=True), nargs=-1, metavar="[FOLDER]...")
+@click.argument("paths", type=click.Path(), nargs=-1, metavar="[FOLDER]...")
 @options.takes(options.option("--yes", is_flag=True, help="Do not ask."))
 def withdraw(participant: str, paths: tuple[str, ...], yes: bool) -> int:
     """Remove all data of a participant from folders."""
     from vbraille.sessions.record.withdraw import withdrawal
 
     folders = [Path(path) for path in paths or (".",)]
+    for folder in folders:
+        if not folder.is_dir():
+            raise InputError(f"there is no folder {folder}")
     found = withdrawal(folders, participant)
     for line in found.lines:
         say(line)

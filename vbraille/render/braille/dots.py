@@ -10,7 +10,6 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from vbraille.errors import check_range
-from vbraille.typed import check_fields
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,7 +45,6 @@ class Tuning:
     cycles: int = 7
 
     def __post_init__(self) -> None:
-        check_fields(self)
         for name in ("texture", "contrast"):
             check_range(name, getattr(self, name), 0, 1)
         if self.cycles % 2 != 1 or not 1 <= self.cycles <= MOST_TEXTURE_CYCLES:

@@ -21,10 +21,10 @@ APART = ("which", "odd", "match", "same-different", "detect")
 MEASURES = {
     "legibility": Measure("legibility of strings", ("identify",)),
     "characters": Measure("legibility of characters", ("identify",)),
-    "duration": Measure("duration of right answers", ("identify",)),
+    "duration": Measure("duration of right answers", ("identify", "name", "which", "odd", "match")),
     "right": Measure("right answers", (*APART, "name")),
     "threshold": Measure("threshold", ("detect", "which", "odd", "match", "identify")),
-    "d_prime": Measure("d′", ("detect", "same-different", "which")),
+    "d_prime": Measure("d′", ("detect", "same-different")),
     "preferred": Measure("preferred value", ("which",)),
     "rating": Measure("rating", ("rating",)),
     "magnitude": Measure("magnitude", ("magnitude",)),
@@ -41,10 +41,8 @@ class Analysis(Table, kw_only=True):
     measure
         Primary measure, a key of `MEASURES`; None for the usual one of the question.
     factors
-        Factors that it is compared by, "condition" for conditions that are listed, or columns of the
-        file of items, such as "item_size"; None for all factors.
-    correction
-        How the p of several tests are corrected together.
+        Factors that it is compared by, "condition" for conditions that are listed, or columns of
+        the file of items, such as "item_size"; None for all factors.
     too_fast_s, too_slow_s
         Trials that took less, or more, are left out.
     catch_right
@@ -55,7 +53,6 @@ class Analysis(Table, kw_only=True):
 
     measure: Literal[tuple(MEASURES)] | None = None
     factors: tuple[str, ...] | None = None
-    correction: Literal["holm", "none"] = "holm"
     too_fast_s: Seconds | None = None
     too_slow_s: Seconds | None = None
     catch_right: Share | None = None

@@ -84,7 +84,7 @@ class Repeated(Table, kw_only=True, tag_field="kind"):
 
     passage: ClassVar[bool] = False
     parameter: ClassVar[str] = ""
-    form: ClassVar[str] = "strings"
+    form: ClassVar[str] = ""  # how stimuli are compared, if they are
 
     def spellings(self) -> dict[str, tuple[str, ...]]:
         """Return the spellings of cells in the table, by the path of their key."""

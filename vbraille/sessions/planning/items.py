@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from random import Random
 from typing import Annotated, Literal, NamedTuple
+from unicodedata import normalize
 
 from msgspec import Meta
 
@@ -121,7 +122,7 @@ def read_items(content: bytes, name: str) -> dict[str, dict[str, str]]:
     sheet = _sheet(content, name, STRING)
     found: dict[str, dict[str, str]] = {}
     for line, row in zip(sheet.lines, sheet.records(), strict=True):
-        string = row.pop(STRING)
+        string = normalize("NFC", row.pop(STRING))
         if not string or string in found:
             why = (
                 f"{string!r} is there twice; repeats shows items more often"
@@ -135,7 +136,8 @@ def read_items(content: bytes, name: str) -> dict[str, dict[str, str]]:
 
 def read_words(content: bytes) -> list[str]:
     """Return the words of a text, one on each line; lines that begin with # are left out."""
-    lines = (line.strip() for line in content.decode("utf-8-sig", "replace").splitlines())
+    text = normalize("NFC", content.decode("utf-8-sig", "replace"))
+    lines = (line.strip() for line in text.splitlines())
     return list(dict.fromkeys(line for line in lines if line and not line.startswith("#")))
 
 

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import unicodedata
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from random import Random
+from typing import Any
 
 from msgspec import structs
 
 from vbraille.braille.spelling import LETTERS, name_dots, spell, spell_string, to_braille
 from vbraille.errors import InputError
 from vbraille.sessions.planning.analysis import MEASURES, Analysis
-from vbraille.sessions.planning.design import Combinations, Compared, ItemList, Setting, StringList
-from vbraille.sessions.planning.factors import crossed
+from vbraille.sessions.planning.design import Compared, ItemList, Setting, StringList
 from vbraille.sessions.planning.items import read_items, read_orders, read_words
 from vbraille.sessions.planning.procedures import QuestPlus, quest_of
 from vbraille.sessions.planning.protocol import Condition, Protocol, ProtocolFile
@@ -192,187 +192,172 @@ def _planned(protocol: Protocol) -> Analysis:
 
 
 def check(protocol: Protocol) -> None:
-    """Check that the tables of a protocol agree, so that a session shows and keeps what it should.
+    """Check that a session of a protocol shows what it should, keeps it, and is as long as it says.
 
     Raises
     ------
     WrongValue
-        If they do not.
+        If it does not.
     """
-    _check_names(protocol)
-    _check_design(protocol)
-    _check_question(protocol)
-    _check_procedure(protocol)
+    _check_keys(protocol)
+    for rules in (_conditions, _designs, _questions, _procedures, _practice):
+        for where, wrong, why in rules(protocol):
+            if wrong:
+                raise WrongValue(where, why)
+    _check_columns(protocol)
     _check_rules(protocol)
-    _check_practice(protocol)
     for group in protocol.groups or ("",):
         for condition in protocol.conditions:
             _check_shown(protocol.of_group(group), condition)
 
 
-def _check_names(protocol: Protocol) -> None:
-    if protocol.listed and any(not factor.between for factor in protocol.factors):
-        raise WrongValue("conditions", "are made by [[factors]]; leave one of the two out")
-    for key, tables in (
-        ("conditions", protocol.listed),
-        ("factors", protocol.factors),
-        ("fields", protocol.fields),
+Rules = Iterator[tuple[str, object, str]]  # key, whether something is wrong with it, and why
+
+
+def _check_keys(protocol: Protocol) -> None:
+    """Check that all spellings can be read."""
+    for key, dots in protocol.keys.items():
+        if len(key) != 1 or len(_told(f"keys.{key}", lambda dots=dots: spell(dots, {}))) != 1:
+            raise WrongValue(f"keys.{key}", "a key is one character, and stands for one cell")
+    listed = isinstance(protocol.design, StringList)
+    _told("design.strings" if listed else "design.characters", lambda: protocol.items_shown)
+    _told("practice.strings", lambda: protocol.practised)
+
+
+def _told(where: str, made: Callable[[], Any]) -> Any:
+    try:
+        return made()
+    except ValueError as error:
+        raise WrongValue(where, str(error)) from None
+
+
+def _conditions(protocol: Protocol) -> Rules:
+    within = any(not factor.between for factor in protocol.factors)
+    yield "conditions", within and protocol.listed, "are made by [[factors]]; leave one out"
+    names = [condition.name for condition in protocol.conditions]
+    for where, own in (
+        ("conditions", [each.name for each in protocol.listed]),
+        ("factors", [each.name for each in protocol.factors]),
+        ("fields", [each.name for each in protocol.fields]),
+        ("factors", names),
     ):
-        _check_once(key, [table.name for table in tables])
-    for n, factor in enumerate(protocol.factors):
-        _check_once(f"factors.{n}.levels", [level.name for level in factor.levels], "")
-        if len({frozenset(level.given) for level in factor.levels}) > 1:
-            raise WrongValue(f"factors.{n}.levels", "must all change the same")
-    known = {level.name for factor in protocol.factors for level in factor.levels}
-    for listed in protocol.cross if protocol.cross != "all" else ():
-        if len(listed) != len(protocol.factors) or not set(listed) <= known:
-            raise WrongValue("cross", f"has {listed}; give a level of each factor, in their order")
-    if not crossed(protocol.factors, protocol.cross, between=False):
-        raise WrongValue("cross", "leaves no condition")
-    # The column of a question, and that of whether its answer is right.
+        for n, name in enumerate(own):
+            yield f"{where}.{n}.name", name in own[:n], f"{name!r} is there twice"
+    yield "cross", not names, "leaves no condition"
+    for name in protocol.markers.codes:
+        known = which(name, names)
+        yield "markers.codes", name not in names, f"{name!r} is no condition{known}"
+    codes = list(protocol.marker_codes.values())
+    doubled = protocol.markers.codes and len(set(codes)) < len(codes)
+    yield "markers.codes", doubled, "give two conditions the same; name all of them"
+
+
+def _designs(protocol: Protocol) -> Rules:
+    design, texts = protocol.design, protocol.has_texts
+    compared, listed = isinstance(design, Compared), isinstance(design, StringList)
+    yield "design.kind", texts and not listed, "shows cells; table and scene are of lists"
+    yield "keys", texts and protocol.keys, "are of cells, and table makes them of texts"
+    reordered = texts and getattr(design, "reorder", False)
+    yield "design.reorder", reordered, "is of cells, and strings are texts or pictures"
+    no_texts = not texts or protocol.shows_pictures or design.catch
+    yield "design.passage", design.passage and no_texts, "is of texts with a table, without catch"
+    ordered = protocol.order or design.order
+    where = "order" if protocol.order else "design.order"
+    yield where, ordered and design.blocks != "conditions", "is for blocks = 'conditions'"
+    yield where, protocol.order and design.order, "is in [design] as well; leave one out"
+    shown = 1 if design.counterbalanced else len(protocol.conditions)
+    trials = len(protocol.items_shown) * design.repeats * shown + protocol.practice.most
+    yield "design.repeats", trials > MOST_TRIALS, f"makes {trials} trials of {MOST_TRIALS} at most"
+    catch = design.catch
+    if catch is not None:
+        chosen = protocol.procedure is not None and catch.show == "repeat"
+        unfit = compared or protocol.shows_pictures or chosen
+        yield "design.catch", unfit, "is of strings, which no procedure repeats; leave it out"
+
+
+def _questions(protocol: Protocol) -> Rules:
+    asks, design, pace = protocol.asks, protocol.design, protocol.trial
+    form = "pictures" if protocol.shows_pictures else "strings"
+    form = "passages" if design.passage else design.form or form
+    fits = form in asks.asks_of or (form == "passages" and asks.kind == "free")
+    yield "question.kind", not fits, f"{asks.kind!r} is not asked of {form}"
+    if isinstance(asks, Which) and isinstance(design, Compared):
+        several = asks.right is None and design.form == "one" and design.intervals > 2
+        yield "question.right", several, "is missing, and there are more than two to choose from"
+        same = design.same or design.reference in design.values
+        yield "design.values", same, "have two that are the same, of which none is chosen"
+    for choice in asks.choices if isinstance(asks, Pick) else ():
+        named = {row.get(choice.of or "") for row in protocol.columns.values()}
+        unnamed = choice.of and named - {*choice.names.values()}
+        yield "question.choices", unnamed, f"lack a name in the column {choice.of!r} of the items"
+    off_device = protocol.medium == "paper" or any(look.on == "pins" for look in protocol.looks)
+    changes = pace.exposure_s or protocol.procedure or asks.kind == "adjust" or design.passage
+    changes = changes or protocol.shows_pictures or isinstance(design, Compared)
+    yield "medium", off_device and changes, "paper and pins show strings for any time"
+    yield "pins.reference", off_device and protocol.pins.reference, "stands beside the device"
+    yield "trial.end", pace.end and protocol.medium == "paper", "is Enter on paper; leave it out"
+    yield "trial.end", pace.button and getattr(asks, "buttons", None), "answers already"
+
+
+def _procedures(protocol: Protocol) -> Rules:
+    table, design, asks = protocol.procedure, protocol.design, protocol.asks
+    if table is None:
+        return
+    scores = asks.scores and not protocol.shows_pictures and not design.passage
+    yield "procedure", not scores, f"does not go by answers to {asks.kind!r}"
+    yield "trial.late", protocol.trial.late == "missed", "leaves trials without an answer"
+    if isinstance(design, Compared):
+        twice = protocol.rules.never_twice_running
+        yield "rules.never_twice_running", twice, "is of fixed values, which [procedure] chooses"
+        yield "procedure.parameter", table.parameter, "is that of [design]; leave it out"
+        if design.reference is None:
+            preferred = isinstance(table, QuestPlus) and asks.right is None
+            yield "procedure.kind", not preferred, "of preferences is 'quest', without a right one"
+        else:
+            sides = {value > design.reference for value in design.values}
+            apart = len(sides) == 1 and len(design.values) > 1
+            fits = apart and design.form not in ("standard", "single")
+            yield "design.values", not fits, "must be the nearest and furthest on one side"
+            nearest = isinstance(asks, Which) and asks.right not in ("more", "less")
+            yield "question.right", nearest, "must be 'more' or 'less' for [procedure]"
+    else:
+        bounds = table.least is not None and table.most is not None and table.least < table.most
+        yield "procedure.parameter", not (table.parameter and bounds), "needs least below most"
+    least, most = table.bounds(design)
+    for start in getattr(table, "start", ()):
+        yield "procedure.start", not least <= start <= most, f"is not from {least:g} to {most:g}"
+    if isinstance(table, QuestPlus):
+        unguessed = asks.kind == "detect" and not any(table.guess or ())
+        yield "procedure.guess", unguessed, "is missing, and people say yes at nothing too"
+        quest_of(table, design)
+
+
+def _practice(protocol: Protocol) -> Rules:
+    practice, design = protocol.practice, protocol.design
+    own = practice.values if isinstance(design, Compared) else practice.strings
+    yield "practice", practice.most and not own, "has nothing of its own; give strings or values"
+    if protocol.shows_pictures:
+        return
+    if isinstance(design, Compared):
+        tested: list[Any] = [*design.values, design.reference]
+        given = [value for value in practice.values if value in tested]
+    else:
+        order = sorted if getattr(design, "reorder", False) else list
+        tested = [order(item) for item in protocol.items_shown]
+        given = [item for item in protocol.practised if order(item) in tested]
+    yield "practice", given, f"has {given[:1]}, which the test shows; give another"
+
+
+def _check_columns(protocol: Protocol) -> None:
+    """Check that each question of the questionnaire has columns of its own, and those it names."""
     columns: list[str] = []
     for n, item in enumerate(protocol.questionnaire):
         own = [item.name, *([f"{item.name}_correct"] if item.right else [])]
         if taken := [name for name in own if name in columns]:
             raise WrongValue(f"questionnaire.{n}.name", f"the column {taken[0]} is there already")
         columns += own
-        unknown = item.columns - set(protocol.item_columns if item.when == "trial" else ())
-        if unknown:
-            raise WrongValue(f"questionnaire.{n}.ask", f"no item has a column {min(unknown)!r}")
-    names = [condition.name for condition in protocol.conditions]
-    for name in protocol.markers.codes:
-        if name not in names:
-            raise WrongValue("markers.codes", f"{name!r} is no condition{which(name, names)}")
-    codes = protocol.marker_codes
-    if protocol.markers.codes and len(set(codes.values())) < len(codes):
-        raise WrongValue("markers.codes", "give two conditions the same; name all of them")
-
-
-def _check_once(key: str, names: list[str], last: str = ".name") -> None:
-    for n, name in enumerate(names):
-        if name in names[:n]:
-            raise WrongValue(f"{key}.{n}{last}" if last else key, f"{name!r} is there twice")
-
-
-def _check_design(protocol: Protocol) -> None:
-    design, conditions = protocol.design, len(protocol.conditions)
-    cells = isinstance(design, StringList) and not protocol.has_texts
-    if protocol.has_texts and not isinstance(design, StringList):
-        raise WrongValue("design.kind", "shows cells, and table or scene make strings of texts")
-    if not cells and (getattr(design, "reorder", False) or (protocol.keys and protocol.has_texts)):
-        raise WrongValue("design.reorder", "and [keys] are of cells; leave them out")
-    if design.passage and (not protocol.has_texts or protocol.shows_pictures or design.catch):
-        raise WrongValue("design.passage", "is of texts with a braille table, without catch trials")
-    if design.blocks != "conditions" and (protocol.order or design.order):
-        raise WrongValue(
-            "order" if protocol.order else "design.order", "is for blocks = 'conditions'"
-        )
-    if protocol.order and design.order:
-        raise WrongValue("design.order", "is in the table [order]; leave it out here")
-    trials = (
-        len(protocol.items_shown) * design.repeats * (1 if design.counterbalanced else conditions)
-    )
-    if not 0 < trials + protocol.practice.most <= MOST_TRIALS:
-        raise WrongValue("design.repeats", f"makes {trials} trials of at most {MOST_TRIALS}")
-    if design.counterbalanced and len(protocol.items_shown) % conditions:
-        raise WrongValue("design.counterbalanced", f"needs as many items for each of {conditions}")
-    if isinstance(design.blocks, int) and design.blocks > trials:
-        raise WrongValue("design.blocks", f"is more than the {trials} trials")
-    if design.catch is not None:
-        blank = design.catch.show == "blank"
-        if (
-            isinstance(design, Compared)
-            or protocol.shows_pictures
-            or (protocol.procedure and not blank)
-        ):
-            raise WrongValue(
-                "design.catch", "is of strings, which no procedure repeats; leave it out"
-            )
-        if trials < design.catch.stretch:
-            raise WrongValue("design.catch", f"would be none among {trials} trials")
-
-
-def _check_question(protocol: Protocol) -> None:
-    asks, design = protocol.asks, protocol.design
-    form = "passages" if design.passage else "pictures" if protocol.shows_pictures else "strings"
-    if isinstance(design, Compared):
-        form = design.form
-    if form not in asks.asks_of and not (form == "passages" and asks.kind == "free"):
-        raise WrongValue("question.kind", f"{asks.kind!r} is not asked of {form}")
-    if isinstance(asks, Which) and isinstance(design, Compared):
-        if asks.right is None and design.form == "one" and design.intervals > 2:
-            raise WrongValue(
-                "question.right", "is missing, and there are more than two to choose from"
-            )
-        if design.same or design.reference in design.values:
-            raise WrongValue("design.values", "have two that are the same, of which none is chosen")
-    if isinstance(asks, Pick):
-        for n, choice in enumerate(asks.choices):
-            named = {row.get(choice.of or "") for row in protocol.columns.values()}
-            if choice.of and choice.of not in protocol.item_columns:
-                raise WrongValue("question.choices", f"number {n + 1}: no item has a {choice.of!r}")
-            if choice.of and named - {*choice.names.values()}:
-                raise WrongValue("question.choices", f"{choice.of} lacks a name that an item has")
-    off_device = protocol.medium == "paper" or any(look.on == "pins" for look in protocol.looks)
-    if off_device and (
-        protocol.trial.exposure_s
-        or protocol.procedure
-        or asks.kind == "adjust"
-        or protocol.shows_pictures
-        or design.passage
-        or isinstance(design, Compared)
-    ):
-        raise WrongValue("medium", "paper and pins show strings that do not change, for any time")
-    if protocol.pins.reference and off_device:
-        raise WrongValue("pins.reference", "stands beside the device; leave it out")
-    if protocol.trial.end and protocol.medium == "paper":
-        raise WrongValue("trial.end", "is of a device; on paper Enter ends reading")
-    if getattr(asks, "buttons", None) and protocol.trial.button:
-        raise WrongValue(
-            "trial.end", "is a button, which answers already; leave one of the two out"
-        )
-
-
-def _check_procedure(protocol: Protocol) -> None:
-    table, design, asks = protocol.procedure, protocol.design, protocol.asks
-    if table is None:
-        return
-    if not asks.scores or protocol.shows_pictures or design.passage:
-        raise WrongValue("procedure", f"does not go by answers to {asks.kind!r}")
-    if protocol.trial.late == "missed":
-        raise WrongValue("trial.late", "leaves trials without an answer, which [procedure] goes by")
-    if isinstance(design, Compared):
-        if protocol.rules.never_twice_running:
-            raise WrongValue(
-                "rules.never_twice_running", "is of fixed values, which [procedure] chooses"
-            )
-        if table.parameter or table.least is not None or table.most is not None:
-            raise WrongValue("procedure.parameter", "and its bounds are those of [design]")
-        if design.reference is None and (not isinstance(table, QuestPlus) or asks.right):
-            raise WrongValue(
-                "procedure.kind", "of preferences is 'quest', and [question] right is left out"
-            )
-        if design.reference is not None:
-            aside = {value > design.reference for value in design.values}
-            if design.form in ("standard", "single") or len(aside) > 1 or len(design.values) < 2:
-                raise WrongValue("design.values", "must be the nearest and furthest on one side")
-            if isinstance(asks, Which) and asks.right not in ("more", "less"):
-                raise WrongValue("question.right", "must be 'more' or 'less' for [procedure]")
-    elif (
-        not table.parameter
-        or table.least is None
-        or table.most is None
-        or table.least >= table.most
-    ):
-        raise WrongValue("procedure.parameter", "is needed, with least below most")
-    least, most = table.bounds(design)
-    for start in getattr(table, "start", ()):
-        if not least <= start <= most:
-            raise WrongValue("procedure.start", f"{start:g} is not from {least:g} to {most:g}")
-    if isinstance(table, QuestPlus):
-        if asks.kind == "detect" and not any(table.guess or ()):
-            raise WrongValue("procedure.guess", "is missing, and people say yes at nothing too")
-        quest_of(table, design)
+        if item.columns - set(protocol.item_columns if item.when == "trial" else ()):
+            raise WrongValue(f"questionnaire.{n}.ask", "names a column that no item has")
 
 
 def _check_rules(protocol: Protocol) -> None:
@@ -385,8 +370,6 @@ def _check_rules(protocol: Protocol) -> None:
     exactly, least = rules.each_letter, rules.each_letter_at_least or 0
     if exactly is None and not least:
         return
-    if not isinstance(design, StringList) or protocol.has_texts:
-        raise WrongValue("rules.each_letter", "is of lists of cells; leave it out")
     counts = Counter("".join(protocol.items_shown * design.repeats))
     for letter, mask in LETTERS.items():
         count = counts[to_braille((mask,))]
@@ -395,56 +378,19 @@ def _check_rules(protocol: Protocol) -> None:
             raise WrongValue(f"rules.{key}", f"{letter} is shown {count} times")
 
 
-def _check_practice(protocol: Protocol) -> None:
-    practice, design = protocol.practice, protocol.design
-    given, wanted = practice.strings, practice.values
-    if isinstance(design, Compared):
-        given, wanted = wanted, given
-    if wanted:
-        raise WrongValue("practice", "has strings where values are compared, or values of strings")
-    if practice.most and not given:
-        raise WrongValue(
-            "practice", "has nothing of its own; give strings or values, or trials = 0"
-        )
-    if practice.until and protocol.asks.kind in ("rating", "magnitude", "free", "adjust", "read"):
-        raise WrongValue("practice.until", "counts right answers, and none is right")
-    if protocol.shows_pictures:
-        return
-    if isinstance(design, Compared):
-        shown = {*design.values, design.reference}
-        given_away = next((f"{value:g}" for value in practice.values if value in shown), "")
-    elif isinstance(design, Combinations):
-        items = set(protocol.items_shown)
-        given_away = next((item for item in _practised(protocol) if item in items), "")
-    else:
-        order = sorted if getattr(design, "reorder", False) else list
-        items = [order(item) for item in protocol.items_shown]
-        given_away = next((item for item in _practised(protocol) if order(item) in items), "")
-    if given_away:
-        raise WrongValue("practice", f"has {given_away}, which the test shows; give another")
-
-
-def _practised(protocol: Protocol) -> list[str]:
-    try:
-        return protocol.practised
-    except ValueError as error:
-        raise WrongValue("practice.strings", str(error)) from None
-
-
 def _check_shown(protocol: Protocol, condition: Condition) -> None:
     """Check that the display can show all items of a condition, and make their cells."""
-    look, key = condition.over(protocol.display), _key_of(protocol, condition)
-    try:
-        protocol.style(look)
-    except ValueError as error:
-        raise WrongValue(key, str(error)) from None
+    look, key = condition.over(protocol.display), "factors" if protocol.factors else "display"
+    if condition in protocol.listed:
+        key = f"conditions.{protocol.listed.index(condition)}"
+    _told(key, lambda: protocol.style(look))
     if (look.table is None and look.scene is None) == protocol.has_texts:
         raise WrongValue(key, "has no table or scene, and others have; give it one, or [display]")
     compared = protocol.design.parameter or getattr(protocol.procedure, "parameter", None)
     if compared in condition.given:
         raise WrongValue(key, f"sets {compared}, which [design] or [procedure] varies")
     setting = Setting(protocol.masks, protocol.room, Random(0))
-    for table, items in (("design", _items(protocol)), ("practice", _practised(protocol))):
+    for table, items in (("design", protocol.items_shown), ("practice", protocol.practised)):
         for item in items:
             try:
                 for stimulus in protocol.design.stimuli(item, look, setting):
@@ -452,20 +398,6 @@ def _check_shown(protocol: Protocol, condition: Condition) -> None:
                     _check_varied(protocol, stimulus)
             except ValueError as error:
                 raise WrongValue(table, f"in {condition.name}: {error}") from None
-
-
-def _items(protocol: Protocol) -> list[str]:
-    for key, dots in protocol.keys.items():
-        try:
-            if len(key) != 1 or len(spell(dots, {})) != 1:
-                raise ValueError("a key is one character, and stands for one cell")
-        except ValueError as error:
-            raise WrongValue(f"keys.{key}", str(error)) from None
-    try:
-        return protocol.items_shown
-    except ValueError as error:
-        key = "strings" if isinstance(protocol.design, StringList) else "characters"
-        raise WrongValue(f"design.{key}", str(error)) from None
 
 
 def check_stimulus(protocol: Protocol, stimulus: Stimulus) -> None:
@@ -504,9 +436,3 @@ def _check_varied(protocol: Protocol, stimulus: Stimulus) -> None:
     for value in table.bounds(protocol.design):
         look = stimulus.look.changed(table.parameter, value)
         check_stimulus(protocol, structs.replace(stimulus, look=look))
-
-
-def _key_of(protocol: Protocol, condition: Condition) -> str:
-    if condition in protocol.listed:
-        return f"conditions.{protocol.listed.index(condition)}"
-    return "factors.0" if protocol.factors else "display"

@@ -170,19 +170,20 @@ def _rules(protocol: Protocol) -> tuple[list[Limit], object]:
     if rules.never_twice_running:
         reorder = getattr(protocol.design, "reorder", False)
         limits.append(Limit(lambda shown: "".join(sorted(shown[0])) if reorder else shown[0], 1))
+    levels = {each.name: protocol.levels(each.name, "") for each in protocol.conditions}
     for name, most in rules.at_most_running.items():
-        limits.append(Limit(partial(_level, protocol, name), most))
+        limits.append(Limit(partial(_level, protocol.columns, levels, name), most))
     return limits, (lambda shown: shown[1]) if rules.balanced_quarters else None
 
 
-def _level(protocol: Protocol, name: str, shown: Placed) -> str:
+def _level(
+    columns: dict[str, dict[str, str]], levels: dict[str, dict[str, str]], name: str, shown: Placed
+) -> str:
     """Return the condition of a trial, its level of a factor, or its cell of a column."""
     item, condition = shown
     if name == "condition":
         return condition
-    if name in protocol.item_columns:
-        return protocol.columns.get(item, {}).get(name, "")
-    return protocol.levels(condition, "")[name]
+    return levels[condition].get(name) or columns.get(item, {}).get(name, "")
 
 
 def _practice(protocol: Protocol, random: Random) -> list[Trial]:

@@ -211,7 +211,7 @@ def quest_of(table: QuestPlus, design: AnyDesign) -> Quest:
     """
     least, most = table.bounds(design)
     try:
-        values = steps(least, most, table.step) if table.step else _of_design(table, design)
+        values = steps(least, most, table.step) if table.step else _of_design(design)
         if isinstance(design, Compared) and design.reference is None:
             furthest = table.furthest or most
             pairs = [(a, b) for a in values for b in values if a < b and b - a <= furthest + 1e-9]
@@ -231,7 +231,7 @@ def quest_of(table: QuestPlus, design: AnyDesign) -> Quest:
         raise WrongValue("procedure.step", str(error)) from None
 
 
-def _of_design(table: QuestPlus, design: AnyDesign) -> tuple[float, ...]:
+def _of_design(design: AnyDesign) -> tuple[float, ...]:
     """Return the levels that the design's own values are."""
     if not isinstance(design, Compared):
         raise WrongValue("procedure.step", "is missing; give the step from value to value")

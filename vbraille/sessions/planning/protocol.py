@@ -21,7 +21,7 @@ from vbraille.sessions.planning.factors import Cross, Factor, crossed
 from vbraille.sessions.planning.items import Items, OrderRow
 from vbraille.sessions.planning.procedures import AnyProcedure
 from vbraille.sessions.planning.questionnaire import Item
-from vbraille.sessions.planning.questions import AnyQuestion, Identify, Spelling, Which
+from vbraille.sessions.planning.questions import AnyQuestion, Identify, Read, Spelling, Which
 from vbraille.sessions.planning.trial import Stimulus
 from vbraille.sessions.planning.values import (
     Count,
@@ -358,6 +358,8 @@ class Protocol(ProtocolFile, kw_only=True):
         """The question of each trial; without a table it is which cells, or which of two."""
         if self.question is not None:
             return self.question
+        if self.design.passage:
+            return Read()
         return Which() if isinstance(self.design, Compared) else Identify()
 
     @property

@@ -97,11 +97,12 @@ class Question(Table, kw_only=True, tag_field="kind"):
         Scale on which it is asked how sure the answer is; None if it is not asked.
     """
 
-    asks_of: ClassVar[tuple[str, ...]] = ("strings", "pictures", "single")
-    counts_catch: ClassVar[bool] = False  # whether catch trials are what is asked about
-    scores: ClassVar[bool] = False  # whether a procedure can go by its answers
-    alarm: ClassVar[str] = ""  # answer that a false alarm is
-    confirms: ClassVar[bool] = False  # whether a typed answer is said back before it counts
+    typed = "the answer"
+    asks_of = ("strings", "pictures", "single")
+    counts_catch = False  # whether catch trials are what is asked about
+    scores = False  # whether a procedure can go by its answers
+    alarm = ""  # answer that a false alarm is
+    confirms = False  # whether a typed answer is said back before it counts
 
     ask: str = ""
     confidence: Scale | None = None
@@ -110,11 +111,6 @@ class Question(Table, kw_only=True, tag_field="kind"):
     def kind(self) -> str:
         """Name of the kind in protocols and tables."""
         return str(self.__struct_config__.tag)
-
-    @property
-    def typed(self) -> str:
-        """What may be typed."""
-        return "the answer"
 
     def steps(self, line: str) -> int | None:
         """Return by how many steps a line turns what is shown; None if it turns nothing."""
@@ -179,13 +175,9 @@ class Question(Table, kw_only=True, tag_field="kind"):
 class Identify(Question, kw_only=True, tag="identify"):
     """Asks which cells were shown."""
 
+    typed = "what was read: letters, keys or dot numbers, or a text in print; ? if not read"
     asks_of = ("strings",)
     scores = True
-
-    @property
-    def typed(self) -> str:
-        """What may be typed."""
-        return "what was read: letters, keys or dot numbers, or a text in print; ? if not read"
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
         """Read cells, or a text."""
@@ -225,13 +217,9 @@ class Identify(Question, kw_only=True, tag="identify"):
 class Chosen(Question, kw_only=True):
     """Asks for the number of a stimulus."""
 
+    typed = "the number of one: 1, 2 and so on, or first, second"
     scores = True
-    among: ClassVar[int] = 0  # of how many one is chosen; 0 for all
-
-    @property
-    def typed(self) -> str:
-        """What may be typed."""
-        return "the number of one: 1, 2 and so on, or first, second"
+    among = 0  # of how many one is chosen; 0 for all
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
         """Read a choice."""
@@ -344,11 +332,6 @@ class OneOfTwo(Question, kw_only=True):
 
     words: ClassVar[tuple[str, str]]
 
-    @property
-    def typed(self) -> str:
-        """What may be typed."""
-        return f"{self.words[0]} or {self.words[1]}"
-
     def has_signal(self, trial: Trial) -> bool:
         """Tell whether a trial has a signal."""
         raise NotImplementedError
@@ -379,6 +362,7 @@ class Same(OneOfTwo, kw_only=True, tag="same-different"):
     """Asks whether two stimuli were the same or different."""
 
     asks_of = ("pairs",)
+    typed = "different or same"
     words = ("different", "same")
     alarm = "different"
 
@@ -401,6 +385,7 @@ class Detect(OneOfTwo, kw_only=True, tag="detect"):
     asks_of = ("strings",)
     counts_catch = True
     scores = True
+    typed = "yes or no"
     words = ("yes", "no")
     alarm = "yes"
 
@@ -619,12 +604,8 @@ class Pick(Question, kw_only=True, tag="name"):
 class Read(Question, kw_only=True, tag="read"):
     """Says whether a passage was read to its end."""
 
+    typed = "read, or broken off"
     asks_of = ("passages",)
-
-    @property
-    def typed(self) -> str:
-        """What may be typed."""
-        return "read, or broken off"
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
         """Read one of the two, or its first letter."""
@@ -655,6 +636,7 @@ class Adjust(Question, kw_only=True, tag="adjust"):
         Numbers of three buttons of the device: for less, for more, and for equal.
     """
 
+    typed = "+ or - to turn it (++ twice), equal when it is; standard shows both again"
     asks_of = ("single", "standard")
 
     step: Positive
@@ -668,11 +650,6 @@ class Adjust(Question, kw_only=True, tag="adjust"):
             raise WrongValue("most", "must be a step above least, or more")
         if len(set(self.buttons)) not in (0, 3):
             raise WrongValue("buttons", "must be three, for less, for more and for equal")
-
-    @property
-    def typed(self) -> str:
-        """What may be typed."""
-        return "+ or - to turn it (++ twice), equal when it is; standard shows both again"
 
     def steps(self, line: str) -> int | None:
         """Return the steps of a line; 0 shows both again; None if it is an answer."""
@@ -722,12 +699,8 @@ class Adjust(Question, kw_only=True, tag="adjust"):
 class Free(Question, kw_only=True, tag="free"):
     """Asks for any words."""
 
+    typed = "any words"
     asks_of = ("strings", "pictures", "single", "pairs", "standard")
-
-    @property
-    def typed(self) -> str:
-        """What may be typed."""
-        return "any words"
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
         """Return the words."""

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from vbraille.errors import InputError
 from vbraille.files import write_files
+from vbraille.names import likeness
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.record.record import Content, Event, read, reading
 from vbraille.sessions.record.ticks import read_all
@@ -95,11 +96,10 @@ def _add(
     people = _read_people(folder)
     pseudonym, number = content.plan.participant, content.events[0].data["plan"]
     label = label_of(pseudonym)
+    alike = likeness(pseudonym, person=True)
     for other in people.values():
-        if other != pseudonym and _plain(other) == _plain(pseudonym):
-            raise InputError(
-                f"{folder} has a participant {other}, who is hard to tell from {label}"
-            )
+        if other != pseudonym and likeness(other, person=True) == alike:
+            raise InputError(f"{folder} has {other}, who is hard to tell from {pseudonym}")
     for told in folder.glob("sub-*/ses-*/beh/*_beh.json"):
         if json.loads(told.read_text("utf-8")).get(SUM) == number:
             raise InputError(f"{path} is there already, as {told.with_suffix('.tsv')}")
@@ -119,7 +119,9 @@ def _add(
     }  # fmt: skip
     column = {PSEUDONYM: {"Description": "as the laboratory has it"}}
     for name, made in (
-        (DATASET, _json(about)), (README, README_TEXT.encode()), ("participants.json", _json(column))
+        (DATASET, _json(about)),
+        (README, README_TEXT.encode()),
+        ("participants.json", _json(column)),
     ):  # fmt: skip
         if not (folder / name).exists():
             files[folder / name] = made
@@ -133,10 +135,6 @@ def _add(
     write_files(files.items())
     write_files([(folder / PEOPLE, to_csv(table, "\t", "n/a").encode())], replace=True)
     return [*files, folder / PEOPLE]
-
-
-def _plain(pseudonym: str) -> str:
-    return re.sub(r"(?<!\d)0+(?=\d)", "", label_of(pseudonym).lower())
 
 
 def _read_people(folder: Path) -> dict[str, str]:

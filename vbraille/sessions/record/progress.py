@@ -122,9 +122,10 @@ class Progress:
             trial = self.plan.trials[place]
             if self._is_over(trial):
                 self._first += place == self._first
-            elif not (trial.practice and self.practice_is_over):
-                if (shown := self.shown(trial)) is not None:
-                    return shown
+            elif trial.practice and self.practice_is_over:
+                continue
+            elif (shown := self.shown(trial)) is not None:
+                return shown
         return None
 
     @property

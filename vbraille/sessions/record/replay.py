@@ -1,7 +1,7 @@
 """The frames of a session, made again from its ticks, bit for bit.
 
-A tick tells where the array was, what was under it, and how far a change had faded in. So each frame
-follows from the one before.
+A tick tells where the array was, what was under it, and how far a change had faded in. So each
+frame follows from the one before.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class Replay:
             missing.
         """
         place = self._places[line]
-        earlier = self._cues[max(place - BEFORE, 0)].n - 1
+        earlier = self._cues[place - BEFORE].n - 1 if place >= BEFORE else 0
         run = max(e.n for e in self.content.events if e.kind == "run" and e.n < self._cues[place].n)
         later = self._cues[place + AFTER :][:1]
         until = later[0].n if later else self.content.events[-1].n + 1
@@ -126,10 +126,10 @@ class _Frames:
         missing = np.diff(ticks["tick"], prepend=-1) != 1
         bounds = np.flatnonzero(missing | (np.diff(ticks["line"], prepend=-1) != 0)).tolist()
         for first, end in pairwise((*bounds, ticks.size)):
-            if missing[first]:
-                output.fill(np.nan)
-                held.fill(np.nan)
             line = int(ints[first, LINE])
+            if missing[first]:  # before its first showing a run is at rest
+                output.fill(np.nan if line else 0.0)
+                held.fill(np.nan if line else 0.0)
             resting = (ints[first:end, FLAGS] & int(Flag.RESTING)).all()
             program = self._nothing if resting or not line else self._program_of(line)
             part = ints[first:end], floats[first:end]

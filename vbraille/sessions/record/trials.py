@@ -35,70 +35,10 @@ class Column(NamedTuple):
     values: str = ""
 
 
-COLUMNS = {
-    "session": Column("name of the session's file"),
-    "participant": Column("pseudonym"),
-    "protocol": Column("name of the protocol"),
-    "number": Column("which session of the participant it is, from 1"),
-    "group": Column("group of the participant; empty if there are none"),
-    "practice": Column("whether it is practice", "", "0, 1"),
-    "block": Column("number of the block, 0 in practice"),
-    "trial": Column("number of the trial"),
-    "condition": Column("name of the condition"),
-    "catch": Column("what a catch trial shows; else empty", "", "blank, repeat"),
-    "texture": Column("texture level, 0 to 1"),
-    "contrast": Column("share of the full swing, 0 to 1"),
-    "texture_cycles": Column("half-cycles of texture in a radius, on the STReSS²"),
-    "model": Column("display that the protocol is written for"),
-    "mapping": Column("mapping from dots to rows of actuators"),
-    "on": Column("where the string stood", "", "device, pins, paper"),
-    "scene": Column("scene of the picture"),
-    "dot_width_mm": Column("width of a dot", "mm"),
-    "dot_spacing_mm": Column("distance of the two dot columns of a cell", "mm"),
-    "cell_gap_mm": Column("distance of the last dot column of a cell and the next one", "mm"),
-    "row_spacing_mm": Column("distance of dot rows", "mm"),
-    "line_pitch_mm": Column("distance of lines", "mm"),
-    "travel_mm": Column("way of the carriage", "mm"),
-    "parameter": Column("what stimuli are compared by"),
-    "presented": Column("cells that were asked for, the right names, or the values compared"),
-    "string_set": Column("the item as the protocol lists it"),
-    "table": Column("braille table that made the cells"),
-    "text": Column("text that the cells stand for"),
-    "answered": Column("the answer that counts"),
-    "correct": Column("whether it is right", "", "0, 1"),
-    "question": Column("kind of the question"),
-    "outcome": Column(
-        "how the answer is scored", "", "right, wrong, hit, miss, false alarm, correct rejection"
-    ),
-    "confidence": Column("how sure the answer is, on the protocol's scale"),
-    "first_answer": Column("the answer that was given first, if another one counts"),
-    "answers_from": Column("source of the answer"),
-    "moved_by": Column("hand that moved the array, if no person did"),
-    "attempt": Column("how often the trial was shown"),
-    "gap_s": Column("planned time before the cue", "s"),
-    "duration_s": Column("from the first touch of the first dot to the last (3.4)", "s"),
-    "returned": Column("whether the hand went back over the first dot", "", "0, 1"),
-    "contact_s": Column("from the cue to the first dot", "s"),
-    "response_s": Column("from the cue to the answer or the participant's key, less pauses", "s"),
-    "ended_by": Column("what ended reading, if not the hand"),
-    "paused_s": Column("time of pauses in the trial", "s"),
-    "early": Column("whether the answer came before the line was read", "", "0, 1"),
-    "late": Column("whether the answer came after the time for it, or not at all", "", "0, 1"),
-    "analysed": Column("whether the analysis uses the trial", "", "0, 1"),
-    "warned": Column("whether the warning sounded", "", "0, 1"),
-    "faults": Column("faults of the device in the attempt that counts"),
-    "notes": Column("notes of the experimenter"),
-    "cue_time": Column("time of day of the cue, UTC"),
-    "answer_time": Column("time of day of the answer, UTC"),
-}
-OF_PASSAGES = {
-    "lines": Column("number of the passage's lines"),
-    "words": Column("number of the passage's words"),
-    "words_per_minute": Column("from the first touch to the end of the last line, less pauses"),
-    "hand_pauses": Column("how often the hand stood still within a line, for 0.3 s or longer"),
-    "hand_paused_s": Column("how long it did, together", "s"),
-    "regressions": Column("how often the hand went back by half a cell or more within a line"),
-}
+with Path(__file__).with_name("columns.csv").open(encoding="utf-8", newline="") as _file:
+    _COLUMNS = list(csv.reader(_file))[1:]
+COLUMNS = {name: Column(*told) for name, *told, of in _COLUMNS if of == "all"}
+OF_PASSAGES = {name: Column(*told) for name, *told, of in _COLUMNS if of == "passages"}
 LENGTHS = [name for name in COLUMNS if name.endswith("_mm")]
 # What may tell who a person is, or where the session was.
 PRIVATE = ("notes", "cue_time", "answer_time", "answers_from", "faults")

@@ -12,8 +12,6 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple, Protocol
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.plan import Plan
-from vbraille.sessions.planning.protocol import Protocol as Study
 from vbraille.sessions.planning.questionnaire import Item
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.simulated.skin import FeltFrames
@@ -223,15 +221,13 @@ class Programmed(InTurn):
         return Line(line)
 
 
-def answers_of(spec: Any, protocol: Study, plan: Plan, after: int) -> Answers:
+def answers_of(spec: Any, after: int) -> Answers:
     """Return the source of a spec.
 
     Parameters
     ----------
     spec
-        "typed", "simulated:NOISE", the name of a file, lines, a function, or a source itself.
-    protocol, plan
-        What the session shows.
+        "typed", the name of a file, lines, a function, or a source itself.
     after
         Number of the last line of the file that was used in earlier runs.
 
@@ -244,17 +240,12 @@ def answers_of(spec: Any, protocol: Study, plan: Plan, after: int) -> Answers:
         return spec
     if not isinstance(spec, str):
         return Programmed(spec)
-    kind, _, habits = spec.partition(":")
     if spec == "typed":
         return Typed()
     if spec == "program":
         raise InputError("the answers came from a program; give --answers typed")
-    if kind == "simulated":
-        from vbraille.sessions.running.reader import simulated_answers  # loads the simulated reader
-
-        return simulated_answers(protocol, plan, habits)
     if not Path(spec).exists():
-        near = get_close_matches(kind, ("typed", "simulated"), 1)
+        near = get_close_matches(spec.partition(":")[0], ("typed", "simulated"), 1)
         hint = f"did you mean {near[0]}?" if near else "give typed, simulated:NOISE or a file"
         raise InputError(f"there is no file {spec}; {hint}")
     return Scripted(Path(spec), after)

@@ -2,51 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
-
-if TYPE_CHECKING:
-    from vbraille.sessions.running.runner import Runner
-
-
-class Again(Exception):
-    """The open trial is over; whichever trial comes next now is begun."""
-
-
-class Over(Exception):
-    """The run is over.
-
-    Parameters
-    ----------
-    kind
-        Kind of the last event: "stop" if the session can be resumed, or "end".
-    why
-        Why it is over.
-    data
-        What else the event says.
-    """
-
-    def __init__(self, kind: str, why: str, **data: str) -> None:
-        super().__init__(why)
-        self.kind, self.why, self.data = kind, why, data
-
-
-class Command(NamedTuple):
-    """A command.
-
-    Parameters
-    ----------
-    does
-        Function that does it, given the runner and the text after the word.
-    help
-        What it does.
-    takes
-        Whether text may follow the word; a line with such a text is an answer otherwise.
-    """
-
-    does: Callable[[Runner, str], None]
-    help: str
-    takes: bool = False
+from vbraille.sessions.running.runner import Again, Command, Over, Runner
 
 
 def _answer(runner: Runner, text: str) -> None:
@@ -117,7 +73,7 @@ def _begin(runner: Runner, _: str) -> None:
     raise Again
 
 
-def _stop(runner: Runner, _: str) -> None:
+def _stop(_runner: Runner, _: str) -> None:
     raise Over("stop", "stopped by the experimenter")
 
 
@@ -139,7 +95,7 @@ def _help(runner: Runner, _: str) -> None:
         least, most = asks.confidence.least, asks.confidence.most
         runner.say(f"confidence: {least} to {most}, after the answer or after a semicolon")
     runner.say("Enter: go on after a pause or a break")
-    for word, command in COMMANDS.items():
+    for word, command in runner.commands.items():
         runner.say(f"{word}: {command.help}")
 
 
@@ -157,12 +113,3 @@ COMMANDS: dict[str, Command] = {
     "quit": Command(_quit, "end for good; the participant's reason after it", takes=True),
     "help": Command(_help, "list what may be typed"),
 }
-
-
-def find_command(line: str) -> tuple[str, str] | None:
-    """Return the command of a line and the text after it; None if the line is no command."""
-    word, _, rest = line.partition(" ")
-    command = COMMANDS.get(word.lower())
-    if command is None or (rest.strip() and not command.takes):
-        return None
-    return word.lower(), rest.strip()

@@ -28,34 +28,14 @@ from vbraille.sessions.running.device import SessionDevice
 
 if TYPE_CHECKING:
     from vbraille.sessions.running.runner import Runner
-    from vbraille.sessions.session import Conditions
 
 # Sentences begin with a word for their kind. Those of these kinds hold no stimulus and no answer.
 SAFE = frozenset(
-    [
-        "begin",
-        "break",
-        "cue",
-        "device",
-        "display",
-        "ended",
-        "fault",
-        "go",
-        "hand",
-        "last",
-        "late",
-        "missed",
-        "pause",
-        "place",
-        "read",
-        "ready",
-        "repeat",
-        "stop",
-        "turned",
-        "undo",
-        "upright",
-        "warning",
-    ]
+    (
+        *("begin", "break", "cue", "device", "display", "ended", "fault", "go", "hand", "last"),
+        *("late", "missed", "pause", "place", "read", "ready", "repeat", "stop", "turned", "undo"),
+        *("upright", "warning"),
+    )
 )
 # The address of the live view has its token in it.
 NEVER = frozenset(("live view", "record", "resume"))
@@ -70,10 +50,10 @@ class SessionView:
     ----------
     protocol
         Protocol of the session, which may have to be blind.
-    conditions
-        What the session is run with.
     host, port
         Where the pages are served.
+    fast
+        Whether the session runs as fast as the machine can.
     say
         Function that is called with each sentence for the experimenter.
 
@@ -86,12 +66,13 @@ class SessionView:
     def __init__(
         self,
         protocol: Protocol,
-        conditions: Conditions,
         host: str | None,
         port: int | None,
+        *,
+        fast: bool,
         say: Callable[[str], None],
     ) -> None:
-        if protocol.medium != "device" or conditions.fast:
+        if protocol.medium != "device" or fast:
             raise InputError(
                 f"--monitor shows a device in real time; {protocol.name} is on paper, or --fast is "
                 f"given; leave one of them out"

@@ -6,9 +6,12 @@ and takes lines. A command that ends the trial raises `Again`, one that ends the
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from vbraille.braille.spelling import ordinal, say_cells
 from vbraille.devices.events import Knob
@@ -21,7 +24,6 @@ from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Record
 from vbraille.sessions.running.answers import Answers, Asked, Line, NoMoreAnswers, Press, Typed
-from vbraille.sessions.running.commands import COMMANDS, Again, Over, find_command
 from vbraille.sessions.running.device import Happening, SessionDevice
 from vbraille.sessions.running.paper import Paper, Pins
 from vbraille.signals import Suspension
@@ -37,6 +39,46 @@ class Tone(NamedTuple):
 
     frequency_hz: float
     duration_ms: float
+
+
+class Again(Exception):
+    """The open trial is over; whichever trial comes next now is begun."""
+
+
+class Over(Exception):
+    """The run is over.
+
+    Parameters
+    ----------
+    kind
+        Kind of the last event: "stop" if the session can be resumed, or "end".
+    why
+        Why it is over.
+    data
+        What else the event says.
+    """
+
+    def __init__(self, kind: str, why: str, **data: str) -> None:
+        super().__init__(why)
+        self.kind, self.why, self.data = kind, why, data
+
+
+class Command(NamedTuple):
+    """A command.
+
+    Parameters
+    ----------
+    does
+        Function that does it, given the runner and the text after the word.
+    help
+        What it does.
+    takes
+        Whether text may follow the word; a line with such a text is an answer otherwise.
+    """
+
+    does: Callable[[Runner, str], None]
+    help: str
+    takes: bool = False
 
 
 class Timer:
@@ -69,6 +111,8 @@ class Runner:
         Record that events are added to, and how far the session has come.
     answers, device, pins
         Where answers come from, what stimuli are felt on, and the conventional display beside it.
+    commands
+        What may be typed beside answers, by its word.
     real
         Whether the session runs by the clock of the machine.
     say
@@ -103,6 +147,7 @@ class Runner:
         answers: Answers,
         device: SessionDevice | Paper,
         *,
+        commands: Mapping[str, Command],
         pins: Pins | None = None,
         real: bool = True,
         say: Say = _nothing,
@@ -118,7 +163,7 @@ class Runner:
         self.is_shown = self.paused = self.break_wanted = self.is_over = False
         self.waits_for = ""
         self.asked: Asked | None = None
-        self.say = say
+        self.commands, self.say = commands, say
         self._record = record
         self._real = real
         self._play, self._mark, self._look = play, mark, look
@@ -133,7 +178,7 @@ class Runner:
         self._warned = self._told_late = False
         self._doubted = ""  # answer that was typed early, and is asked for once more
         spelled = self._spelled_commands() if answers.typed else set()
-        self._ambiguous = spelled & COMMANDS.keys()
+        self._ambiguous = spelled & commands.keys()
 
     @property
     def now_s(self) -> float:
@@ -205,13 +250,19 @@ class Runner:
 
     def _begin(self, **told: Any) -> None:
         """Wait for the first tick, and write that the run has begun."""
+        self._record.write_ticks()  # those of an engine that died: ticks of each run begin at 0
+        first: list[NDArray[np.void]] = []
         early: list[Happening] = []
         if isinstance(self.device, SessionDevice):
             while self.device.newest is None:
-                early += self.device.poll()[1]
+                ticks, happened = self.device.poll()
+                first.append(ticks)
+                early += happened
         self._began_s, self._before_s = self.now_s, self.progress.t_s
         self._free_s = -1e9
         self.log("run", **told)
+        for ticks in filter(len, first):
+            self._record.add_ticks(ticks)
         for happening in early:
             self._take(happening)
 
@@ -593,7 +644,7 @@ class Runner:
         text = line.text.strip()
         if not text:
             return self._enter(line)
-        found = find_command(text)
+        found = self._find_command(text)
         if found is None:
             return line._replace(text=text)
         word, rest = found
@@ -601,14 +652,21 @@ class Runner:
         if word == "answer" or (awaited and not self.answers.typed and word in self._ambiguous):
             return line._replace(text=rest)
         if awaited and word in self._ambiguous and text.lower() == word:
-            self.say(
-                f"{text} is a command, and a string here: type answer {text}, or command {word}"
-            )
+            said = f"type answer {text}, or command {word}"
+            self.say(f"{text} is a command, and a string here: {said}")
             return None
         if word == "command":
             word, rest = rest.lower(), ""
-        COMMANDS[word].does(self, rest)
+        self.commands[word].does(self, rest)
         return None
+
+    def _find_command(self, line: str) -> tuple[str, str] | None:
+        """Return the command of a line and the text after it; None if the line is no command."""
+        word, _, rest = line.partition(" ")
+        command = self.commands.get(word.lower())
+        if command is None or (rest.strip() and not command.takes):
+            return None
+        return word.lower(), rest.strip()
 
     def _enter(self, line: Line) -> Line | None:
         """Do what Enter does now; return it if something waits for it."""
@@ -669,9 +727,8 @@ class Runner:
             self.say(f"read: type {self.protocol.asks.typed}")
         if kind == "fault":
             repeats = self.protocol.faults.repeat
-            self.say(
-                f"fault: {data['what']}; {self.name} {'is repeated' if repeats else 'goes on'}"
-            )
+            then = "is repeated" if repeats else "goes on"
+            self.say(f"fault: {data['what']}; {self.name} {then}")
             if repeats:
                 raise Again
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.cli.old.build import build_lengths, build_show, chosen_profile
+from vbraille.cli.old.reading.commands.table import bound_for
 from vbraille.cli.old.terminal import print_json, say_line
 from vbraille.config.option import PROFILE
 from vbraille.config.options import held_in
@@ -17,7 +18,6 @@ from vbraille.config.settings import (
     with_profile,
 )
 from vbraille.files import settings_path
-from vbraille.reading.commands.table import bound_for
 from vbraille.render import MODELS
 
 if TYPE_CHECKING:
