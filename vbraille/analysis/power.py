@@ -228,17 +228,12 @@ def _tested(study: Study, values: Floats) -> Iterator[tuple[str, Floats]]:
     """Return the name of each test, and its corrected p in each study."""
     groups = len(study.middles)
     member = np.arange(values.shape[1]) % groups if groups > 1 else None
-    counts = [len(names) for names in study.levels][: len(study.levels) - (groups > 1)]
-    effects = list(designs.effects_of(values, counts, member))
-    pairs = list(designs.pairs_of(values, counts, member))
-    if len(effects) > 1 or len(pairs) > 1:
-        corrected, _ = stats.holm(np.stack([effect.test.p for effect in effects], axis=-1))
-        for n, effect in enumerate(effects):
-            yield " × ".join(study.factors[place] for place in effect.factors), corrected[..., n]
-    corrected, _ = stats.holm(np.stack([pair.test.p for pair in pairs], axis=-1))
-    for n, pair in enumerate(pairs):
-        own = study.levels[pair.factor]
-        yield f"{own[pair.first]} and {own[pair.second]}", corrected[..., n]
+    design = designs.Design(study.factors, study.levels, member)
+    effects = dict(designs.effects_of(values, design))
+    pairs = {f"{one} and {two}": test for _, one, two, test in designs.pairs_of(values, design)}
+    for tests in (effects, pairs) if len(effects) > 1 or len(pairs) > 1 else (pairs,):
+        corrected, _ = stats.holm(np.stack([test.p for test in tests.values()], axis=-1))
+        yield from zip(tests, np.moveaxis(corrected, -1, 0), strict=True)
 
 
 def enough(rows: Sequence[PowerRow]) -> dict[str, int | None]:
