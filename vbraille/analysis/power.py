@@ -129,17 +129,14 @@ def study_of(
         for group in groups
         for name in names
     ]
-    values = dict(effect)
-    if len(groups) > 1 and set(values) == set(names):
-        values = {f"{group}:{name}": values[name] for group in groups for name in names}
-    if set(values) != set(known):
+    if set(effect) != set(known):
         raise InputError(f"--effect needs a value of each of {', '.join(known)}")
-    if scale == SHARES and not all(0 < value < 1 for value in values.values()):
+    if scale == SHARES and not all(0 < value < 1 for value in effect.values()):
         raise InputError("--effect has shares of right answers; each must be above 0 and below 1")
-    if scale == LOGS and min(values.values()) <= 0:
+    if scale == LOGS and min(effect.values()) <= 0:
         raise InputError(f"--effect has a {MEASURES[plan.measure].name} of 0; each must be above 0")
     spread = np.hypot(between, differing)
-    middles = np.array([_middle(scale, values[name], spread) for name in known])
+    middles = np.array([_middle(scale, effect[name], spread) for name in known])
     factors = [factor for factor in protocol.factors if not factor.between]
     levels = [[level.name for level in factor.levels] for factor in factors]
     factors = [factor.name for factor in factors]

@@ -117,8 +117,7 @@ def by_level(rows: DataFrame, level: str) -> DataFrame:
     enough = own[own.index.get_level_values(0).isin(made.index[made["participants"] > 2])]
     shares = enough.groupby(level=0, observed=True)
     ends = {name: stats.mean_share(part) for name, part in shares}
-    made["low"] = [ends[name][0] if name in ends else np.nan for name in made.index]
-    made["high"] = [ends[name][1] if name in ends else np.nan for name in made.index]
+    made = made.join(DataFrame.from_dict(ends, "index", columns=["low", "high"]))
     return made.rename_axis("level").reset_index()
 
 
