@@ -37,8 +37,7 @@ if TYPE_CHECKING:
     from vbraille.engine.clock import Clock
 
 _RATE_S = 3.0
-_ROUND_TRIPS = 200
-_ROUND_TRIPS_S = 3.0
+_ROUND_TRIPS_S = 1.0
 _MOST_ROUND_TRIP_MS = 4.0  # a hand at 70 mm/s goes a tenth of a dot in 4 ms
 _HELD_PERIODS = 3  # poses that come so far apart, and none was lost, were held back
 _MOST_LATE = 0.01  # as a share of all ticks
@@ -614,15 +613,10 @@ class _Check:
         if not device.acknowledges:
             self._say("round trip: not tested, since this device does not say what it has taken")
             return []
-        taken: list[float] = []
-        known = device.acknowledged_ns
-        for _ in self._frames(0.0, 0.0, _ROUND_TRIPS_S):
-            now = device.acknowledged_ns
-            if now is not None and now != known:  # in ns, no two are alike
-                taken.append(now / 1e6)
-            known = now
-            if len(taken) >= _ROUND_TRIPS:
-                break
+        for _ in self._frames(0.0, 0.0, _HOLD_S):  # until one of these is measured
+            pass
+        told = (device.acknowledged_ns for _ in self._frames(0.0, 0.0, _ROUND_TRIPS_S))
+        taken = [now_ns / 1e6 for now_ns in told if now_ns is not None]
         if not taken:
             self._say("round trip: none, for no frame was acknowledged")
             return ["it acknowledges none of the frames that it is sent"]

@@ -167,7 +167,7 @@ class Loop:
             raise self._nowhere()
         if device.write(state.output):
             state.sent(clock.now_ns())
-        else:
+        elif device.taking:  # otherwise the actuators rest, as the next tick finds
             state.unsent()
         done_ns = clock.now_ns()
         # Deadlines that have passed are counted, and never chased.

@@ -128,9 +128,10 @@ class LoopState:
         self._target = np.zeros(display.shape)
         self._at = np.zeros(work.AT)
         self._scratch = scratch_for(display.shape)
-        self._sent_ns = self._numbers["sent_ns"]
-        self._before = self.output.copy()  # the frame before, with the time at which it was sent
-        self._before_ns = now_ns
+        self._sent_ns, self._faded_ns = self._numbers["sent_ns"], self._numbers["faded_ns"]
+        # The frame before, the time at which it was sent, and how far its fade had come.
+        self._before = self.output.copy()
+        self._before_ns = now_ns, 0
         self._program = nothing(display)
         self._gather()
         self._serials = self._exposures = 0
@@ -182,7 +183,7 @@ class LoopState:
     ) -> int:
         """Do ticks and return how many were done; see `vbraille.engine.ticks.advance`."""
         np.copyto(self._before, self.output)
-        self._before_ns = self._sent_ns[0]
+        self._before_ns = self._sent_ns[0], self._faded_ns[0]
         return ticks.advance(*self._arrays, times_ns, poses, rested, taking, *columns, first)
 
     def sent(self, now_ns: int) -> None:
@@ -192,7 +193,7 @@ class LoopState:
     def unsent(self) -> None:
         """Forget the frame last made, which did not go out: the actuators are where they were."""
         np.copyto(self.output, self._before)
-        self._sent_ns[0] = self._before_ns
+        self._sent_ns[0], self._faded_ns[0] = self._before_ns
 
     def hold(self) -> None:
         """Keep the frame last made, to fade from it."""

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from vbraille.braille.geometry import Geometry
-    from vbraille.layout.pages import Line
+    from vbraille.layout import Line
     from vbraille.render.braille.mappings import Mapping
     from vbraille.render.braille.models import Model
     from vbraille.render.braille.style import BrailleStyle, Tuning
@@ -108,6 +108,7 @@ def page(
     *,
     x_mm: float,
     line_index: int = 0,
+    first: int = 1,
 ) -> FigureTable:
     """Dots of some lines where they stand on the surface, and the array upon one of them.
 
@@ -121,6 +122,8 @@ def page(
         Place of the array's centre.
     line_index
         The line that the array is on, from 0.
+    first
+        Number of the first line.
 
     Returns
     -------
@@ -139,7 +142,10 @@ def page(
         raise ValueError(f"line index is {line_index}; there are {len(lines)} lines, from 0")
     style, geometry = model.style, model.style.geometry
     six = not any((line.masks > 0x3F).any() for line in lines)
-    parts = [_dots(line, n * geometry.line_pitch_mm, geometry, six) for n, line in enumerate(lines)]
+    parts = [
+        _dots(line, first + n, n * geometry.line_pitch_mm, geometry, six)
+        for n, line in enumerate(lines)
+    ]
     line, array = lines[line_index], model.display
     row, column = (grid.ravel() for grid in np.indices(array.shape))
     frame = style.render(line.masks, array).path(np.array([x_mm]))[0]
@@ -147,7 +153,7 @@ def page(
     parts.append(
         {
             "what": np.full(row.size, "actuator"),
-            "line": np.full(row.size, line.number),
+            "line": np.full(row.size, first + line_index),
             "x_mm": x_mm - array.span_mm / 2 + array.column_offsets_mm()[column],
             "y_mm": top + array.row_offsets_mm()[row],
             "width_mm": np.full(row.size, array.column_pitch_mm),
@@ -162,13 +168,16 @@ def page(
         for name in names
     }
     title = (
-        f"{model.title}: line {line.number}, left column at {x_mm - array.span_mm / 2:g} mm, "
+        f"{model.title}: line {first + line_index}, "
+        f"left column at {x_mm - array.span_mm / 2:g} mm, "
         f"{style.mapping.name}{tuning_words(style.tuning)}"
     )
     return FigureTable("page", title, columns)
 
 
-def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str, NDArray]:
+def _dots(
+    line: Line, number: int, top_mm: float, geometry: Geometry, six: bool
+) -> dict[str, NDArray]:
     """Tell the places of the dots of a line whose first dot row is at `top_mm`."""
     dots = list(PLACES)[: 6 if six else 8]
     bits = [mask_of([dot]) for dot in dots]
@@ -177,7 +186,7 @@ def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str,
     centre = right * geometry.dot_spacing_mm + geometry.dot_width_mm / 2
     return {
         "what": np.full(cell.size, "dot"),
-        "line": np.full(cell.size, line.number),
+        "line": np.full(cell.size, number),
         "x_mm": cell * geometry.cell_pitch_mm + np.tile(centre, len(line)),
         "y_mm": top_mm + np.tile(dot_row * geometry.row_spacing_mm, len(line)),
         "width_mm": np.full(cell.size, geometry.dot_width_mm),

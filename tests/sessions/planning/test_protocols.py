@@ -70,7 +70,7 @@ REFUSED = {
     "wrong type": (MINI + "repeats = 'one'\n", 7, "repeats"),
     "out of range": (MINI + "[display]\ntexture = 2.5\n", 8, "texture"),
     "no number": (MINI + "[display]\ntexture = nan\n", 8, "texture"),
-    "not of the display": (MINI + "[display]\nmapping = 'alternate'\n", 7, "dot_row"),
+    "not of the display": (MINI + "[display]\nmapping = 'alternate'\n", 8, "dot_row"),
     "spelling": (MINI.replace('"ca"', '"c1"'), 6, "c1"),
     "too long": (MINI.replace('"ca"', f'"{"ca" * 90}"'), 4, "room"),
     "hidden dots": (MINI.replace('"ca"', '"cq"'), 4, "dots"),

@@ -306,13 +306,18 @@ class _typing(ExitStack):  # noqa: N801  (used as a function)
         """Open it."""
         speak: Callable[[str], None] = _say_nothing
         if self._speech:
-            from vbraille.reading.speech import Speech
+            from vbraille.reading.outputs import Behind, Speech
 
-            spoken = Speech()
+            spoken = Behind("speech", Speech, _say)
             self.callback(spoken.close)
             speak = spoken.say
         if not self._typed:
             return None, lambda sentence: (_say(sentence), speak(sentence))
+        if sys.stdin is not None and sys.stdin.isatty():
+            from vbraille.cli.typing import TypedKeys
+
+            keys = self.enter_context(TypedKeys(speak))
+            return keys, keys.say
         from vbraille.sessions.running.answers import Typed
 
         return Typed(), lambda sentence: (_say(sentence), speak(sentence))

@@ -66,14 +66,8 @@ def _read(part: str, table: str) -> str:
 def _translated(text: str, table: str) -> tuple[tuple[int, ...], str]:
     """Return the dot masks of a text, and the first character that the table does not know."""
     # liblouis takes a while to load, and few protocols need it.
-    import numpy as np
+    from vbraille.translate import BrailleTable
 
-    from vbraille.translate.liblouis import BrailleTable
-    from vbraille.translate.source import Text, to_codes
-
-    braille, codes = BrailleTable(table), to_codes(text)
-    cells = braille.translate(
-        Text(codes, np.arange(codes.size), codes.size, frozenset(codes.tolist()))
-    )
-    unknown = next((character for character in text if ord(character) in braille.undefined), "")
-    return tuple(cells.masks.tolist()), unknown
+    braille = BrailleTable(table)
+    masks = tuple(braille.translate(text).masks.tolist())
+    return masks, braille.unknown(text)[:1]

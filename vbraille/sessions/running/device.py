@@ -8,19 +8,18 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from mmap import mmap
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vbraille.devices.events import Button, Event, HandHeld, Knob, Placing, placing_sentence, told
+from vbraille.devices import events
+from vbraille.devices.events import Button, Knob, Placing
 from vbraille.devices.registry import TRAVEL_TOLERANCE_MM, find_driver, open_device
 from vbraille.display import Display
 from vbraille.engine.batch import BatchEngine
-from vbraille.engine.engine import HOME_MM, EndOfLine, Upright, placing_of
+from vbraille.engine.engine import Engine, placing_of
 from vbraille.engine.host import Host
-from vbraille.engine.mailbox import watch
 from vbraille.engine.record import Flag, RingReader
 from vbraille.errors import InputError
 from vbraille.live.messages import LetGo, Point
@@ -28,26 +27,15 @@ from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import Shown, make_shown
 from vbraille.sessions.simulated.skin import FeltFrames
-from vbraille.simulation.specs import device_spec, steering_of
-from vbraille.simulation.steering import BeAt, Pointer, ReadLine, ReadPage
+from vbraille.simulation import steering
+from vbraille.simulation.specs import device_spec
 
 # Makes the engine that drives a device, from the device's spec and the display that is wanted.
-MakeEngine = Callable[[str, Display], Any]
+MakeEngine = Callable[[str, Display], Engine]
 
-UNFELT = {
-    Flag.SILENT: "the device is silent",
-    Flag.MARK: "the device does not know where its carriage is",
-    Flag.STOP: "the device does not know where its carriage is",
-    Flag.HELD: "the array went to rest by itself",
-    Flag.RESTED: "the array went to rest by itself",
-    Flag.TURNED: "the array was turned too far",
-}
-# Plain numbers: numpy, when it reads an enumeration, can swallow an exception of a signal.
-_UNFELT = sum(map(int, UNFELT))
-_AWAY = _UNFELT & ~int(Flag.RESTED)
-_WHY_HELD = int(Flag.HELD | Flag.RESTED | Flag.SILENT)
-_PAUSED, _RESTING, _HELD = int(Flag.PAUSED), int(Flag.RESTING), int(Flag.HELD)
-_WAKING_NS = 100_000_000  # a device that rested with the hand may take so long to take frames again
+# A plain number: numpy, when it reads an enumeration, can swallow an exception of a signal.
+_PAUSED = int(Flag.PAUSED)
+_AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD | Flag.TURNED)
 _TOLD_S = 1.0  # from one fault that is told of a trial to the next
 _SCAN_MM = 10.0  # between the lines that a simulated hand goes along over a picture
 
@@ -134,39 +122,31 @@ class SessionDevice:
         self._real = not fast
         self._keeps, self._by_hand = keeps, by_hand
         self._button = protocol.trial.button
-        self._steering = steering_of(spec)
-        self._pointer = Pointer() if watched is not None and self._steering is not None else None
-        spec = device_spec(spec, hand, seed, self._steering, self._pointer)
+        self._watched = watched
+        self.engine: Engine
+        spec = device_spec(spec, hand, seed)
         if make_engine is not None:
             self.engine = make_engine(spec, self.wanted)
         elif fast:
             self.engine = BatchEngine(open_device(spec, self.wanted), self.wanted.rate_hz)
         else:
             find_driver(spec)
-            channels = [each for each in (self._steering, self._pointer) if each is not None]
-            descriptors = [each.descriptor for each in channels]
-            self.engine = Host(spec, self.wanted, _room(protocol, plan), pass_fds=descriptors)
-            if watched is not None:
-                self.engine.on_share = lambda descriptor, extent: watched(
-                    watch(memoryview(mmap(descriptor, extent.total_bytes)), extent)[1]
-                )
+            self.engine = Host(spec, self.wanted)
         self._felt: list[list[NDArray[np.void]]] = []
         self._shown: Shown | None = None
-        self._first_line = self._trial_line = line + 1
-        self._shown_s = 0.0
-        self._end: EndOfLine | None = None
-        self._touched = False
-        self._watch = FaultWatch()
+        self._first_line = line + 1
+        self._shown_s = self._told_s = 0.0
+        self._touched = self._at_end = self._is_away = False
         self._placing = Placing.DONE
-        self._upright = Upright()
         self._controls: list[Button | Knob] = []
 
     def start(self) -> None:
-        """Open the device, and wait for its first tick; again after the engine died."""
+        """Open the device; again after the engine died."""
         self.engine.start()
         self.engine.paused = True
         self.newest = self._shown = None
-        self._watch = FaultWatch()
+        if self._watched is not None and isinstance(self.engine, Host):
+            self._watched(self.engine.reader())
 
     def close(self) -> None:
         """Bring the array to rest, and close the device."""
@@ -180,16 +160,14 @@ class SessionDevice:
     @property
     def steered(self) -> bool:
         """Tell whether a page of the live view may be the hand."""
-        return self._pointer is not None
+        return self.engine.steered
 
     def lead(self, asked: Point | LetGo) -> None:
         """Hold the simulated hand at a place, or let it go."""
-        if self._pointer is None:
-            return
         if isinstance(asked, Point):
-            self._pointer.hold(BeAt(asked.x_mm, asked.y_mm, asked.theta_rad))
+            self.engine.give(steering.Hold(asked.x_mm, asked.y_mm, asked.theta_rad))
         else:
-            self._pointer.let_go()
+            self.engine.give(steering.LetGo())
 
     @property
     def now_s(self) -> float:
@@ -201,7 +179,8 @@ class SessionDevice:
     @property
     def reached(self) -> bool:
         """True if the hand has been at the end of the stimulus; a picture has none."""
-        return self.read or self._end is None or self._end.reached
+        no_end = self._shown is None or self._shown.end_mm is None
+        return self.read or no_end or self._at_end
 
     def show(self, shown: Shown, *, first: bool = True, turned: bool = False) -> None:
         """Put a stimulus under the hand as the next showing.
@@ -217,24 +196,21 @@ class SessionDevice:
         """
         if first:
             self._felt = []
-            self._watch = FaultWatch()
-            self._trial_line = self.line + 1
+            self._told_s = -_TOLD_S
         self._felt.append([])
         self.line += 1
-        self._first_line, self._shown_s = self.line, self.now_s
-        self._shown = shown
-        self._end = None if shown.end_mm is None else EndOfLine(self.span_mm, shown.end_mm)
-        self._touched = self.read = self.ended = False
-        self.engine.show(shown.program, self.line)
+        if not turned:
+            self._first_line = self.line
+        self._shown, self._shown_s = shown, self.now_s
+        self._touched = self._at_end = self._is_away = self.read = self.ended = False
+        self.engine.show(shown.program, self.line, shown.end_mm)
         self.engine.paused = False
-        if self._steering is None:
-            return
         if shown.canvas_mm is not None:
             width_mm, height_mm = shown.canvas_mm
             lines = max(1, round(height_mm / _SCAN_MM))
-            self._steering.give(ReadPage(lines, height_mm / lines, width_mm))
+            self.engine.give(steering.ReadPage(lines, height_mm / lines, width_mm))
         elif shown.end_mm is not None:
-            self._steering.give(ReadLine(shown.end_mm))
+            self.engine.give(steering.ReadLine(shown.end_mm))
 
     def rest(self) -> None:
         """Bring the array to rest."""
@@ -284,131 +260,80 @@ class SessionDevice:
         DeviceError
             If the device has failed.
         """
-        ticks, events = self.engine.poll(), self.engine.take_events()
-        found = [self._reported(sentence) for sentence in told(events)]
-        found += [
-            Happening("hand", self.now_s, {"held": event.held})
-            for event in events
-            if isinstance(event, HandHeld)
+        ticks, given = self.engine.poll(), self.engine.take_events()
+        found = [
+            Happening("device", self.now_s, {"what": sentence}, sentence)
+            for sentence in (*events.told(given), *self._say_place(ticks))
         ]
         if ticks.size:
-            before = ticks["tick"][0] - 1 if self.newest is None else self.newest["tick"]
-            lost = np.diff(ticks["tick"], prepend=before) != 1
             self.newest = ticks[-1]
-            found += map(self._reported, self._say_place(ticks[-1]))
-            well = ticks["flags"] & _AWAY == 0
-            at_left = ticks["x_mm"] <= HOME_MM - self.span_mm / 2
             anywhere = self._shown is not None and self._shown.canvas_mm is not None
-            self.ready = bool(well[-1] and (anywhere | (at_left & well)).any())
+            works = not int(ticks["flags"][-1]) & _AWAY
+            self.ready = works if anywhere else self.engine.ready
             if self._shown is not None:
-                found += self._follow(ticks, lost, self._shown)
-        return ticks, found + self._pressed(events)
+                found += self._follow(ticks, self._shown)
+        for event in given:
+            found += self._heard(event)
+        return ticks, sorted(found, key=lambda each: each.time_s)
 
-    def _reported(self, sentence: str) -> Happening:
-        return Happening("device", self.now_s, {"what": sentence}, sentence)
-
-    def _say_place(self, tick: np.void) -> Iterable[str]:
-        placing = placing_of(tick)
+    def _say_place(self, ticks: NDArray[np.void]) -> Iterable[str]:
+        """Say what is to be done before the device knows its place."""
+        placing = placing_of(ticks[-1]) if ticks.size else self._placing
         if placing is not self._placing:
             self._placing = placing
-            yield placing_sentence(placing, self.display, press="press Enter")
-        yield from self._upright.watch(tick)
+            yield events.placing_sentence(placing, self.display, press="press Enter")
 
-    def _follow(
-        self, ticks: NDArray[np.void], lost: NDArray[np.bool_], shown: Shown
-    ) -> list[Happening]:
-        """Return contact, end of reading and faults, if they are in these ticks."""
-        felt = ticks["flags"] & _PAUSED == 0
-        of_trial = felt & (ticks["line"] >= self._trial_line)
-        found = self._watch.look(ticks[of_trial], lost[of_trial])
-        ticks = ticks[felt & (ticks["line"] >= self._first_line)]
-        if not ticks.size:
-            return found
-        if self._keeps:
-            self._felt[-1].append(ticks)
-        if not self._touched and shown.edges_mm:
-            on = np.flatnonzero(ticks["x_mm"] + self.span_mm / 2 >= shown.edges_mm[0])
-            if on.size:
-                self._touched = True
-                found.append(_at("contact", ticks[on[0]]))
-        if not self.read and self._by_hand and self._is_back(ticks):
-            self.read = True
-            found.append(_at("read", ticks[-1]))
-        return sorted(found, key=lambda each: each.time_s)
-
-    def _is_back(self, ticks: NDArray[np.void]) -> bool:
-        """Tell whether the hand was at the end and back, or a simulated hand has done its way."""
-        back = self._end is not None and self._end.find(ticks["x_mm"]) is not None
-        newest_ns = int(ticks["device_ns"][-1])
-        return back or (self._steering is not None and self._steering.done_at(newest_ns))
-
-    def _pressed(self, events: Iterable[Event]) -> list[Happening]:
-        """Return the press of the button that ends reading, and keep what else was pressed."""
-        found = []
-        for event in events if self._shown is not None else ():
-            if isinstance(event, Knob):
-                self._controls.append(event)
-            elif isinstance(event, Button) and event.pressed:
-                if event.number != self._button:
-                    self._controls.append(event)
-                elif not self.ended:
-                    at_s = self.now_s if event.at_ns is None else event.at_ns / 1e9
-                    # A press from before the stimulus came is told now, and counts from now on.
-                    at_s = at_s if at_s > self._shown_s else self.now_s
-                    found.append(Happening("ended", at_s, {"by": f"button:{event.number}"}))
-        return found
-
-
-class FaultWatch:
-    """Watches the ticks of a trial for those in which it could not be felt.
-
-    A tick is faulty if the device was silent, did not know its place, had gone to rest by itself or
-    took no frames, if its array was turned too far, or if ticks before it were lost. It is no fault
-    that the array rests while the hand stands still, nor that the device then takes a moment to
-    wake.
-    """
-
-    def __init__(self) -> None:
-        self._away = self._still = False
-        self._waking_ns = -_WAKING_NS
-        self._told_s = -_TOLD_S
-
-    def look(self, ticks: NDArray[np.void], lost: NDArray[np.bool_]) -> list[Happening]:
-        """Return the fault that begins in these ticks, and its end."""
+    def _follow(self, ticks: NDArray[np.void], shown: Shown) -> list[Happening]:
+        """Keep what was felt, and return the first touch if it is in these ticks."""
+        ticks = ticks[(ticks["flags"] & _PAUSED == 0) & (ticks["line"] >= self._first_line)]
         if not ticks.size:
             return []
-        unfelt = (ticks["flags"] & _UNFELT != 0) & ~self._wakes(ticks) | lost
-        at = np.flatnonzero(unfelt)
-        found = []
-        if at.size and not self._away:
-            tick = ticks[at[0]]
-            flags = int(tick["flags"])
-            why = next((words for flag, words in UNFELT.items() if flags & flag), "ticks were lost")
-            fault = _at("fault", tick, what=why)
-            if fault.time_s - self._told_s < _TOLD_S:
-                return []
-            self._away, self._told_s = True, fault.time_s
-            found.append(fault)
-        if self._away and not unfelt[-1]:
-            self._away = False
-            found.append(_at("well", ticks[at[-1] + 1 if at.size else 0]))
-        return found
+        if self._keeps:
+            self._felt[-1].append(ticks)
+        if shown.end_mm is not None:
+            self._at_end = self._at_end or bool((ticks["x_mm"] >= shown.end_mm).any())
+        if self._touched or not shown.edges_mm:
+            return []
+        on = np.flatnonzero(ticks["x_mm"] + self.span_mm / 2 >= shown.edges_mm[0])
+        self._touched = bool(on.size)
+        return [_at("contact", ticks[on[0]]["tick"], ticks[on[0]]["time_ns"])] if on.size else []
 
-    def _wakes(self, ticks: NDArray[np.void]) -> NDArray[np.bool_]:
-        """Mark ticks at which the device still wakes after the hand stood still."""
-        wakes = np.zeros(ticks.size, np.bool_)
-        if not (ticks["flags"] & _HELD).any():
-            self._still = bool(ticks["flags"][-1] & _RESTING)
-            return wakes
-        for n, flags in enumerate(ticks["flags"].tolist()):
-            held = flags & _WHY_HELD == _HELD
-            if held:
-                time_ns = int(ticks["time_ns"][n])
-                if self._still:
-                    self._waking_ns = time_ns
-                wakes[n] = time_ns - self._waking_ns < _WAKING_NS
-            self._still = bool(flags & _RESTING) and not held
-        return wakes
+    def _heard(self, event: events.Event) -> list[Happening]:
+        """Return what an event of the device or the engine is to the session."""
+        if isinstance(event, events.HandHeld):
+            return [Happening("hand", self.now_s, {"held": event.held})]
+        if self._shown is None:
+            return []
+        match event:
+            case events.LineRead() if event.line == self.line and self._may_read:
+                self.read = True
+                return [_at("read", event.tick, event.time_ns)]
+            case events.HandDone() if event.at_ns / 1e9 > self._shown_s and self._may_read:
+                self.read = True
+                return [Happening("read", event.at_ns / 1e9, {})]
+            case events.Unfelt() if not self._is_away:
+                fault = _at("fault", event.tick, event.time_ns, what=event.why)
+                if fault.time_s - self._told_s >= _TOLD_S:
+                    self._is_away, self._told_s = True, fault.time_s
+                    return [fault]
+            case events.FeltAgain() if self._is_away:
+                self._is_away = False
+                return [_at("well", event.tick, event.time_ns)]
+            case Knob():
+                self._controls.append(event)
+            case Button(pressed=True) if event.number != self._button:
+                self._controls.append(event)
+            case Button(pressed=True) if not self.ended:
+                at_s = self.now_s if event.at_ns is None else event.at_ns / 1e9
+                # A press from before the stimulus came is told now, and counts from now on.
+                at_s = at_s if at_s > self._shown_s else self.now_s
+                return [Happening("ended", at_s, {"by": f"button:{event.number}"})]
+        return []
+
+    @property
+    def _may_read(self) -> bool:
+        """Tell whether the hand's way to the end and back ends reading now."""
+        return self._by_hand and not self.read
 
 
 def check_room(protocol: Protocol, plan: Plan, display: Display) -> None:
@@ -436,11 +361,6 @@ def check_room(protocol: Protocol, plan: Plan, display: Display) -> None:
             )
 
 
-def _room(protocol: Protocol, plan: Plan) -> int:
-    """Return the bytes of the largest program of a plan."""
-    return max(shown.program.nbytes for shown in _all_shown(protocol, plan))
-
-
 def _all_shown(protocol: Protocol, plan: Plan) -> Iterable[Shown]:
     """Return the longest line and each picture of a plan, compiled."""
     stimuli = [s for trial in plan.trials for s in trial.stimuli if s.on == "device"]
@@ -451,5 +371,5 @@ def _all_shown(protocol: Protocol, plan: Plan) -> Iterable[Shown]:
     return [make_shown(protocol, s) for s in (*pictures.values(), *longest.values())]
 
 
-def _at(kind: str, tick: np.void, **data: Any) -> Happening:
-    return Happening(kind, int(tick["time_ns"]) / 1e9, {"tick": int(tick["tick"]), **data})
+def _at(kind: str, tick: int, time_ns: int, **data: Any) -> Happening:
+    return Happening(kind, int(time_ns) / 1e9, {"tick": int(tick), **data})

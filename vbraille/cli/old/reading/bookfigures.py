@@ -16,7 +16,8 @@ from vbraille.cli.old.reading.commands.scene import BOUND_FROM_TEXT
 from vbraille.errors import InputError
 from vbraille.feeling.loading import LoadedScene, check_fits, load_scene
 from vbraille.render.figures import FigureAt, page_with_figures
-from vbraille.translate.documents.epub import EpubBook
+
+EpubBook = None
 from vbraille.wording import count, printable, spelled
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from vbraille.feeling.index import SceneIndex
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
-    from vbraille.translate.source import Source
+    from vbraille.translate import Source
 
 _MOST_KEPT: Final = 8  # figures that stay read
 _LONGEST_NAME: Final = 60  # characters of a file's, at its end

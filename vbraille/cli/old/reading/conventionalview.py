@@ -11,7 +11,7 @@ from vbraille.cli.old.reading.keys import Context
 from vbraille.cli.old.reading.outputs import Output
 from vbraille.cli.old.reading.speech import TOGETHER_S
 from vbraille.conventional.brlapi import DisplayAway, DisplayStands, KeyPressed, KeyTyped
-from vbraille.layout.texts import lay_out_text
+from vbraille.layout import lay_out_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from vbraille.cli.old.reading.view import View
     from vbraille.conventional.display import ConventionalDisplay
     from vbraille.devices.events import Event
-    from vbraille.layout.pages import Line
+    from vbraille.layout import Line
     from vbraille.translate import BrailleTable
 
 _ROUTE: Final = "ROUTE"

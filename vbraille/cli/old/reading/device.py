@@ -20,7 +20,7 @@ from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host
 from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError, InputError
-from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
+from vbraille.layout import cells_per_line, lay_out_text
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.simulation.hand import Still
 from vbraille.simulation.specs import (
@@ -31,6 +31,7 @@ from vbraille.simulation.specs import (
     refuse_hand,
     steering_of,
 )
+from vbraille.translate import choose_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
     from vbraille.engine.record import Tally
-    from vbraille.layout.pages import Layout, Line
+    from vbraille.layout import Layout, Line
     from vbraille.render.braille.style import BrailleStyle, StyleChanges
     from vbraille.simulation.steering import Pointer, Steering
 

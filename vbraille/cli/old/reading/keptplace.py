@@ -8,10 +8,11 @@ import msgspec
 
 from vbraille.cli.old.reading.search.questions import FindShare, FindText
 from vbraille.cli.old.reading.search.seeker import find_place
-from vbraille.translate.source import share_before
+
+share_before = None
 
 if TYPE_CHECKING:
-    from vbraille.translate.source import Source
+    from vbraille.translate import Source
 
 
 def storable(text: str) -> str:

@@ -16,13 +16,14 @@ from vbraille.cli.old.reading.keptplace import Bookmark, KeptPlace, anchored, pl
 from vbraille.cli.old.reading.store import Store, usual_path
 from vbraille.config.options import BOOK, held_in
 from vbraille.errors import InputError
-from vbraille.translate.source import Index
+
+Index = None
 from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from vbraille.translate.source import Source
+    from vbraille.translate import Source
 
 
 BookOptions = dict[str, bool | int | str | None]

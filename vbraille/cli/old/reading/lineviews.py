@@ -12,9 +12,9 @@ from vbraille.cli.old.reading.advancing import LineWatch, PageFoot, too_fast_not
 from vbraille.cli.old.reading.viewport import Surface, below_pitches, rows_on
 from vbraille.engine.engine import EndOfLine
 from vbraille.engine.record import Flag
-from vbraille.layout.texts import cells_per_line
+from vbraille.layout import cells_per_line
 from vbraille.simulation.steering import ReadLine, ReadPage
-from vbraille.translate.source import MarkKind
+from vbraille.translate import MarkKind
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.engine.engine import Engine
     from vbraille.feeling.loading import LoadedScene
-    from vbraille.layout.pages import Line
+    from vbraille.layout import Line
     from vbraille.render import BrailleStyle, Model
     from vbraille.render.program import Program
     from vbraille.simulation.steering import Steering

@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     from vbraille.cli.old.reading.viewport import Window
     from vbraille.devices.events import Event
     from vbraille.feeling.loading import LoadedScene
-    from vbraille.layout.pages import Line
+    from vbraille.layout import Line
     from vbraille.live.messages import Turn
     from vbraille.render.braille.mappings import Mapping
     from vbraille.scene.scene import Scene

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from vbraille.cli.old.reading.speech import Speech
     from vbraille.cli.old.reading.view import Cue
     from vbraille.devices.events import Event
-    from vbraille.layout.pages import Layout, Line
+    from vbraille.layout import Layout, Line
     from vbraille.translate import Book
 
 

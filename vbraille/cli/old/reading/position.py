@@ -5,13 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.cli.old.reading.search.structure import Reach, within, words_in
-from vbraille.translate.source import BlockKind, share_before, to_text
+from vbraille.translate import BlockKind
+
+share_before = None
+to_text = None
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.layout.pages import Layout, Line
-    from vbraille.translate.source import Block, Source
+    from vbraille.layout import Layout, Line
+    from vbraille.translate import Block, Source
 
 LINES_PER_PAGE = 25  # of a braille page, where the book has no pages of print
 _SEARCH_S = 0.005

@@ -22,7 +22,7 @@ from vbraille.cli.old.reading.view import Cue, Prompt, View
 from vbraille.cli.old.reading.viewport import LineRange, Surface, Window, around, turned
 from vbraille.engine.engine import Upright
 from vbraille.errors import InputError
-from vbraille.translate.source import BlockKind
+from vbraille.translate import BlockKind
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -38,12 +38,11 @@ if TYPE_CHECKING:
     from vbraille.cli.old.reading.search.questions import Counted, Query
     from vbraille.cli.old.reading.search.seeker import Seeker
     from vbraille.engine.engine import Engine
-    from vbraille.layout.pages import Layout, Line
+    from vbraille.layout import Layout, Line
     from vbraille.render import BrailleStyle, Model
     from vbraille.render.braille.mappings import Mapping
     from vbraille.simulation.steering import Steering
-    from vbraille.translate import Book
-    from vbraille.translate.source import Mark, Source
+    from vbraille.translate import Book, Mark, Source
 
 _NS_PER_S = 1_000_000_000
 _KEPT_EVERY_S = 1.0

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vbraille.layout.pages import Layout
+from vbraille.layout import Layout
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from vbraille.braille.geometry import Geometry
     from vbraille.display import Display
-    from vbraille.layout.pages import Line
+    from vbraille.layout import Line
     from vbraille.render import BrailleStyle
     from vbraille.translate import Book
 

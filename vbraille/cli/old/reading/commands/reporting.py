@@ -8,13 +8,13 @@ from vbraille.braille.cells import dots_of
 from vbraille.cli.old.reading.outputs import Echo
 from vbraille.cli.old.reading.position import block_of, whereabouts
 from vbraille.cli.old.reading.search.structure import within
-from vbraille.translate.documents.markup.tables import BETWEEN
-from vbraille.translate.source import BlockKind
-from vbraille.translate.substitutes import describe
+
+BETWEEN = None
+from vbraille.translate import BlockKind, describe
 
 if TYPE_CHECKING:
     from vbraille.cli.old.reading.reader import Reader
-    from vbraille.layout.pages import Line
+    from vbraille.layout import Line
 
 
 def say_place(reader: Reader) -> None:

@@ -26,14 +26,14 @@ from vbraille.cli.old.reading.search.structure import (
     within,
 )
 from vbraille.errors import InputError
-from vbraille.translate.source import BlockKind, MarkKind
+from vbraille.translate import BlockKind, MarkKind
 from vbraille.wording import count, spelled
 
 if TYPE_CHECKING:
     from vbraille.cli.old.reading.reader import Reader
     from vbraille.cli.old.reading.search.questions import ListedHeading
-    from vbraille.layout.pages import Line
-    from vbraille.translate.source import Block, Mark, Source
+    from vbraille.layout import Line
+    from vbraille.translate import Block, Mark, Source
 
     Numbered = dict[int, ListedHeading]
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import msgspec
 
-from vbraille.translate.source import Index
+Index = None
 
 
 class FindText(msgspec.Struct, frozen=True, tag="text"):

@@ -47,19 +47,18 @@ from vbraille.cli.old.reading.search.structure import (
     list_headings,
 )
 from vbraille.errors import VbrailleError
-from vbraille.layout.blocks import LaidBlock
-from vbraille.layout.pages import LaidRun
-from vbraille.layout.texts import choose_table
-from vbraille.translate import Book, Undefined
-from vbraille.translate.formats import open_source
+
+LaidBlock = None
+LaidRun = None
+from vbraille.translate import Book, Undefined, choose_table, open_source
 from vbraille.workers import Worker, begin
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+    from typing import Any as Carried
 
     from vbraille.cli.old.reading.search.questions import Answer, Query
-    from vbraille.layout.blocks import Carried
-    from vbraille.translate.source import Source
+    from vbraille.translate import Source
     from vbraille.workers import Incoming, Outgoing
 
 Place = FindText | FindKind | FindShare | FindPage | ListHeadings

@@ -8,14 +8,17 @@ from itertools import count
 from typing import TYPE_CHECKING
 
 from vbraille.cli.old.reading.search.questions import ListedHeading
-from vbraille.translate.documents.document import Document
-from vbraille.translate.source import BlockKind, MarkKind, to_text
+
+Document = None
+from vbraille.translate import BlockKind, MarkKind
+
+to_text = None
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from vbraille.cli.old.reading.search.questions import FindKind
-    from vbraille.translate.source import Block, Mark, Source
+    from vbraille.translate import Block, Mark, Source
 
 # Kinds that `FindKind` is asked for beside those of blocks.
 LINK, IMAGE = MarkKind.LINK.value, MarkKind.IMAGE.value

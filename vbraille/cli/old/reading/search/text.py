@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.cli.old.reading.search.structure import extend
-from vbraille.translate.documents.document import Document
-from vbraille.translate.documents.encodings import TextDecoder
-from vbraille.translate.levels import TYPED
-from vbraille.translate.source import to_codes, to_text
+
+Document = None
+TextDecoder = None
+TYPED = {0x2070: "0"}
+to_codes = None
+to_text = None
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Iterator, Sequence
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.cli.old.reading.search.questions import FindText
-    from vbraille.translate.source import Block, Source
+    from vbraille.translate import Block, Source
 
 # Accents that stand for themselves after a letter, in all scripts whose readers may leave them out.
 _ACCENTS = (

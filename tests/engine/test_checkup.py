@@ -1,0 +1,92 @@
+"""The checkup: right devices are fit, and what is wrong is said of the right one."""
+
+import pytest
+
+from tests.engine.wire import wired
+from vbraille.devices.base import Device
+from vbraille.devices.events import Placing
+from vbraille.display import Display, Pose
+from vbraille.engine.checkup import check
+from vbraille.engine.clock import ManualClock
+
+SMALL = Display("small", 1, 2, 1.0, 1.0, levels=256, travel_mm=100.0)
+
+
+def checked(monkeypatch, **how):
+    device, clock, _ = wired(monkeypatch, SMALL, **how)
+    said = []
+    return check(device, clock, said.append, rate_s=0.5), said
+
+
+def test_a_right_device_is_fit(monkeypatch):
+    found, said = checked(monkeypatch)
+    assert found.fit, found.wrong
+    assert said[-1] == "verdict: fit to be read on"
+    assert len(found.trips_ms) == 3
+    assert found.to_json()["fit"]
+
+
+@pytest.mark.parametrize("hold_ms", [8, 16])
+def test_a_line_that_holds_bytes_back_is_blamed_and_not_the_device(monkeypatch, hold_ms):
+    found, _ = checked(monkeypatch, hold_ms=hold_ms)
+    assert not found.fit
+    (wrong,) = found.wrong
+    assert f"{hold_ms} ms" in wrong
+    assert "latency_timer" in wrong
+
+
+@pytest.mark.parametrize(
+    ("changed", "named"),
+    [
+        ({"watchdog_ms": None}, "watchdog"),
+        ({"watchdog_ms": 200}, "watchdog"),
+        ({"acknowledges": False}, "acknowledges"),
+    ],
+)
+def test_what_is_built_wrong_is_named(monkeypatch, changed, named):
+    found, said = checked(monkeypatch, **changed)
+    assert named in "; ".join(found.wrong)
+    assert said[-1].startswith("verdict: not fit")
+
+
+class Driver(Device):
+    """A driver that another package might have."""
+
+    def __init__(self, clock, **wrong):
+        self.display = SMALL
+        self.clock = clock
+        vars(self).update(wrong)
+
+    def read(self):
+        return Pose(self.clock.now_ns(), 0.0)
+
+    def _send(self, _frame):
+        return None
+
+    def _release(self):
+        pass
+
+
+def test_a_driver_that_gives_places_while_it_waits_for_one_is_told_of():
+    clock = ManualClock()
+    found = check(Driver(clock, placing=Placing.STOP), clock, lambda _: None, rate_s=0.2)
+    assert any("waits to be shown" in wrong for wrong in found.wrong)
+
+
+def test_a_driver_that_leaves_a_message_cut_is_told_of():
+    import socket
+
+    here, there = socket.socketpair()
+
+    class Cutting(Driver):
+        sent = 0
+
+        def _send(self, _frame):
+            self.sent += 1
+            here.send(bytes([self.sent % 256]) * 20)
+            there.recv(4096)
+
+    with here, there:
+        clock = ManualClock()
+        found = check(Cutting(clock), clock, lambda _: None, rate_s=0.2)
+        assert any("took a part" in wrong for wrong in found.wrong)
