@@ -10,7 +10,6 @@ from vbraille.reading.exploration import Exploration
 from vbraille.reading.places import Places
 from vbraille.reading.reader import Reader
 from vbraille.render import STRESS2, STRESS2_8X8
-from vbraille.simulation.steering import Pointer
 from vbraille.testing import ManualClock, simulated_device
 from vbraille.translate import Book, BrailleTable, text_source
 
@@ -57,8 +56,7 @@ class Reading:
         self.heard = Heard()
         clock = ManualClock()
         given = simulated_device(model, hand=hand, clock=clock)
-        given.pointer = Pointer()
-        self.device = ReadingDevice(given, model.display, clock=clock)
+        self.device = ReadingDevice(given, model.display, clock=clock, pointed=True)
         self.device.start(replace(model, display=given.display))
         table = BrailleTable("en-ueb-g1.ctb")
         source = text if not isinstance(text, str) else text_source(text)

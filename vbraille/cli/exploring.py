@@ -115,18 +115,13 @@ def equipped(
         refuse_hand(chosen["device"], **{n: chosen[n] for n in ("hand", "seed") if n in asked})
     with ExitStack() as stack:
         keyboard = Keyboard(beside=beside)
-        pointer = None
-        if (chosen["monitor"] or hand == "still") and has_hand(chosen["device"]):
-            from vbraille.simulation.steering import Pointer
-
-            pointer = Pointer()
         device = ReadingDevice(
             chosen["device"],
             replace(wanted, rate_hz=chosen["rate"]),
             often="rate" in asked,
             hand=hand,
             seed=chosen["seed"],
-            pointer=pointer,
+            pointed=(chosen["monitor"] or hand == "still") and has_hand(chosen["device"]),
         )
         outputs: list[Any] = [Console(echo)]
         cues = chosen["cues"] or _cues(keyboard)

@@ -77,6 +77,11 @@ class Engine(Protocol):
         ...
 
     @property
+    def hand_done_ns(self) -> int | None:
+        """When a simulated hand had followed its last order; None while it follows one."""
+        ...
+
+    @property
     def lost(self) -> int:
         """Number of ticks that were never polled."""
         ...
@@ -259,8 +264,8 @@ class Watcher:
         lost = np.diff(ticks["tick"], prepend=before) != 1
         unfelt = (ticks["flags"] & _UNFELT != 0) | lost
         changes = np.flatnonzero(np.diff(unfelt, prepend=self._unfelt))
-        for at in changes[:1].tolist() + changes[-1:].tolist() * (changes.size > 1):
-            tick = ticks[at]
+        for at in sorted({*changes[:1].tolist(), *changes[-1:].tolist()}):
+            tick = ticks[int(at)]
             if unfelt[at]:
                 self._events.append(Unfelt(_why(tick, bool(lost[at])), *_when(tick)))
             else:

@@ -295,7 +295,7 @@ class Host:
     def give(self, order: HandOrder) -> None:
         """Tell a simulated hand what to do; nothing happens where a person moves the device."""
         if self.steered:
-            self._order = order
+            self._order, self.hand_done_ns = order, None
             self._tell(hand=to_json(order).decode())
 
     def open(self) -> Display:

@@ -10,12 +10,12 @@ from vbraille.devices.base import Device, Placing
 from vbraille.devices.events import NotInTime, told
 from vbraille.devices.registry import check_actuators, find_driver
 from vbraille.display import Pose
-from vbraille.engine.engine import Upright, placing_of
+from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host, HostDiedError
 from vbraille.errors import DeviceError
 from vbraille.render import model_of
-from vbraille.simulation.specs import device_spec, has_hand, is_simulated, parse_hand, steering_of
-from vbraille.simulation.steering import BeAt
+from vbraille.simulation.specs import has_hand, is_simulated, parse_hand
+from vbraille.simulation.steering import Hold, LetGo
 
 if TYPE_CHECKING:
     import numpy as np
@@ -27,11 +27,10 @@ if TYPE_CHECKING:
     from vbraille.engine.record import Tally
     from vbraille.render import Model
     from vbraille.render.program import Program
-    from vbraille.simulation.steering import HandOrder, Pointer
+    from vbraille.simulation.steering import HandOrder
 
 HAND = "sweep:60"
 POLL_S = 0.02
-_ROOM = 1 << 22  # bytes of a picture
 _MOST_MM = 0.001
 
 __all__ = ["HAND", "POLL_S", "HostDiedError", "ReadingDevice", "wanted_model"]
@@ -55,8 +54,8 @@ class ReadingDevice:
         Hand that moves a simulated device, and seed of what is random in it.
     clock
         Clock for a device that was given itself; None for the machine's.
-    pointer
-        Where a person may hold the hand of a simulated device; None if no person can.
+    pointed
+        Whether a person may hold the hand of a simulated device.
 
     Raises
     ------
@@ -82,16 +81,17 @@ class ReadingDevice:
         hand: str = HAND,
         seed: int = 1,
         clock: Clock | None = None,
-        pointer: Pointer | None = None,
+        pointed: bool = False,
     ) -> None:
         self.placing = Placing.DONE
         self.starts = 0
-        self.pointer: Pointer | None = None
+        self._opened = False
+        self.pointed, self.held = pointed, False
         self._wanted = wanted
         self._model: Model | None = None
         self._newest: np.void | None = None
-        self._upright = Upright()
-        self._steering = self._given = None
+        self._given: Device | None = None
+        self._steered = False
         self._simulated = False
         self.once = hand.startswith("recorded:")  # it reads no more than it has recorded
         if isinstance(device, Device):
@@ -101,18 +101,11 @@ class ReadingDevice:
         find_driver(device)  # refused before a process is begun
         self._simulated = is_simulated(device)
         # A hand that waits to be moved is right where a person moves the device itself.
-        parse_hand(hand, seed, pointed=pointer is not None or not has_hand(device))
-        self._steering = steering_of(device)
-        self.once = self.once and self._steering is not None
-        if self._steering is not None:
-            self.pointer = pointer
-        channels = [each for each in (self._steering, self.pointer) if each is not None]
-        self.engine = Host(
-            device_spec(device, hand, seed, self._steering, self.pointer),
-            wanted,
-            often=often,
-            pass_fds=[each.descriptor for each in channels],
-        )
+        self._steered = has_hand(device)
+        parse_hand(hand, seed, pointed=pointed or not self._steered)
+        self.once = self.once and self._steered
+        self.pointed = pointed and self._steered
+        self.engine = Host(device, wanted, hand=hand, seed=seed, often=often, fits=False)
 
     def _local_engine(self, device: Device, clock: Clock | None) -> Any:
         """Engine that drives a device in this process."""
@@ -121,8 +114,8 @@ class ReadingDevice:
         from vbraille.engine.loop import LocalEngine
         from vbraille.simulation.recorded import Recorded
 
-        self._steering = getattr(device, "steering", None)
-        self.pointer = getattr(device, "pointer", None)
+        self._steered = hasattr(device, "obey")
+        self.pointed = self.pointed and self._steered
         self.once = isinstance(getattr(device, "hand", None), Recorded)
         rate_hz = min(self._wanted.rate_hz, device.display.rate_hz)
         return LocalEngine(
@@ -147,10 +140,17 @@ class ReadingDevice:
         """
         if self._simulated:
             return self._wanted
-        return self.engine.open() if isinstance(self.engine, Host) else self.engine.display
+        self._open()
+        return self.engine.display
 
-    def start(self, model: Model, room: int = _ROOM) -> None:
-        """Drive the device; pictures have at most so many bytes.
+    def _open(self) -> None:
+        """Start the engine, once."""
+        if not self._opened:
+            self.engine.start()
+            self._opened = True
+
+    def start(self, model: Model) -> None:
+        """Drive the device.
 
         Raises
         ------
@@ -158,9 +158,7 @@ class ReadingDevice:
             If the device cannot be opened.
         """
         self._model = model
-        if isinstance(self.engine, Host):
-            self.engine.fit(model.display, room)
-        self.engine.start()
+        self._open()
         self.starts += 1
 
     def start_again(self) -> None:
@@ -228,12 +226,7 @@ class ReadingDevice:
     @property
     def steered(self) -> bool:
         """Tell whether a simulated hand moves the device."""
-        return self._steering is not None
-
-    @property
-    def held(self) -> bool:
-        """Tell whether a person holds the simulated hand."""
-        return self.pointer is not None and self.pointer.held
+        return self._steered
 
     def put(self, program: Program, number: int) -> None:
         """Put a picture under the hand; what it replaces fades. Ticks have its number."""
@@ -241,29 +234,28 @@ class ReadingDevice:
 
     def give(self, order: HandOrder) -> None:
         """Tell a simulated hand what to do; a person's hand does as it likes."""
-        if self._steering is not None:
-            self._steering.give(order)
+        self.engine.give(order)
 
     def hold(self, x_mm: float, y_mm: float, theta_rad: float) -> None:
         """Hold a simulated hand at a pose, as a person on a page of the live view does."""
-        if self.pointer is not None:
-            self.pointer.hold(BeAt(x_mm, y_mm, theta_rad))
+        if self.pointed:
+            self.held = True
+            self.engine.give(Hold(x_mm, y_mm, theta_rad))
 
     def let_go(self) -> None:
         """Let a hand that is held go on by itself."""
-        if self.pointer is not None:
-            self.pointer.let_go()
+        if self.pointed:
+            self.held = False
+            self.engine.give(LetGo())
 
     def ring(self) -> Any:
         """Reader of the records of ticks, for the live view; another after each start."""
-        return self.engine._ring
+        return self.engine.reader()
 
     def hand_done(self) -> bool:
         """Tell whether a simulated hand has followed its last order; False for a person's."""
-        newest = self._newest
-        if self._steering is None or newest is None:
-            return False
-        return self._steering.done_at(int(newest["device_ns"]))
+        newest, done_ns = self._newest, self.engine.hand_done_ns
+        return newest is not None and done_ns is not None and done_ns <= int(newest["device_ns"])
 
     def set_zero(self) -> None:
         """Say that the carriage is at its stop now, which `placing` may wait for."""
@@ -287,7 +279,6 @@ class ReadingDevice:
         if ticks.size:
             self._newest = ticks[-1]
             self.placing = placing_of(ticks[-1])
-            said.extend(self._upright.watch(ticks[-1]))
         return ticks, events, said
 
     def close(self) -> None:
