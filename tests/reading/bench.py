@@ -45,8 +45,16 @@ class NoKeyboard:
 
     attached, must_stop = True, False
 
+    def catch_interrupts(self, *, caught):
+        pass
+
     def pressed(self, _wait_s):
         return []
+
+
+def book_of(text, width):
+    """A text laid out in lines of so many cells."""
+    return Layout(Book(text_source(text), BrailleTable("en-ueb-g1.ctb")), width)
 
 
 class Reading:
@@ -56,7 +64,7 @@ class Reading:
         self.heard = Heard()
         clock = ManualClock()
         given = simulated_device(model, hand=hand, clock=clock)
-        self.device = ReadingDevice(given, model.display, clock=clock, pointed=True)
+        self.device = ReadingDevice(given, model.display, clock=clock)
         self.device.start(replace(model, display=given.display))
         table = BrailleTable("en-ueb-g1.ctb")
         source = text if not isinstance(text, str) else text_source(text)

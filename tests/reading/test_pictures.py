@@ -25,7 +25,7 @@ class Felt:
     def __init__(self, make, model=TWO):
         clock = ManualClock()
         given = simulated_device(model, hand="sweep:1000", clock=clock)
-        self.device = ReadingDevice(given, model.display, clock=clock, pointed=True)
+        self.device = ReadingDevice(given, model.display, clock=clock)
         self.device.start(replace(model, display=given.display))
         self.heard = Heard()
         self.what = make(self.device, [self.heard])

@@ -77,11 +77,6 @@ class Engine(Protocol):
         ...
 
     @property
-    def hand_done_ns(self) -> int | None:
-        """When a simulated hand had followed its last order; None while it follows one."""
-        ...
-
-    @property
     def lost(self) -> int:
         """Number of ticks that were never polled."""
         ...
@@ -286,11 +281,3 @@ def _why(tick: np.void, lost: bool) -> str:
     flags = int(tick["flags"])
     said = (why for flag, why in _WHY.items() if flags & int(flag))
     return "ticks were lost" if lost else next(said, "the array is at rest")
-
-
-class Upright:
-    """Which way the array is turned, as readings and sessions watched it; `Turned` tells it."""
-
-    def watch(self, _tick: np.void) -> list[str]:
-        """Give nothing."""
-        return []

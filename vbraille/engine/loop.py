@@ -313,11 +313,6 @@ class LocalEngine(Loop):
         return self.watcher.ready
 
     @property
-    def hand_done_ns(self) -> int | None:
-        """When a simulated hand had followed its last order; None while it follows one."""
-        return getattr(self.device, "hand_done_ns", None)
-
-    @property
     def steered(self) -> bool:
         """Tell whether a simulated hand moves the device."""
         return hasattr(self.device, "obey")
