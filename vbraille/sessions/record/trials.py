@@ -30,6 +30,15 @@ class Column(NamedTuple):
     unit: str = ""
     values: str = ""
 
+    def to_bids(self) -> dict[str, Any]:
+        """Return it as BIDS has it in the JSON beside a table."""
+        told: dict[str, Any] = {"Description": self.meaning}
+        if self.unit:
+            told["Units"] = self.unit
+        if self.values:
+            told["Levels"] = {value: value for value in self.values.split(", ")}
+        return told
+
 
 with Path(__file__).with_name("columns.csv").open(encoding="utf-8", newline="") as _file:
     _COLUMNS = list(csv.reader(_file))[1:]
