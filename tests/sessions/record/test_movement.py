@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from vbraille.sessions.record.movement import duration, pauses, strokes
+from vbraille.sessions.record.movement import duration, pauses
 from vbraille.sessions.record.ticks import TICK
 
-FIRST_MM, LAST_MM = 10.0, 60.0
+FIRST_MM = 10.0
 
 
 def moved(*places_mm, speed_mm_s=50.0):
@@ -20,23 +20,6 @@ def moved(*places_mm, speed_mm_s=50.0):
     ticks["x_mm"], ticks["time_ns"] = x_mm, np.arange(x_mm.size) * 10**6
     ticks["vx_mm_s"] = np.gradient(x_mm) * 1000
     return ticks
-
-
-@pytest.mark.parametrize(
-    ("places", "pattern"),
-    [
-        ((0, 65, 0), "one pass"),
-        ((0, 65, 0, 65, 0), "two passes"),
-        ((0, 65, 5, 65, 5, 65, 0), "more passes"),
-        ((0, 65, 40, 65, 0), "re-scan"),
-        ((0, 30, 0), "in part"),
-    ],
-)
-def test_a_way_has_a_pattern(places, pattern):
-    row = strokes(moved(*places), FIRST_MM, LAST_MM)
-    assert row["pattern"] == pattern
-    assert row["speed_right_mm_s"] == pytest.approx(50, rel=0.02)
-    assert row["speed_left_mm_s"] == pytest.approx(50, rel=0.02)
 
 
 def test_reading_lasts_from_the_first_touch_to_the_last():

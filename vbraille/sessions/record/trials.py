@@ -16,10 +16,11 @@ from vbraille.sessions.planning.loading import parse_protocol
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import edges_mm
 from vbraille.sessions.planning.trial import Stimulus, Trial
-from vbraille.sessions.record.movement import duration, pauses, strokes
+from vbraille.sessions.record.movement import duration, pauses
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Content, Event, reading
 from vbraille.sessions.record.record import read as read_record
+from vbraille.sessions.record.strokes import describe
 from vbraille.sessions.record.ticks import read_ticks
 
 
@@ -253,16 +254,20 @@ class _Table:
         edges = self._edges_mm(first)
         if not edges:
             return {}
-        ticks = read_ticks(db, cues[-1].data["line"], cues[-1].data["line"])
+        line = cues[-1].data["line"]
+        ticks = read_ticks(db, line, line, ("line", "time_ns", "x_mm"))
         found = duration(ticks, edges[0], self._protocol.wanted.span_mm)
         if found is None:
             return {}
         row: dict[str, Any] = {"returned": int(found.returned)}
         if self._progress.answers[trial.key].data.get("early"):
             return row
-        dot_mm = self._protocol.style(first.look).geometry.dot_width_mm
         row["duration_s"] = round(found.seconds, 6)
-        return row | strokes(ticks[found.ticks], edges[0], edges[-1] + dot_mm)
+        if paused_s:
+            return row
+        own = ticks[found.ticks]
+        last_mm = edges[-1] + self._protocol.style(first.look).geometry.dot_width_mm
+        return row | describe(own["x_mm"], own["time_ns"], edges[0], last_mm)
 
     def _edges_mm(self, stimulus: Stimulus) -> tuple[float, ...]:
         masks = stimulus.masks(self._protocol.display.lead_cells)
