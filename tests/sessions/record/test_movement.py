@@ -1,5 +1,7 @@
 """How the hand moved over a line: ways that are drawn here, and what is said of them."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -12,7 +14,7 @@ FIRST_MM = 10.0
 def moved(*places_mm, speed_mm_s=50.0):
     """Ticks of a hand that goes from place to place, 1,000 a second."""
     ways = [np.arange(0)]
-    for one, other in zip(places_mm, places_mm[1:], strict=False):
+    for one, other in pairwise(places_mm):
         count = max(int(abs(other - one) / speed_mm_s * 1000), 500 if one == other else 1)
         ways.append(np.linspace(one, other, count, endpoint=False))
     x_mm = np.concatenate([*ways, [places_mm[-1]]])
