@@ -5,6 +5,7 @@ import textwrap
 
 import pytest
 from hypothesis import given
+from vbraille.tomlfile import TomlFile
 
 from tests.render.scene.scenes import scenes
 from tests.tiers import examples
@@ -15,7 +16,6 @@ from vbraille.scene.reading import open_scene
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke, VertexMarkers, Vibration
 from vbraille.scene.textures import LinearGrating, Peak, Uniform
-from vbraille.tomlfile import TomlFile
 
 CANVAS = Canvas(width_mm=100, height_mm=80)
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from vbraille.tomlfile import TomlFile
 
 from tests.scene.svg.plans import element_of, warned
 from tests.tiers import examples
@@ -19,7 +20,6 @@ from vbraille.scene.svg.drawing import read_svg
 from vbraille.scene.svg.looks import BY_HUE, hue_of
 from vbraille.scene.svg.values import color_of
 from vbraille.scene.traversal import each
-from vbraille.tomlfile import TomlFile
 
 FILES = Path(__file__).parent / "files"
 
