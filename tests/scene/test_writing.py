@@ -5,7 +5,7 @@ import textwrap
 
 import pytest
 from hypothesis import given
-from vbraille.tomlfile import TomlFile
+from vbraille.toml import TomlFile
 
 from tests.render.scene.scenes import scenes
 from tests.tiers import examples

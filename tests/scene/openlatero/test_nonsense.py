@@ -3,7 +3,7 @@
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-from vbraille.tomlfile import TomlFile
+from vbraille.toml import TomlFile
 
 from tests.render.scene.twin import deflections
 from tests.scene.openlatero.files import scene

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from vbraille.tomlfile import TomlFile
+from vbraille.toml import TomlFile
 
 from tests.scene.svg.plans import element_of, warned
 from tests.tiers import examples
