@@ -5,7 +5,6 @@ import textwrap
 
 import pytest
 from hypothesis import given
-from vbraille.toml import TomlFile
 
 from tests.render.scene.scenes import scenes
 from tests.tiers import examples
@@ -16,6 +15,7 @@ from vbraille.scene.reading import open_scene
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke, VertexMarkers, Vibration
 from vbraille.scene.textures import LinearGrating, Peak, Uniform
+from vbraille.toml import TomlFile
 
 CANVAS = Canvas(width_mm=100, height_mm=80)
 

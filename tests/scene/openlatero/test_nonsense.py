@@ -3,7 +3,6 @@
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-from vbraille.toml import TomlFile
 
 from tests.render.scene.twin import deflections
 from tests.scene.openlatero.files import scene
@@ -14,6 +13,7 @@ from vbraille.scene.openlatero import read_gen
 from vbraille.scene.openlatero.reading import PATTERNS, TEXTURES
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Scene
+from vbraille.toml import TomlFile
 
 TEXTS = (
     "", "0", "-1", "0.01", "1", "2.5", "8", "30", "400", "1e9", "nan", "inf", "12,5", "1,5,2,5",

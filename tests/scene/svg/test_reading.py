@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from vbraille.toml import TomlFile
 
 from tests.scene.svg.plans import element_of, warned
 from tests.tiers import examples
@@ -20,6 +19,7 @@ from vbraille.scene.svg.drawing import read_svg
 from vbraille.scene.svg.looks import BY_HUE, hue_of
 from vbraille.scene.svg.values import color_of
 from vbraille.scene.traversal import each
+from vbraille.toml import TomlFile
 
 FILES = Path(__file__).parent / "files"
 
