@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from vbraille.errors import VbrailleError as VbrailleError
     from vbraille.layout.texts import translate_text as translate_text
     from vbraille.pictures.framed import open_framed as open_scene
-    from vbraille.reading.device import OpenDevice as OpenDevice
-    from vbraille.reading.device import open_to_read as open  # noqa: A004
+    from vbraille.reading.opening import OpenDevice as OpenDevice
+    from vbraille.reading.opening import open_to_read as open  # noqa: A004
     from vbraille.reading.frames import RenderedLine as RenderedLine
     from vbraille.reading.frames import RenderedPage as RenderedPage
     from vbraille.reading.frames import render_page as render_page
@@ -60,7 +60,7 @@ _PLACES = {
     "LATERO": "vbraille.render.braille.models",
     "MAPPINGS": "vbraille.render.braille.mappings",
     "Model": "vbraille.render.braille.models",
-    "OpenDevice": "vbraille.reading.device",
+    "OpenDevice": "vbraille.reading.opening",
     "Pose": "vbraille.display",
     "Recording": "vbraille.recording",
     "RenderedLine": "vbraille.reading.frames",
@@ -75,7 +75,7 @@ _PLACES = {
     "VBD": "vbraille.render.braille.models",
     "VbrailleError": "vbraille.errors",
     "analyse": "vbraille.analysis",
-    "open": "vbraille.reading.device:open_to_read",
+    "open": "vbraille.reading.opening:open_to_read",
     "open_scene": "vbraille.pictures.framed:open_framed",
     "render_page": "vbraille.reading.frames",
     "render_text": "vbraille.reading.frames",

@@ -1,6 +1,1 @@
-"""Reading: a text line after line, or a picture, and the commands in between."""
-
-from vbraille.reading.commands.table import COMMANDS
-from vbraille.reading.keys import Command, Context
-
-__all__ = ["COMMANDS", "Command", "Context"]
+"""Reading a book and feeling a picture: one loop, one table of commands, outputs."""

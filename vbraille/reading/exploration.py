@@ -1,146 +1,233 @@
-"""An exploration: a book or a picture under a hand, and the one loop that goes on until it is done.
-
-Inputs are the keys of a terminal, the device's buttons and knobs, and what a conventional display
-and pages of the live view ask for; all call commands of one table.
-"""
+"""The one loop: keys, what they change, and what the device has to tell, until there is no more."""
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING
 
-from vbraille.devices.events import Placing, placing_sentence
-from vbraille.engine.host import HostDiedError
-from vbraille.errors import InputError
-from vbraille.reading.keyboard import POLL_S, STOPPED
-from vbraille.reading.keys import Context, spoken
+from vbraille.devices.base import Placing
+from vbraille.devices.events import Button, Knob, placing_sentence
+from vbraille.errors import DeviceError, InputError
+from vbraille.reading.commands import Command, bindings, spoken
+from vbraille.reading.device import POLL_S, HostDiedError
+from vbraille.reading.explored import Explored
 
 if TYPE_CHECKING:
-    from vbraille.reading.device import OpenDevice
-    from vbraille.reading.keyboard import Keyboard
-    from vbraille.reading.outputs import Output
-    from vbraille.reading.view import View
+    from collections.abc import Mapping, Sequence
+    from typing import Protocol
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from vbraille.reading.device import ReadingDevice
+    from vbraille.reading.keys import Keyboard
+    from vbraille.reading.outputs import Console
+
+    class Source(Protocol):
+        """Where keys come from, beside the terminal."""
+
+        def pressed(self, what: Explored) -> list[str]:
+            """Keys since the last call, as names of `vbraille.reading.commands.bindings`."""
+            ...
+
+
+_SETTLED_S = 0.3  # a knob that no hand has turned for so long is left where it stands
+_STOPPED = "stopped: the array rests; fg goes on"
 
 
 class Exploration:
-    """A view under a hand, told by keys what to do until there is no more to do.
-
-    The process can be stopped meanwhile, and a host that dies can be begun again.
+    """A book, a picture, a game or a tuning course under a hand, and a person at keys.
 
     Parameters
     ----------
-    view
-        Text or picture that is explored, which is under the hand already.
+    what
+        What is explored.
     device
-        Device that it is explored on.
-    keys
-        Keyboard, whose keys are taken.
-    outputs
-        Console, speech, cues, and whatever else shows what is under the hand.
+        The device that it is shown on.
+    keyboard
+        Keys of the terminal.
+    console
+        Where a line that is typed is shown.
+    sources
+        Where else keys come from, such as a conventional display.
+    own
+        Names of commands by keys of one's own, for a book.
     """
 
-    def __init__(self, view: View, device: OpenDevice, keys: Keyboard, outputs: Output) -> None:
-        self.view, self._device, self._keys, self._outputs = view, device, keys, outputs
+    def __init__(
+        self,
+        what: Explored,
+        device: ReadingDevice,
+        keyboard: Keyboard,
+        console: Console,
+        sources: Sequence[Source] = (),
+        own: Mapping[str, str] | None = None,
+    ) -> None:
+        self._outer, self._device = what, device
+        self._keyboard, self._console, self._sources = keyboard, console, sources
+        self._own = own or {}
+        self._bound: tuple[object, dict[str, Command]] = None, {}
+        self._turned: dict[str, tuple[float, str]] = {}  # knobs whose value is not said yet
+        self._dead = False
 
     def run(self) -> None:
-        """Go on until there is no more to do.
+        """Go on until the book is read, or a person ends it.
 
         Raises
         ------
-        HostDiedError
-            If the host is gone, and no user is there to begin another.
         VbrailleError
-            If something else goes wrong with the device.
+            If the device is gone, and no person can help.
         """
-        self._outputs.attend()
-        if self._keys.attached:
-            self.view.say(f"{self.view.key('HELP', 'h')} says the keys")
-        while not self.view.done:
-            self._step()
-        self._outputs.attend()
+        attended = self._keyboard.attached
+        while not self._outer.done and self._keyboard.attached is attended:
+            try:
+                self.step()
+            except KeyboardInterrupt:
+                if self.what.prompt is None:
+                    raise
+                self.press("escape")
 
-    def _step(self) -> None:
-        """Do what keys ask for, show that at once, then see what the device has to tell."""
-        device, outputs = self._device, self._outputs
-        for key in self._pressed():
-            self._set_context()
-            self.view.listener().press(key)
-        self._set_context()
-        outputs.attend()
-        placing = device.placing
+    @property
+    def what(self) -> Explored:
+        """What keys are for: what is explored, or what is felt in its place."""
+        return self._outer.inside or self._outer
+
+    def step(self) -> None:
+        """Do what keys ask for, then take what the device has to tell."""
+        for key in self._keyboard.pressed(POLL_S):
+            self.press(key)
+        for source in self._sources:
+            for key in source.pressed(self.what):
+                self.press(key)
+        if self._keyboard.must_stop:
+            self._stop()
+        if not self._dead:
+            self._listen()
+        self.what.idle(time.monotonic())
+        if self._outer.inside is not None and self._outer.inside.done:
+            self._outer.come_back()
+
+    def press(self, key: str) -> None:
+        """Do what a key asks for."""
+        what = self.what
+        if self._dead:
+            self._revive(key)
+        elif self._device.placing is Placing.STOP and key != "q":
+            self._device.set_zero()
+        elif what.prompt is not None:
+            self._type(what, key)
+        elif key.startswith("paste:"):
+            what.say("pasted text is ignored here")
+        elif key.startswith(("route:", "place:")):
+            what.route(int(key.partition(":")[2]))
+        else:
+            self._call(what, key)
+
+    def _call(self, what: Explored, key: str) -> None:
+        if self._bound[0] is not what:
+            self._bound = what, bindings(what.key_set, what.where, self._own)
+        if key.startswith("command:"):
+            called = next(c for c in self._bound[1].values() if c.name == key.partition(":")[2])
+        else:
+            called = self._bound[1].get(key)
+        if called is None:
+            what.say(f"{spoken(key)}: no command")
+        elif what.learning and called.name not in ("learn", "quit"):
+            what.say(f"{spoken(key)}: {called.help}")
+        else:
+            called.run(what)
+
+    def _type(self, what: Explored, key: str) -> None:
+        """Give a key to the question that is being answered."""
+        if ":" in key and not key.startswith("paste:") and len(key) > 1:
+            what.say("finish typing first")
+            return
+        prompt, what.prompt = what.prompt, None  # an answer may ask the next question
+        assert prompt is not None, "a question is asked"
+        if key == "enter":
+            self._console.end_typing()
         try:
-            events = device.poll(0.0)
-        except HostDiedError as fault:
-            self._start_again(fault)
+            said = prompt.press(key)
+        except KeyError:
+            what.say("cancelled")
             return
-        if device.placing is not placing:
-            self._say_place()
-        outputs.attend(events)
-
-    def _pressed(self) -> list[str]:
-        """Take the keys typed; before that, the process stops for a while if it is told to."""
-        if self._keys.must_stop:
-            self._suspend()
-        attached = self._keys.attached
-        keys = self._keys.pressed(POLL_S)
-        if attached and not self._keys.attached:  # whatever its keys meant
-            self.view.quit()
-            return []
-        return keys
-
-    def _suspend(self) -> None:
-        """Stop, with the array at rest, until the shell says to go on."""
-        device = self._device
-        paused, device.paused = device.paused, True
-        self.view.say(STOPPED)
-        self._outputs.stand("stopped: the array rests")
-        self._outputs.rest()
-        self._keys.stop()
-        device.paused = paused
-        self.view.say("paused" if paused else self.view.doing)
-        self._outputs.stand("")
-
-    def _set_context(self) -> None:
-        """Have keys mean that the carriage is at its place while the device waits for that."""
-        view = self.view.listener()
-        if self._device.placing is Placing.STOP:
-            view.context = Context.PLACING
-        elif view.context is Context.PLACING:
-            view.context = Context.READING
-
-    def _say_place(self) -> None:
-        if self._device.placing is Placing.STOP and not self._keys.attached:
-            raise InputError(
-                "the device must be shown its place, such as its left stop; "
-                f"{self.view.does} at a terminal"
-            )
-        self.view.say(placing_sentence(self._device.placing, self._device.engine.display))
-
-    def _start_again(self, fault: HostDiedError) -> None:
-        """Say that the host is gone, and begin another when asked to.
-
-        Raises
-        ------
-        HostDiedError
-            If there is no user to ask.
-        """
-        view = self.view
-        self._outputs.stand(f"fault: {fault}")
-        if not self._keys.attached:
-            raise fault
-        again, stop = view.key("PAUSE", " "), view.key("QUIT", "q")
-        view.say(f"fault: {fault}; {again} begins again, {stop} stops")
-        while not view.done:
-            keys = [spoken(key) for key in self._pressed()]
-            self._outputs.attend()
-            if stop in keys:
-                view.quit()
-            elif again in keys:
-                break
-            elif keys:
-                said = f"{again} begins again, {stop} stops"
-                view.say(f"fault: nothing drives the device; {said}")
-        if view.done:
+        if said is None:
             return
-        self._device.start_again()
-        view.say(view.doing)
-        self._outputs.stand("")
+        what.prompt = prompt
+        self._console.typing(prompt.question, prompt.text)
+        for output in what.outputs:
+            if said and output is not self._console:
+                output.say(said)
+
+    def _stop(self) -> None:
+        """Stop as the shell asks, with the array at rest meanwhile."""
+        paused = self._device.paused
+        self._device.paused = True
+        self._outer.say(_STOPPED)
+        for source in self._sources:
+            if hasattr(source, "rest"):
+                source.rest()
+        self._keyboard.stop()
+        self._device.paused = paused
+        self._outer.say("paused" if paused else self._outer.doing)
+
+    def _revive(self, key: str) -> None:
+        """Start the process that drives the device again, or quit."""
+        if key == "q":
+            self._outer.done = True
+        elif key == " ":
+            self._device.start_again()
+            self._dead = False
+            self.what.steer()
+            self._outer.say(self._outer.doing)
+        else:
+            self._outer.say("the array rests; space begins again, q stops")
+
+    def _listen(self) -> None:
+        """Take what the device has to tell."""
+        what, device = self.what, self._device
+        before = device.placing
+        try:
+            ticks, events, sentences = device.take()
+        except HostDiedError as error:
+            if not self._keyboard.attached:
+                raise
+            self._dead = True
+            what.say(f"{error}; the array rests; space begins again, q stops")
+            return
+        for sentence in sentences:
+            what.say(sentence)
+        if device.placing is not before:
+            if device.placing is Placing.STOP and not self._keyboard.attached:
+                raise InputError("the device must be shown its place; read at a terminal")
+            what.say(placing_sentence(device.placing, device.display))
+        for event in events:
+            if isinstance(event, Button) and event.pressed:
+                self.press(f"button:{event.number}")
+            elif isinstance(event, Knob):
+                self._turn(what, f"knob:{event.number}", event.value)
+        self._settle(what)
+        if ticks.size:
+            what.follow(ticks)
+            self._help(what, ticks)
+
+    def _help(self, what: Explored, ticks: NDArray[np.void]) -> None:
+        """End a reading without a person that would never end."""
+        if what.hopeless is not None and not self._keyboard.attached:
+            raise DeviceError(what.hopeless)
+
+    def _turn(self, what: Explored, knob: str, share: float) -> None:
+        """Show the value of a knob that is being turned at once; it is said once it is left."""
+        name = self._own.get(knob, "")
+        if what.learning:
+            said = f"{spoken(knob)}: {name or 'nothing'}"
+        else:
+            said = what.turn(name, round(share, 2)) if name else ""
+        if said:
+            self._turned[knob] = time.monotonic() + _SETTLED_S, said
+
+    def _settle(self, what: Explored) -> None:
+        for knob, (due_s, said) in tuple(self._turned.items()):
+            if time.monotonic() >= due_s:
+                del self._turned[knob]
+                what.say(said)

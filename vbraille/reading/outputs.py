@@ -1,283 +1,273 @@
-"""Outputs of an exploration: observers of one interface, by which it is heard and seen."""
+"""Outputs: where sentences are said, and where what is under the hand is shown.
+
+An output has two methods, ``say`` and ``show``. One that may have to wait works in a thread, behind
+`Behind`, and never holds the loop.
+"""
 
 from __future__ import annotations
 
-import os
-import time
-from enum import Enum, StrEnum
-from typing import TYPE_CHECKING, Final, Self
+import importlib
+import queue
+import sys
+import threading
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, Any, Protocol
 
-from vbraille.reading.position import place_sentence
-from vbraille.reading.view import SoundFile
-from vbraille.workers import Worker
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable
     from pathlib import Path
 
-    from vbraille.devices.events import Event
-    from vbraille.layout.pages import Layout, Line
-    from vbraille.reading.speech import Speech
-    from vbraille.reading.view import Cue
-    from vbraille.translate import Book
+    from vbraille.reading.explored import Explored
+
+ECHOES = ("none", "text", "cells", "both")
+_CELLS = "cells: "  # begins a sentence of braille signs, which no voice can say
 
 
-class Echo(StrEnum):
-    """Kinds of echo: the parts of each line that are said."""
+class Cue(Enum):
+    """A signal that comes with a sentence."""
 
     NONE = "none"
-    TEXT = "text"
-    CELLS = "cells"
-    BOTH = "both"
-
-    def sentences(self, line: Line, layout: Layout) -> Iterator[str]:
-        """Give the sentences that are said of a line of a layout, in order."""
-        if self is Echo.NONE:
-            return
-        yield place_sentence(layout, line)
-        yield from self.words(line)
-
-    def words(self, line: Line) -> Iterator[str]:
-        """Give the sentences on what is printed of a line."""
-        if self in (Echo.CELLS, Echo.BOTH):
-            yield f"cells: {line.printed.to_unicode()}"
-        if self in (Echo.TEXT, Echo.BOTH):
-            yield f"text: {line.text.strip()}"
+    LINE_END = "end of the line"
+    PAGE_END = "end of the page"
+    LIMIT = "limit"
+    NOT_FOUND = "not found"
 
 
-_USUAL_LANGUAGE: Final = "en"
-_CELLS: Final = "cells: "  # begins a sentence of braille signs, which no voice can say
-_APART_S: Final = 0.1  # from one cue to the next
-_CUEING: Final = "vbraille.reading.cueing"
+@dataclass(frozen=True, slots=True)
+class _Tone:
+    frequency_hz: float
+    duration_ms: float = 60.0
 
 
-def language_of(book: Book, asked: str | None = None) -> str:
-    """Choose the language in which a book is spoken, as a tag.
-
-    Parameters
-    ----------
-    book
-        The book, whose language, or whose table's, is spoken unless another was asked for.
-    asked
-        Language that was asked for; None if none was.
-    """
-    info = None if book.table is None else book.table.info
-    table = "" if info is None else info.language
-    return asked or book.source.language or table or _USUAL_LANGUAGE
+# Tones of each cue; another number of tones each, for those who hear no pitch.
+MELODIES = {
+    Cue.LINE_END: (_Tone(880),),
+    Cue.PAGE_END: (_Tone(660), _Tone(880)),
+    Cue.LIMIT: (_Tone(220), _Tone(220), _Tone(220)),
+    Cue.NOT_FOUND: (_Tone(440), _Tone(370), _Tone(311), _Tone(262, 120)),
+}
 
 
-class Output:
-    """An observer of an exploration; what it leaves alone does nothing."""
+class Output(Protocol):
+    """Where a reading is heard, seen or felt."""
 
-    def say(self, sentence: str) -> None:
-        """Take a sentence that is said."""
+    def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:
+        """Say a sentence, with a cue or without; an empty one is a cue alone."""
 
-    def cue(self, cue: Cue) -> None:
-        """Take a short signal, beside the sentence that says the same."""
-
-    def sound(self, path: Path) -> None:
-        """Take a file of sound that is to be played."""
-
-    def attend(self, events: Sequence[Event] = ()) -> None:
-        """Look at what is under the hand, and at events of the device; called all the time."""
-
-    def stand(self, why: str) -> None:
-        """Take note that nothing is explored, by a sentence; empty if it is again."""
-
-    def rest(self) -> None:
-        """Show nothing until `attend` is called, since the program is stopped."""
+    def show(self, what: Explored) -> None:
+        """Show what has come under the hand."""
 
     def close(self) -> None:
-        """End; further calls do nothing."""
+        """End; what was said before is finished."""
 
 
-class Outputs(Output):
-    """All outputs of an exploration. A context manager.
+class Console:
+    """Sentences on standard output, and lines if they are to be echoed.
 
     Parameters
     ----------
-    outputs
-        The first of them; others may be added.
+    echo
+        What is printed of each line, one of `ECHOES`.
     """
 
-    def __init__(self, *outputs: Output) -> None:
-        self._outputs = list(outputs)
+    def __init__(self, echo: str = "none") -> None:
+        self._echo = echo
+        self._clear = "\r\x1b[K" if sys.stdout.isatty() else ""
 
-    def add(self, output: Output) -> None:
-        """Have another output from now on."""
-        self._outputs.append(output)
+    def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:  # noqa: ARG002 - cues are heard
+        """Print a sentence, control characters by their names."""
+        if sentence:
+            print(f"{self._clear}{printable(sentence)}", flush=True)
 
-    def say(self, sentence: str) -> None:
-        """Have a sentence said by each."""
-        for output in self._outputs:
-            output.say(sentence)
+    def show(self, what: Explored) -> None:
+        """Print a line, as the echo says."""
+        for sentence in what.echoed(self._echo):
+            self.say(sentence)
 
-    def cue(self, cue: Cue) -> None:
-        """Have a signal given by each."""
-        for output in self._outputs:
-            output.cue(cue)
+    def typing(self, question: str, text: str) -> None:
+        """Show a line that is being typed; at a terminal only."""
+        if self._clear:
+            print(f"{self._clear}{printable(question)}: {printable(text)}", end="", flush=True)
+
+    def end_typing(self) -> None:
+        """Leave the line that was typed as it stands."""
+        if self._clear:
+            print(flush=True)
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+class Signals:
+    """Cues as tones of the machine's audio output or as the terminal's bell; sounds of pictures.
+
+    Parameters
+    ----------
+    tones
+        Whether cues are tones; where there is no audio output, they are bells.
+    """
+
+    def __init__(self, *, tones: bool) -> None:
+        self._player: Any = None
+        self._tones = tones
+        if tones:
+            self._open()
+
+    def _open(self) -> None:
+        from vbraille.sounds import Tones
+
+        try:
+            self._player = Tones()
+        except OSError:  # which is no fault: bells ring
+            self._tones = False
+
+    def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:  # noqa: ARG002 - others say it
+        """Give a cue."""
+        if cue in MELODIES and self._tones:
+            self._player.play_melody(MELODIES[cue])
+        elif cue in MELODIES and sys.stderr.isatty():
+            print("\a" * len(MELODIES[cue]), end="", file=sys.stderr, flush=True)
+
+    def show(self, what: Explored) -> None:
+        """Do nothing."""
+
+    def sound(self, path: Path) -> None:
+        """Play a file of sound, if there is an audio output."""
+        if self._player is None:
+            self._open()
+        if self._player is not None:
+            self._player.play_file(path)
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+class Speech:
+    """Sentences and lines spoken by Speech Dispatcher, through the system's python3-speechd.
+
+    New sentences take the place of those being spoken, unless they came together.
+
+    Parameters
+    ----------
+    language
+        Tag of the language that is spoken.
+
+    Raises
+    ------
+    OSError
+        If there is no speech on this machine.
+    """
+
+    def __init__(self, language: str = "en") -> None:
+        speechd = system_module("speechd")
+        try:
+            self._client = speechd.SSIPClient("vbraille")
+            self._client.set_language(language.split("-")[0].lower())
+        except Exception as error:  # speechd has exceptions of several bases
+            raise OSError(" ".join(str(error).split())) from None
+
+    def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:  # noqa: ARG002 - cues are heard
+        """Speak a sentence."""
+        if sentence and not sentence.startswith(_CELLS):
+            self._client.speak(sentence)
+
+    def interrupt(self) -> None:
+        """Stop what is being spoken, for something newer."""
+        self._client.cancel()
+
+    def show(self, what: Explored) -> None:
+        """Speak the text of a line."""
+        self.say(what.text)
+
+    def close(self) -> None:
+        """End, once all is spoken."""
+        self._client.close()
+
+
+def system_module(name: str) -> Any:
+    """Load a module that Debian's package python3-NAME brings, and no registry has.
+
+    Raises
+    ------
+    OSError
+        If it is not installed.
+    """
+    folder = "/usr/lib/python3/dist-packages"
+    sys.path.append(folder)
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        raise OSError(f"it needs Debian's package python3-{name}") from None
+    finally:
+        sys.path.remove(folder)
+
+
+class Behind:
+    """An output in a thread of its own, opened there; one that fails says so once, and is silent.
+
+    Parameters
+    ----------
+    name
+        What it is called in that sentence.
+    open_output
+        Function that opens it.
+    say
+        Function that is called with the sentence.
+    """
+
+    _APART_S = 0.1  # sentences that come within that are said together
+
+    def __init__(
+        self, name: str, open_output: Callable[[], Any], say: Callable[[str], None]
+    ) -> None:
+        self._name, self._open, self._say = name, open_output, say
+        self._waiting: queue.SimpleQueue[Callable[[Any], None] | None] = queue.SimpleQueue()
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self._thread.start()
+
+    def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:
+        """Have a sentence said."""
+        self._waiting.put(lambda output: output.say(sentence, cue))
+
+    def show(self, what: Explored) -> None:
+        """Have the text under the hand said, as it is now."""
+        text = what.text
+        self._waiting.put(lambda output: output.say(text))
 
     def sound(self, path: Path) -> None:
         """Have a file of sound played."""
-        for output in self._outputs:
-            output.sound(path)
-
-    def attend(self, events: Sequence[Event] = ()) -> None:
-        """Have each look at what is under the hand."""
-        for output in self._outputs:
-            output.attend(events)
-
-    def stand(self, why: str) -> None:
-        """Tell each why nothing is explored."""
-        for output in self._outputs:
-            output.stand(why)
-
-    def rest(self) -> None:
-        """Have each show nothing for a while."""
-        for output in self._outputs:
-            output.rest()
+        self._waiting.put(lambda output: output.sound(path))
 
     def close(self) -> None:
-        """End each of them."""
-        for output in self._outputs:
+        """End; this waits a second at most for what was said before."""
+        self._waiting.put(None)
+        self._thread.join(1.0)
+
+    def _run(self) -> None:
+        try:
+            output = self._open()
+            while (first := self._waiting.get()) is not None:
+                if hasattr(output, "interrupt"):
+                    output.interrupt()
+                task: Callable[[Any], None] | None = first
+                while task is not None:
+                    task(output)
+                    task = self._next()
             output.close()
+        except OSError as error:
+            self._say(f"no {self._name}: {error}")
+        except Exception as error:  # as speechd's own, when its server ends
+            self._say(f"no {self._name}: {type(error).__name__}: {error}")
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-
-class ConsoleOutput(Output):
-    """Sentences on lines of their own.
-
-    Parameters
-    ----------
-    print_line
-        Function that prints a line.
-    """
-
-    def __init__(self, print_line: Callable[[str], None]) -> None:
-        self._print = print_line
-
-    def say(self, sentence: str) -> None:
-        """Print a sentence."""
-        self._print(sentence)
-
-
-class SpeechOutput(Output):
-    """Sentences as speech, and the text of each line that comes under the hand.
-
-    Parameters
-    ----------
-    speech
-        Speech, which this ends.
-    line
-        Function that gives the line under the hand; None for none.
-    echo
-        How much is said of each line, which is then not spoken again.
-    """
-
-    def __init__(
-        self,
-        speech: Speech,
-        line: Callable[[], Line | None] = lambda: None,
-        *,
-        echo: Echo = Echo.NONE,
-    ) -> None:
-        self.speech = speech
-        self._line = line
-        self._speaks_lines = echo in (Echo.NONE, Echo.CELLS)
-        self._seen = (0, "")  # number and text of the line that was spoken last
-
-    def say(self, sentence: str) -> None:
-        """Speak a sentence."""
-        if not sentence.startswith(_CELLS):
-            self.speech.say(sentence)
-
-    def attend(self, events: Sequence[Event] = ()) -> None:  # noqa: ARG002 - which are said
-        """Speak the text of the line that is under the hand, if it is another than before."""
-        line = self._line() if self._speaks_lines else None
-        seen = self._seen if line is None else (line.number, line.text.strip())
-        if seen != self._seen:
-            self._seen = seen
-            self.speech.say(seen[1] or "blank")
-
-    def close(self) -> None:
-        """End speech."""
-        self.speech.close()
-
-
-class CueKind(Enum):
-    """Kinds of signals by which cues are given."""
-
-    TONES = "tones"
-    BELL = "bell"
-    NONE = "none"
-
-
-def choose_cues(asked: str | None, *, attended: bool) -> CueKind:
-    """Choose what cues are given by.
-
-    Parameters
-    ----------
-    asked
-        Value of a `CueKind` that was asked for; None if none was.
-    attended
-        Whether a reader is at a terminal. Without one, only cues that were asked for are heard; at
-        the end of a network the terminal's bell is the only sound that comes through.
-    """
-    if asked is not None:
-        return CueKind(asked)
-    if not attended:
-        return CueKind.NONE
-    return CueKind.BELL if "SSH_CONNECTION" in os.environ else CueKind.TONES
-
-
-class Cues(Output):
-    """Cues that are heard, at most ten a second.
-
-    A process of its own gives them, so that reading never waits for a sound. Where there is no
-    audio output the terminal's bell rings.
-
-    Parameters
-    ----------
-    kind
-        Kind of signal.
-    now_s
-        Clock in seconds that does not go back.
-    """
-
-    def __init__(self, kind: CueKind, now_s: Callable[[], float] = time.monotonic) -> None:
-        self._now_s = now_s
-        self._given_s = float("-inf")
-        self._kind = kind
-        self._closed = False
-        self._worker: Worker | None = None  # started with the first cue
-
-    def cue(self, cue: Cue) -> None:
-        """Give a cue, in place of one that is still heard; one that comes too soon is left out."""
-        now_s = self._now_s()
-        if self._kind is CueKind.NONE or now_s - self._given_s < _APART_S:
-            return
-        self._given_s = now_s
-        self._send(cue)
-
-    def sound(self, path: Path) -> None:
-        """Play a file of sound, in place of what is still heard, whatever cues are given by."""
-        if not self._closed:
-            self._send(SoundFile(str(path)))
-
-    def _send(self, order: Cue | SoundFile) -> None:
-        if self._worker is None:
-            self._worker = Worker(_CUEING, self._kind.value)
-        if not self._worker.send(order, alone=True):
-            self.close()  # whatever ended it, the sentences beside the cues are still said
-
-    def close(self) -> None:
-        """Give no more cues; further calls do nothing."""
-        self._kind, self._closed = CueKind.NONE, True
-        worker, self._worker = self._worker, None
-        if worker is not None:
-            worker.close()
+    def _next(self) -> Callable[[Any], None] | None:
+        """What comes within a moment; None if nothing does, or the end, which is put back."""
+        try:
+            task = self._waiting.get(timeout=self._APART_S)
+        except queue.Empty:
+            return None
+        if task is None:
+            self._waiting.put(None)
+        return task

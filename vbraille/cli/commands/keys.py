@@ -1,0 +1,47 @@
+"""``vbraille keys``: the keys for reading."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from vbraille.cli import options
+from vbraille.cli.printing import print_json, say
+
+
+@click.command(cls=options.Command, epilog="Example: vbraille keys --keys nvda")
+@options.takes(
+    options.keys,
+    options.option(
+        "--of",
+        type=click.Choice(["book", "picture", "game", "tuning"]),
+        default="book",
+        show_default=True,
+        help="What the keys are for.",
+    ),
+    options.json,
+    options.settings,
+)
+@click.pass_context
+def command(ctx: click.Context, keys: str, of: str, json: bool, **_: Any) -> None:
+    """With your own keys from the settings file."""
+    from vbraille.cli.settings import settings_of
+    from vbraille.reading.commands import Where, bindings, own_keys, spoken, table
+
+    where, settings = Where[of.upper()], settings_of(ctx)
+    own = own_keys(settings.table("keys"), settings.table("buttons")) if of == "book" else {}
+    bound = bindings(keys, where, own)
+    rows = [
+        {
+            "command": each.name,
+            "keys": [spoken(key) for key, found in bound.items() if found is each],
+            "help": each.help,
+        }
+        for each in table(where)
+    ]
+    if json:
+        print_json(rows)
+        return
+    for row in rows:
+        say(f"{' or '.join(row['keys']) or 'no key'}: {row['help']} ({row['command']})")

@@ -1,0 +1,156 @@
+"""``vbraille read``: a text on a device, line after line."""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from vbraille.cli import options
+
+if TYPE_CHECKING:
+    from vbraille.reading.places import KeptBook, Places
+
+_OF_TEXT = (
+    "language", "grade", "table", "encoding", "form", "brf_table", "foreign", "undefined",
+    "keep_lines",
+)  # fmt: skip
+
+
+@click.command(cls=options.Command, epilog="Example: vbraille read book.epub --speech")
+@options.optional_file
+@options.takes(
+    options.device, options.hand, options.language, options.grade, options.lines, options.echo,
+    options.speech, options.keys, options.monitor, options.profile,
+    *options.TRANSLATION[2:], *options.FEEL, options.straying, options.band, options.model,
+    options.travel, options.height, options.cells, options.rate, options.seed, options.cues,
+    options.also, options.advance, options.host, options.port, options.no_places,
+    options.settings,
+)  # fmt: skip
+@click.pass_context
+def command(ctx: click.Context, **_chosen: Any) -> None:
+    """Without a file, the book that was read last goes on where it was closed.
+
+    At a terminal, h says the keys.
+    """
+    read(ctx)
+
+
+def read(ctx: click.Context, number: int = 1) -> None:
+    """Read a book, the one with a number in the list of books if no file is given.
+
+    Raises
+    ------
+    VbrailleError
+        If it cannot be read, or the device is gone.
+    """
+    from vbraille.cli.build import build_book, build_model
+    from vbraille.cli.exploring import equipped, find_model, say_summary
+    from vbraille.cli.printing import say
+    from vbraille.cli.settings import given, save_profile, settings_of
+    from vbraille.reading.places import Places, places_path
+    from vbraille.reading.reader import Reader
+    from vbraille.reading.texts import Layout, wrapped
+    from vbraille.layout.texts import cells_per_line
+    from vbraille.knobs import profile_values
+    from vbraille.cli.build import display_name
+    from vbraille.render import MODELS
+
+    chosen, asked = ctx.params, given(ctx)
+    places = Places(
+        None if chosen["no_places"] else places_path(), lambda said: say(said, aside=True)
+    )
+    if chosen["file"] is None:
+        book_read = places.numbered(number)
+        chosen["file"] = str(book_read.path)
+        chosen.update({n: v for n, v in book_read.options.items() if n not in asked})
+    file = chosen["file"]
+    asked_model = MODELS[chosen["model"] or "stress2"]
+    wanted = build_model(ctx, asked_model, asked_model.style.geometry.travel_mm)
+    wanted_display = wanted.on(wanted.style.geometry, chosen["rate"])
+    echo = chosen["echo"] or ("none" if sys.stdout.isatty() else "both")
+    with equipped(
+        ctx, wanted_display, hand=chosen["hand"], echo=echo, beside=file == "-"
+    ) as equipment:
+        device = equipment.device
+        device.launch()
+        kept = _kept(places, file)
+        if not asked & {"language", "grade", "table"}:
+            chosen.update({n: v for n, v in kept.options.items() if n not in asked})
+        book = wrapped(build_book(ctx, file))
+        kept.set_options(**{name: chosen[name] for name in _OF_TEXT})
+        model = find_model(ctx, device, wanted)
+        if model.display is not wanted_display:
+            model = build_model(ctx, model, model.display.travel_mm)
+        if chosen["speech"]:
+            equipment.speak(_spoken(chosen["language"], book))
+        if chosen["also"]:
+            from vbraille.layout.texts import choose_table
+
+            equipment.add_pins(chosen["also"], book.table or choose_table())
+        width = chosen["cells"] or cells_per_line(model.style.geometry, model.display)
+        device.start(model)
+
+        def save(style):
+            settings = settings_of(ctx)
+            save_profile(
+                settings.path, settings.profile, display_name(model), profile_values(style)
+            )
+            return f"profile {settings.profile}: saved"
+
+        reader = Reader(
+            Layout(book, width),
+            device,
+            equipment.outputs,
+            kept,
+            lines=chosen["lines"],
+            fixed=bool(chosen["cells"]),
+            key_set=chosen["keys"],
+            attended=equipment.keyboard.attached,
+            by_hand=chosen["advance"] == "return",
+            echo=echo,
+            figures=_figures(ctx, book, device, equipment),
+            save=save,
+        )
+        if equipment.keyboard.attached:
+            reader.say(f"press {'h' if chosen['keys'] == 'usual' else 'f1'} for the keys")
+        try:
+            equipment.explore(ctx, reader, own=True)
+        finally:
+            reader.keep()
+    say_summary(device, f"lines {reader.lines_read}", speed=True)
+
+
+def _kept(places: Places, file: str) -> KeptBook:
+    """What is kept of a book, which is known by its content."""
+    path = Path(file)
+    if file == "-" or not path.is_file():
+        return places.book("", Path(), "")
+    with path.open("rb") as opened:
+        digest = hashlib.file_digest(opened, "sha256").hexdigest()
+    return places.book(digest, path.absolute(), path.stem)
+
+
+def _spoken(asked: str | None, book: Any) -> str:
+    """Language in which a book is spoken."""
+    info = None if book.table is None else book.table.info
+    return asked or book.source.language or (info.language if info else "") or "en"
+
+
+def _figures(ctx: click.Context, book: Any, device: Any, equipment: Any) -> Any:
+    """Figures of a book that shows them; None for others."""
+    from vbraille.cli.printing import say
+    from vbraille.reading.figures import BookFigures
+    from vbraille.translate.documents.epub import EpubBook
+
+    in_container = isinstance(book.source.old, EpubBook)
+    return BookFigures(
+        book.source,
+        None if in_container else Path(ctx.params["file"]).parent,
+        lambda: device.model.style,
+        lambda sentence: say(sentence, aside=True),
+        ctx.params["rate"],
+    )

@@ -1,0 +1,75 @@
+"""``vbraille tune``: how braille feels best, two ways at a time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from vbraille.cli import options
+
+
+@click.command(cls=options.Command, epilog="Example: vbraille tune --profile evening")
+@options.optional_file
+@options.takes(
+    options.profile, options.device, options.hand, options.language, options.grade, options.table,
+    options.option("--again", is_flag=True, help="Begin anew, whatever choices are kept."),
+    options.speech, options.model(group=options.FIRST), options.cues, options.rate, options.seed,
+    options.monitor(group="Live view"), options.host, options.port, options.settings,
+)  # fmt: skip
+@click.pass_context
+def command(ctx: click.Context, **chosen: Any) -> None:
+    """It takes five minutes at a terminal, and saves a profile.
+
+    Without a file, there is a text to practise on.
+    """
+    from pathlib import Path
+
+    from vbraille.cli.build import build_model, display_name
+    from vbraille.cli.exploring import equipped, find_model, refuse_terminal
+    from vbraille.cli.settings import save_profile, settings_of
+    from vbraille.knobs import profile_values
+    from vbraille.layout.texts import cells_per_line, choose_table
+    from vbraille.reading.places import Places
+    from vbraille.reading.reader import Reader
+    from vbraille.reading.texts import Book, Layout, Source
+    from vbraille.reading.tuning import Tuning, practice_text
+    from vbraille.render import MODELS
+    from vbraille.translate import Document
+
+    settings = settings_of(ctx)
+    table = choose_table(chosen["language"], chosen["grade"], chosen["table"])
+    if chosen["file"] is None:
+        source = Source(Document.from_text(practice_text(chosen["language"])))
+    else:
+        source = Source(Document.open(chosen["file"]))
+    asked = MODELS[chosen["model"] or "stress2"]
+    with equipped(ctx, asked.display, hand=chosen["hand"]) as equipment:
+        refuse_terminal(equipment.keyboard, "vbraille tune")
+        device = equipment.device
+        found = find_model(ctx, device, asked)
+        model = build_model(ctx, found, found.display.travel_mm)
+        device.start(model)
+        if chosen["speech"]:
+            equipment.speak(chosen["language"] or "en")
+        width = cells_per_line(model.style.geometry, model.display)
+        reader = Reader(
+            Layout(Book(source, table), width),
+            device,
+            equipment.outputs,
+            Places(None, equipment.say).book("", Path(), ""),
+        )
+        name = display_name(model)
+        kept = settings.path.with_name(f"{settings.path.stem}-tune-{settings.profile}-{name}.json")
+        tuning = Tuning(reader, kept, settings.profile, again=chosen["again"])
+        tuning.say("press h for the keys")
+        tuning.begin()
+        equipment.explore(ctx, tuning)
+        if tuning.course.knob is None:
+            values = profile_values(tuning.course.style)
+            save_profile(settings.path, settings.profile, name, values)
+            tuning.forget()
+            tuning.say(f"profile {settings.profile}: saved")
+        else:
+            made = len(tuning.course.choices)
+            tuning.say(f"{made} of {tuning.course.total} choices made; the same command goes on")

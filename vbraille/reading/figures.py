@@ -1,0 +1,193 @@
+"""The tactile pictures of a book, read when a line comes that stands for one."""
+
+from __future__ import annotations
+
+import math
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+from urllib.parse import unquote
+
+from vbraille.errors import InputError
+from vbraille.feeling.loading import load_scene
+from vbraille.reading.commands import Where
+from vbraille.translate.source import MarkKind
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from vbraille.display import Pose
+    from vbraille.feeling.index import SceneIndex
+    from vbraille.feeling.loading import LoadedScene
+    from vbraille.layout import Line
+    from vbraille.reading.picture import Picture
+    from vbraille.reading.reader import Reader
+    from vbraille.reading.surface import Surface
+    from vbraille.render.program import Program
+    from vbraille.translate import Source
+
+_ROUNDING = 1e-9  # of a line pitch
+
+
+class BookFigures:
+    """The tactile pictures of a book: files beside it, or in its container. Nothing is fetched.
+
+    Parameters
+    ----------
+    source
+        The book.
+    folder
+        Folder that it stands in; None for a book whose figures are in its container.
+    style
+        Function that gives how the braille of labels is shown.
+    note
+        Function that is called with a sentence on each figure that cannot be felt, once.
+    rate_hz
+        Frames a second.
+    how
+        What a `Picture` takes for a figure that is felt alone.
+    """
+
+    def __init__(
+        self,
+        source: Source,
+        folder: Path | None,
+        style: Callable[[], Any],
+        note: Callable[[str], None],
+        rate_hz: float,
+        **how: Any,
+    ) -> None:
+        self._source, self._folder, self._style, self._note = source, folder, style, note
+        self._rate_hz, self._how = rate_hz, how
+        self._found: dict[str, LoadedScene | InputError] = {}
+        self._indices: dict[str, SceneIndex] = {}
+        self._maker = ThreadPoolExecutor(1)  # what compiles takes a second to load
+        self._making: tuple[int, Future[Program]] | None = None
+
+    def address(self, line: Line) -> str:
+        """Address of the figure that ends on a line; empty if none does."""
+        for mark in line.block.marks:
+            if mark.kind is MarkKind.IMAGE and mark.target:
+                if line.place < line.block.start + mark.end <= line.end:
+                    return mark.target
+        return ""
+
+    def of(self, line: Line) -> LoadedScene | None:
+        """Figure that a line stands for; None if it stands for none that can be felt."""
+        address = self.address(line)
+        if address and address not in self._found:
+            try:
+                self._found[address] = found = self._load(address)
+                for note in found.notes[:1]:
+                    self._note(f"figure: {note}")
+            except (InputError, ValueError) as error:  # as of a name that no file can have
+                self._found[address] = InputError(str(error))
+                self._note(f"figure not felt: {error}")
+        found = self._found.get(address)
+        return None if isinstance(found, InputError) else found
+
+    def rows_below(self, line: Line, pitch_mm: float, rows: int, travel_mm: float) -> int:
+        """Number of rows to keep free below a line for its figure; 0 if it has none there."""
+        figure = self.of(line)
+        if figure is None or figure.scene.canvas.width_mm > travel_mm:
+            return 0
+        needed = math.ceil(figure.scene.canvas.height_mm / pitch_mm - _ROUNDING)
+        return needed if needed < rows else 0
+
+    def said(self, line: Line, *, below: bool) -> Iterator[str]:
+        """Sentence on the figure that a line stands for, if it stands for one."""
+        figure = self.of(line)
+        if figure is not None:
+            canvas = figure.scene.canvas
+            size = f"{canvas.width_mm:g} mm × {canvas.height_mm:g} mm"
+            where = "below this line" if below else "shift-g feels it"
+            yield f"figure: {figure.title}, {size}; {where}"
+
+    def on(self, surface: Surface) -> Iterator[tuple[LoadedScene, float]]:
+        """Figures of a page, each with the place in mm at which it begins."""
+        for row in surface.free:
+            part = surface.parts[row]
+            figure = None if part is None else self.of(part.line)
+            if figure is not None:
+                yield figure, (row + 1) * surface.style.geometry.line_pitch_mm
+
+    def place(self, surface: Surface) -> None:
+        """Begin to compile a page with its figures, which `take` shows when it is ready."""
+        placed, masks, style = list(self.on(surface)), surface.masks, surface.style
+        if placed:
+            display, start_mm = surface.display, surface.part.start_mm
+
+            def make() -> Program:
+                # It loads numba, which a reader who comes to no figure does not need.
+                from vbraille.render.scene.compiling import compile_scene
+                from vbraille.render.scene.figures import FigureAt, page_with_figures
+
+                figures = [FigureAt(one.scene, (0.0, top), one.assets) for one, top in placed]
+                scene, assets = page_with_figures(masks, style, figures, start_mm=start_mm)
+                return compile_scene(scene, display, assets, rate_hz=self._rate_hz)
+
+            self._making = surface.number, self._maker.submit(make)
+
+    def take(self, surface: Surface) -> None:
+        """Have the figures of a page join it, once they are compiled."""
+        if self._making is None or not self._making[1].done():
+            return
+        (number, made), self._making = self._making, None
+        if number == surface.number:
+            try:
+                surface.show_program(made.result())
+            except (InputError, ValueError) as error:
+                self._note(f"figure not felt: {error}")
+
+    def here(self, surface: Surface, pose: Pose | None) -> tuple[str, str] | None:
+        """Titles of the figure at a pose, and of its element there; None if none is there."""
+        for figure, top_mm in self.on(surface) if pose is not None else ():
+            canvas = figure.scene.canvas
+            if 0 <= pose.x_mm <= canvas.width_mm and 0 <= pose.y_mm - top_mm <= canvas.height_mm:
+                index = self._index(figure)
+                element = index.here(pose.x_mm, pose.y_mm - top_mm)
+                return figure.title, "" if element is None else element.name
+        return None
+
+    def _index(self, figure: LoadedScene) -> SceneIndex:
+        from vbraille.feeling.index import SceneIndex  # loads numba
+
+        if figure.title not in self._indices:
+            self._indices[figure.title] = SceneIndex(figure.scene, figure.assets, figure.boxes())
+        return self._indices[figure.title]
+
+    def feel(self, reader: Reader) -> Picture | None:
+        """Figure of the line, to be felt alone; None if it has none.
+
+        Raises
+        ------
+        InputError
+            If it cannot be felt.
+        """
+        from vbraille.feeling.loading import check_fits
+        from vbraille.reading.picture import Picture
+
+        address, figure = self.address(reader.line), self.of(reader.line)
+        if address and isinstance(self._found[address], InputError):
+            raise self._found[address]
+        if figure is None:
+            return None
+        check_fits(figure.scene, reader.device.display)
+        how = {"rate_hz": self._rate_hz, "key_set": reader.key_set, **self._how}
+        return Picture(figure, reader.device, reader.outputs, where=Where.FIGURE, **how)
+
+    def _load(self, address: str) -> LoadedScene:
+        if self._folder is not None:
+            return load_scene(self._folder / unquote(address).lstrip("/"), self._style())
+        # What it includes is looked for beside it, which is nowhere: a book's figure is one file.
+        with TemporaryDirectory(prefix="vbraille-") as folder:
+            path = Path(folder) / Path(address).name[-60:]
+            path.write_bytes(self._source.file(address))
+            try:
+                loaded = load_scene(path, self._style())
+            except InputError as error:
+                raise InputError(str(error).replace(f"{folder}/", "")) from None
+        notes = tuple(note.replace(f"{folder}/", "") for note in loaded.notes)
+        return replace(loaded, notes=notes)
