@@ -30,6 +30,7 @@ PARTS = (
     "scene",
     "feel",
     "key",
+    "live",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):
