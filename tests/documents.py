@@ -12,9 +12,7 @@ from msgspec import inspect as info
 from tests.scene import keyspage
 from vbraille.braille.geometry import Geometry
 from vbraille.config.options import BOOK, FILE, PROFILE, held_in
-from vbraille.reading.commands.game import COMMANDS as PLAYING
-from vbraille.reading.commands.scene import COMMANDS as FEELING
-from vbraille.reading.commands.table import COMMANDS as READING
+from vbraille.reading.commands import Where, keys_of, spoken, table
 from vbraille.render import Tuning
 from vbraille.sessions.planning.protocol import Protocol, ProtocolFile
 from vbraille.sessions.record.events import (
@@ -56,11 +54,12 @@ def _profile():
         yield _row(f"`{option.key}`", _value(option), option.does, option.usual)
 
 
-def _keys(commands):
-    yield _row("command", "keys", "what it does", "when")
-    for command in commands:
-        when = ", ".join(context.value for context in command.contexts)
-        yield _row(f"`{command.name}`", command.spoken_keys, command.help, when)
+def _keys(where):
+    yield _row("command", "keys", "NVDA's keys", "buttons", "what it does")
+    for each in table(where):
+        keys = [" or ".join(map(spoken, keys_of(each, name))) for name in ("usual", "nvda")]
+        buttons = ", ".join(spoken(key) for key in each.also)
+        yield _row(f"`{each.name}`", *keys, buttons, each.help)
 
 
 def described(kind):
@@ -211,9 +210,9 @@ def _bytes():
 TABLES = (
     ("settings.md", list(_read())),
     ("settings.md", list(_profile())),
-    ("keys.md", list(_keys(READING))),
-    ("feeling.md", list(_keys(FEELING))),
-    ("playing.md", list(_keys(PLAYING))),
+    ("keys.md", list(_keys(Where.BOOK))),
+    ("feeling.md", list(_keys(Where.PICTURE))),
+    ("playing.md", list(_keys(Where.GAME))),
     ("session-format.md", list(_events())),
     *(("protocols.md", rows) for rows in protocol_tables()),
 )

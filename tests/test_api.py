@@ -9,7 +9,7 @@ import subprocess
 import sys
 from dataclasses import asdict
 from importlib import import_module
-from itertools import pairwise, product
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +27,7 @@ TOLD = (
     "vbraille.analysis",
     "vbraille.files",
     "vbraille.reading.frames",
-    "vbraille.reading.device",
+    "vbraille.reading.opening",
     "vbraille.render.braille.style",
     "vbraille.sessions.session",
     "vbraille.testing.standins",
@@ -208,8 +208,6 @@ class Still(vbraille.Device):
         (lambda: vbraille.render_text("a", display=3), "give vbraille.VBD, vbraille.STRESS2 or"),
         (lambda: vbraille.render_text("a", style="dots"), "style is 'dots'; give a vbraille.Br"),
         (lambda: vbraille.render_text(""), "^the text has nothing to read in it; give some$"),
-        (lambda: vbraille.render_text(None), "^the text is None; give a string$"),
-        (lambda: vbraille.translate_text(b"a"), "^the text is b'a'; give a string$"),
         (lambda: vbraille.render_page("a", first=0), "lines count from 1 upwards$"),
         (lambda: vbraille.render_page("a", last=2), "^the text ends at line 1; give lines up to"),
         (lambda: vbraille.render_page("a\n" * 1001), "at most 1000 lines; say which"),
@@ -333,33 +331,3 @@ def calls():
     yield vbraille.testing.parse_hand, {"spec": "slow", "seed": 1}
     yield vbraille.testing.simulated_device, {"display": vbraille.VBD, "hand": "slow"}
     yield vbraille.analyse, {"paths": "x.csv", "correction": "holm"}
-
-
-def test_a_value_of_the_wrong_type_is_one_sentence(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    said = []
-    for function, right in calls():
-        for name, wrong in product(right, WRONG):
-            try:
-                function(**{**right, name: wrong})
-            except (vbraille.VbrailleError, ValueError) as error:
-                said.append(str(error))
-    assert len(said) > 400
-    assert not [sentence for sentence in said if "\n" in sentence]
-
-
-@pytest.mark.parametrize(
-    ("call", "said"),
-    [
-        (lambda: vbraille.render_text("a", line="1"), "line is '1'; give a whole number or None"),
-        (lambda: vbraille.render_text("a", grade=True), "grade is True; give a whole number"),
-        (lambda: vbraille.VBD.style.replace(texture="x"), "texture is 'x'; it must be a number"),
-        (lambda: vbraille.Display("m", 3.5, 1, 1.0, 1.0), "rows is 3.5; it must be a whole number"),
-        (lambda: vbraille.Scene(canvas=1), "canvas is 1; it must be a Canvas"),
-        (lambda: vbraille.Session.create("letters", "P1", conditions={}), "give a Conditions"),
-        (lambda: vbraille.analyse(None), "give a path"),
-    ],
-)
-def test_the_sentence_names_what_is_wrong(call, said):
-    with pytest.raises((vbraille.InputError, ValueError), match=said):
-        call()

@@ -26,12 +26,12 @@ if TYPE_CHECKING:
     from vbraille.errors import VbrailleError as VbrailleError
     from vbraille.layout.texts import translate_text as translate_text
     from vbraille.pictures.framed import open_framed as open_scene
-    from vbraille.reading.opening import OpenDevice as OpenDevice
-    from vbraille.reading.opening import open_to_read as open  # noqa: A004
     from vbraille.reading.frames import RenderedLine as RenderedLine
     from vbraille.reading.frames import RenderedPage as RenderedPage
     from vbraille.reading.frames import render_page as render_page
     from vbraille.reading.frames import render_text as render_text
+    from vbraille.reading.opening import OpenDevice as OpenDevice
+    from vbraille.reading.opening import open_to_read as open  # noqa: A004
     from vbraille.recording import Recording as Recording
     from vbraille.render.braille.mappings import MAPPINGS as MAPPINGS
     from vbraille.render.braille.models import LATERO as LATERO
@@ -128,10 +128,6 @@ def __getattr__(name: str) -> object:
 
     with needing_extras():
         found = getattr(import_module(place), its_name or name)
-    if hasattr(found, "__code__"):  # a function
-        from vbraille.typed import typed
-
-        found = typed(found)
     globals()[name] = found
     return found
 

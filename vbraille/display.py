@@ -7,13 +7,13 @@ pictures are compiled for it.
 from __future__ import annotations
 
 import math
+import operator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from vbraille.errors import InputError
-from vbraille.typed import check_fields
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -79,7 +79,8 @@ class Display:
     shown_near: bool = False
 
     def __post_init__(self) -> None:
-        check_fields(self)
+        for name in ("rows", "columns", "levels"):
+            operator.index(getattr(self, name))  # TypeError for what is no whole number
         if not (1 <= self.rows <= MOST_ROWS and 1 <= self.columns <= MOST_COLUMNS):
             raise ValueError(
                 f"an array of {self.rows} × {self.columns} actuators is not possible; "

@@ -87,6 +87,7 @@ def write_files(
 
     The parameters and errors are those of `write_file`.
     """
+    path = Path()
     with ExitStack() as named:
         for path, content in files:
             if not path.name:

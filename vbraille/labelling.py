@@ -15,7 +15,7 @@ import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.layout.blocks import breaks_of, wrap
-from vbraille.render.scene.labels import Written, corners_mm
+from vbraille.render.labels import Written, corners_mm
 from vbraille.scene.patterns import Label, Tile
 from vbraille.scene.traversal import each
 from vbraille.translate.languages import find_table

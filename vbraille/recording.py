@@ -19,7 +19,6 @@ from vbraille.display import Display
 from vbraille.errors import InputError
 from vbraille.newfile import new_file
 from vbraille.render import MAPPINGS, MODELS, Model, Tuning, model_of, single_row
-from vbraille.typed import typed
 from vbraille.version import __version__
 
 if TYPE_CHECKING:
@@ -308,7 +307,6 @@ class Recording:
             raise InputError("the times of a recording must increase")
 
     @classmethod
-    @typed
     def open(cls, path: Path | str) -> Self:
         """Read a file that `write` or ``vbraille render`` wrote.
 
@@ -343,7 +341,6 @@ class Recording:
             prints=[print_in(file, row, length) for row, length in enumerate(lengths)],
         )
 
-    @typed
     def write(self, path: Path | str, *, replace: bool = False) -> None:
         """Write the file, which gets its name only once it is whole.
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from tests.benchmarks.timing import Result, ratio
 from vbraille.render import STRESS2_8X8, Straying
-from vbraille.render.scene.compiling import compile_scene
-from vbraille.render.scene.figures import page_with_figure
+from vbraille.render.compiling import compile_scene
+from vbraille.render.figures import page_with_figure
 from vbraille.scene.patterns import Circle, Fill, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke

@@ -28,9 +28,9 @@ from tests.benchmarks.scenes import (
 from tests.benchmarks.timing import Result, ratio, seconds
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import Loop
+from vbraille.render.compiling import SceneMap, compile_scene
+from vbraille.render.labels import Assets
 from vbraille.render.program import nothing
-from vbraille.render.scene.compiling import SceneMap, compile_scene
-from vbraille.render.scene.labels import Assets
 from vbraille.scene.patterns import PathShape
 from vbraille.simulation.simulated import SimulatedDevice
 

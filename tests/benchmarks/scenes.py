@@ -7,7 +7,7 @@ from msgspec.structs import replace
 
 from tests.conftest import SEED
 from vbraille.display import Display
-from vbraille.render.scene.labels import Assets
+from vbraille.render.labels import Assets
 from vbraille.scene.bitmap import Bitmap
 from vbraille.scene.patterns import (
     Circle,

@@ -15,7 +15,7 @@ from tests.tiers import heavy
 from vbraille.devices.serial.wire import Encoder
 from vbraille.feeling.loading import load_scene
 from vbraille.render import MODELS
-from vbraille.render.scene.compiling import compile_scene
+from vbraille.render.compiling import compile_scene
 from vbraille.scene.signals import packed
 from vbraille.simulation.firmware import describe
 from vbraille.simulation.pty import Port

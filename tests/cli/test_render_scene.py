@@ -12,7 +12,7 @@ from tests.render.scene.twin import deflections
 from vbraille.errors import InputError
 from vbraille.playback.rendered import open_recording
 from vbraille.recording import scene_of
-from vbraille.render.scene.labels import Assets
+from vbraille.render.labels import Assets
 from vbraille.scene.reading import open_scene
 
 MOVING = (

@@ -16,8 +16,6 @@ from vbraille.config.settings import (
 )
 from vbraille.errors import InputError
 from vbraille.files import settings_path
-from vbraille.reading.commands.table import bound_by
-from vbraille.reading.keys import Bindings
 from vbraille.render import STRESS2, VBD
 
 FILE = Path("settings.toml")
@@ -133,13 +131,6 @@ def test_what_a_display_cannot_show_is_said_with_its_line(table, model, says):
     with pytest.raises(InputError) as refused:
         with_profile(settings, "e", model)
     assert str(refused.value).startswith(f"settings.toml {says}")
-
-
-def test_names_of_commands_are_checked_with_their_lines():
-    settings = parse_settings('[keys]\nLNDM = ["n"]\n[buttons]\n1 = "LNUP"\n', FILE)
-    bindings = Bindings(settings.keys, settings.buttons, settings.where)
-    with pytest.raises(InputError, match=r"^settings.toml line 2: there is no command 'LNDM'"):
-        bound_by(bindings)
 
 
 def test_where_the_file_is(tmp_path, monkeypatch):

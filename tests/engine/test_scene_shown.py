@@ -5,8 +5,8 @@ import pytest
 
 from tests.engine.planar import PLANE, STYLE, Bench, still
 from vbraille.engine.record import Flag
+from vbraille.render.compiling import compile_scene
 from vbraille.render.program import vibration
-from vbraille.render.scene.compiling import compile_scene
 from vbraille.scene.patterns import Circle
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke

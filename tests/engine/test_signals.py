@@ -7,8 +7,8 @@ from tests.engine.planar import PLANE, Bench
 from vbraille.engine.record import FLOATS, INTS, columns_of
 from vbraille.engine.ticks import recall, replay
 from vbraille.render import work
+from vbraille.render.compiling import compile_scene
 from vbraille.render.program import scratch_for
-from vbraille.render.scene.compiling import compile_scene
 from vbraille.scene.patterns import Circle, Group, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch, packed

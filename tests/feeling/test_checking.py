@@ -134,7 +134,7 @@ FAST = "{ kind = 'linear-grating', ridge_mm = 1, velocity_mm_s = 900 }"
 
 @pytest.mark.parametrize(
     ("element", "says"),
-    [(NESTED, "patterns stand in each other so deep"), (FAST, "moves at 900 Hz")],
+    [(NESTED, "patterns stand too deep in each other"), (FAST, "moves at 900 Hz")],
 )
 def test_what_feel_would_refuse_is_said(tmp_path, element, says):
     (remark,) = [one for one in advice(tmp_path, element) if "cannot be felt" in one]

@@ -8,7 +8,7 @@ import pytest
 
 from tests.render.scene.twin import opacity
 from vbraille.feeling.index import SceneIndex
-from vbraille.render.scene.labels import Assets
+from vbraille.render.labels import Assets
 from vbraille.scene.patterns import Circle, Dots, Fill, Group, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Along, DotStyle, Stroke

@@ -25,7 +25,7 @@ from vbraille.pictures.drawings import (
 )
 from vbraille.pictures.scenes import map_deflections
 from vbraille.render import LATERO, STRESS2_8X8, VBD
-from vbraille.render.scene.labels import Assets
+from vbraille.render.labels import Assets
 from vbraille.scene.patterns import Circle, Fill, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke, Vibration

@@ -7,8 +7,8 @@ import pytest
 from PIL import Image
 
 from vbraille.pictures.scenes import hidden_layers, small_png
-from vbraille.render.scene.compiling import settled
-from vbraille.render.scene.labels import Assets
+from vbraille.render.compiling import settled
+from vbraille.render.labels import Assets
 from vbraille.scene.patterns import Circle, Fill, Group, Polygon
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import Inverse, Speed, Switch, packed

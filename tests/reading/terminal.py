@@ -10,7 +10,9 @@ import signal
 import sys
 import time
 from pathlib import Path
+from typing import Self
 
+_PATIENCE_S = 20.0
 PROGRAM = str(Path(sys.executable).with_name("vbraille"))
 KEYS = {
     "enter": "\r", "escape": "\x1b", "tab": "\t", "backspace": "\x7f", "space": " ",
@@ -26,16 +28,17 @@ KEYS = {
 class Terminal:
     """A reading at a pseudo-terminal; a context manager."""
 
-    def __init__(self, *arguments: str, **environment: str) -> None:
-        self.said = b""
+    def __init__(self, *arguments: str, program: list[str] | None = None) -> None:
+        self.said, self.open = b"", True
         self.status: int | None = None
         self.pid, self.fd = pty.fork()
         if self.pid == 0:
-            os.environ |= {"TERM": "xterm", **environment}
-            os.execv(PROGRAM, [PROGRAM, *arguments])
+            os.environ["TERM"] = "xterm"
+            program = program or [PROGRAM, *arguments]
+            os.execvp(program[0], program)
 
-    def __enter__(self) -> Terminal:
-        self.wait("for the keys", 15)
+    def __enter__(self) -> Self:
+        self.wait("for the keys", 60)
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -45,7 +48,10 @@ class Terminal:
         os.close(self.fd)
 
     def press(self, *keys: str, wait_s: float = 0.12) -> str:
-        """Press keys one after the other, and give what is said."""
+        """Press keys one after the other, and give what is said soon after each.
+
+        Nothing said at once is waited for, until a machine that is busy has said it.
+        """
         before = len(self.said)
         for key in keys:
             typed = KEYS.get(key, key)
@@ -53,11 +59,15 @@ class Terminal:
                 typed = chr(ord(key[-1]) - 96)
             elif key.startswith("alt-") and key not in KEYS:
                 typed = "\x1b" + key[-1]
+            said = len(self.said)
             os.write(self.fd, typed.encode())
+            end_s = time.monotonic() + _PATIENCE_S
+            while len(self.said) == said and self.open and time.monotonic() < end_s:
+                self.listen(0.02)
             self.listen(wait_s)
         return plain(self.said[before:])
 
-    def wait(self, words: str, most_s: float = 3.0) -> None:
+    def wait(self, words: str, most_s: float = 30.0) -> None:
         end_s = time.monotonic() + most_s
         while words.encode() not in self.said and time.monotonic() < end_s:
             self.listen(0.05)
@@ -70,13 +80,14 @@ class Terminal:
                 try:
                     self.said += os.read(self.fd, 65536)
                 except OSError:
+                    self.open = False
                     return
 
     def end(self, number: int | None = None) -> int:
         """Wait for the end, after a signal or without one, and give the exit code."""
         if number is not None:
             os.kill(self.pid, number)
-        end_s = time.monotonic() + 5
+        end_s = time.monotonic() + _PATIENCE_S
         while time.monotonic() < end_s:
             self.listen(0.05)
             pid, status = os.waitpid(self.pid, os.WNOHANG)

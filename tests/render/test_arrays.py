@@ -1,5 +1,3 @@
-import re
-
 import numpy as np
 import pytest
 
@@ -56,8 +54,7 @@ def test_impossible_numbers_of_actuators(rows, columns):
 
 @pytest.mark.parametrize("number", [3.5, "3", None, float("nan")])
 def test_numbers_of_actuators_are_whole(number):
-    says = f"^rows is {re.escape(repr(number))}; it must be a whole number$"
-    with pytest.raises(ValueError, match=says):
+    with pytest.raises(TypeError):
         array_of(number, 2, 1.0, 1.0)
 
 

@@ -8,7 +8,7 @@ import pytest
 from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import load_scene
 from vbraille.render import MODELS
-from vbraille.render.scene.compiling import SceneMap
+from vbraille.render.compiling import SceneMap
 from vbraille.scene.bounds import around
 from vbraille.scene.checking import check_scene
 from vbraille.scene.patterns import Circle, Polygon

@@ -25,7 +25,6 @@ import pandas as pd
 from vbraille.braille.spelling import UNREAD
 from vbraille.errors import InputError
 from vbraille.files import no_formula
-from vbraille.typed import typed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -468,7 +467,6 @@ class Results:
         """All tables as data frames, by name, in the order of the report."""
         return {table.name: table.frame for table in self.result_tables()}
 
-    @typed
     def table(self, name: str) -> pd.DataFrame:
         """One table as a data frame: docs/tables.md describes its columns.
 

@@ -10,7 +10,6 @@ import math
 from dataclasses import dataclass, fields, replace
 
 from vbraille.errors import check_range
-from vbraille.typed import check_fields
 
 BOUNDS_MM = {
     "dot_width_mm": (0.1, 20.0),
@@ -56,7 +55,6 @@ class Geometry:
     travel_mm: float = 300.0
 
     def __post_init__(self) -> None:
-        check_fields(self)
         for field in fields(self):
             low, high = BOUNDS_MM[field.name]
             name = field.name.removesuffix("_mm").replace("_", " ")

@@ -81,11 +81,13 @@ class Equipment:
 
     def explore(self, ctx: click.Context, what: Explored, *, own: bool = False) -> None:
         """Explore until there is no more, or a person ends it."""
+        self.stack.enter_context(self.keyboard)
+        if self.keyboard.attached:
+            what.say(f"press {'h' if what.key_set == 'usual' else 'f1'} for the keys")
         keys = {}
         if own:
             settings = settings_of(ctx)
             keys = own_keys(settings.table("keys"), settings.table("buttons"))
-        self.stack.enter_context(self.keyboard)
         Exploration(what, self.device, self.keyboard, self.outputs[0], self.sources, keys).run()
 
 

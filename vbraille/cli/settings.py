@@ -106,19 +106,19 @@ def use_settings(
     settings = read_settings(path)
     command = (ctx.command_path.split() or ["", ""])[1]
     own = {param.name or "" for param in ctx.command.params}
+    origins: dict[str, tuple[str, ...]] = {}
     for name, value in settings.tree.items():
         if isinstance(value, dict):
             _check_name(settings, (name,), [*_TABLES, *commands], "table")
         else:
             _check_name(settings, (name,), known, "option")
-    origins: dict[str, tuple[str, ...]] = {}
-    origins |= {_named(key): (key,) for key in settings.tree if _named(key) in known}
+            origins[_named(name)] = (name,)
     for key in settings.table(command):
         _check_name(settings, (command, key), own, "option")
         origins[_named(key)] = (command, key)
-    wanted = profile or settings.table(command).get("profile") or settings.tree.get("profile")
+    wanted = profile or settings.table(command).get("profile")
     profile = str(wanted or "default")
-    if wanted is not None and wanted not in settings.table("profile"):
+    if wanted is not None and wanted not in settings.table("profile") and _META not in ctx.meta:
         click.echo(f"profile {wanted}: not saved yet", err=True)
     for key, value in settings.table("profile", profile).items():
         if isinstance(value, dict):

@@ -16,8 +16,8 @@ from vbraille.engine.hostprocess import warm_up
 from vbraille.engine.mailbox import Extent
 from vbraille.engine.record import FLOATS, INTS
 from vbraille.render import MODELS, work
+from vbraille.render.compiling import SceneMap, compile_scene
 from vbraille.render.program import scratch_for
-from vbraille.render.scene.compiling import SceneMap, compile_scene
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.textures import Uniform
 

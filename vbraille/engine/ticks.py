@@ -51,7 +51,7 @@ from vbraille.engine.record import (
 from vbraille.render import work
 from vbraille.render.frames import blend, copy
 from vbraille.render.kernels import SCENE, frame, part_of, patience, seamless, too_far
-from vbraille.render.machine.signalkernels import begin, compute
+from vbraille.render.signalkernels import begin, compute
 
 _PAUSED, _SILENT, _RESTING = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.RESTING)
 _CHANGED, _RESTED, _HELD = int(Flag.CHANGED), int(Flag.RESTED), int(Flag.HELD)

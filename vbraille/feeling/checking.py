@@ -14,7 +14,7 @@ from vbraille.errors import InputError
 from vbraille.feeling.composing import compose
 from vbraille.feeling.index import distance_mm, is_open, label_of, outlines
 from vbraille.render.braille.models import STRESS2_8X8
-from vbraille.render.scene.compiling import SceneMap
+from vbraille.render.compiling import SceneMap
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.checking import LEAST_BLANK_MM, frequencies, kind_of
 from vbraille.scene.measures import travel_deg

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Final
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
-from vbraille.render import work
-from vbraille.render.machine import words
+from vbraille.render import instructions, work
+from vbraille.render.compiling import compile_scene, highest_hz
 from vbraille.render.program import Program
-from vbraille.render.scene.compiling import compile_scene, highest_hz
 from vbraille.scene.patterns import Group
 
 if TYPE_CHECKING:
@@ -88,5 +87,5 @@ def viewed(
     """
     numbers = program.numbers.copy()
     numbers[work.OWN_Y] = own_y_mm
-    numbers[words.ORIGIN_X], numbers[words.ORIGIN_Y] = origin_mm
+    numbers[instructions.ORIGIN_X], numbers[instructions.ORIGIN_Y] = origin_mm
     return Program(numbers, program.table)

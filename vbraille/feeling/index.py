@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 import numpy as np
 from msgspec.structs import replace
 
-from vbraille.render.scene.compiling import SceneMap
+from vbraille.render.compiling import SceneMap
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.patterns import Circle, Group, Label, PathShape, Polygon, Shape
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.render.scene.labels import Assets
+    from vbraille.render.labels import Assets
     from vbraille.scene.patterns import AnyPattern, Image
     from vbraille.scene.scene import Scene
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from vbraille.errors import InputError
 from vbraille.labelling import label_warnings, write_labels
-from vbraille.render.scene.labels import Assets, corners_mm
+from vbraille.render.labels import Assets, corners_mm
 from vbraille.scene.bounds import Box, around
 from vbraille.scene.images import load_bitmaps
 from vbraille.scene.patterns import Image, Label

@@ -79,7 +79,7 @@ def blending(scene: Scene, name: str, switches: int = 0) -> Blending:
     InputError
         If there is no such signal, or the hand does not change it.
     """
-    from vbraille.render.scene.compiling import SceneMap  # loads the kernels
+    from vbraille.render.compiling import SceneMap  # loads the kernels
 
     signals = scene.signals
     if name not in signals:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.display import Display
-    from vbraille.render.scene.labels import Assets
+    from vbraille.render.labels import Assets
     from vbraille.scene.scene import Canvas, Scene
 
 
@@ -117,7 +117,7 @@ def show_array(
     time_s
         Time for what vibrates or moves.
     """
-    from vbraille.render.scene.compiling import SceneMap  # loads the kernels
+    from vbraille.render.compiling import SceneMap  # loads the kernels
 
     drawn = SceneMap(scene, assets)
     places, frame = actuators_mm(display, place), np.empty(display.shape)
@@ -223,7 +223,7 @@ def felt_contours(scene: Scene, assets: Assets) -> list[NDArray[np.float64]]:
     list of float64[n, 2]
         Contours; those of holes run the other way round.
     """
-    from vbraille.render.scene.compiling import SceneMap  # loads the kernels
+    from vbraille.render.compiling import SceneMap  # loads the kernels
 
     canvas = scene.canvas
     area = canvas.width_mm * canvas.height_mm

@@ -21,7 +21,6 @@ from vbraille.scene.locations import Locations, OpenedScene
 from vbraille.scene.reading import open_scene
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Scene
-from vbraille.typed import typed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -87,7 +86,6 @@ class FramedScene(OpenedScene):
             self._programs[model.display] = program
         return program.poses(x_mm, y_mm, theta_rad, time, velocity)[1]
 
-    @typed
     def recording(
         self,
         poses: ArrayLike,
@@ -137,7 +135,6 @@ class FramedScene(OpenedScene):
             ),
         )  # fmt: skip
 
-    @typed
     def write(self, path: str | Path, *, replace: bool = False) -> None:
         """Write the scene, as it is `written`, to a scene file.
 

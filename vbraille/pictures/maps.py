@@ -187,7 +187,7 @@ def _as_felt(scene: Scene, request: MapRequest) -> Scene:
     switches = _packed(scene, request)
     if not scene.signals:
         return scene
-    from vbraille.render.scene.compiling import settled  # loads the kernels
+    from vbraille.render.compiling import settled  # loads the kernels
 
     return settled(scene, request.velocity, switches)
 

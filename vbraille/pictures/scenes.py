@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.render.scene.labels import Assets
+    from vbraille.render.labels import Assets
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Canvas, Scene
     from vbraille.scene.signals import AnySignal
@@ -171,7 +171,7 @@ def map_deflections(
     InputError
         As `map_places` has it.
     """
-    from vbraille.render.scene.compiling import SceneMap  # loads the kernels
+    from vbraille.render.compiling import SceneMap  # loads the kernels
 
     x_mm, y_mm = map_places(scene.canvas, pixels_per_mm)
     drawn = SceneMap(scene, assets)
@@ -226,7 +226,7 @@ def hidden_layers(scene: Scene, switches: int) -> HiddenLayers | None:
     switches
         States of its switches, as `vbraille.scene.signals.packed` has them.
     """
-    from vbraille.render.scene.compiling import SceneMap, settled  # loads the kernels
+    from vbraille.render.compiling import SceneMap, settled  # loads the kernels
 
     if not scene.signals:
         return None

@@ -5,14 +5,16 @@ A function takes the exploration that it works on: a book, a picture, a game or 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Flag, auto
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
 from vbraille.wording import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
 
 
 class Where(Flag):
@@ -109,7 +111,9 @@ def command(
     return decorate
 
 
-def both_ways(thing: str, keys: str, nvda: str = "", also: str = "", **how: Any) -> Callable:
+def both_ways(
+    thing: str, keys: str, nvda: str = "", also: str = "", *, first: bool = False, **how: Any
+) -> Callable:
     """Put two commands into the table: to the next of a thing, and to the previous.
 
     The function takes the step, 1 or -1, too. The first half of the keys goes on.
@@ -119,7 +123,8 @@ def both_ways(thing: str, keys: str, nvda: str = "", also: str = "", **how: Any)
         called = function.__name__.strip("_").replace("_", "-")
         for half, (step, way) in enumerate(((1, "next"), (-1, "previous"))):
             own, other, more = (_half(each.split(), half) for each in (keys, nvda, also))
-            command(f"{way} {thing}", own, other, also=more, name=f"{way}-{called}", **how)(
+            told = {**how, "first": first and not half}
+            command(f"{way} {thing}", own, other, also=more, name=f"{way}-{called}", **told)(
                 lambda what, step=step: function(what, step)
             )
         return function

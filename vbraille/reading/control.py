@@ -10,10 +10,17 @@ if TYPE_CHECKING:
     from vbraille.reading.explored import Explored
 
 _ANYWHERE = Where.ANYWHERE
+_PAUSE = "pause: rest the array at once, or go on", "space"
 
 
-@command("pause: rest the array at once, or go on", "space", where=_ANYWHERE & ~Where.TUNING,
-         first=True, steers=True, also="button:3 pins:PAUSE")  # fmt: skip
+@command(
+    *_PAUSE,
+    where=_ANYWHERE & ~(Where.TUNING | Where.GAME),
+    first=True,
+    steers=True,
+    also="button:3 pins:PAUSE",
+)
+@command(*_PAUSE, where=Where.GAME, steers=True, also="pins:PAUSE")
 def pause(what: Explored) -> None:
     what.device.paused = not what.device.paused
     what.say("paused" if what.device.paused else what.doing)

@@ -122,6 +122,7 @@ class ReadingDevice:
         from vbraille.simulation.recorded import Recorded
 
         self._steering = getattr(device, "steering", None)
+        self.pointer = getattr(device, "pointer", None)
         self.once = isinstance(getattr(device, "hand", None), Recorded)
         rate_hz = min(self._wanted.rate_hz, device.display.rate_hz)
         return LocalEngine(
@@ -255,7 +256,7 @@ class ReadingDevice:
 
     def ring(self) -> Any:
         """Reader of the records of ticks, for the live view; another after each start."""
-        return self.engine._ring  # noqa: SLF001 - until an engine gives one
+        return self.engine._ring
 
     def hand_done(self) -> bool:
         """Tell whether a simulated hand has followed its last order; False for a person's."""

@@ -10,16 +10,13 @@ from vbraille.devices.events import Button, Knob, placing_sentence
 from vbraille.errors import DeviceError, InputError
 from vbraille.reading.commands import Command, bindings, spoken
 from vbraille.reading.device import POLL_S, HostDiedError
-from vbraille.reading.explored import Explored
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from typing import Protocol
 
-    import numpy as np
-    from numpy.typing import NDArray
-
     from vbraille.reading.device import ReadingDevice
+    from vbraille.reading.explored import Explored
     from vbraille.reading.keys import Keyboard
     from vbraille.reading.outputs import Console
 
@@ -28,6 +25,10 @@ if TYPE_CHECKING:
 
         def pressed(self, what: Explored) -> list[str]:
             """Keys since the last call, as names of `vbraille.reading.commands.bindings`."""
+            ...
+
+        def rest(self) -> None:
+            """Show nothing until the next call, since the program is stopped."""
             ...
 
 
@@ -165,8 +166,7 @@ class Exploration:
         self._device.paused = True
         self._outer.say(_STOPPED)
         for source in self._sources:
-            if hasattr(source, "rest"):
-                source.rest()
+            source.rest()
         self._keyboard.stop()
         self._device.paused = paused
         self._outer.say("paused" if paused else self._outer.doing)
@@ -209,12 +209,8 @@ class Exploration:
         self._settle(what)
         if ticks.size:
             what.follow(ticks)
-            self._help(what, ticks)
-
-    def _help(self, what: Explored, ticks: NDArray[np.void]) -> None:
-        """End a reading without a person that would never end."""
-        if what.hopeless is not None and not self._keyboard.attached:
-            raise DeviceError(what.hopeless)
+            if what.hopeless is not None and not self._keyboard.attached:
+                raise DeviceError(what.hopeless)
 
     def _turn(self, what: Explored, knob: str, share: float) -> None:
         """Show the value of a knob that is being turned at once; it is said once it is left."""

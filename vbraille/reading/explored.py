@@ -1,4 +1,4 @@
-"""What is explored under a hand: what a book, a picture, a game and a tuning course have in common."""
+"""What is explored under a hand: what books, pictures, games and tuning have in common."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class Explored:
         return None
 
     def echoed(self, echo: str) -> Iterable[str]:  # noqa: ARG002 - of a line, if it has one
-        """What is printed of what has come under the hand; see `vbraille.reading.outputs.ECHOES`."""
+        """What is printed of what has come under the hand; see `Console`."""
         return ()
 
     # What the loop calls

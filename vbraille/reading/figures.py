@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
 
 from vbraille.errors import InputError
-from vbraille.feeling.loading import load_scene
 from vbraille.reading.commands import Where
 from vbraille.translate.source import MarkKind
 
@@ -69,9 +68,9 @@ class BookFigures:
     def address(self, line: Line) -> str:
         """Address of the figure that ends on a line; empty if none does."""
         for mark in line.block.marks:
-            if mark.kind is MarkKind.IMAGE and mark.target:
-                if line.place < line.block.start + mark.end <= line.end:
-                    return mark.target
+            ends_here = line.place < line.block.start + mark.end <= line.end
+            if mark.kind is MarkKind.IMAGE and mark.target and ends_here:
+                return mark.target
         return ""
 
     def of(self, line: Line) -> LoadedScene | None:
@@ -121,8 +120,8 @@ class BookFigures:
 
             def make() -> Program:
                 # It loads numba, which a reader who comes to no figure does not need.
-                from vbraille.render.scene.compiling import compile_scene
-                from vbraille.render.scene.figures import FigureAt, page_with_figures
+                from vbraille.render.compiling import compile_scene
+                from vbraille.render.figures import FigureAt, page_with_figures
 
                 figures = [FigureAt(one.scene, (0.0, top), one.assets) for one, top in placed]
                 scene, assets = page_with_figures(masks, style, figures, start_mm=start_mm)
@@ -143,7 +142,9 @@ class BookFigures:
 
     def here(self, surface: Surface, pose: Pose | None) -> tuple[str, str] | None:
         """Titles of the figure at a pose, and of its element there; None if none is there."""
-        for figure, top_mm in self.on(surface) if pose is not None else ():
+        if pose is None:
+            return None
+        for figure, top_mm in self.on(surface):
             canvas = figure.scene.canvas
             if 0 <= pose.x_mm <= canvas.width_mm and 0 <= pose.y_mm - top_mm <= canvas.height_mm:
                 index = self._index(figure)
@@ -169,9 +170,10 @@ class BookFigures:
         from vbraille.feeling.loading import check_fits
         from vbraille.reading.picture import Picture
 
-        address, figure = self.address(reader.line), self.of(reader.line)
-        if address and isinstance(self._found[address], InputError):
-            raise self._found[address]
+        figure = self.of(reader.line)
+        found = self._found.get(self.address(reader.line))
+        if isinstance(found, InputError):
+            raise found
         if figure is None:
             return None
         check_fits(figure.scene, reader.device.display)
@@ -179,6 +181,8 @@ class BookFigures:
         return Picture(figure, reader.device, reader.outputs, where=Where.FIGURE, **how)
 
     def _load(self, address: str) -> LoadedScene:
+        from vbraille.feeling.loading import load_scene  # most books have no figures
+
         if self._folder is not None:
             return load_scene(self._folder / unquote(address).lstrip("/"), self._style())
         # What it includes is looked for beside it, which is nowhere: a book's figure is one file.

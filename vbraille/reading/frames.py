@@ -15,7 +15,6 @@ from vbraille.errors import InputError
 from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
 from vbraille.live.states import line_shown
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
-from vbraille.typed import typed
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -69,7 +68,6 @@ class RenderedLine:
     def __len__(self) -> int:
         return self.positions_mm.size
 
-    @typed
     def at(self, x_mm: float) -> NDArray[np.float64]:
         """Frame whose place comes nearest to a place of the array's centre.
 
@@ -80,7 +78,6 @@ class RenderedLine:
         """
         return self.frames[np.abs(self.positions_mm - x_mm).argmin()]
 
-    @typed
     def recording(self, speed_mm_s: float = 60.0) -> Recording:
         """Make what a hand feels that goes along the line once at a steady speed, in mm/s.
 
@@ -168,7 +165,6 @@ class RenderedPage:
         """
         return self.program.poses(*_path(x_mm, y_mm, theta_rad))[1].astype(np.float64)
 
-    @typed
     def recording(
         self,
         x_mm: ArrayLike,

@@ -8,6 +8,7 @@ is said, so that no player needs to see.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
@@ -35,7 +36,7 @@ _LEAST_CARDS, _MOST_CARDS = 2, 50
 COLUMNS = 6  # of the table; the source does not say how its cards lie
 _LINE_MM = 10.0  # between the lines that a simulated hand goes along
 DOWN, UP, GONE = "face down", "turned up", "empty"
-_HERE = {"where": Where.GAME}
+_command = partial(command, where=Where.GAME)
 
 
 def load_deck(folder: Path, style: BrailleStyle, display: Display) -> list[LoadedScene]:
@@ -244,7 +245,7 @@ def _add_ways() -> None:
     ways = {"right": (1, 0), "left": (-1, 0), "down": (0, 1), "up": (0, -1)}
     for name, by in ways.items():
 
-        @command(f"place {name}", name, name=name, **_HERE)
+        @_command(f"place {name}", name, name=name)
         def move(game: Game, by: tuple[int, int] = by) -> None:
             _move(game, *by)
 
@@ -252,7 +253,9 @@ def _add_ways() -> None:
 _add_ways()
 
 
-@both_ways("card that lies face down", "n p", also="button:1 pins:LNDN", first=True, **_HERE)
+@both_ways(
+    "card that lies face down", "n p", also="button:1 pins:LNDN", first=True, where=Where.GAME
+)
 def card(game: Game, step: int) -> None:
     places = range(game.place + step, len(game.cards) if step > 0 else -1, step)
     place = next((each for each in places if game.sides[each] == DOWN), None)
@@ -263,14 +266,18 @@ def card(game: Game, step: int) -> None:
         game.say_place()
 
 
-@command("turn the card up; after the second, find out whether they match", "enter",
-         also="button:2 pins:HOME", first=True, steers=True, **_HERE)  # fmt: skip
+@_command(
+    "turn the card up; after the second, find out whether they match",
+    "enter",
+    also="button:2 pins:HOME",
+    first=True,
+    steers=True,
+)
 def turn(game: Game) -> None:
     game.turn_up()
 
 
-@command("feel the other card that is turned up", "o", also="button:3", first=True, steers=True,
-         **_HERE)  # fmt: skip
+@_command("feel the other card that is turned up", "o", also="button:3", first=True, steers=True)
 def other(game: Game) -> None:
     others = [place for place in game.up if place != game.felt]
     if others:
@@ -280,30 +287,30 @@ def other(game: Game) -> None:
         game.refuse("no other card is turned up; enter turns one")
 
 
-@command("say the place, and how its card lies", "i u", **_HERE)
+@_command("say the place, and how its card lies", "i u")
 def say_place(game: Game) -> None:
     game.say_place()
 
 
-@command("say how all cards lie", "O", first=True, steers=True, **_HERE)
+@_command("say how all cards lie", "O", first=True, steers=True)
 def say_table(game: Game) -> None:
     for begin in range(0, len(game.sides), COLUMNS):
         row = ", ".join(game.sides[begin : begin + COLUMNS])
         game.say(f"row {begin // COLUMNS + 1}: {row}")
 
 
-@command("say the points", "V f5", first=True, steers=True, **_HERE)
+@_command("say the points", "V f5", first=True, steers=True)
 def say_points(game: Game) -> None:
     points = [f"player {n}: {count(each, 'point')}" for n, each in enumerate(game.points, 1)]
     left = sum(side != GONE for side in game.sides)
     game.say(f"{', '.join(points)}; {count(left, 'card')} left, {count(game.turns, 'turn')}")
 
 
-@command("deal again for one player", "1", steers=True, **_HERE)
+@_command("deal again for one player", "1", steers=True)
 def one(game: Game) -> None:
     game.again(1)
 
 
-@command("deal again for two players", "2", steers=True, **_HERE)
+@_command("deal again for two players", "2", steers=True)
 def two(game: Game) -> None:
     game.again(2)

@@ -67,9 +67,7 @@ class HandWatch:
         """Note that the array is to rest: what went before does not count."""
         self._since_s = self._refused_s = -1.0
 
-    def watch(
-        self, ticks: NDArray[np.void], *, reached: bool, patient: bool
-    ) -> Iterator[str]:
+    def watch(self, ticks: NDArray[np.void], *, reached: bool, patient: bool) -> Iterator[str]:
         """Sentences to be said after these ticks of the line.
 
         Parameters
@@ -96,7 +94,7 @@ class HandWatch:
         else:
             yield from self._watch_turns(x_mm)
 
-    def _watch_device(self, held: bool, now_s: float) -> Iterator[str]:  # noqa: FBT001
+    def _watch_device(self, held: bool, now_s: float) -> Iterator[str]:
         if not held:
             self._refused_s = -1.0
             if "refused" in self._said:

@@ -81,6 +81,9 @@ class LiveOutput:
     def close(self) -> None:
         """Do nothing: the view has its own end."""
 
+    def rest(self) -> None:
+        """Do nothing: pages show what stands."""
+
     def pressed(self, what: Explored) -> list[str]:
         """Tell pages what has changed, and give what they have asked for, as keys."""
         for note in self._view.notes():
@@ -271,7 +274,7 @@ def _drawn(loaded: LoadedScene, switches: int) -> SceneShown:
     """Draw a scene as its switches have it, and the layers that they hide."""
     from vbraille.feeling.index import label_of
     from vbraille.pictures.scenes import hidden_layers, small_png
-    from vbraille.render.scene.compiling import settled
+    from vbraille.render.compiling import settled
 
     def address(*scenes: Any) -> str:
         drawn = small_png(scenes[0], loaded.assets, *scenes[1:])

@@ -78,7 +78,7 @@ def bottom(reader: Reader) -> None:
         reader.jump(last.place)
 
 
-@command("back to the place before the last jump", "b alt-left", also="pins:BACK", first=True)
+@command("back to the place before the last jump", "b alt-left", also="pins:BACK")
 def back(reader: Reader) -> None:
     if reader.back:
         reader.jump(reader.back.pop(), "back", remember=False)
@@ -92,8 +92,9 @@ def skip_blank(reader: Reader) -> None:
     reader.say(f"blank lines: {'skipped' if reader.skip_blank else 'read'}")
 
 
-@both_ways("page of lines on the surface", "] ctrl-pagedown [ ctrl-pageup",
-           also="pins:WINDN pins:WINUP")  # fmt: skip
+@both_ways(
+    "page of lines on the surface", "] ctrl-pagedown [ ctrl-pageup", also="pins:WINDN pins:WINUP"
+)
 def surface_page(reader: Reader, step: int) -> None:
     if not reader.turn_page(step):
         reader.refuse("no next page" if step > 0 else "no previous page")

@@ -42,6 +42,9 @@ class _Said:
     def show(self, what: object) -> None:
         pass
 
+    def close(self) -> None:
+        pass
+
 
 class OpenDevice(ReadingDevice):
     """A device that texts are shown on. A context manager; on exit the actuators fade to rest.
@@ -133,9 +136,14 @@ class OpenDevice(ReadingDevice):
         book = Book(source, choose_table(language, grade, table))
         self._reader = None
         self._reader = Reader(
-            Layout(book, width), self, self._outputs, Places(None, self._outputs[0].say).book("", Path(), ""),
-            lines=(first, last), attended=False, by_hand=advance,
-        )  # fmt: skip
+            Layout(book, width),
+            self,
+            self._outputs,
+            Places(None, self._outputs[0].say).book("", Path(), ""),
+            lines=(first, last),
+            attended=False,
+            by_hand=advance,
+        )
 
     def read(self, text: str, **how: Any) -> Iterator[Line]:
         """Show a text, and give each line as it comes under the hand, until all are read.
@@ -171,7 +179,7 @@ class OpenDevice(ReadingDevice):
         return events
 
     def tune(self, **turned: Unpack[StyleChanges]) -> None:
-        """Show lines in a style of which some values differ from now on; see `BrailleStyle.replace`.
+        """Show lines in another style from now on; see `BrailleStyle.replace`.
 
         Raises
         ------
@@ -269,7 +277,9 @@ def open_to_read(
     return opened
 
 
-def _model_for(found: Display, display: Model | Display | None, style: BrailleStyle | None) -> Model:
+def _model_for(
+    found: Display, display: Model | Display | None, style: BrailleStyle | None
+) -> Model:
     """Model that a device which was found is read as."""
     if display is not None:
         check_actuators(found, display.display if isinstance(display, Model) else display)

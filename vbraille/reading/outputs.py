@@ -17,10 +17,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 from vbraille.wording import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from pathlib import Path
-
-    from vbraille.reading.explored import Explored
 
 ECHOES = ("none", "text", "cells", "both")
 _CELLS = "cells: "  # begins a sentence of braille signs, which no voice can say
@@ -51,13 +49,26 @@ MELODIES = {
 }
 
 
+class Shown(Protocol):
+    """What outputs show; see `vbraille.reading.explored.Explored`."""
+
+    @property
+    def text(self) -> str:
+        """Text under the hand, as it is spoken; empty if there is none."""
+        ...
+
+    def echoed(self, echo: str) -> Iterable[str]:
+        """What is printed of what has come under the hand."""
+        ...
+
+
 class Output(Protocol):
     """Where a reading is heard, seen or felt."""
 
     def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:
         """Say a sentence, with a cue or without; an empty one is a cue alone."""
 
-    def show(self, what: Explored) -> None:
+    def show(self, what: Shown) -> None:
         """Show what has come under the hand."""
 
     def close(self) -> None:
@@ -82,7 +93,7 @@ class Console:
         if sentence:
             print(f"{self._clear}{printable(sentence)}", flush=True)
 
-    def show(self, what: Explored) -> None:
+    def show(self, what: Shown) -> None:
         """Print a line, as the echo says."""
         for sentence in what.echoed(self._echo):
             self.say(sentence)
@@ -131,7 +142,7 @@ class Signals:
         elif cue in MELODIES and sys.stderr.isatty():
             print("\a" * len(MELODIES[cue]), end="", file=sys.stderr, flush=True)
 
-    def show(self, what: Explored) -> None:
+    def show(self, what: Shown) -> None:
         """Do nothing."""
 
     def sound(self, path: Path) -> None:
@@ -178,7 +189,7 @@ class Speech:
         """Stop what is being spoken, for something newer."""
         self._client.cancel()
 
-    def show(self, what: Explored) -> None:
+    def show(self, what: Shown) -> None:
         """Speak the text of a line."""
         self.say(what.text)
 
@@ -232,7 +243,7 @@ class Behind:
         """Have a sentence said."""
         self._waiting.put(lambda output: output.say(sentence, cue))
 
-    def show(self, what: Explored) -> None:
+    def show(self, what: Shown) -> None:
         """Have the text under the hand said, as it is now."""
         text = what.text
         self._waiting.put(lambda output: output.say(text))

@@ -151,9 +151,7 @@ class _Pane:
         if masks != self._masks or width != self._width:
             self._masks, self._width, self._panned_at = masks, width, None
             self.first = (cell or 0) // max(width, 1) * width
-        elif cell is not None and (
-            self._panned_at is None or abs(cell - self._panned_at) > _SLACK
-        ):
+        elif cell is not None and (self._panned_at is None or abs(cell - self._panned_at) > _SLACK):
             self._panned_at = None
             if not self.first - _SLACK <= cell < self.first + width + _SLACK:
                 self.first = cell // max(width, 1) * width
@@ -262,10 +260,10 @@ class _Link:
                 connection.closeConnection()
 
     def _enter(self, connection: Any) -> None:
-        """Ask for the display where this program's terminal is, or everywhere if that is unknown."""
+        """Ask for the display at this program's terminal, or everywhere if that is unknown."""
         try:
             connection.enterTtyMode()
-        except Exception:  # noqa: BLE001 - of brlapi
+        except Exception:  # of brlapi
             connection.enterTtyModeWithPath([])
 
     def _read(self, connection: Any) -> None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import unicodedata
 from typing import TYPE_CHECKING, Any
 
+from vbraille.braille.cells import dots_of
 from vbraille.errors import InputError
+from vbraille.knobs import KNOBS
 from vbraille.layout.texts import cells_per_line
 from vbraille.reading.commands import Where
 from vbraille.reading.explored import Explored
@@ -23,7 +26,6 @@ if TYPE_CHECKING:
 
     from vbraille.layout import Line
     from vbraille.reading.device import ReadingDevice
-    from vbraille.reading.figures import BookFigures
     from vbraille.reading.outputs import Output
     from vbraille.reading.places import KeptBook
     from vbraille.render import BrailleStyle
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
     from vbraille.translate import Book
 
 _GATHERED = 20  # blocks at a time, for a search to come
-_KEPT_EVERY_S = 0.3
+_KEPT_EVERY_S, _WATCHED_EVERY_S = 0.3, 0.5
 _TRAIL = 100  # places that are kept to go back to
 USUAL_CELLS_S = 8.0  # of autoscroll
 
@@ -61,6 +63,8 @@ class Reader(Explored):
         The figures of the book; None if none is felt.
     save
         Function that saves a style in a profile, and gives a sentence on that.
+    changed
+        Function that gives the book anew if its file has changed; None if it has not.
 
     Attributes
     ----------
@@ -94,14 +98,15 @@ class Reader(Explored):
         attended: bool = True,
         by_hand: bool = True,
         echo: str = "none",
-        figures: BookFigures | None = None,
+        figures: Any = None,
         save: Callable[[BrailleStyle], str] | None = None,
+        changed: Callable[[], Book | None] = lambda: None,
     ) -> None:
         super().__init__(device, outputs, key_set)
         self.layout, self.kept, self.save, self.figures = layout, kept, save, figures
         self.first, self.last = lines
         self.attended, self.by_hand = attended, by_hand
-        self._fixed, self._echo = fixed, echo
+        self._fixed, self._echo, self._changed = fixed, echo, changed
         self.back: list[int] = []
         self.undo: list[BrailleStyle] = []
         self.pattern: re.Pattern[str] | None = None  # what is searched for
@@ -111,15 +116,17 @@ class Reader(Explored):
         self.skip_blank = False
         self.scroll_cells_s = 0.0  # cells a second at which lines come by time; 0 for by hand
         self._cells_due = 0.0
-        self._ticked_s = self._kept_s = 0.0
+        self._ticked_s = self._kept_s = self._watched_s = 0.0
         self._unkept: Line | None = None
         self.finished = False  # whether the end was said
         self.has_pages: bool | None = None  # whether the book says where pages begin, once known
         self.note_from: int | None = None  # place of the reference that led to a note
         self.beside_mapping: Mapping | None = None  # that the live view shows beside the array
         self.lines_read = 0
-        self._too_fast_said = False
-        self.surface = Surface(device, device.model.style, self._neighbour, figures, by_hand=by_hand)
+        self._too_fast_said = self._figure_due = False
+        self.surface = Surface(
+            device, device.model.style, self._neighbour, figures, by_hand=by_hand
+        )
         self.show(self._first_line())
         self.found = None
 
@@ -250,10 +257,7 @@ class Reader(Explored):
         self.lines_read += 1
         for output in self.outputs:
             output.show(self)
-        if self.figures is not None:
-            below = self.surface.row in self.surface.free
-            for sentence in self.figures.said(line, below=below):
-                self.say(sentence)
+        self._figure_due = self.figures is not None
 
     def announce(self, what: str = "") -> None:
         """Say which line a command has led to, unless that is printed already."""
@@ -400,14 +404,26 @@ class Reader(Explored):
         if self._unkept is not None and now_s - self._kept_s >= _KEPT_EVERY_S:
             self._kept_s = now_s
             self.keep()
+        if now_s - self._watched_s >= _WATCHED_EVERY_S:
+            self._watched_s = now_s
+            self._read_anew()
         if self.figures is not None:
-            self.figures.take(self.surface)
+            self._show_figures(self.figures)
         passed_s, self._ticked_s = now_s - self._ticked_s, now_s
         if self.scroll_cells_s and not (self.device.paused or self.finished):
             self._cells_due -= min(passed_s, 0.25) * self.scroll_cells_s
             if self._cells_due <= 0:
                 self.go_on()
         self.book.source.gather(_GATHERED)
+
+    def _show_figures(self, figures: Any) -> None:
+        """Have figures join the page once they are compiled, and say which one the line has."""
+        figures.take(self.surface)
+        if self._figure_due:
+            self._figure_due = False
+            below = self.surface.row in self.surface.free
+            for sentence in figures.said(self.line, below=below):
+                self.say(sentence)
 
     def keep(self) -> None:
         """Keep the place now."""
@@ -428,12 +444,26 @@ class Reader(Explored):
 
     def route(self, cell: int) -> None:
         """Say what is at a cell of the line, and bring it under the finger."""
-        from vbraille.reading.saying import cell_said
-
         if cell < len(self.line):
             self.remember()
             self.bring_under(cell)
-        self.say(cell_said(self, cell))
+        self.say(self.cell_said(cell))
+
+    def cell_said(self, cell: int | None) -> str:
+        """Sentence on a cell of the line: its dots, what it stands for, and its word."""
+        line = self.line
+        if cell is None or not 0 <= cell < len(line):
+            return "nothing under the finger"
+        numbers = "-".join(map(str, dots_of(int(line.masks[cell]))))
+        said = [f"dots {numbers}" if numbers else "no dots"]
+        span = line.source(cell)
+        if span is not None:
+            begin = line.block.start
+            printed = line.block.text[span[0] - begin : span[1] - begin].strip()
+            said += [letter_said(printed)] if printed else []
+            word = line.word(cell)
+            said += [f"in {word}"] if word and word != printed else []
+        return ", ".join(said)
 
     # How it feels
 
@@ -473,9 +503,7 @@ class Reader(Explored):
             for number in (self.first, self.last)
         ]
         self.layout = Layout(book, self.layout.width if self._fixed else self.surface.width)
-        first, last = (
-            None if line is None else self.layout.place(line.place) for line in ends
-        )
+        first, last = (None if line is None else self.layout.place(line.place) for line in ends)
         self.first = self.first if first is None else self.layout.number(first[0])
         self.last = self.last if last is None else self.layout.number(last[0])
         line, cell = self.layout.place(place) or (self.layout.last(), 0)
@@ -485,23 +513,30 @@ class Reader(Explored):
 
     def turn(self, knob: str, value: float) -> str:
         """Give a knob of the style a value; a sentence on it, or empty if it had it before."""
-        from vbraille.reading.feeling import KNOBS
-
         turned = KNOBS[knob]
         if turned.value(self.style) == turned.nearest(value):
             return ""
         self.tune(**{turned.field: turned.nearest(value)})
         return turned.said(turned.nearest(value))
 
-    def exchange(self, book: Book) -> None:
-        """Read a file anew that has changed, at the same place.
+    def _read_anew(self) -> None:
+        """Read a file anew that has changed, at the same place."""
+        words, place, before = around(self.line), self.line.place, self.book.source
+        try:
+            book = self._changed()
+            if book is not None:
+                self._lay_out(book, nearest(book.source, words, place), None)
+        except InputError as error:
+            self.refuse(f"the file has changed and is not read anew: {error}")
+            return
+        if book is not None:
+            self.back = []
+            before.close()
+            self.say(f"the file has changed; it is read anew, {self.named()}")
 
-        Raises
-        ------
-        InputError
-            If it has no text any more.
-        """
-        words, place = around(self.line), self.line.place
-        before, self.back = self.book.source, []
-        self._lay_out(book, nearest(book.source, words, place), None)
-        before.close()
+
+def letter_said(text: str) -> str:
+    """Letters as they are; another character by its name."""
+    if len(text) != 1 or text.isalnum():
+        return text
+    return unicodedata.name(text, f"U+{ord(text):04X}").lower()

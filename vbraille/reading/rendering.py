@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from vbraille.feeling.paths import PosedPath
     from vbraille.layout.pages import Layout, Line
     from vbraille.render import Model
+    from vbraille.scene.scene import Canvas
     from vbraille.simulation.hand import Hand
 
 _BLOCK_FRAMES = 16_384
@@ -137,7 +138,7 @@ def render_picture(
     path: str,
     scene: str,
     model: Model,
-    make_path: Callable[[object], PosedPath],
+    make_path: Callable[[Canvas], PosedPath],
     rate_hz: float,
     hand: str,
     *,

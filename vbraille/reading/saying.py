@@ -5,8 +5,8 @@ from __future__ import annotations
 import unicodedata
 from typing import TYPE_CHECKING
 
-from vbraille.braille.cells import dots_of
 from vbraille.reading.commands import command
+from vbraille.reading.reader import letter_said
 from vbraille.reading.structure import LINES_PER_PAGE
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _LOOKED_BACK = 5000  # blocks, for the page and the heading
 
 
-@command("say line, page, percent and heading", "i", "i delete", first=True, also="pins:INFO")
+@command("say line, page, percent and heading", "i", "delete", first=True, also="pins:INFO")
 def info(reader: Reader) -> None:
     here = reader.figure_here
     said = [f"figure: {here[0]}"] if here else []
@@ -41,30 +41,7 @@ def under_finger(reader: Reader) -> None:
     if here is not None:
         reader.say(f"figure: {here[0]}, here: {here[1] or 'nothing with a name'}")
     else:
-        reader.say(cell_said(reader, reader.cell))
-
-
-def cell_said(reader: Reader, cell: int | None) -> str:
-    """Sentence on a cell of the line: its dots, what it stands for, and its word."""
-    line = reader.line
-    if cell is None or not 0 <= cell < len(line):
-        return "nothing under the finger"
-    numbers = "-".join(map(str, dots_of(int(line.masks[cell]))))
-    said = [f"dots {numbers}" if numbers else "no dots"]
-    span = line.source(cell)
-    if span is not None:
-        print_ = line.block.text[span[0] - line.block.start : span[1] - line.block.start].strip()
-        said += [_letter(print_)] if print_ else []
-        word = line.word(cell)
-        said += [f"in {word}"] if word and word != print_ else []
-    return ", ".join(said)
-
-
-def _letter(text: str) -> str:
-    """Letters as they are; another character by its name."""
-    if len(text) != 1 or text.isalnum():
-        return text
-    return unicodedata.name(text, f"U+{ord(text):04X}").lower()
+        reader.say(reader.cell_said(reader.cell))
 
 
 @command("say the word under the finger", "w", also="pins:SPEAK_CURR_WORD")
@@ -75,7 +52,7 @@ def say_word(reader: Reader) -> None:
 @command("spell the word under the finger", "W", also="pins:SPELL_CURR_WORD")
 def spell_word(reader: Reader) -> None:
     word = unicodedata.normalize("NFC", _word(reader))
-    reader.say(", ".join(map(_letter, word)) or "no word under the finger")
+    reader.say(", ".join(map(letter_said, word)) or "no word under the finger")
 
 
 def _word(reader: Reader) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from functools import cache
+from itertools import takewhile
 
 _QUOTES = "'\"`´‘’‚‛“”„‟′″‹›«»ʼ＇＂"
 _DASHES = "-‐‑‒–—―−⁃﹘﹣－"
@@ -17,9 +18,10 @@ def pattern_for(wanted: str) -> re.Pattern[str]:
 
     Each letter stands for those like it, such as e for É, and a blank for any white space.
     """
-    parts = []
-    for character in _plain(" ".join(wanted.split())):
-        parts.append(r"\s+" if character == " " else _class(character) + _MARKS)
+    parts = [
+        r"\s+" if character == " " else _class(character) + _MARKS
+        for character in _plain(" ".join(wanted.split()))
+    ]
     return re.compile("".join(parts))
 
 
@@ -47,12 +49,8 @@ def find_before(pattern: re.Pattern[str], text: str, at: int) -> int | None:
 
 def hits_between(pattern: re.Pattern[str], text: str, start: int, end: int) -> list[int]:
     """Indices of all hits that begin from an index on, before another."""
-    found = []
-    for match in pattern.finditer(text, start):
-        if match.start() >= end:
-            break
-        found.append(match.start())
-    return found
+    hits = (match.start() for match in pattern.finditer(text, start))
+    return list(takewhile(lambda hit: hit < end, hits))
 
 
 def _class(character: str) -> str:

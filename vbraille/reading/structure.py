@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
@@ -12,6 +11,8 @@ from vbraille.translate import BlockKind
 from vbraille.translate.source import MarkKind
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from vbraille.reading.reader import Reader
     from vbraille.translate import Block
     from vbraille.translate.source import Mark
@@ -45,8 +46,9 @@ def _begins(reader: Reader, block: Block, kind: BlockKind) -> bool:
     return before is None or before.kind is not kind
 
 
-@both_ways("paragraph", "a ctrl-down A ctrl-up", "p ctrl-down P ctrl-up",
-           also="pins:NXPGRPH pins:PRPGRPH")  # fmt: skip
+@both_ways(
+    "paragraph", "a ctrl-down A ctrl-up", "p ctrl-down P ctrl-up", also="pins:NXPGRPH pins:PRPGRPH"
+)
 def paragraph(reader: Reader, step: int) -> None:
     _go(reader, step, "paragraph", lambda block: _named(block) if block.words else "")
 
@@ -98,15 +100,22 @@ def quotation(reader: Reader, step: int) -> None:
 
 
 def _go_to_group(reader: Reader, step: int, thing: str, kind: BlockKind) -> None:
-    _go(reader, step, thing,
-        lambda block: f"{thing}: {block.words}" if _begins(reader, block, kind) else "")  # fmt: skip
+    def said(block: Block) -> str:
+        return f"{thing}: {_plain(block)}" if _begins(reader, block, kind) else ""
+
+    _go(reader, step, thing, said)
+
+
+def _plain(block: Block) -> str:
+    """Words of a block, without the bullet of an item."""
+    return block.words.removeprefix("• ")
 
 
 @both_ways("item of a list", "I alt-i", "i I")
 def item(reader: Reader, step: int) -> None:
     def said(block: Block) -> str:
         is_item = block.kind is BlockKind.ITEM and not block.continues
-        return f"item: {block.words}" if is_item else ""
+        return f"item: {_plain(block)}" if is_item else ""
 
     _go(reader, step, "item", said)
 
@@ -307,7 +316,7 @@ def contents(reader: Reader) -> None:
         exact = [each for each in headings if each.title.casefold() == words]
         return exact or [each for each in headings if words in each.title.casefold()]
 
-    def _go_to_heading(found) -> None:  # noqa: ANN001 - a heading
+    def _go_to_heading(found) -> None:
         reader.jump(found.place, f"heading level {found.level}: {found.title}")
 
     def contents_again() -> None:

@@ -83,7 +83,7 @@ class Part:
         return self.first + shown if 0 <= shown < len(self) and self.first + shown >= 0 else None
 
     def under(self, cell: int, x_mm: float, pitch_mm: float, share: float) -> Part:
-        """Part in which a cell is at a place, of which a share of the cell, 0 to 1, is to the left."""
+        """Part with a cell at a place; a share of the cell, 0 to 1, is to the left of that."""
         before = x_mm / pitch_mm - share  # cells, and a part of one
         shown = math.ceil(before - 1e-9)
         return replace(self, first=cell - shown, start_mm=min((before - shown) * pitch_mm, 0.0))

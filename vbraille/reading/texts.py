@@ -1,3 +1,4 @@
+# ruff: noqa: D101, D102, D103, B018
 """Stand-in for the door of the text's rooms, until they have it themselves."""
 
 from __future__ import annotations
@@ -7,8 +8,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from vbraille.layout.pages import Layout as _Layout
-from vbraille.translate import Book as _Book
 from vbraille.translate import BlockKind
+from vbraille.translate import Book as _Book
 from vbraille.translate.source import Mark
 
 
@@ -148,7 +149,11 @@ class Book:
     def __init__(self, source, table=None, *, language="", grade=None, switch=True):
         self.source, self.table, self.language = source, table, language
         self.grade, self.switch = grade, switch
-        self.old = _Book(source.old, table, language=language, grade=grade, switch=switch) if table else _Book(source.old)
+        self.old = (
+            _Book(source.old, table, language=language, grade=grade, switch=switch)
+            if table
+            else _Book(source.old)
+        )
 
     def notes(self):
         return list(self.old.notes())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING
 
 from vbraille.feeling.aperture import Aperture
@@ -17,7 +18,8 @@ if TYPE_CHECKING:
     from vbraille.feeling.index import NamedElement
     from vbraille.reading.picture import Picture
 
-_HERE = {"where": Where.PICTURE | Where.FIGURE}
+_WHERE = Where.PICTURE | Where.FIGURE
+_command = partial(command, where=_WHERE)
 _PAN, _LINE_MM = 0.5, 10.0  # of what is within reach; on a device of one axis
 _CONTRAST_STEP = 0.1
 
@@ -27,7 +29,7 @@ def leave(picture: Picture) -> None:
     picture.done = True
 
 
-@command("say the way to an element no more", "escape", **_HERE)
+@_command("say the way to an element no more", "escape")
 def cancel(picture: Picture) -> None:
     if picture.goal is not None:
         picture.goal = None
@@ -38,8 +40,9 @@ def cancel(picture: Picture) -> None:
         picture.refuse("nothing to cancel")
 
 
-@command("say what is under the finger, and where", "i u", also="button:1", first=True,
-         steers=True, **_HERE)  # fmt: skip
+@_command(
+    "say what is under the finger, and where", "i u", also="button:1", first=True, steers=True
+)
 def say_here(picture: Picture) -> None:
     place = picture.place
     if place is None:
@@ -59,7 +62,7 @@ def _nearest(picture: Picture, place: tuple[float, float]) -> str:
     return "" if found is None else f", nearest {found[0].name}, {way(place, found[1])}"
 
 
-@command("say more of what is under the finger", "w", also="button:2", **_HERE)
+@_command("say more of what is under the finger", "w", also="button:2")
 def describe(picture: Picture) -> None:
     place = picture.place
     spot = None if place is None else picture.index.where(*place)
@@ -78,12 +81,12 @@ def _looks(picture: Picture, element: NamedElement) -> str:
     return f"{kinds[0]}, {picture.aperture.sized(element.box)}{parts}"
 
 
-@command("say what the picture is", "V f5", **_HERE)
+@_command("say what the picture is", "V f5")
 def say_picture(picture: Picture) -> None:
     picture.say_picture()
 
 
-@command("list the elements that have a name", "O", first=True, **_HERE)
+@_command("list the elements that have a name", "O", first=True)
 def elements(picture: Picture) -> None:
     if not picture.index.elements:
         picture.refuse("no element has a name")
@@ -94,7 +97,7 @@ def elements(picture: Picture) -> None:
         picture.say(f"{element.name}: {'outside' if box.is_empty else said}")
 
 
-@command("go to an element by its name", "g /", first=True, **_HERE)
+@_command("go to an element by its name", "g /", first=True)
 def go_to(picture: Picture) -> None:
     def answer(typed: str) -> None:
         element = picture.index.find(typed) if typed.strip() else None
@@ -107,7 +110,7 @@ def go_to(picture: Picture) -> None:
     picture.ask("element", answer, names[::-1])
 
 
-@both_ways("element", "n e p E", "n e p", first=True, **_HERE)
+@both_ways("element", "n e p E", "n e p", first=True, where=_WHERE)
 def element(picture: Picture, step: int) -> None:
     _step(picture, step)
 
@@ -123,8 +126,7 @@ def _step(picture: Picture, step: int) -> None:
         picture.refuse(f"no {'next' if step > 0 else 'previous'} element")
 
 
-@command("say each element as the finger comes to it, with its sound, or not", "v f6",
-         steers=True, **_HERE)  # fmt: skip
+@_command("say each element as the finger comes to it, with its sound, or not", "v f6", steers=True)
 def entering(picture: Picture) -> None:
     if not picture.entering:
         picture.entering = True
@@ -136,7 +138,7 @@ def entering(picture: Picture) -> None:
     picture.say(f"elements: {said if picture.entering else 'not said'} as you come to them")
 
 
-@command("go to the middle of the picture", "home", **_HERE)
+@_command("go to the middle of the picture", "home")
 def middle(picture: Picture) -> None:
     canvas = picture.shown.scene.canvas
     picture.say("going to: middle")
@@ -169,25 +171,24 @@ def _add_ways() -> None:
     }  # fmt: skip
     for name, (right, down, bracket, button) in ways.items():
 
-        @command(f"part of the picture farther {name}", f"ctrl-{name} {bracket}",
-                 name=f"pan-{name}", also=f"button:{button}", steers=True, **_HERE)  # fmt: skip
+        @_command(f"part of the picture farther {name}", f"ctrl-{name} {bracket}",
+                 name=f"pan-{name}", also=f"button:{button}", steers=True)  # fmt: skip
         def pan(picture: Picture, by: tuple = (_PAN * right, _PAN * down)) -> None:
             _pan(picture, *by)
 
         for prefix, mm in (("", 1.0), ("shift-", 10.0)):
             help_ = f"{mm:g} mm {name}; with the device in your own hand, another element"
 
-            @command(help_, prefix + name, name=f"move-{prefix}{name}", **_HERE)
+            @_command(help_, prefix + name, name=f"move-{prefix}{name}")
             def move(picture: Picture, by: tuple = (mm * right, mm * down)) -> None:
                 _move(picture, *by)
 
 
 def _add_switches() -> None:
     for key in range(1, MOST_KEYS + 1):
-        button = {1: "button:4", 2: "button:5"}.get(key, "")
+        how = {"name": f"switch-{key}", "also": {1: "button:4", 2: "button:5"}.get(key, "")}
 
-        @command(f"switch {key} of the picture", str(key), name=f"switch-{key}", also=button,
-                 **_HERE)  # fmt: skip
+        @_command(f"switch {key} of the picture", str(key), **how)
         def switch(picture: Picture, key: int = key) -> None:
             picture.switch(key)
 
@@ -196,17 +197,17 @@ _add_ways()
 _add_switches()
 
 
-@command("nearer, about the finger", "+ =", also="button:6", first=True, steers=True, **_HERE)
+@_command("nearer, about the finger", "+ =", also="button:6", first=True, steers=True)
 def zoom_in(picture: Picture) -> None:
     picture.zoom(1)
 
 
-@command("farther, about the finger", "-", also="button:7", steers=True, **_HERE)
+@_command("farther, about the finger", "-", also="button:7", steers=True)
 def zoom_out(picture: Picture) -> None:
     picture.zoom(-1)
 
 
-@command("the whole picture again, as written", "0", also="button:8", steers=True, **_HERE)
+@_command("the whole picture again, as written", "0", also="button:8", steers=True)
 def whole(picture: Picture) -> None:
     if picture.aperture.zoom == 1.0:
         picture.look_from(Aperture(picture.aperture.reach_mm))
@@ -214,7 +215,7 @@ def whole(picture: Picture) -> None:
         picture.zoom_to(1.0)
 
 
-@command("say the zoom, and what is within reach", "z", **_HERE)
+@_command("say the zoom, and what is within reach", "z")
 def say_zoom(picture: Picture) -> None:
     picture.say_aperture()
 
@@ -228,12 +229,12 @@ def _contrast(picture: Picture, by: float) -> None:
     picture.say(f"contrast: {contrast:g}")
 
 
-@command("more contrast", "c", **_HERE)
+@_command("more contrast", "c")
 def more_contrast(picture: Picture) -> None:
     _contrast(picture, _CONTRAST_STEP)
 
 
-@command("less contrast", "C", **_HERE)
+@_command("less contrast", "C")
 def less_contrast(picture: Picture) -> None:
     _contrast(picture, -_CONTRAST_STEP)
 

@@ -9,8 +9,8 @@ choices, which is kept until the course is done.
 from __future__ import annotations
 
 import json
-from functools import lru_cache
-from typing import TYPE_CHECKING
+from functools import lru_cache, partial
+from typing import TYPE_CHECKING, Any
 
 from vbraille.adaptive.questplus import GridAxis, geometric, nearer_quest, ordered_pairs
 from vbraille.errors import InputError
@@ -41,7 +41,7 @@ _LEAST_CONTRAST = 0.2
 _STEPS, _UNSURE, _SLIPS = 24, geometric(0.03, 0.4, 6), 0.03
 _FARTHEST = 0.5  # between two values, as a part of the interval: no two are a world apart
 _LIKED = "liked"
-_HERE = {"where": Where.TUNING}
+_command = partial(command, where=Where.TUNING)
 Asked = tuple[tuple[tuple[float, float], int], ...]
 
 
@@ -102,7 +102,7 @@ class Course:
                 self.pair = (pair[0], pair[1]) if _lower_first(len(made)) else (pair[1], pair[0])
                 return
             value, interval = _liked(asked, low, high)
-            self.style = self.style.replace(**{knob.field: knob.nearest(value)})
+            self.style = _with(self.style, knob, knob.nearest(value))
             ends = f"{interval[0]:g} to {interval[1]:g} {knob.unit}".rstrip()
             self.found.append(f"{knob.said(knob.nearest(value))}, 95 % interval {ends}")
 
@@ -110,7 +110,12 @@ class Course:
         """Style of the one or the other of the next choice, 1 or 2."""
         if self.knob is None:
             return self.style
-        return self.style.replace(**{self.knob.field: self.pair[which - 1]})
+        return _with(self.style, self.knob, self.pair[which - 1])
+
+
+def _with(style: BrailleStyle, knob: Knob, value: Any) -> BrailleStyle:
+    """Style with a value of a knob."""
+    return style.replace(**{knob.field: value})
 
 
 def _lower_first(number: int) -> bool:
@@ -152,7 +157,7 @@ def _possible(knob: Knob, style: BrailleStyle, display: Display, end: float, her
     for n in range(21):
         value = round(end + (here - end) * n / 20, 2)
         try:
-            cells_per_line(style.replace(**{knob.field: value}).geometry, display)
+            cells_per_line(_with(style, knob, value).geometry, display)
         except InputError:
             continue
         return value
@@ -248,23 +253,23 @@ class Tuning(Explored):
         self.reader.steer()
 
 
-@command("feel the other one", "space", also="button:3", first=True, **_HERE)
+@_command("feel the other one", "space", also="button:3", first=True)
 def other(tuning: Tuning) -> None:
     tuning.which = 3 - tuning.which
     tuning.feel()
 
 
-@command("choose the first", "1", also="button:1", first=True, **_HERE)
+@_command("choose the first", "1", also="button:1", first=True)
 def first(tuning: Tuning) -> None:
     tuning.choose([*tuning.course.choices, 1])
 
 
-@command("choose the second", "2", also="button:2", first=True, **_HERE)
+@_command("choose the second", "2", also="button:2", first=True)
 def second(tuning: Tuning) -> None:
     tuning.choose([*tuning.course.choices, 2])
 
 
-@command("take the last choice back", "u", first=True, **_HERE)
+@_command("take the last choice back", "u", first=True)
 def undo(tuning: Tuning) -> None:
     if tuning.course.choices:
         tuning.choose(tuning.course.choices[:-1])
@@ -272,12 +277,12 @@ def undo(tuning: Tuning) -> None:
         tuning.refuse("nothing to undo")
 
 
-@command("next line", "n down", first=True, **_HERE)
+@_command("next line", "n down", first=True)
 def next_line(tuning: Tuning) -> None:
     _step(tuning, 1)
 
 
-@command("previous line", "p up", first=True, **_HERE)
+@_command("previous line", "p up", first=True)
 def previous_line(tuning: Tuning) -> None:
     _step(tuning, -1)
 

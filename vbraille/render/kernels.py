@@ -5,7 +5,7 @@ Kernels fill ``out`` and allocate nothing, but for one frame in `poses`.
 (see `vbraille.render.work`), and `vbraille.render.braille.reference` has the same functions in
 plain numpy.
 
-``scratch`` is float64[2, n]: room for the swing under each column of a block of positions, and for
+``scratch`` is float64[3, n]: room for the swing under each column of a block of positions, and for
 the slot that each is over; for scenes, too, it has more rows. A slot is one dot column of one cell:
 2 (cell + 1) + (0 left, 1 right), with an empty cell before a line's first and one after its last.
 The table has a word for each slot of each line, whose bit r is set if actuator row r shows a dot
@@ -20,9 +20,10 @@ import math
 
 import numpy as np
 
+from vbraille.render.cellkernels import label as _label
+from vbraille.render.evaluating import show as _show_scene
+from vbraille.render.evaluating import show_all as _show_scenes
 from vbraille.render.frames import copy
-from vbraille.render.machine.showkernels import show as _show_scene
-from vbraille.render.machine.showkernels import show_all as _show_scenes
 from vbraille.render.waves import HALF_SINE
 from vbraille.render.waves import compiled as _compiled
 from vbraille.render.waves import dot_swing as _dot_swing
@@ -34,7 +35,6 @@ from vbraille.render.work import (
     CELLS_PER_MM,
     COLUMN_PITCH,
     COLUMNS,
-    DOT_ROW_PITCH,
     DOT_SPACING,
     DOTS_PER_MM,
     FREE,
@@ -206,53 +206,27 @@ def too_far(numbers, theta, before):
 
 
 @_compiled
-def _free(numbers, table, at, out):
+def _free(numbers, table, scratch, at, out):
     """Fill a frame with what lies under each actuator: the dots of a page are round there.
 
     Lévesque 2009, eq. 6.1 and 8.3.1, with the profile of a line's dots for that of a dot.
     """
     rows, columns = out.shape
-    lines, pitch = int(numbers[LINES]), numbers[CELL_PITCH]
-    cells = int(numbers[SLOTS]) // 2 - 2
     cosine, sine = math.cos(at[THETA]), math.sin(at[THETA])
-    radius = 0.5 / numbers[DOTS_PER_MM]
-    e0, e1, e2 = numbers[SHAPE], numbers[SHAPE + 1], numbers[SHAPE + 2]
-    e3, e4, e5 = numbers[SHAPE + 3], numbers[SHAPE + 4], numbers[SHAPE + 5]
-    half_sine = numbers[PROFILE] == HALF_SINE
+    n = 0
     for row in range(rows):
-        idle, gain = numbers[IDLE + row], numbers[IDLE + rows + row]
         down = (row - 0.5 * (rows - 1)) * numbers[ROW_PITCH]
         for column in range(columns):
             right = column * numbers[COLUMN_PITCH] - numbers[ANCHOR]
-            x = at[X] + right * cosine + down * sine
-            y = at[Y] + down * cosine - right * sine
-            line = y / numbers[LINE_PITCH]
-            line = line if line > -1.0 else -1.0
-            line = math.floor(line if line < lines else lines)
-            cell = x * numbers[CELLS_PER_MM]
-            cell = cell if cell > -1.0 else -1.0
-            cell = math.floor(cell if cell < cells else cells)
-            swing = 0.0
-            # The lines above and below may reach in, if lines are close or cells have eight dots.
-            for near in range(max(int(line) - 1, 0), min(int(line) + 2, lines)):
-                below = y - (near + 0.5) * numbers[LINE_PITCH] + numbers[DOT_ROW_PITCH]
-                base = (near + 1) * int(numbers[SLOTS])
-                for dot_row in range(_DOT_ROWS):
-                    dy = below - dot_row * numbers[DOT_ROW_PITCH]
-                    if abs(dy) >= radius:
-                        continue
-                    # The dots of this cell, and the right one of the cell before.
-                    for which in range(-1, 2):
-                        slot = int(2 * (cell + 1)) + which
-                        edge = cell * pitch + numbers[DOT_SPACING] * (which & 1)
-                        edge -= pitch if which < 0 else 0.0
-                        dx = x - edge - radius
-                        q = (dx * dx + dy * dy) * numbers[DOTS_PER_MM] ** 2
-                        if q < 0.25 and slot >= 0 and table[base + slot] >> dot_row & 1:
-                            d = math.copysign(math.sqrt(q), dx)
-                            value = _dot_swing(half_sine, e0, e1, e2, e3, e4, e5, d, q)
-                            swing = max(swing, value)
-            out[row, column] = idle + gain * swing
+            scratch[0, n] = at[X] + right * cosine + down * sine
+            scratch[1, n] = at[Y] + down * cosine - right * sine
+            n += 1
+    _label(numbers, IDLE + 2 * rows, table, scratch[0], scratch[1], n, scratch[2])
+    n = 0
+    for row in range(rows):
+        for column in range(columns):
+            out[row, column] = scratch[2, n]
+            n += 1
 
 
 @_compiled
@@ -277,7 +251,7 @@ def frame(numbers, table, scratch, part, at, out):
         _show_scene(numbers, table, scratch, at, out)
         return
     if numbers[FREE] != 0.0:
-        _free(numbers, table, at, out)
+        _free(numbers, table, scratch, at, out)
         return
     base = _base(numbers, part)
     theta = at[THETA]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.render import work
-from vbraille.render.machine.words import LEAST_LANES, SCRATCH_ROWS
+from vbraille.render.instructions import LEAST_LANES, SCRATCH_ROWS
 from vbraille.render.work import ProgramKind
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ class Program:
         at[work.X], at[work.THETA], at[work.TIME] = x_mm, theta_rad, time_s
         at[work.Y] = self.own_y_mm if y_mm is None else y_mm
         if self.kind is ProgramKind.SCENE:
-            from vbraille.render.machine import signalkernels
+            from vbraille.render import signalkernels
 
             signalkernels.begin(self.numbers, at)
             signalkernels.compute(self.numbers, at, 0.0)
@@ -263,7 +263,7 @@ def scratch_for(shape: tuple[int, int], kind: ProgramKind | None = None) -> NDAr
     rows, columns = shape
     if kind is None or kind is ProgramKind.SCENE:
         return np.zeros((SCRATCH_ROWS, max(rows * columns, LEAST_LANES)))
-    return np.zeros((2, _BLOCK * columns))
+    return np.zeros((3, max(_BLOCK, rows) * columns))
 
 
 def head(

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.display import check_rate
 from vbraille.errors import InputError
-from vbraille.typed import check_fields
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -76,7 +75,6 @@ class Conditions:
     also: str | None = None
 
     def __post_init__(self) -> None:
-        check_fields(self)
         check_rate(self.rate_hz)
         if self.sound not in SOUNDS:
             raise InputError(f"there is no sound {self.sound!r}; give {', '.join(SOUNDS)}")

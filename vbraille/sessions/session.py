@@ -28,7 +28,6 @@ from vbraille.sessions.running.reader import seed_of
 from vbraille.sessions.running.sources import responses_of
 from vbraille.simulation.specs import device_spec, has_hand, refuse_hand, steering_of
 from vbraille.simulation.steering import Pointer
-from vbraille.typed import typed
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -243,7 +242,6 @@ class Session:
                 self._engine = engine(spec, wanted)
 
     @classmethod
-    @typed
     def create(
         cls,
         protocol: str | Path | Protocol,
@@ -302,7 +300,6 @@ class Session:
         return session
 
     @classmethod
-    @typed
     def resume(
         cls,
         folder: str | Path,

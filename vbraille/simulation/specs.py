@@ -9,7 +9,6 @@ from vbraille.errors import InputError
 from vbraille.simulation.hand import DEVICE, FLUENT, HumanHand, Still, Sweep
 from vbraille.simulation.motion import SPEED_BOUNDS_MM_S
 from vbraille.simulation.steering import Steering
-from vbraille.typed import typed
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -21,7 +20,6 @@ SLOW = ("slow", "device")  # names of the hand that reads slowly; the second is 
 STILL = "still"  # name of the hand that only moves in the live view
 
 
-@typed
 def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Recorded:
     """Hand that a spec describes.
 

@@ -7,7 +7,7 @@ import pytest
 
 from vbraille.braille.geometry import Geometry
 from vbraille.errors import InputError
-from vbraille.reading.device import OpenDevice
+from vbraille.reading.opening import OpenDevice
 from vbraille.render import VBD, BrailleStyle, Tuning
 from vbraille.render.braille.style import StyleChanges
 

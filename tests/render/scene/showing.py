@@ -11,8 +11,8 @@ from tests.render.scene import twin as reference
 from tests.render.scene.twinsignals import SIGNALS
 from vbraille.display import Display
 from vbraille.render import STRESS2_8X8
-from vbraille.render.scene.compiling import compile_scene
-from vbraille.render.scene.labels import Assets, Written, box_of
+from vbraille.render.compiling import compile_scene
+from vbraille.render.labels import Assets, Written, box_of
 from vbraille.scene.bitmap import WHOLE, Bitmap, bitmap_box
 from vbraille.scene.patterns import Image, Label
 from vbraille.scene.scene import Canvas, Scene

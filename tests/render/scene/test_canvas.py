@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from vbraille.display import Display
-from vbraille.render.scene.compiling import SceneMap, compile_scene
+from vbraille.render.compiling import SceneMap, compile_scene
 from vbraille.scene.patterns import Circle, Group, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke, Vibration

@@ -5,25 +5,15 @@ from hypothesis import given
 
 from tests.render.scene import twin as reference
 from tests.render.scene.scenes import examples, patterns, scenes, seeds
-from tests.render.scene.showing import STRESS2_8X8_ARRAY, assets_of, poses, scene_of
-from vbraille.render.scene.compiling import SceneMap, compile_scene
-from vbraille.render.scene.labels import Assets
+from tests.render.scene.showing import assets_of, scene_of
+from vbraille.render.compiling import SceneMap
+from vbraille.render.labels import Assets
 
 
 def frame(program, pose):
     out = np.full(program.shape, np.nan)
     program.frame(pose.x_mm, out, y_mm=pose.y_mm, theta_rad=pose.theta_rad, time_s=pose.time_s)
     return out
-
-
-@examples(60)
-@given(scenes(), seeds)
-def test_pruning_changes_nothing(scene, seed):
-    assets = assets_of(*scene.elements)
-    pruned = compile_scene(scene, STRESS2_8X8_ARRAY, assets)
-    whole = compile_scene(scene, STRESS2_8X8_ARRAY, assets, pruned=False)
-    for pose in poses(np.random.default_rng(seed), 6):
-        np.testing.assert_allclose(frame(pruned, pose), frame(whole, pose), rtol=0, atol=1e-9)
 
 
 @examples(60)

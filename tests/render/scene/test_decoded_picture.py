@@ -13,8 +13,8 @@ from tests.tiers import by_tier
 from vbraille.engine.record import Flag
 from vbraille.labelling import write_labels
 from vbraille.render import LATERO, STRESS2_8X8
-from vbraille.render.scene.compiling import compile_scene
-from vbraille.render.scene.labels import Assets
+from vbraille.render.compiling import compile_scene
+from vbraille.render.labels import Assets
 from vbraille.scene.patterns import Circle, Fill, Label, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke

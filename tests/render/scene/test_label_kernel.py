@@ -11,11 +11,10 @@ from hypothesis import strategies as st
 from tests.render.scene.twinbraille import label_deflections, label_opacity
 from tests.tiers import examples
 from vbraille.braille.geometry import PRESETS
-from vbraille.render import STRESS2_8X8, VBD, Tuning
+from vbraille.render import STRESS2_8X8, VBD, Tuning, cellkernels
 from vbraille.render.braille.style import Profile
-from vbraille.render.machine import braillekernel
-from vbraille.render.machine.braillekernel import FADE_MM, TABLE
-from vbraille.render.scene.labels import (
+from vbraille.render.cellkernels import FADE_MM, TABLE
+from vbraille.render.labels import (
     Written,
     corners_mm,
     pack_label,
@@ -56,8 +55,8 @@ def by_kernel(label, written, x_mm, y_mm):
     table = np.concatenate((np.full(_WORDS, 0xFFFF, np.uint16), packed.table))
     numbers[_FIRST + TABLE] = _WORDS
     found, opacity = np.full((2, x_mm.size), np.nan)
-    braillekernel.label(numbers, _FIRST, table, x_mm, y_mm, x_mm.size, found)
-    braillekernel.label_opacity(numbers, _FIRST, x_mm, y_mm, x_mm.size, opacity)
+    cellkernels.label(numbers, _FIRST, table, x_mm, y_mm, x_mm.size, found)
+    cellkernels.label_opacity(numbers, _FIRST, x_mm, y_mm, x_mm.size, opacity)
     return found, opacity
 
 

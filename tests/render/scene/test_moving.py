@@ -8,7 +8,7 @@ import pytest
 from msgspec.structs import replace
 
 from tests.render.scene.showing import STRESS2_8X8_ARRAY, scene_of
-from vbraille.render.scene.compiling import SceneMap, compile_scene
+from vbraille.render.compiling import SceneMap, compile_scene
 from vbraille.scene.bounds import bounds
 from vbraille.scene.dotting import rows_of
 from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine

@@ -8,9 +8,9 @@ from tests.render.scene.twinbraille import label_deflections
 from vbraille.errors import InputError
 from vbraille.labelling import write_labels
 from vbraille.render import LATERO, STRESS2_8X8, Straying
-from vbraille.render.scene.compiling import compile_scene
-from vbraille.render.scene.figures import FIGURE, PAGE, page_with_figure
-from vbraille.render.scene.labels import Assets
+from vbraille.render.compiling import compile_scene
+from vbraille.render.figures import FIGURE, PAGE, page_with_figure
+from vbraille.render.labels import Assets
 from vbraille.scene.bitmap import Bitmap
 from vbraille.scene.patterns import Circle, Group, Image, Label, LinearGrating, Tile, Uniform
 from vbraille.scene.scene import Canvas, Scene

@@ -12,10 +12,9 @@ from tests.render.scene.scenes import examples, numbers
 from tests.render.scene.showing import STRESS2_8X8_ARRAY, actuators, assets_of
 from tests.render.scene.showing import At as Pose
 from tests.render.scene.twinsignals import Signals
-from vbraille.render import work
-from vbraille.render.machine import words
-from vbraille.render.machine.signalkernels import begin, compute
-from vbraille.render.scene.compiling import SceneMap, compile_scene, signal_numbers
+from vbraille.render import instructions, work
+from vbraille.render.compiling import SceneMap, compile_scene, signal_numbers
+from vbraille.render.signalkernels import begin, compute
 from vbraille.scene.patterns import Circle, Fill, Group, Moving, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import (
@@ -70,8 +69,8 @@ def test_signals_are_those_of_the_equations_at_each_tick(signals, seed):
         signals=signals,
         elements=(LinearGrating(ridge_mm=2, velocity_mm_s=5, velocity_by="first"),),
     )
-    numbers, at = np.zeros(words.GRID), np.zeros(work.AT)
-    numbers[words.SIGNALS :] = signal_numbers(scene)
+    numbers, at = np.zeros(instructions.CODE), np.zeros(work.AT)
+    numbers[instructions.SIGNALS :] = signal_numbers(scene)
     begin(numbers, at)
     reference = Signals(signals, ["first"])
     names = [one.name if one.signal else f"∫{one.name}" for one in ordered(signals, ["first"])]

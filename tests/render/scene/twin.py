@@ -66,7 +66,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vbraille.render.scene.labels import Assets
+    from vbraille.render.labels import Assets
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
 

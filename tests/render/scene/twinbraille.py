@@ -9,13 +9,13 @@ import numpy as np
 
 from vbraille.braille.cells import PLACES, dots_of
 from vbraille.render.braille.reference import SWINGS
-from vbraille.render.machine.braillekernel import FADE_MM
-from vbraille.render.scene.labels import size_mm
+from vbraille.render.cellkernels import FADE_MM
+from vbraille.render.labels import size_mm
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.render.scene.labels import Written
+    from vbraille.render.labels import Written
     from vbraille.scene.patterns import Label
 
 

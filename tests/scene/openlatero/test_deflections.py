@@ -20,8 +20,8 @@ from tests.scene.openlatero.files import (
     waves,
 )
 from vbraille.render import STRESS2_8X8
-from vbraille.render.scene.compiling import SceneMap, compile_scene
-from vbraille.render.scene.labels import Assets
+from vbraille.render.compiling import SceneMap, compile_scene
+from vbraille.render.labels import Assets
 from vbraille.scene.openlatero import read_gen
 from vbraille.scene.signals import packed
 

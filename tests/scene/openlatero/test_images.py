@@ -8,7 +8,7 @@ from PIL import Image as Pillow
 
 from tests.render.scene.twin import deflections
 from tests.scene.openlatero.files import grating, scene, texture
-from vbraille.render.scene.labels import Assets
+from vbraille.render.labels import Assets
 from vbraille.scene.images import load_bitmaps
 from vbraille.scene.openlatero import read_gen
 from vbraille.scene.patterns import Image

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from tests.render.scene.twin import deflections
 from tests.scene.openlatero.files import scene
 from tests.tiers import examples
-from vbraille.render.scene.labels import Assets
+from vbraille.render.labels import Assets
 from vbraille.scene.converting import write_scene
 from vbraille.scene.openlatero import read_gen
 from vbraille.scene.openlatero.reading import PATTERNS, TEXTURES

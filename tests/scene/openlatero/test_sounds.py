@@ -9,7 +9,7 @@ from PIL import Image as Picture
 from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import load_scene
 from vbraille.render.braille.models import STRESS2
-from vbraille.render.scene.compiling import SceneMap
+from vbraille.render.compiling import SceneMap
 from vbraille.scene.converting import convert_scene
 from vbraille.scene.patterns import Image
 

@@ -6,7 +6,7 @@ from tests.sessions.sittings import MINI
 from vbraille.devices import open_device
 from vbraille.engine.batch import BatchEngine
 from vbraille.render import MODELS
-from vbraille.render.scene.compiling import compile_scene
+from vbraille.render.compiling import compile_scene
 from vbraille.scene.patterns import Circle
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke

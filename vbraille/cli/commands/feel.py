@@ -69,8 +69,6 @@ def command(ctx: click.Context, **chosen: Any) -> None:
         picture.begin()
         for note in loaded.notes:
             say(f"note: {note}", aside=True)
-        if attended:
-            picture.say("press h for the keys")
         equipment.explore(ctx, picture)
     say_summary(device)
 

@@ -53,7 +53,7 @@ def command(ctx: click.Context, **chosen: Any) -> None:
             deck, device, equipment.outputs, players=chosen["players"], seed=seed,
             rate_hz=chosen["rate"], attended=equipment.keyboard.attached,
         )  # fmt: skip
-        game.say(f"seed: {seed}; press h for the keys")
+        game.say(f"seed: {seed}")
         game.begin()
         equipment.explore(ctx, game)
     say_summary(device)

@@ -34,7 +34,8 @@ _LINES = 6  # lines of a page, unless told otherwise
                    help="Of page: place of the array's left column."),
     options.option("--letter", metavar="LETTER", help="Of mapping: letter to show."),
     options.language, options.grade,
-    *options.TRANSLATION[2:], *options.FEEL, options.travel, options.settings,
+    *options.TRANSLATION[2:], *options.FEEL, options.travel,
+    options.profile(group="Places and settings"), options.settings,
 )  # fmt: skip
 @click.pass_context
 def command(ctx: click.Context, kind: str, **chosen: Any) -> None:

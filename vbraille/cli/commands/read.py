@@ -12,6 +12,8 @@ import click
 from vbraille.cli import options
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from vbraille.reading.places import KeptBook, Places
 
 _OF_TEXT = (
@@ -47,16 +49,15 @@ def read(ctx: click.Context, number: int = 1) -> None:
     VbrailleError
         If it cannot be read, or the device is gone.
     """
-    from vbraille.cli.build import build_book, build_model
+    from vbraille.cli.build import build_book, build_model, display_name
     from vbraille.cli.exploring import equipped, find_model, say_summary
     from vbraille.cli.printing import say
     from vbraille.cli.settings import given, save_profile, settings_of
+    from vbraille.knobs import profile_values
+    from vbraille.layout.texts import cells_per_line
     from vbraille.reading.places import Places, places_path
     from vbraille.reading.reader import Reader
     from vbraille.reading.texts import Layout, wrapped
-    from vbraille.layout.texts import cells_per_line
-    from vbraille.knobs import profile_values
-    from vbraille.cli.build import display_name
     from vbraille.render import MODELS
 
     chosen, asked = ctx.params, given(ctx)
@@ -112,11 +113,10 @@ def read(ctx: click.Context, number: int = 1) -> None:
             attended=equipment.keyboard.attached,
             by_hand=chosen["advance"] == "return",
             echo=echo,
-            figures=_figures(ctx, book, device, equipment),
+            figures=_figures(ctx, book, device),
             save=save,
+            changed=_changes(file, lambda: wrapped(build_book(ctx, file))),
         )
-        if equipment.keyboard.attached:
-            reader.say(f"press {'h' if chosen['keys'] == 'usual' else 'f1'} for the keys")
         try:
             equipment.explore(ctx, reader, own=True)
         finally:
@@ -134,13 +134,21 @@ def _kept(places: Places, file: str) -> KeptBook:
     return places.book(digest, path.absolute(), path.stem)
 
 
+def _changes(file: str, open_book: Callable[[], Any]) -> Callable[[], Any]:
+    """Function that gives a book anew if its file has changed."""
+    from vbraille.feeling.loading import FileWatch
+
+    watch = None if file == "-" else FileWatch(Path(file))
+    return lambda: open_book() if watch is not None and watch.changed() else None
+
+
 def _spoken(asked: str | None, book: Any) -> str:
     """Language in which a book is spoken."""
     info = None if book.table is None else book.table.info
     return asked or book.source.language or (info.language if info else "") or "en"
 
 
-def _figures(ctx: click.Context, book: Any, device: Any, equipment: Any) -> Any:
+def _figures(ctx: click.Context, book: Any, device: Any) -> Any:
     """Figures of a book that shows them; None for others."""
     from vbraille.cli.printing import say
     from vbraille.reading.figures import BookFigures

@@ -44,7 +44,7 @@ _PATH = ("radius", "seconds", "speed", "sway", "unsteady", "back")
                    **_WAY),
     options.option("--back", type=options.Number(0, 49), metavar="MM",
                    help="Of wide: way back every 50 mm.", **_WAY),
-    options.settings,
+    options.profile(group="Places and settings"), options.settings,
 )  # fmt: skip
 @click.pass_context
 def command(ctx: click.Context, **chosen: Any) -> None:

@@ -62,7 +62,6 @@ def command(ctx: click.Context, **chosen: Any) -> None:
         name = display_name(model)
         kept = settings.path.with_name(f"{settings.path.stem}-tune-{settings.profile}-{name}.json")
         tuning = Tuning(reader, kept, settings.profile, again=chosen["again"])
-        tuning.say("press h for the keys")
         tuning.begin()
         equipment.explore(ctx, tuning)
         if tuning.course.knob is None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.braille.cells import PLACES, dots_of
-from vbraille.render.braille.style import Profile, half_sine_peak
+from vbraille.render.braille.dots import Profile, half_sine_peak
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

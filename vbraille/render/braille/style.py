@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
-from enum import IntEnum
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, Final, Literal, Self, TypedDict, Unpack
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from vbraille.braille.geometry import Geometry
 from vbraille.errors import InputError, check_range
 from vbraille.render import work
-from vbraille.render.braille.mappings import DOT_BITS, Mapping
+from vbraille.render.braille.dots import Profile, Tuning, coefficients
+from vbraille.render.braille.mappings import Mapping
 from vbraille.render.work import ProgramKind
-from vbraille.typed import check_fields
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
@@ -26,86 +24,6 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.render.program import Program
-
-
-# The kernels' polynomial of T_k has six coefficients; finer texture than this is below what the
-# source's encoders resolve.
-MOST_TEXTURE_CYCLES = 11
-
-
-@dataclass(frozen=True, slots=True)
-class Tuning:
-    """Texture and contrast of braille, which a reader may change while reading.
-
-    Parameters
-    ----------
-    texture
-        Level T in [0, 1], from no texture to what Lévesque 2009 calls "textured" (VBD) or to the
-        texture alone (STReSS², eq. 4.3).
-    contrast
-        Share of the full swing, in [0, 1].
-    cycles
-        Half-cycles of texture in a dot's radius, k of eq. 4.2; an odd number, so that the waveform
-        meets rest at both edges. The VBD does not use it.
-
-    Raises
-    ------
-    ValueError
-        If a value is out of range.
-    """
-
-    texture: float = 0.0
-    contrast: float = 1.0
-    cycles: int = 7
-
-    def __post_init__(self) -> None:
-        check_fields(self)
-        for name in ("texture", "contrast"):
-            check_range(name, getattr(self, name), 0, 1)
-        if self.cycles % 2 != 1 or not 1 <= self.cycles <= MOST_TEXTURE_CYCLES:
-            raise ValueError(
-                f"texture cycles are {self.cycles}; "
-                f"they must be an odd number, 1 to {MOST_TEXTURE_CYCLES}"
-            )
-
-
-class Profile(IntEnum):
-    """Swing of the deflection across a dot."""
-
-    HALF_SINE = 0
-    """The profile of the VBD: Lévesque 2009, 3.2; its texture's phase and norm are our choice."""
-    RAISED_COSINE = 1
-    """The profile of the STReSS²: Lévesque 2009, eqs. 4.1-4.3."""
-
-    def texture_period_mm(self, dot_width_mm: float, cycles: int) -> float:
-        """Tell the wavelength of the texture along x, in mm."""
-        if self is Profile.HALF_SINE:
-            return dot_width_mm / 4
-        return dot_width_mm / cycles
-
-
-def half_sine_peak(level: float) -> float:
-    """Find M(a), the largest value of sin θ + a sin 8θ on [0, π], with a = level / 8."""
-    a = level / 8
-    theta = np.linspace(0, np.pi, 4097)
-    best = theta[np.argmax(np.sin(theta) + a * np.sin(8 * theta))]
-    for _ in range(4):  # Newton, on the derivative
-        slope = np.cos(best) + 8 * a * np.cos(8 * best)
-        best -= slope / (-np.sin(best) - 64 * a * np.sin(8 * best))
-    return float(np.sin(best) + a * np.sin(8 * best))
-
-
-def coefficients(profile: Profile, tuning: Tuning) -> NDArray[np.float64]:
-    """Compute the coefficients from which the kernels make a dot's profile; float64[6]."""
-    shape = np.zeros(6)
-    if profile is Profile.HALF_SINE:
-        shape[0] = 1 / half_sine_peak(tuning.texture)
-        shape[1] = tuning.texture * shape[0]  # a = T / 8, and sin 8θ brings a factor of 8
-    else:
-        odd = chebyshev.cheb2poly([0] * tuning.cycles + [1])[1::2]  # coefficients of T_k, k odd
-        shape[: odd.size] = tuning.texture * odd / 2
-        shape[0] += (1 - tuning.texture) / 2
-    return shape
 
 
 # How an array is read that does not stand where the line has its dots, as options name it.
@@ -299,16 +217,20 @@ class BrailleStyle:
         program = self._compile(lines, display, ProgramKind.PAGE)
         program.numbers[work.LINES] = len(lines)
         program.numbers[work.HYSTERESIS] = hysteresis
-        if self.straying.manner == "free":
-            self._free(program, display)
-        return program
+        return self._freed(program, lines) if self.straying.manner == "free" else program
 
-    def _free(self, program: Program, display: Display) -> None:
+    def _freed(self, page: Program, lines: Sequence[NDArray[np.uint8]]) -> Program:
         """Have each actuator of a page show what lies under it, whatever the mapping."""
-        numbers = program.numbers
+        from vbraille.render.braille.packing import pack_cells
+        from vbraille.render.program import Program
+
+        geometry = self.geometry
+        down_mm = geometry.line_pitch_mm / 2 - geometry.row_spacing_mm - geometry.dot_width_mm / 2
+        place = (0.0, down_mm, 0.0)
+        cells = pack_cells(lines, geometry, self.profile, self.tuning, place)
+        numbers = page.numbers.copy()
         numbers[work.FREE] = 1.0
-        numbers[work.IDLE : work.IDLE + display.rows] = 0.0
-        numbers[work.IDLE + display.rows :] = self.tuning.contrast
+        return Program(np.concatenate([numbers, cells.numbers]), cells.table)
 
     def room(self, display: Display, cells: int, lines: int = 1) -> int:
         """Tell how many bytes a program of so many lines and cells takes; each is at least 1."""
@@ -345,10 +267,7 @@ class BrailleStyle:
         numbers[work.IDLE : work.IDLE + display.rows][own] = idle
         numbers[work.IDLE + display.rows :][own] = tuning.contrast * (1 - 2 * idle)
         page = kind is ProgramKind.PAGE
-        if page and self.straying.manner == "free":
-            bits = DOT_BITS
-        else:
-            bits = self.mapping.row_bits() << own.start
+        bits = self.mapping.row_bits() << own.start
         table = np.zeros((len(lines) + 2 * page, slots), np.uint16)
         for row, masks in zip(table[page:], lines, strict=False):
             row[2 : 2 + 2 * len(masks)] = bits[masks].ravel()

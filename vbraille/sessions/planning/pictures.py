@@ -15,7 +15,7 @@ from msgspec import structs
 from vbraille.errors import InputError
 from vbraille.feeling.composing import compose
 from vbraille.feeling.loading import check_fits, shown_at
-from vbraille.render.scene.labels import Assets
+from vbraille.render.labels import Assets
 from vbraille.scene.patterns import Image, ImageDots, Label
 from vbraille.scene.reading import open_text
 from vbraille.scene.traversal import each

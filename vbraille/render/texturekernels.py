@@ -1,12 +1,12 @@
 """Textures and images of scenes: Lévesque 2009, 8.4.1 and 8.4.2.
 
 Each kernel fills one row of ``rows``, ``top``, from the places in the rows X and Y. ``at`` is the
-first of its constants in ``numbers``, whose order is that of `vbraille.render.scene.trees`.
+first of its constants in ``numbers``, whose order is that of `vbraille.render.compiling`.
 """
 
 import math
 
-from vbraille.render.machine.words import FREE_ROW, GIVEN_ROW, SIGN_ROW, SPARE_ROW, X_ROW, Y_ROW
+from vbraille.render.instructions import FREE_ROW, GIVEN_ROW, SIGN_ROW, SPARE_ROW, X_ROW, Y_ROW
 from vbraille.render.waves import angle, compiled, hump
 
 _TURN_DEG = 360.0

@@ -6,7 +6,7 @@ which is its kind. What it was before is in its memory, one number behind the va
 
 import math
 
-from vbraille.render.machine.words import SIGNAL_NUMBERS, SIGNAL_ROWS, SIGNALS
+from vbraille.render.instructions import SIGNAL_NUMBERS, SIGNAL_ROWS, SIGNALS
 from vbraille.render.waves import compiled
 from vbraille.render.work import (
     MEMORY,

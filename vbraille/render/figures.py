@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import msgspec
 
 from vbraille.errors import InputError
-from vbraille.render.scene.labels import Assets, Written, box_of
+from vbraille.render.labels import Assets, Written, box_of
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.patterns import Fill, Group, Image, Label, Polygon, Uniform
 from vbraille.scene.scene import Canvas, Scene

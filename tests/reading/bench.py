@@ -1,0 +1,122 @@
+"""A reading in this process: a simulated hand, a clock turned by hand, keys by their names."""
+
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from vbraille.layout.texts import cells_per_line
+from vbraille.reading.device import ReadingDevice
+from vbraille.reading.exploration import Exploration
+from vbraille.reading.places import Places
+from vbraille.reading.reader import Reader
+from vbraille.reading.texts import Book, Layout, Source
+from vbraille.render import STRESS2, STRESS2_8X8
+from vbraille.simulation.steering import Pointer
+from vbraille.testing import ManualClock, simulated_device
+from vbraille.translate import BrailleTable, Document
+
+ONE, TWO = STRESS2, STRESS2_8X8
+
+
+class Heard:
+    """An output that keeps what it is told."""
+
+    def __init__(self):
+        self.said, self.cues, self.shown = [], [], 0
+
+    def say(self, sentence, cue=None):
+        if sentence:
+            self.said.append(sentence)
+        self.cues.append(cue)
+
+    def show(self, _what):
+        self.shown += 1
+
+    def close(self):
+        pass
+
+    def typing(self, question, text):
+        pass
+
+    def end_typing(self):
+        pass
+
+
+class NoKeyboard:
+    """Keys of no terminal."""
+
+    attached, must_stop = True, False
+
+    def pressed(self, _wait_s):
+        return []
+
+
+class Reading:
+    """A text under a simulated hand; a context manager."""
+
+    def __init__(self, text, model=ONE, hand="sweep:1000", places=None, digest="", **how):
+        self.heard = Heard()
+        clock = ManualClock()
+        given = simulated_device(model, hand=hand, clock=clock)
+        given.pointer = Pointer()
+        self.device = ReadingDevice(given, model.display, clock=clock)
+        self.device.start(replace(model, display=given.display))
+        table = BrailleTable("en-ueb-g1.ctb")
+        document = text if not isinstance(text, str) else Document.from_text(text)
+        self.book = Book(Source(document), table)
+        width = how.pop("width", None)
+        places = places or Places(None, print)
+        layout = Layout(self.book, width or cells_per_line(model.style.geometry, given.display))
+        kept = places.book(digest, Path(f"/{digest}"), "book")
+        self.reader = Reader(layout, self.device, [self.heard], kept, fixed=bool(width), **how)
+        self.loop = Exploration(self.reader, self.device, NoKeyboard(), self.heard)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.device.close()
+
+    @property
+    def line(self):
+        """Number of the line under the hand."""
+        return self.reader.layout.number(self.reader.line)
+
+    def press(self, *keys):
+        """Press keys, and give what is said."""
+        before = len(self.heard.said)
+        for key in keys:
+            self.loop.press(key)
+        return self.heard.said[before:]
+
+    def type(self, text):
+        """Type a text and Enter, and give what is said."""
+        return self.press(*text, "enter")
+
+    def run(self, seconds=0.2):
+        """Let time go by, and give what is said."""
+        before = len(self.heard.said)
+        for _ in range(round(seconds / 0.02)):
+            self.loop.step()
+        return self.heard.said[before:]
+
+    def until(self, done):
+        """Let time go by until something is so."""
+        end_s = time.monotonic() + 60
+        while not done():
+            assert time.monotonic() < end_s, self.heard.said[-5:]
+            self.loop.step()
+
+    def finger(self, x_mm, y_mm=0.0):
+        """Move the finger to a place, where it stays, and give what is said."""
+        before = len(self.heard.said)
+        self.device.hold(x_mm, y_mm, 0.0)
+        end_s = time.monotonic() + 10
+        while time.monotonic() < end_s:
+            self.loop.step()
+            pose = self.device.pose
+            down_mm = abs(pose.y_mm - y_mm) if pose and self.device.display.height_mm else 0
+            if pose and abs(pose.x_mm - x_mm) < 0.5 and down_mm < 0.5:
+                break
+        self.run(0.2)
+        return self.heard.said[before:]

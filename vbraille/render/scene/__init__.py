@@ -1,1 +1,0 @@
-"""Scenes, compiled for a display; `vbraille.scene` has the values that they are made of."""
