@@ -31,6 +31,7 @@ PARTS = (
     "feel",
     "key",
     "live",
+    "screen",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from vbraille.engine.record import tick_dtype
 from vbraille.reading.brltty import Port
 from vbraille.reading.device import ReadingDevice
 from vbraille.reading.exploration import Exploration
@@ -18,7 +19,8 @@ from vbraille.reading.keys import Keyboard
 from vbraille.reading.outputs import Console
 from vbraille.reading.screen import Screen
 
-PATIENCE_S = 30.0
+PATIENCE_S = 40.0
+_LINE_MM = 60.0  # five cells
 
 
 class Brltty:
@@ -82,30 +84,49 @@ class Shown:
     def __init__(self, device, port, model):
         self.device, self.port, self.heard = device, port, Heard()
         self.ticks = []
+        self._kind = tick_dtype(model.display.shape)
         keyboard = Keyboard()
         self.screen = Screen(port, device, [self.heard], model.style, keyboard)
         follow = self.screen.follow
         self.screen.follow = lambda ticks: (self.ticks.append(ticks), follow(ticks))
         self._loop = Exploration(self.screen, device, keyboard, Console())
 
-    def until(self, so):
+    def until(self, so, patience_s=PATIENCE_S):
         """Go on until something is so."""
-        end_s = time.monotonic() + PATIENCE_S
+        end_s = time.monotonic() + patience_s
         while not so():
             self._loop.step()
             assert time.monotonic() < end_s, self.heard.said
 
+    def felt(self, model, rows=1):
+        """Go on until the hand has been over each row; ticks whose change has faded in."""
+        self.ticks.clear()
+        self.screen.steer()
+
+        def is_enough():
+            ticks = self.settled()
+            found = (of_row(ticks, model, row if rows > 1 else None) for row in range(rows))
+            places = [at["x_mm"] for at in found]
+            return all(x.size and x.min() < 0 and x.max() > _LINE_MM for x in places)
+
+        self.until(is_enough)
+        return self.settled()
+
+    def settled(self):
+        """Ticks so far, of those whose change has faded in."""
+        ticks = np.concatenate(self.ticks) if self.ticks else np.zeros(0, self._kind)
+        return ticks[ticks["share"] >= 1]
+
     def rest(self, seconds):
-        """Go on for a while; the ticks meanwhile, whose change has faded in."""
+        """Go on for a while; the ticks meanwhile."""
         self.ticks.clear()
         end_s = time.monotonic() + seconds
         self.until(lambda: time.monotonic() > end_s)
-        ticks = np.concatenate(self.ticks)
-        return ticks[ticks["share"] >= 1]
+        return self.settled()
 
 
 @contextmanager
-def shown(folder, model, hand="sweep:400"):
+def shown(folder, model, hand="sweep:300"):
     """A screen on a simulated device of a model."""
     place = Path(folder) / "socket"
     port = Port(str(place))
@@ -117,13 +138,20 @@ def shown(folder, model, hand="sweep:400"):
             port.close()
 
 
+def of_row(ticks, model, row):
+    """Ticks in the middle of a row of a page; all of them for None."""
+    if row is None:
+        return ticks
+    at = ticks["y_mm"] / model.style.geometry.line_pitch_mm - row - 0.5
+    return ticks[np.abs(at) < 0.1]
+
+
 def decoded(ticks, model, count, row=None):
     """Dot masks of the first cells of a line, by what actuators did where its dots are."""
     style, display = model.style, model.display
     geometry = style.geometry
-    offsets = display.column_offsets_mm()
-    if row is not None:
-        ticks = ticks[np.abs(ticks["y_mm"] / geometry.line_pitch_mm - row - 0.5) < 0.1]
+    offsets = display.column_offsets_mm() - display.span_mm / 2
+    ticks = of_row(ticks, model, row)
     places = ticks["x_mm"][:, None] + offsets
     masks = []
     for cell in range(count):

@@ -10,8 +10,9 @@ import re
 import socket
 import time
 from contextlib import suppress
+from errno import ECONNREFUSED
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -19,12 +20,11 @@ from vbraille.braille.cells import mask_of
 from vbraille.errors import InputError
 from vbraille.wording import printable
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
 _MOST_BYTES: Final = 1 << 20  # taken at once, and of a line
 _AGAIN_S: Final = 1.0  # from one attempt to connect to the next
-_DOTS: Final = re.compile(r'"([1-8|\s]*)"')
+_CONNECT_S: Final = 0.1
+_PORTS: Final = 1 << 16
+_DOTS: Final = re.compile(r'"([1-8| ]*)"')
 _SHOWN: Final = 40  # characters of nonsense
 
 
@@ -54,10 +54,10 @@ class Talk:
         self._remarks: dict[str, bool] = {}  # and whether each is said
 
     @property
-    def hello(self) -> bytes:
+    def hello(self) -> str:
         """The first line, which tells BRLTTY the size of the display."""
         rows, cells = self.masks.shape
-        return f"Cells {cells} {rows}\n".encode()
+        return f"Cells {cells} {rows}"
 
     def remarks(self) -> list[str]:
         """Take the sentences on what was not as expected, each once."""
@@ -77,26 +77,19 @@ class Talk:
 
     def _take(self, line: str) -> None:
         kind, _, content = line.partition(" ")
+        size = self.masks.size
         if kind.upper() == "BRAILLE" and (found := _DOTS.fullmatch(content)):
-            cells = found[1].split("|")
-            self.masks = self._fitted(
-                [mask_of(map(int, filter(str.isdigit, cell))) for cell in cells]
-            )
+            masks = [mask_of(map(int, "".join(cell.split()))) for cell in found[1].split("|")]
+            if len(masks) != size:
+                self.remark(f"BRLTTY: it sent {len(masks)} cells for {size}")
+            fitted = (masks + [0] * size)[:size]
+            self.masks = np.array(fitted, np.uint8).reshape(self.masks.shape)
         elif kind.upper() == "VISUAL" and content.startswith('"') and content.endswith('"'):
-            text = re.sub(r"\\(.)", r"\1", content[1:-1])
-            self.text = text[: self.masks.size].ljust(self.masks.size)
+            self.text = re.sub(r"\\(.)", r"\1", content[1:-1])[:size].ljust(size)
         elif content.isascii() and content.isdigit():
             self.status[kind.upper()] = int(content)
-        elif kind.upper() != "STATUS":
+        else:
             self.remark(f"BRLTTY: not understood: {printable(line[:_SHOWN])}")
-
-    def _fitted(self, masks: list[int]) -> NDArray[np.uint8]:
-        size = self.masks.size
-        if len(masks) != size:
-            self.remark(f"BRLTTY: it sent {len(masks)} cells for {size}")
-        fitted = np.zeros(size, np.uint8)
-        fitted[: len(masks)] = masks[:size]
-        return fitted.reshape(self.masks.shape)
 
     def remark(self, sentence: str) -> None:
         """Keep a sentence, to be said once."""
@@ -121,108 +114,97 @@ class Port:
     """
 
     def __init__(self, address: str, *, connects: bool = False) -> None:
-        self._address, self._connects = address, connects
         host, colon, port = address.rpartition(":")
         self.local = "/" in address
-        self._family = socket.AF_UNIX if self.local else socket.AF_INET
-        if not self.local and not (colon and port.isdigit()):
+        if not self.local and not (colon and port.isdigit() and int(port) < _PORTS):
             raise InputError(f"{address!r} is no address; give a path, or HOST:PORT")
+        self._family = socket.AF_UNIX if self.local else socket.AF_INET
         self._place = address if self.local else (host or "127.0.0.1", int(port))
-        self._listening = None if connects else self._listen()
-        self._peer: socket.socket | None = None
+        self._ends: dict[str, socket.socket] = {}
         self._due_s = 0.0
+        if not connects:
+            try:
+                self._ends["listening"] = self._listen()
+            except OSError as error:
+                raise InputError(f"{address} cannot be listened at: {error}") from None
 
     def _listen(self) -> socket.socket:
-        listening = socket.socket(self._family)
-        try:
-            if self.local:
-                self._clear()
-                before = os.umask(0o177)
-                try:
-                    listening.bind(self._place)
-                finally:
-                    os.umask(before)
-            else:
-                listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        if self.local:
+            # A socket at which no program listens any more is removed.
+            with socket.socket(self._family) as asked, suppress(FileNotFoundError):
+                if asked.connect_ex(self._place) == ECONNREFUSED:
+                    Path(str(self._place)).unlink()
+            listening = socket.socket(self._family)
+            before = os.umask(0o177)
+            try:
                 listening.bind(self._place)
-            listening.listen()
-        except (OSError, OverflowError) as error:
-            listening.close()
-            why = getattr(error, "strerror", None) or error
-            raise InputError(f"{self._address} cannot be listened at: {why}") from None
+                listening.listen()
+            except OSError:
+                listening.close()
+                raise
+            finally:
+                os.umask(before)
+        else:
+            listening = socket.create_server(self._place)  # type: ignore[arg-type]
         listening.setblocking(False)
         return listening
-
-    def _clear(self) -> None:
-        """Remove a socket at which no program listens any more."""
-        with socket.socket(self._family) as asked, suppress(FileNotFoundError):
-            try:
-                asked.connect(self._place)
-            except ConnectionRefusedError:
-                Path(self._address).unlink()
 
     @property
     def connected(self) -> bool:
         """Whether BRLTTY is there."""
-        return self._peer is not None
+        return "brltty" in self._ends
 
     @property
     def descriptors(self) -> list[int]:
         """Descriptors that have something to read when there is something to take."""
-        ends = (self._listening, self._peer)
-        return [end.fileno() for end in ends if end is not None]
+        return [end.fileno() for end in self._ends.values()]
 
     def meet(self) -> bool:
         """Tell whether BRLTTY has come, or come again."""
         try:
-            if self._listening is not None:
-                found = self._listening.accept()[0]
-            elif self._peer is None and time.monotonic() >= self._due_s:
+            if "listening" in self._ends:
+                found = self._ends["listening"].accept()[0]
+            elif not self.connected and time.monotonic() >= self._due_s:
                 self._due_s = time.monotonic() + _AGAIN_S
                 found = socket.socket(self._family)
-                found.settimeout(0.1)
+                found.settimeout(_CONNECT_S)
                 found.connect(self._place)
             else:
                 return False
         except OSError:
             return False
         found.setblocking(False)
-        self._drop()
-        self._peer = found
+        self._end("brltty")
+        self._ends["brltty"] = found
         return True
 
     def take(self) -> bytes:
         """Take what BRLTTY has sent; `connected` is False when it has ended."""
         data = b""
-        while self._peer is not None and len(data) < _MOST_BYTES:
+        while self.connected and len(data) < _MOST_BYTES:
             try:
-                more = self._peer.recv(_MOST_BYTES)
+                more = self._ends["brltty"].recv(_MOST_BYTES)
             except BlockingIOError:
                 break
             except OSError:
                 more = b""
             data += more
             if not more:
-                self._drop()
+                self._end("brltty")
         return data
 
-    def send(self, line: bytes) -> None:
+    def send(self, line: str) -> None:
         """Send a line; one for which BRLTTY has no room is lost, like a key that is not heard."""
-        with suppress(OSError):
-            if self._peer is not None:
-                self._peer.send(line)
+        with suppress(OSError, KeyError):
+            self._ends["brltty"].send(f"{line}\n".encode())
 
-    def _drop(self) -> None:
-        if self._peer is not None:
-            self._peer.close()
-            self._peer = None
+    def _end(self, name: str) -> None:
+        if name in self._ends:
+            self._ends.pop(name).close()
 
     def close(self) -> None:
         """End; the file of a Unix socket goes."""
-        self._drop()
-        if self._listening is not None:
-            self._listening.close()
-            self._listening = None
-            if self.local:
-                with suppress(FileNotFoundError):
-                    Path(self._address).unlink()
+        self._end("brltty")
+        if self.local and "listening" in self._ends:
+            Path(str(self._place)).unlink(missing_ok=True)
+        self._end("listening")

@@ -36,7 +36,8 @@ _UNFELT: Final = int(Flag.PAUSED | Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HE
 _CALM_S: Final = 0.02  # from one change of what is shown to the next
 _ECHO_S: Final = 0.3  # what stands for so long is printed
 _BELOW_S: Final = 0.5  # a hand that stays below the lines for so long asks for those below
-_SIX: Final = 0x3F
+_SIX: Final = 0x3F  # mask of dots 1 to 6
+_EIGHTH: Final = 3  # dot row of dots 7 and 8
 
 
 class Screen(Explored):
@@ -113,7 +114,7 @@ class Screen(Explored):
     def put(self) -> None:
         """Put what BRLTTY shows under the hand; cells that stay are felt as before."""
         style, display, masks = self.style, self.device.display, self.talk.masks
-        if style.mapping.rows <= 3 and (masks > _SIX).any():
+        if max(*style.mapping.left, *style.mapping.right) < _EIGHTH and (masks > _SIX).any():
             self.talk.remark("dots 7 and 8 are not shown: the mapping has three rows of dots")
         if self.rows:
             program = style.render_page(list(masks), display)
@@ -176,7 +177,7 @@ class Screen(Explored):
     def send(self, name: str) -> None:
         """Ask BRLTTY for something by the name of its command."""
         if self._port.connected:
-            self._port.send(f"{name}\n".encode())
+            self._port.send(name)
         else:
             self.refuse("BRLTTY is not connected")
 
@@ -208,7 +209,12 @@ class Screen(Explored):
 
     def route(self, cell: int) -> None:
         """Take the screen's cursor to a cell of the line."""
-        self.send(f"ROUTE {self.row * self.line_masks.size + cell + 1}")
+        # The driver counts from 0, takes no 0, and says otherwise (BRLTTY 6.5 to 6.8).
+        number = self.row * self.line_masks.size + cell
+        if number:
+            self.send(f"ROUTE {number}")
+        else:
+            self.refuse("BRLTTY takes the cursor to every cell but the first")
 
     def turn(self, knob: str, value: float) -> str:
         """Give a knob of the style a value; a sentence on it, or empty if it had it before."""
@@ -222,38 +228,38 @@ class Screen(Explored):
         return turned.said(value)
 
 
-# BRLTTY's commands: name, help, keys, and keys of a device or a display with pins. The first are
-# those of `read`, where they mean the same.
-_ASKED: Final = (
-    ("LNDN", "next line", "n down", "button:1 pins:LNDN", True),
-    ("LNUP", "previous line", "p up", "button:2 pins:LNUP", True),
-    ("FWINRT", "on along the line, then the next line", "right", "pins:FWINRT", True),
-    ("FWINLT", "back along the line, then the line before", "left", "pins:FWINLT", False),
-    ("LNBEG", "start of the line", "home", "pins:LNBEG", False),
-    ("LNEND", "end of the line", "end", "pins:LNEND", False),
-    ("TOP", "first line of the screen", "< ctrl-home", "pins:TOP", True),
-    ("BOT", "last line of the screen", "> ctrl-end", "pins:BOT", True),
-    ("WINDN", "lines below", "] ctrl-pagedown", "pins:WINDN", False),
-    ("WINUP", "lines above", "[ ctrl-pageup", "pins:WINUP", False),
-    ("NXDIFLN", "next line that differs", "pagedown", "pins:NXDIFLN", False),
-    ("PRDIFLN", "previous line that differs", "pageup", "pins:PRDIFLN", False),
-    ("NXPROMPT", "next prompt", "}", "pins:NXPROMPT", False),
-    ("PRPROMPT", "previous prompt", "{", "pins:PRPROMPT", False),
-    ("HOME", "to the cursor", ".", "pins:HOME", True),
-    ("RETURN", "to the cursor, or back from it", ",", "pins:RETURN", False),
-    ("CSRTRK", "follow the cursor, or stay", "C", "pins:CSRTRK", True),
-    ("CSRVIS", "show the cursor, or hide it", "c", "pins:CSRVIS", False),
-    ("FREEZE", "hold the screen still, or go on", "f", "pins:FREEZE", False),
-    ("SIXDOTS", "computer braille of six dots or eight", "6", "pins:SIXDOTS", False),
-    ("DISPMD", "attributes or text", "a", "pins:DISPMD", False),
-)
+# BRLTTY's commands with their keys; those are of `read`, where they mean the same. Help names the
+# first, and pages of the live view offer them.
+_ASKED: Final = {
+    "LNDN": ("next line", "n down"),
+    "LNUP": ("previous line", "p up"),
+    "FWINRT": ("on along the line, then the next line", "right"),
+    "TOP": ("first line of the screen", "< ctrl-home"),
+    "HOME": ("to the cursor", "."),
+    "CSRTRK": ("follow the cursor, or stay", "C"),
+    "FWINLT": ("back along the line, then the line before", "left"),
+    "LNBEG": ("start of the line", "home"),
+    "LNEND": ("end of the line", "end"),
+    "BOT": ("last line of the screen", "> ctrl-end"),
+    "WINDN": ("lines below", "] ctrl-pagedown"),
+    "WINUP": ("lines above", "[ ctrl-pageup"),
+    "NXDIFLN": ("next line that differs", "pagedown"),
+    "PRDIFLN": ("previous line that differs", "pageup"),
+    "RETURN": ("to the cursor, or back from it", ","),
+    "CSRVIS": ("show the cursor, or hide it", "c"),
+    "FREEZE": ("hold the screen still, or go on", "f"),
+    "SIXDOTS": ("computer braille of six dots or eight", "6"),
+}
+_FIRST: Final = 6
+_BUTTONS: Final = {"LNDN": "button:1", "LNUP": "button:2"}
 
 
 def _add_asked() -> None:
-    for name, words, keys, also, first in _ASKED:
+    for place, (name, (words, keys)) in enumerate(_ASKED.items()):
+        also = f"pins:{name} {_BUTTONS.get(name, '')}"
+        told = {"first": place < _FIRST, "steers": place < _FIRST, "name": name.lower()}
 
-        @command(words, keys, also=also, first=first, where=Where.SCREEN, steers=first,
-                 name=name.lower())  # fmt: skip
+        @command(words, keys, also=also, where=Where.SCREEN, **told)
         def ask(screen: Screen, name: str = name) -> None:
             screen.send(name)
 
@@ -274,12 +280,9 @@ def route(screen: Screen) -> None:
 @command("where the line and the cursor are on the screen", "i", where=Where.SCREEN, first=True)
 def where(screen: Screen) -> None:
     """Say where the line and the cursor are."""
-    status: Any = screen.talk.status
-    if not status:
-        screen.refuse("BRLTTY has not said where it is")
-        return
-    line, cursor = (
-        f"row {status.get(f'{name}ROW', 0)}, column {status.get(f'{name}COL', 0)}"
-        for name in ("BRL", "CSR")
+    status = screen.talk.status
+    said = (
+        f"{words}: row {status.get(f'{name}ROW', 0)}, column {status.get(f'{name}COL', 0)}"
+        for name, words in (("BRL", "line"), ("CSR", "cursor"))
     )
-    screen.say(f"line: {line}; cursor: {cursor}")
+    screen.say("; ".join(said))
