@@ -29,8 +29,7 @@ def run() -> Iterator[Result]:
         shown(folder, STRESS2, hand="spot:20,0") as screen,
         Brltty(Path(folder), Path(folder) / "socket") as brltty,
     ):
-        screen.until(lambda: screen.port.connected)
-        client = brltty.client()
+        client = screen.written_by(brltty)
         yield _latency(screen, client)
         yield _flood(screen, client)
 

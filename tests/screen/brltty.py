@@ -20,7 +20,7 @@ from vbraille.reading.outputs import Console
 from vbraille.reading.screen import Screen
 
 PATIENCE_S = 40.0
-_LINE_MM = 60.0  # five cells
+_LINE_MM = 50.0  # five cells
 
 
 class Brltty:
@@ -91,6 +91,14 @@ class Shown:
         self.screen.follow = lambda ticks: (self.ticks.append(ticks), follow(ticks))
         self._loop = Exploration(self.screen, device, keyboard, Console())
 
+    def written_by(self, brltty):
+        """A program that can write what is shown, once BRLTTY knows the size."""
+        self.until(lambda: self.port.connected)
+        client = brltty.client()
+        rows, cells = self.screen.talk.masks.shape
+        self.until(lambda: client.displaySize == (cells, rows))
+        return client
+
     def until(self, so, patience_s=PATIENCE_S):
         """Go on until something is so."""
         end_s = time.monotonic() + patience_s
@@ -126,7 +134,7 @@ class Shown:
 
 
 @contextmanager
-def shown(folder, model, hand="sweep:300"):
+def shown(folder, model, hand="sweep:120"):
     """A screen on a simulated device of a model."""
     place = Path(folder) / "socket"
     port = Port(str(place))

@@ -58,8 +58,7 @@ def test_lines_that_are_not_as_they_should_be_are_said_once_and_survived():
 def test_a_line_is_felt_as_a_program_writes_it_and_keys_reach_the_program(tmp_path):
     here = model()
     with shown(tmp_path, here) as screen, Brltty(tmp_path, tmp_path / "socket") as brltty:
-        screen.until(lambda: screen.port.connected)
-        client = brltty.client()
+        client = screen.written_by(brltty)
         assert client.displaySize == (26, 1)
         client.writeText(WORDS)
         screen.until(lambda: screen.screen.text == WORDS)
@@ -87,8 +86,7 @@ def test_a_line_is_felt_as_a_program_writes_it_and_keys_reach_the_program(tmp_pa
 def test_rows_of_brltty_are_lines_of_the_page(tmp_path):
     here = model(rows=3)
     with shown(tmp_path, here) as screen, Brltty(tmp_path, tmp_path / "socket") as brltty:
-        screen.until(lambda: screen.port.connected)
-        client = brltty.client()
+        client = screen.written_by(brltty)
         assert client.displaySize == (26, 3)
         client.writeText("hello".ljust(26) + "leh".ljust(26) + "oe")
         screen.until(lambda: screen.screen.talk.text.startswith("hello"))
@@ -102,8 +100,7 @@ def test_brltty_is_killed_and_comes_again(tmp_path):
     with shown(tmp_path, model(), hand="sweep:60") as screen:
         for time_ in range(by_tier(2, 20, 20)):
             with Brltty(tmp_path, tmp_path / "socket") as brltty:
-                screen.until(lambda: screen.port.connected)
-                client = brltty.client()
+                client = screen.written_by(brltty)
                 client.writeText(f"time {time_}")
                 screen.until(lambda time_=time_: screen.screen.text == f"time {time_}")
             screen.until(lambda: not screen.port.connected)

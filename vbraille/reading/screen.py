@@ -186,12 +186,12 @@ class Screen(Explored):
     def follow(self, ticks: NDArray[np.void]) -> None:
         """Look where the hand went; a hand that comes back from the end goes on to the right."""
         felt = ticks[ticks["flags"] & _UNFELT == 0]
-        if not felt.size:
+        if not felt.size or not self._port.connected:
             return
         self._x_mm = float(felt["x_mm"][-1])
         if self.rows:
             self._follow_rows(felt)
-        elif self._port.connected and self._tail[0].find(felt["x_mm"]) is not None:
+        elif self._tail[0].find(felt["x_mm"]) is not None:
             self.send("FWINRT")
             self._watch_end(self._tail[1])
 
