@@ -9,9 +9,10 @@ from typing import get_args
 
 from msgspec import inspect as info
 
+from tests.commandline import commands
 from tests.scene import keyspage
 from vbraille.braille.geometry import Geometry
-from vbraille.config.options import BOOK, FILE, PROFILE, held_in
+from vbraille.cli.options import SHARED
 from vbraille.reading.commands import Where, keys_of, spoken, table
 from vbraille.render import Tuning
 from vbraille.sessions.planning.protocol import Protocol, ProtocolFile
@@ -27,31 +28,19 @@ from vbraille.sessions.record.events import (
 DOCS = Path(__file__).parents[1] / "docs"
 
 
-def _value(option):
-    """The value of an option, in words."""
-    if option.choices:
-        return " or ".join(f"`{name}`" for name in option.choices)
-    words = {bool: "true or false", int: "a whole number", float: "a number"}
-    bounds = "" if option.low is None else f", {option.low:g} to {option.high:g}"
-    return f"{words.get(option.kind, 'a text')}{bounds} {option.unit}".rstrip()
-
-
 def _row(*parts):
     return f"| {' | '.join(part.replace('|', chr(92) + '|') for part in parts)} |"
 
 
-def _read():
-    yield _row("key", "value", "what it does", "usual", "kept with a book")
-    for option in held_in(FILE):
-        kept = "yes" if BOOK in option.holds else ""
-        usual = option.usual or "false"
-        yield _row(f"`{option.key}`", _value(option), option.does, usual, kept)
-
-
-def _profile():
-    yield _row("value", "what it may be", "what it does", "usual")
-    for option in held_in(PROFILE):
-        yield _row(f"`{option.key}`", _value(option), option.does, option.usual)
+def _settings():
+    yield _row("option", "what it does")
+    told = {}
+    for _, command in commands():
+        for param in command.params:
+            if param.name in SHARED and param.name not in told:
+                told[param.name] = param.help
+    for name, does in sorted(told.items()):
+        yield _row(f"`{name}`", does)
 
 
 def _keys(where):
@@ -208,8 +197,7 @@ def _bytes():
 
 # Each document with its tables, which begin with the first row of each.
 TABLES = (
-    ("settings.md", list(_read())),
-    ("settings.md", list(_profile())),
+    ("settings.md", list(_settings())),
     ("keys.md", list(_keys(Where.BOOK))),
     ("feeling.md", list(_keys(Where.PICTURE))),
     ("playing.md", list(_keys(Where.GAME))),

@@ -408,7 +408,7 @@ def _load() -> None:
     from vbraille.engine import hostprocess
 
     display = hostprocess._ANY
-    hostprocess.warm_up(display, hostprocess.Extent(display.rows, display.columns, 0, 200))
+    hostprocess.warm_up(display)
 
 
 def _main() -> NoReturn:

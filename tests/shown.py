@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from tests.render.braille.reference import deflections
 from vbraille.display import Display
 from vbraille.render import STRESS2, VBD, BrailleStyle, Mapping
 from vbraille.render.braille.mappings import NONE
-from vbraille.render.braille.reference import deflections
 from vbraille.render.program import Program
 
 STRESS2_ARRAY = STRESS2.display

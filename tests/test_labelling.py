@@ -5,11 +5,11 @@ import pytest
 
 from vbraille.errors import InputError
 from vbraille.labelling import label_warnings, write_label, write_labels
-from vbraille.layout.texts import lay_out_text
+from vbraille.layout import lay_out_text
 from vbraille.render import STRESS2_8X8
 from vbraille.scene.patterns import Circle, Fill, Group, Label, Tile
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.translate.liblouis import BrailleTable
+from vbraille.translate import BrailleTable
 
 STYLE = STRESS2_8X8.style
 GEOMETRY = STYLE.geometry

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from vbraille.errors import DeviceError as DeviceError
     from vbraille.errors import InputError as InputError
     from vbraille.errors import VbrailleError as VbrailleError
-    from vbraille.layout.texts import translate_text as translate_text
     from vbraille.pictures.framed import open_framed as open_scene
     from vbraille.reading.frames import RenderedLine as RenderedLine
     from vbraille.reading.frames import RenderedPage as RenderedPage
@@ -46,6 +45,7 @@ if TYPE_CHECKING:
     from vbraille.scene.scene import Scene as Scene
     from vbraille.sessions.conditions import Conditions as Conditions
     from vbraille.sessions.session import Session as Session
+    from vbraille.translate.tables import translate_text as translate_text
 
 # Where each name is; what it has another name there stands after the colon.
 _PLACES = {
@@ -79,7 +79,7 @@ _PLACES = {
     "open_scene": "vbraille.pictures.framed:open_framed",
     "render_page": "vbraille.reading.frames",
     "render_text": "vbraille.reading.frames",
-    "translate_text": "vbraille.layout.texts",
+    "translate_text": "vbraille.translate.tables",
 }
 __all__ = [
     "LATERO",

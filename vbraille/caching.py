@@ -24,7 +24,14 @@ from pathlib import Path
 # linear algebra, and declarations in C. Together they take a third of the time of loading it.
 _LEFT_OUT = (("scipy.linalg", "numba.np.arraymath"), ("cffi", "numba.core.typing.cffi_utils"))
 # The files that hold kernels, and what kernels call or take numbers from.
-_ROOMS = ("render/**/*.py", "devices/**/*.py", "engine/*.py", "scene/signals.py")
+_ROOMS = (
+    "render/**/*.py",
+    "devices/levels.py",
+    "engine/ticks.py",
+    "engine/constants.py",
+    "engine/record.py",
+    "scene/signals.py",
+)
 
 
 @cache

@@ -6,7 +6,6 @@ own, and is broken where it is wider than the label may be.
 
 from __future__ import annotations
 
-import unicodedata
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING
@@ -14,13 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.errors import InputError
-from vbraille.layout.blocks import breaks_of, wrap
+from vbraille.layout import wrap_text
 from vbraille.render.labels import Written, corners_mm
 from vbraille.scene.patterns import Label, Tile
 from vbraille.scene.traversal import each
-from vbraille.translate.languages import find_table
-from vbraille.translate.liblouis import BrailleTable
-from vbraille.translate.source import Text, to_codes
+from vbraille.translate import BrailleTable, find_table
 from vbraille.wording import count, printable
 
 if TYPE_CHECKING:
@@ -171,15 +168,9 @@ def _table(name: str) -> BrailleTable:
     return BrailleTable(name if {".", "/", ","} & set(name) else find_table(name))
 
 
-def _text(line: str) -> Text:
-    codes = to_codes(unicodedata.normalize("NFC", " ".join(line.split())))
-    return Text(codes, np.arange(codes.size), codes.size, frozenset(codes.tolist()))
-
-
 def _unknown(label: Label, table: str) -> set[str]:
     """Characters of a label that were written as a mark, since its table does not know them."""
-    own = {code for line in label.text.splitlines() for code in _text(line).alphabet}
-    return {chr(code) for code in own & _table(table).undefined}
+    return {sign for line in label.text.splitlines() for sign in _table(table).unknown(line)}
 
 
 def _cells_across(label: Label, style: BrailleStyle) -> int | None:
@@ -196,13 +187,8 @@ def _cells_across(label: Label, style: BrailleStyle) -> int | None:
 
 
 def _broken(line: str, table: BrailleTable, width: int | None) -> Iterator[NDArray[np.uint8]]:
-    text = _text(line)
-    cells = table.translate(text)
-    if width is None:
-        yield cells.masks
-        return
-    for start, stop, _ in wrap(breaks_of(text, cells), width, starts=cells.starts.tolist()):
-        yield cells.masks[start:stop]
+    for masks in wrap_text(line, table, width):
+        yield np.frombuffer(masks, np.uint8)
 
 
 def _beyond_mm(corners: Sequence[Point], width_mm: float, height_mm: float) -> float:

@@ -34,10 +34,10 @@ _SETTLED_S = 30.0
 # Longer than any lateness: beyond it cyclictest only counts.
 _HISTOGRAM_US = 100_000
 _TRANSLATE = """
-from vbraille.layout.pages import Layout
-from vbraille.translate import Book, BrailleTable, Document
+from vbraille.layout import Layout
+from vbraille.translate import Book, BrailleTable, open_source
 while True:
-    book = Book(Document.open("texts/english.txt"), BrailleTable("en-ueb-g2.ctb"))
+    book = Book(open_source("texts/english.txt"), BrailleTable("en-ueb-g2.ctb"))
     list(Layout(book, 26).lines())
 """
 

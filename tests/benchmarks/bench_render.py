@@ -13,14 +13,14 @@ from tests.shown import rendered
 from vbraille.engine.record import columns_of, tick_dtype
 from vbraille.engine.state import LoopState
 from vbraille.engine.ticks import POSE_X, POSE_Y, POSED
-from vbraille.layout.pages import Layout
+from vbraille.layout import Layout
 from vbraille.render import STRESS2
-from vbraille.translate import Book, BrailleTable, Document
+from vbraille.translate import Book, BrailleTable, text_source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from vbraille.layout.pages import Line
+    from vbraille.layout import Line
     from vbraille.render.program import Program
 
 LINES, CELLS = 25, 40
@@ -138,9 +138,7 @@ def lines_of(count: int) -> Layout:
     """A book of so many lines, or a few more."""
     text = (TEXTS / "english.txt").read_text().strip().split("\n\n")
     paragraphs = text[1:] * (count // 200 + 1) if count > 1 else text[:1]
-    return Layout(
-        Book(Document.from_text("\n\n".join(paragraphs)), BrailleTable("en-ueb-g2.ctb")), 26
-    )
+    return Layout(Book(text_source("\n\n".join(paragraphs)), BrailleTable("en-ueb-g2.ctb")), 26)
 
 
 def read(lines: list[Line], places: list[float], out: np.ndarray) -> None:

@@ -8,8 +8,8 @@ import pytest
 
 from tests.cli import program
 from vbraille import __version__
-from vbraille.layout.pages import Layout
-from vbraille.translate import Book, BrailleTable, Cells, Document
+from vbraille.layout import Layout
+from vbraille.translate import Book, BrailleTable, Cells, open_source
 
 UNICODE = """\
 ⠀⠀⠐⠕⠀⠞⠺⠕⠀⠹⠗⠑⠑
@@ -37,7 +37,7 @@ def test_the_formats_say_the_same(call, text):
 
 
 def test_a_long_text_is_all_there(call, texts):
-    book = Book(Document.open(texts / "english.txt"), BrailleTable("en-ueb-g2.ctb"))
+    book = Book(open_source(str(texts / "english.txt")), BrailleTable("en-ueb-g2.ctb"))
     lines = list(Layout(book, 26).lines())
     said = call("page", texts / "english.txt")
     assert said.out.splitlines() == [line.printed.to_unicode() for line in lines]
@@ -241,24 +241,6 @@ def test_a_reader_who_has_enough_ends_it_quietly(tmp_path):
         process.stdout.close()
         assert process.stderr.read() == program.line_width(26).encode()
         assert process.wait(program.PATIENCE_S) == 1  # not all of it was printed
-
-
-def test_a_file_that_changes_while_it_is_read_is_not_said_to_be_done(tmp_path):
-    big = tmp_path / "big.txt"
-    paragraph = "one two three\n\n"
-    for size, code, said in [
-        (5_000, 1, f"vbraille: {big} has become shorter since it was opened; open it again"),
-        (8_000, 0, f"{big} has grown since it was opened; open it again to read what was added"),
-    ]:
-        big.write_text(paragraph * 6_000)
-        with program.start("page", big, text=True) as process:
-            process.stdout.readline()  # a pipe holds little: it waits for us
-            with big.open("r+") as file:
-                file.truncate(size * len(paragraph))
-            lines = 1 + sum(1 for _ in process.stdout)
-            assert process.wait(program.PATIENCE_S) == code
-            assert process.stderr.read().splitlines()[-1] == said
-        assert lines < 6_000 if code else lines == 6_000
 
 
 def test_a_pipe_is_read_like_a_file(text):

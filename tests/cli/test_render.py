@@ -16,10 +16,10 @@ from tests.shown import rendered, twin
 from tests.tiers import by_tier, heavy
 from vbraille import __version__
 from vbraille.braille.geometry import PRESETS, Geometry
-from vbraille.layout.pages import Layout
+from vbraille.layout import Layout
 from vbraille.recording import print_in
 from vbraille.render import MAPPINGS, MODELS, Tuning, single_row
-from vbraille.translate import Book, BrailleTable, Document
+from vbraille.translate import Book, BrailleTable, open_source
 from vbraille.wording import count
 
 RECORDED = "t_s,x_mm\n" + "".join(f"{t / 10},{x}\n" for t, x in enumerate((-9, 40, 155, 20, -11)))
@@ -98,7 +98,9 @@ def test_the_file_holds_all_that_was_rendered(
 
         cells, length = file["page/cells"][:], file["page/length"][:]
         assert cells.dtype == np.uint8
-        layout = Layout(Book(Document.open(source), BrailleTable("en-ueb-g2.ctb")), cells.shape[1])
+        layout = Layout(
+            Book(open_source(str(source)), BrailleTable("en-ueb-g2.ctb")), cells.shape[1]
+        )
         masks = [wanted.masks for wanted in layout.lines(first, last)]
         for row, wanted in enumerate(layout.lines(first, last)):
             assert print_in(file, row, wanted.masks.size).text == wanted.text

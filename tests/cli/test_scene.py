@@ -86,7 +86,7 @@ def test_a_fault_is_one_sentence_with_line_and_nearest_name(call, tmp_path):
     done = call("scene", "check", path)
     assert (done.code, done.out) == (2, "")
     assert done.err == (
-        f"vbraille: {path} line 17: [[elements]] number 2 name is 'mon', which nothing here is "
+        f"vbraille: {path} line 17: name is 'mon', which nothing here is "
         "called; the nearest is moon\n"
     )
 

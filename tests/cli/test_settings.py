@@ -1,23 +1,27 @@
-"""``vbraille settings``, and what a settings file does to reading."""
+"""The settings file: what an option is where nothing gives it, and where that comes from."""
 
+import json
 import tomllib
 
+import h5py
 import pytest
 
-from tests.cli import program
-from tests.tiers import TIER, Tier
+from vbraille.cli.settings import save_profile
+from vbraille.errors import InputError
 
 TEXT = """# mine
-[read]
-grade = 1
-echo = "text"
-profile = "evening"
-
+language = "fr"
+[render]
+rate = 500
+texture = 0.2
+[profile.default]
+contrast = 0.9
+[profile.evening]
+texture = 0.5
 [profile.evening.stress2]
+dot-width = 2.4
 contrast = 0.5
-dot_spacing_mm = 3.0
 """
-FAST = ("--hand", "sweep:1000")
 
 
 @pytest.fixture
@@ -27,175 +31,106 @@ def settings(tmp_path):
     return path
 
 
-def test_each_setting_is_said_with_where_it_comes_from(call, settings):
-    said = call("settings", "--settings", settings, "--texture", "1", "--language", "fr")
-    assert (said.code, said.err) == (0, "")
-    lines = said.out.splitlines()
-    assert lines[:4] == [
-        f"settings file: {settings}",
-        "profile: evening (mine.toml line 5)",
-        "display: STReSS² (default)",
-        "texture: 1 (option)",
-    ]
-    for line in (
-        "contrast: 0.5 (profile evening, mine.toml line 8)",
-        "cell gap: 7.4 mm (default)",
-        "language: fr (option)",
-        "grade: 1 (mine.toml line 3)",
-        "advance: return (default)",
-        "foreign: switch (default)",
-        "undefined: mark (default)",
-    ):
-        assert line in lines
-    said = call("settings", "--profile", "noon", "--settings", settings)
-    assert said.err == "profile: noon is new, and is made when it is saved\n"
-    assert "profile: noon (option)\n" in said.out
-    assert "contrast: 1 (default)\n" in said.out
+def rows(done):
+    assert (done.code, done.err) == (0, "")
+    return {row["name"]: (row["value"], row["from"]) for row in json.loads(done.out)["settings"]}
 
 
-def test_the_path_is_said_even_of_a_file_that_cannot_be_used(call, settings):
-    settings.write_text("[raed]\n")
-    said = call("settings", "--settings", settings, "--where")
-    assert (said.code, said.out, said.err) == (0, f"{settings}\n", "")
-    for command in (("settings",), ("read", "none.txt"), ("page", "none.txt"), ("tune",)):
-        said = call(*command, "--settings", settings)
-        assert (said.code, said.out) == (2, "")
-        assert said.err == (
-            "vbraille: mine.toml line 1: [raed] is no table of settings; "
-            "the nearest is read, and there is buttons, keys, profile, read\n"
-        )
+def test_each_setting_is_printed_with_its_origin(call, settings, monkeypatch):
+    monkeypatch.setenv("VBRAILLE_RENDER_CONTRAST", "0.4")
+    found = rows(call("settings", "render", "--settings", settings, "--profile=evening", "--json"))
+    assert found["language"] == ("fr", "mine.toml line 2")
+    assert found["rate"] == (500, "mine.toml line 4")
+    assert found["texture"] == (0.5, "mine.toml line 9, profile evening")
+    assert found["dot_width"] == (2.4, "mine.toml line 11, profile evening")
+    assert found["contrast"] == (0.4, "environment variable VBRAILLE_RENDER_CONTRAST")
+    assert found["seed"] == (1, "default")
+    monkeypatch.delenv("VBRAILLE_RENDER_CONTRAST")
+    found = rows(call("settings", "render", "--settings", settings, "--json", "--model", "vbd"))
+    assert found["contrast"] == (0.9, "mine.toml line 7, profile default")
+    assert found["dot_width"] == (None, "default")
+    lines = call("settings", "render", "--settings", settings).out.splitlines()
+    assert lines[:2] == [f"settings file: {settings}", "profile: default"]
+    assert "texture: 0.2 (mine.toml line 5)" in lines
+    assert call("settings", "--where", "--settings", settings).out == f"{settings}\n"
 
 
-def test_reading_goes_by_the_file_unless_an_option_says_otherwise(call, text, settings):
-    command = ("read", text, *FAST, "--lines", "1", "--settings", settings)
-    said = call(*command)
-    assert said.code == 0
-    # Dots that stand closer leave room for more cells; grade and echo are the file's.
-    assert said.err == program.line_width(28, program.UNCONTRACTED)
-    assert said.out.startswith("line: 1\ntext: one two three\n")
-    options = ("--table", "fr-bfu-comp6.utb", "--dot-spacing", "3.7", "--echo", "none")
-    # An option goes before the file in every command; a page needs no process.
-    page = call("page", text, "--settings", settings, *options[:-2])
-    assert page.err == program.line_width(26, "French uncontracted braille")
-    if TIER is Tier.TEST:
-        return
-    said = call(*command, *options)
-    assert said.err == program.line_width(26, "French uncontracted braille")
-    assert not said.out.startswith("line")
+def rendered(call, out, text, *options):
+    done = call("render", text, "--out", out, "--force", "--lines", "1", *options)
+    assert done.code == 0, done.err
+    with h5py.File(out) as file:
+        return json.loads(file.attrs["tuning"]), json.loads(file.attrs["geometry"]), done.err
 
 
-def test_a_page_takes_language_grade_and_table_and_braille_stays_braille(call, text, settings):
-    said = call("page", text, "--settings", settings)
-    assert said.err == program.line_width(26, program.UNCONTRACTED)
-    braille = text.with_suffix(".brf")
-    braille.write_text("ABC\n")
-    said = call("page", braille, "--settings", settings, "--format", "brf")
-    assert (said.code, said.out.strip()) == (0, "ABC")
-    said = call("page", braille, "--grade", "1")
-    assert said.code == 2
+def test_a_command_takes_them_and_an_option_wins(call, settings, text, tmp_path, monkeypatch):
+    out = tmp_path / "out.h5"
+    tuning, _, err = rendered(call, out, text, "--settings", settings)
+    assert (tuning["texture"], tuning["contrast"]) == (0.2, 0.9)
+    assert "French" in err
+    monkeypatch.setenv("VBRAILLE_SETTINGS", str(settings))
+    monkeypatch.setenv("VBRAILLE_RENDER_PROFILE", "evening")
+    tuning, geometry, _ = rendered(call, out, text)
+    assert (tuning["texture"], tuning["contrast"], geometry["dot_width_mm"]) == (0.5, 0.5, 2.4)
+    tuning, geometry, _ = rendered(call, out, text, "--texture", "1", "--dot-width", "2")
+    assert (tuning["texture"], tuning["contrast"], geometry["dot_width_mm"]) == (1, 0.5, 2)
+    monkeypatch.setenv("VBRAILLE_RENDER_TEXTURE", "0.7")
+    assert rendered(call, out, text)[0]["texture"] == 0.7
+    _, geometry, _ = rendered(call, out, text, "--model", "vbd")
+    assert geometry["dot_width_mm"] == 2.0  # its own: the profile has it for another display
 
 
 @pytest.mark.parametrize(
-    ("table", "said"),
+    ("content", "said"),
     [
-        ('[keys]\nLNDN = ["crtl-n"]', "line 2: there is no key 'crtl-n'; the nearest is ctrl-n"),
-        ('[keys]\nLNDN = ["xyzzy"]', "line 2: there is no key 'xyzzy'; write a character"),
-        ('[buttons]\n1 = "LNDNN"', "line 2: there is no command 'LNDNN'; the nearest is LNDN"),
-        ('[read]\nmodel = "vbd"', "line 2: [read] has no key 'model'; there is advance, "),
+        ("[raed]\nx = 1", "line 1: unknown table 'raed'; did you mean 'read'?"),
+        ("langage = 'fr'", "line 1: unknown option 'langage'; did you mean 'language'?"),
+        ("[render]\n\ntextur = 1", "line 3: [render] unknown option 'textur'; did you mean"),
+        ("[profile.default]\ndot_widht = 1", "line 2: [profile.default] unknown option"),
+        ("[profile.default.vbd]\nlanguage = 'fr'", "line 2: [profile.default.vbd] unknown option"),
+        ("[render]\ntexture = 2", "line 2"),
+        ("[render]\ntexture = nan", "line 2"),
+        ("[render]\ntexture = true", "line 2"),
+        ("[render]\nmapping = 'sheard'", "line 2"),
+        ("[profile.default.stress2]\ncontrast = -1", "line 2, profile default"),
+        ("render = 3", "line 1"),
+        ("[render", "is not TOML"),
+        ("a = \xff", "not UTF-8"),
     ],
 )
-def test_what_reading_refuses_is_refused_where_settings_are_listed(
-    call, text, settings, table, said
-):
-    settings.write_text(table)
-    listed, read = (call(*c, "--settings", settings) for c in (("settings",), ("read", text)))
-    assert (listed.code, listed.out) == (read.code, read.out) == (2, "")
-    assert listed.err == read.err
-    assert said in listed.err
+def test_what_a_file_cannot_have_is_a_sentence_with_its_line(call, settings, text, content, said):
+    settings.write_bytes(content.encode("latin-1"))
+    done = call("render", text, "--out", "never.h5", "--settings", settings)
+    assert (done.code, done.out) == (2, "")
+    assert done.err.count("\n") == 1
+    assert "mine.toml" in done.err
+    assert said in done.err
 
 
-def test_a_setting_is_a_wish_and_an_option_is_not(call, tmp_path, text, settings):
-    settings.write_text('[read]\nkeep_lines = true\nencoding = "latin-1"\n')
-    book = tmp_path / "book.html"
-    book.write_text("<p>one two three", "utf-8")
-    braille = text.with_suffix(".brf")
-    braille.write_text("ABC\n")
-    for file in (book, braille):
-        with program.Terminal("read", file, "--settings", settings, "--advance=key") as terminal:
-            terminal.until("h says the keys\r\n")
-            terminal.type("/c\n")  # another process opens the book, too
-            terminal.until("text: c\r\n(line|not found)")
-            terminal.type("q")
-            assert terminal.end() == 0
-    text.write_bytes("caf\xe9\n".encode("latin-1"))
-    said = call("read", text, *FAST, "--settings", settings)
-    assert (said.code, "text: café" in said.out) == (0, True)
-    said = call("read", book, *FAST, "--settings", settings, "--keep-lines")
-    assert (said.code, said.out) == (2, "")
-    assert "--keep-lines" in said.err
+def test_a_file_that_is_named_must_be_there_and_the_usual_one_need_not(call, tmp_path):
+    missing = tmp_path / "none.toml"
+    assert "none.toml" in call("settings", "render", "--settings", missing).err
+    assert call("settings", "render").code == 0
 
 
-def test_a_turn_at_a_terminal_is_saved_and_undone(tmp_path, text, settings):
-    hand = tmp_path / "hand.csv"
-    hand.write_text("0,64.2\n0.1,64.2\n")
-    arguments = ("read", text, "--hand", f"recorded:{hand}", "--settings", settings)
-    with program.Terminal(*arguments) as terminal:
-        terminal.until("h says the keys\r\n")
-        for key, said in (
-            ("c", "contrast: 0.6"),
-            ("s", "dot spacing: 3.2 mm"),
-            ("U", "undo: dot spacing 3 mm"),
-            ("P", "saved: profile evening for the STReSS²"),
-        ):
-            terminal.type(key)
-            terminal.until(rf"(^|\n){said}\r\n")
-        terminal.type("q")
-        assert terminal.end() == 0
-    saved = tomllib.loads(settings.read_text())["profile"]["evening"]["stress2"]
-    assert (saved["contrast"], saved["dot_spacing_mm"]) == (0.6, 3.0)
-    assert settings.read_text().startswith("# mine\n")
+def test_a_saved_profile_leaves_all_else_and_is_read_again(call, settings):
+    save_profile(settings, "evening", "stress2", {"contrast": 0.25, "mapping": "sheared"})
+    save_profile(settings, "noon", "vbd", {"dot_row": 2})
+    text = settings.read_text()
+    assert text.startswith("# mine\n")
+    tree = tomllib.loads(text)
+    assert tree["render"] == {"rate": 500, "texture": 0.2}
+    assert tree["profile"]["evening"]["texture"] == 0.5
+    wanted = {"dot-width": 2.4, "contrast": 0.25, "mapping": "sheared"}
+    assert tree["profile"]["evening"]["stress2"] == wanted
+    assert tree["profile"]["noon"] == {"vbd": {"dot_row": 2}}
+    found = rows(call("settings", "render", "--settings", settings, "--profile=evening", "--json"))
+    assert found["mapping"][0] == "sheared"
 
 
-def test_a_ready_set_of_keys_is_chosen_by_the_file_or_an_option(call, text, settings):
-    settings.write_text('[read]\nkeys = "nvda"\n[keys]\nLNDN = ["full stop"]\n')
-    listed = call("keys", "--settings", settings).out.splitlines()
-    assert "NXHEADING: h: next heading" in listed
-    assert "LNDN: full stop: next line" in listed
-    usual = call("keys", "--settings", settings, "--keys", "usual").out.splitlines()
-    assert "NXHEADING: e: next heading" in usual
-    assert "LNDN: full stop: next line" in usual
-    assert call("keys").out == call("keys", "--keys", "usual").out
-    said = call("settings", "--settings", settings).out.splitlines()
-    assert "keys: nvda (mine.toml line 2)" in said
-    assert "keys: usual (default)" in call("settings").out.splitlines()
-    assert "keys: nvda (option)" in call("settings", "--keys", "nvda").out.splitlines()
-    with program.Terminal("read", text, "--advance", "key", "--settings", settings) as terminal:
-        terminal.until("f1 says the keys\r\n")
-        terminal.type("h")
-        terminal.until("heading: none after this\r\n")
-        terminal.type(".")
-        terminal.until("line: 2\r\n")
-        terminal.type("q")
-        terminal.until("quotation: none after this\r\n")
-        terminal.type("\x04")
-        assert terminal.end() == 0
-
-
-@pytest.mark.parametrize("keys", ['"jaws"', "1"])
-def test_a_set_of_keys_that_there_is_not_is_one_sentence(call, settings, keys):
-    settings.write_text(f"[read]\nkeys = {keys}\n")
-    said = call("keys", "--settings", settings)
-    assert (said.code, said.out) == (2, "")
-    assert "mine.toml line 2" in said.err
-    assert said.err.count("\n") == 1
-
-
-def test_a_terminal_that_goes_away_ends_reading_whatever_its_keys_mean(text, settings):
-    settings.write_text('[read]\nkeys = "nvda"\n')
-    ignoring = f"trap '' HUP; exec {' '.join(program.PROGRAM)} read {text} --advance key"
-    with program.Terminal(f"{ignoring} --settings {settings}", program=["sh", "-c"]) as terminal:
-        terminal.until("f1 says the keys\r\n")
-        terminal.type("/")
-        terminal.until("search: type the text, Enter\r\n")
-        terminal.hang_up()
-        terminal.process.wait(program.PATIENCE_S)
+def test_a_profile_that_cannot_be_saved_is_a_sentence(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="cannot be made"):
+        save_profile(tmp_path / "file" / "mine.toml", "evening", "vbd", {"dot_row": 2})
+    new = tmp_path / "new" / "mine.toml"
+    save_profile(new, "evening", "vbd", {"dot_row": 2})
+    assert tomllib.loads(new.read_text()) == {"profile": {"evening": {"vbd": {"dot_row": 2}}}}

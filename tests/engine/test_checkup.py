@@ -1,204 +1,92 @@
-"""Whether a device is fit to be read on, by a controller on a clock that is turned by hand."""
-
-import json
-import re
-from dataclasses import replace
+"""The checkup: right devices are fit, and what is wrong is said of the right one."""
 
 import pytest
 
-from tests.baddrivers import BAD, Good
-from tests.devices.bench import Bench
-from tests.engine.test_loop import info
-from tests.tiers import heavy
-from vbraille.devices.serial.wire import Encoder
+from tests.engine.wire import wired
+from vbraille.devices.base import Device
+from vbraille.devices.events import Placing
+from vbraille.display import Display, Pose
 from vbraille.engine.checkup import check
 from vbraille.engine.clock import ManualClock
 
-RATE_S = 1.0  # what a bench does in it, it always does
-SMALL = {"rows": 1, "columns": 2, "inverted": b"\0\1", "gain": b"\xff\xff", "enabled": b"\1\1"}
+SMALL = Display("small", 1, 2, 1.0, 1.0, levels=256, travel_mm=100.0)
 
 
-class BenchClock:
-    """The clock of a bench: who sleeps on it has the controller go on."""
-
-    def __init__(self, bench):
-        self._bench = bench
-
-    def now_ns(self):
-        return self._bench.now_ns()
-
-    busy_ns = now_ns
-
-    def sleep_until_ns(self, deadline_ns):
-        while self.now_ns() < deadline_ns:
-            self._bench.pause(0.001)
+def checked(monkeypatch, **how):
+    device, clock, _ = wired(monkeypatch, SMALL, **how)
+    said = []
+    return check(device, clock, said.append, rate_s=0.5), said
 
 
-@pytest.fixture
-def checked():
-    """Check a device of two actuators whose controller is made as it should not be."""
-
-    def run(spoil=lambda _bench: None, **changes):
-        bench = Bench(**{**SMALL, **changes})
-        spoil(bench)
-        said = []
-        with bench.begin(None) as device:
-            found = check(device, BenchClock(bench), said.append, rate_s=RATE_S)
-        # As --json prints it: without NaN, which JSON has not.
-        assert json.loads(json.dumps(found.to_json(), allow_nan=False))["wrong"] == found.wrong
-        return found.fit, said
-
-    return run
+def test_a_right_device_is_fit(monkeypatch):
+    found, said = checked(monkeypatch)
+    assert found.fit, found.wrong
+    assert said[-1] == "verdict: fit to be read on"
+    assert len(found.trips_ms) == 3
+    assert found.to_json()["fit"]
 
 
-def test_what_is_as_it_should_be_is_fit_and_measured(checked):
-    fit, said = checked()
-    assert (fit, said[-1]) == (True, "verdict: fit to be read on")
-    kinds = [line.partition(":")[0] for line in said]
-    assert kinds[:7] == ["actuator", "actuator", "rate", "work", "late", "clock", "place"]
-    assert "late: this computer by 0.0 ms at most, the line by 0.0 ms" in said
-    assert "clock: 1.000 s pass on it in a second, 0.98 to 1.02 s are allowed" in said
-    assert (
-        "place: 5.0 to 5.0 mm from the left stop, of 300 mm; 2 mm beyond either end are allowed"
-    ) in said
-    (tripped,) = [line for line in said if line.startswith("watchdog: tripped")]
-    assert re.match(r"watchdog: tripped 3 of 3 times, median 5[01]\.0 ms after the last", tripped)
-    # It does not hold its own trips against the device.
-    assert [line for line in said if line.startswith("device: ")] == []
-    assert "watchdog trips: 0" in said
-
-
-def late(bench):
-    bench.controller.watchdog_us = 80_000
-
-
-def early(bench):
-    bench.controller.watchdog_us = 30_000
-
-
-def missing(bench):
-    bench.controller.watchdog_us = None
-
-
-def unacknowledged(bench):
-    bench.controller.acknowledges = False
-
-
-def untaken(bench):
-    bench.controller._take_frame = lambda _frame: b""
-
-
-def far_off(bench):
-    bench.way_mm = 5005.0
-
-
-def a_bit_off(bench):
-    bench.way_mm = -2.5
-
-
-def together(*spoils):
-    def spoil(bench):
-        for one in spoils:
-            one(bench)
-
-    return spoil
-
-
-def clock_at(speed):
-    def spoil(bench):
-        tick, receive = bench.controller.tick, bench.controller.receive
-        bench.controller.tick = lambda us, *at: tick(round(us * speed), *at)
-        bench.controller.receive = lambda chunk, us: receive(chunk, round(us * speed))
-
-    return spoil
-
-
-FAR_OFF = "its carriage is at 5005.0 mm from the left stop, where it cannot be; see to the"
-A_BIT_OFF = "its carriage is at -2.5 mm from the left stop, where it cannot be"
-UNTAKEN = "it acknowledges none of the frames that it is sent; see to its frame_sequence"
-MISSING = "its watchdog does not trip in time when no frame comes; do not read on it"
-LATE = "its watchdog trips after 81 ms, too late; 50 ms are right"
-HALF_AS_FAST = "its clock goes 0.50 times as fast as it should; see to its time_us"
-A_BIT_SLOW = "its clock goes 0.97 times as fast as it should; see to its time_us"
-EARLY = "its watchdog trips after 31 ms, too early; 50 ms are right"
+@pytest.mark.parametrize("hold_ms", [8, 16])
+def test_a_line_that_holds_bytes_back_is_blamed_and_not_the_device(monkeypatch, hold_ms):
+    found, _ = checked(monkeypatch, hold_ms=hold_ms)
+    assert not found.fit
+    (wrong,) = found.wrong
+    assert f"{hold_ms} ms" in wrong
+    assert "latency_timer" in wrong
 
 
 @pytest.mark.parametrize(
-    ("spoil", "found"),
+    ("changed", "named"),
     [
-        (together(unacknowledged, a_bit_off), [UNTAKEN, A_BIT_OFF]),
-        # The next two are as these to a checkup.
-        pytest.param(untaken, [UNTAKEN], marks=heavy),
-        pytest.param(clock_at(0.5), [HALF_AS_FAST], marks=heavy),
-        (together(far_off, missing), [FAR_OFF, MISSING]),
-        (late, [LATE]),
-        (early, [EARLY]),
-        (clock_at(0.97), [A_BIT_SLOW]),
+        ({"watchdog_ms": None}, "watchdog"),
+        ({"watchdog_ms": 200}, "watchdog"),
+        ({"acknowledges": False}, "acknowledges"),
     ],
-    ids=["unacknowledged", "untaken", "clock 0.5", "far off", "late", "early", "clock 0.97"],
 )
-def test_what_is_not_as_it_should_be_is_not_fit(checked, spoil, found):
-    fit, said = checked(spoil)
-    assert not fit
-    verdict = said[-1].removeprefix("verdict: not fit to be read on: ")
-    assert verdict != said[-1]
-    assert [sentence for sentence in found if sentence not in verdict] == []
+def test_what_is_built_wrong_is_named(monkeypatch, changed, named):
+    found, said = checked(monkeypatch, **changed)
+    assert named in "; ".join(found.wrong)
+    assert said[-1].startswith("verdict: not fit")
 
 
-@pytest.mark.parametrize(
-    "changes", [{"enabled": b"\0\0"}, pytest.param({"gain": b"\0\0"}, marks=heavy)]
-)
-def test_actuators_that_are_all_disabled_are_not_fit_and_not_swung(checked, changes):
-    fit, said = checked(**changes)
-    assert not fit
-    assert said[-1] == "verdict: not fit to be read on: every one of its actuators is disabled"
-    assert not [line for line in said if line.startswith("actuator")]
+class Driver(Device):
+    """A driver that another package might have."""
+
+    def __init__(self, clock, **wrong):
+        self.display = SMALL
+        self.clock = clock
+        vars(self).update(wrong)
+
+    def read(self):
+        return Pose(self.clock.now_ns(), 0.0)
+
+    def _send(self, _frame):
+        return None
+
+    def _release(self):
+        pass
 
 
-def test_some_disabled_actuators_and_a_place_not_tested_are_said_with_the_verdict(checked):
-    """The place is not tested where the reader is to show it."""
-    fit, said = checked(enabled=b"\1\0", encoder=Encoder.INCREMENTAL, left_stop_count=0)
-    assert fit
-    assert said[-1] == (
-        "verdict: fit to be read on, without 1 of its actuators, which are disabled"
-    )
-    assert said[0] == "actuator: row 1, column 1"
-    assert "actuator: row 1, column 2" not in said
-    assert "place: not tested, since its reader must show it the left stop" in said
+def test_a_driver_that_gives_places_while_it_waits_for_one_is_told_of():
+    clock = ManualClock()
+    found = check(Driver(clock, placing=Placing.STOP), clock, lambda _: None, rate_s=0.2)
+    assert any("waits to be shown" in wrong for wrong in found.wrong)
 
 
-def test_a_device_of_two_axes_is_shown_a_corner_and_has_no_stop(checked):
-    plane = {"height_um": 60_000, "y_counts_per_m": 200_000}
-    _, said = checked(encoder=Encoder.INCREMENTAL, left_stop_count=0, **plane)
-    assert "place: not tested, since its reader must show it the far left corner" in said
-    _, said = checked(**plane)
-    (place,) = [line for line in said if line.startswith("place: ")]
-    assert place.startswith("place: 5.0 to 5.0 mm from the left edge, of 300 mm;")
+def test_a_driver_that_leaves_a_message_cut_is_told_of():
+    import socket
 
+    here, there = socket.socketpair()
 
-@pytest.mark.parametrize(
-    ("driver", "found"), BAD.items(), ids=lambda each: getattr(each, "__name__", "")
-)
-def test_a_bad_driver_is_not_fit_by_the_name_of_its_fault(driver, found):
-    clock, said = ManualClock(), []
-    device = driver(replace(info(), rows=1, columns=2), clock)
-    assert not check(device, clock, said.append).fit
-    assert said[-1].startswith("verdict: not fit to be read on: ")
-    assert found in said[-1]
+    class Cutting(Driver):
+        sent = 0
 
+        def _send(self, _frame):
+            self.sent += 1
+            here.send(bytes([self.sent % 256]) * 20)
+            there.recv(4096)
 
-def test_a_slow_but_right_clock_and_a_carriage_at_its_stop_are_fit(checked):
-    def spoil(bench):
-        clock_at(0.99)(bench)
-        bench.way_mm = -1.5
-
-    assert checked(spoil)[0]
-
-
-def test_what_a_device_does_not_tell_is_said_with_the_verdict():
-    clock, said = ManualClock(), []
-    with Good(replace(info(), rows=1, columns=2), clock) as device:
-        assert check(device, clock, said.append).fit
-    assert said[-1] == (
-        "verdict: fit to be read on, but what it has taken and its watchdog could not be tested"
-    )
+    with here, there:
+        clock = ManualClock()
+        found = check(Cutting(clock), clock, lambda _: None, rate_s=0.2)
+        assert any("took a part" in wrong for wrong in found.wrong)

@@ -1,16 +1,16 @@
 from dataclasses import replace
 
 from vbraille.braille.cells import Cells
-from vbraille.layout.pages import Line
+from vbraille.layout import Line
 from vbraille.pictures import mapping, page, profile, strain, wave
 from vbraille.render import STRESS2, VBD, Tuning
-from vbraille.translate import Block, Text
+from vbraille.translate import Block
 
-NO_TEXT = Block(Text.empty())
+NO_TEXT = Block("")
 
 
 def make_line(braille, number=1, indent=0):
-    return Line(number, indent, Cells.from_unicode(braille), NO_TEXT, 0, 0)
+    return Line(NO_TEXT, number - 1, indent, Cells.from_unicode(braille), 0, 0)
 
 
 def with_style(model, **changes):

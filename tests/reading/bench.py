@@ -4,16 +4,15 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from vbraille.layout.texts import cells_per_line
+from vbraille.layout import Layout, cells_per_line
 from vbraille.reading.device import ReadingDevice
 from vbraille.reading.exploration import Exploration
 from vbraille.reading.places import Places
 from vbraille.reading.reader import Reader
-from vbraille.reading.texts import Book, Layout, Source
 from vbraille.render import STRESS2, STRESS2_8X8
 from vbraille.simulation.steering import Pointer
 from vbraille.testing import ManualClock, simulated_device
-from vbraille.translate import BrailleTable, Document
+from vbraille.translate import Book, BrailleTable, text_source
 
 ONE, TWO = STRESS2, STRESS2_8X8
 
@@ -62,8 +61,8 @@ class Reading:
         self.device = ReadingDevice(given, model.display, clock=clock)
         self.device.start(replace(model, display=given.display))
         table = BrailleTable("en-ueb-g1.ctb")
-        document = text if not isinstance(text, str) else Document.from_text(text)
-        self.book = Book(Source(document), table)
+        source = text if not isinstance(text, str) else text_source(text)
+        self.book = Book(source, table)
         width = how.pop("width", None)
         places = places or Places(None, print)
         layout = Layout(self.book, width or cells_per_line(model.style.geometry, given.display))

@@ -15,7 +15,7 @@ from vbraille.reading.picture import Picture
 from vbraille.reading.tuning import Course, Tuning, practice_text
 from vbraille.simulation.steering import Pointer
 from vbraille.testing import ManualClock, simulated_device
-from vbraille.translate.formats import open_source
+from vbraille.translate import open_source
 
 HOUSE = "texts/scenes/house.scene"
 

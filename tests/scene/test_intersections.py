@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.tiers import heavy
 from vbraille.scene import intersections
 from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.patterns import Polygon
@@ -52,21 +51,19 @@ def test_edges_that_meet_are_found(name):
     assert meeting_edges(vertices) == edges
 
 
-@heavy
-def test_a_crossing_among_very_many_edges_is_found_in_seconds():
-    vertices = list(ring(100_000, 5.0))
+def test_a_crossing_among_many_edges_is_found_in_seconds():
+    vertices = list(ring(5_000, 5.0))
     began = time.process_time()
     assert meeting_edges(tuple(vertices)) is None
-    vertices[70_000], vertices[70_002] = vertices[70_002], vertices[70_000]
+    vertices[700], vertices[702] = vertices[702], vertices[700]
     first, second = meeting_edges(tuple(vertices))
-    assert 69_990 < first < second < 70_010
-    assert time.process_time() - began < 10
+    assert 690 < first < second < 710
+    assert time.process_time() - began < 5
 
 
-def test_edges_that_are_too_close_together_to_be_compared_are_refused():
-    slanted = [(n * 1e-3 + (n % 2) * 70.0, n * 1e-3 + (n % 2) * 30.0) for n in range(20_000)]
-    with pytest.raises(ValueError, match="edges so close together that they cannot be compared"):
-        meeting_edges((*slanted, (-500.0, 500.0)))
+def test_too_many_vertices_are_refused():
+    with pytest.raises(ValueError, match="there can be 20000"):
+        meeting_edges(ring(20_001))
 
 
 def test_places_may_be_numbers_of_numpy():
@@ -77,12 +74,35 @@ places = st.tuples(st.integers(0, 6), st.integers(0, 6))
 
 
 @given(st.lists(places, min_size=3, max_size=9))
-def test_few_edges_and_many_are_judged_alike(vertices):
-    """What plain Python finds among few is what numpy finds, pair by pair."""
-    if any(a == b for a, b in zip(vertices, vertices[1:] + vertices[:1], strict=True)):
+def test_edges_meet_as_they_do_pair_by_pair(vertices):
+    number = len(vertices)
+    edges = [(vertices[n], vertices[(n + 1) % number]) for n in range(number)]
+    if any(a == b for a, b in edges):
         return
-    slowly = next(intersections._slowly(tuple(vertices)), None)
-    assert (slowly is None) == (intersections._quickly(tuple(vertices)) is None)
+    before = [edges[n - 1] for n in range(number)]
+    back = any(
+        turn(a, b, d) == 0 and (a[0] - b[0]) * (d[0] - b[0]) + (a[1] - b[1]) * (d[1] - b[1]) > 0
+        for (a, b), (_, d) in zip(before, edges, strict=True)
+    )
+    crossed = any(
+        turn(*edges[i], edges[j][0]) * turn(*edges[i], edges[j][1]) <= 0
+        and turn(*edges[j], edges[i][0]) * turn(*edges[j], edges[i][1]) <= 0
+        and boxes_meet(edges[i], edges[j])
+        for i in range(number)
+        for j in range(i + 2, number - (i == 0))
+    )
+    assert (meeting_edges(tuple(vertices)) is not None) == (back or crossed)
+
+
+def turn(a, b, c):
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def boxes_meet(one, other):
+    return all(
+        max(min(a, b), min(c, d)) <= min(max(a, b), max(c, d))
+        for a, b, c, d in zip(*one, *other, strict=True)
+    )
 
 
 def test_a_polygon_that_crosses_itself_is_refused():

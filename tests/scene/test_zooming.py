@@ -220,7 +220,7 @@ def test_a_loaded_scene_has_what_is_there_with_its_images_and_cells(path):
     ("written", "said"),
     [
         ("zoom_from = 0", "0.5 to 16"),
-        ("zoom_to = nan", "0.5 to 16"),
+        ("zoom_to = nan", "must be a number"),
         ("zoom_from = 1e9", "0.5 to 16"),
         ("zoom_from = 4\nzoom_to = 2", "never there"),
     ],

@@ -12,20 +12,18 @@ from vbraille.cli.printing import say
 from vbraille.cli.settings import given, style_options
 from vbraille.errors import InputError
 from vbraille.knobs import KNOBS
-from vbraille.layout.pages import Layout
-from vbraille.layout.texts import Unknown, Unshown, cells_per_line, choose_table
+from vbraille.layout import Layout, Remarks, cells_per_line
 from vbraille.render import MAPPINGS, single_row
-from vbraille.translate import Book, Undefined
-from vbraille.translate.formats import open_source
-from vbraille.translate.languages import has_tables
+from vbraille.translate import Book, choose_table, has_tables, open_source
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
 
     import click
 
-    from vbraille.layout.pages import Line
+    from vbraille.layout import Line
     from vbraille.render import Model
+    from vbraille.translate import Source
 
 _OF_TABLE = ("language", "grade", "table")
 
@@ -49,17 +47,7 @@ def build_book(ctx: click.Context, file: str | None = None) -> Book:
         If the text or the table cannot be used.
     """
     chosen, asked = ctx.params, given(ctx)
-    file = file or chosen["file"]
-    how: dict[str, Any] = {
-        key: chosen[key] for key in ("encoding", "keep_lines", "brf_table", "form")
-    }
-    how["wishes"] = frozenset({"encoding", "keep_lines"} - asked)
-    if file == "-":
-        if sys.stdin.isatty():
-            say("type the text; Ctrl-D on an empty line ends it", aside=True)
-        source = open_source(sys.stdin.buffer, name="standard input", **how)
-    else:
-        source = open_source(file, **how)
+    source = open_text(chosen, file, wishes=frozenset({"encoding", "keep_lines"} - asked))
     if source.in_cells:
         if wrong := asked & {*_OF_TABLE}:
             raise InputError(f"{source.name} is in braille already; leave out --{min(wrong)}")
@@ -68,6 +56,26 @@ def build_book(ctx: click.Context, file: str | None = None) -> Book:
     made = choose_table(language, grade, table, chosen["undefined"])
     switch = chosen["foreign"] == "switch"
     return Book(source, made, language=language or "", grade=grade, switch=switch)
+
+
+def open_text(
+    chosen: dict[str, Any], file: str | None = None, *, wishes: Collection[str]
+) -> Source:
+    """Open a text by options on it, of which `wishes` are passed over where they do not fit.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
+    file = file or chosen["file"]
+    names = ("encoding", "keep_lines", "brf_table", "form")
+    how = {name: chosen[name] for name in names}
+    if file != "-":
+        return open_source(file, wishes=wishes, **how)
+    if sys.stdin.isatty():
+        say("type the text; Ctrl-D on an empty line ends it", aside=True)
+    return open_source(sys.stdin.buffer, name="standard input", wishes=wishes, **how)
 
 
 def table_options(ctx: click.Context, own: str = "") -> tuple[str | None, int | None, str | None]:
@@ -165,10 +173,8 @@ class Page:
         width = width or cells_per_line(model.style.geometry, model.display)
         self.layout, self.model = Layout(book, width), model
         self.first, self.last = ctx.params["lines"]
-        self._unknown = None
-        if book.table is not None:
-            self._unknown = Unknown(book.table, Undefined(ctx.params["undefined"]))
-        self._unshown = Unshown()
+        self._remarks = Remarks(book)
+        self._given = 0  # lines
         if self.layout.line(self.first) is None:
             name, lines = book.source.name, self.layout.count()
             if not lines:
@@ -181,17 +187,16 @@ class Page:
     def lines(self) -> Iterator[Line]:
         """Lines that are wanted; notes on the text are printed on standard error."""
         for line in self.layout.lines(self.first, self.last):
+            self._given += 1
             self.say_notes()
-            if self._unknown is not None:
-                self._unknown.see(line)
-            self._unshown.see(line)
+            self._remarks.see(line.block)
             yield line
 
     def progress(self, line: Line) -> float:
-        """Share of the lines that is done with this one, 0 to 1."""
+        """Share of the lines that is done with the last of `lines`, 0 to 1."""
         if self.last is None:
             return self.layout.progress(line)
-        return (line.number - self.first + 1) / (self.last - self.first + 1)
+        return self._given / (self.last - self.first + 1)
 
     def say_notes(self) -> None:
         """Print notes on the text that are new."""
@@ -201,6 +206,5 @@ class Page:
     def say_end(self) -> None:
         """Print notes, and what of the lines was not shown."""
         self.say_notes()
-        for counter in (self._unknown, self._unshown):
-            if counter is not None and counter.sentence is not None:
-                say(counter.sentence, aside=True)
+        for sentence in self._remarks.sentences():
+            say(sentence, aside=True)

@@ -331,7 +331,7 @@ file = click.argument("file", type=click.Path(allow_dash=True))
 optional_file = click.argument("file", type=click.Path(allow_dash=True), required=False)
 language = _shared("--language", metavar="TAG", help="Language of the text, such as fr or pt-BR.")
 grade = _shared("--grade", type=whole(0, 9), metavar="N",
-                help="Braille grade: 0 or 1 uncontracted, 2 and up contracted.")  # fmt: skip
+                help="Grade: 0 or 1 uncontracted, 2 and up contracted.")  # fmt: skip
 lines = option("--lines", type=Lines(), metavar="3-10", default=(1, None),
                help="Lines of the page, from 1.")  # fmt: skip
 table = _shared("--table", metavar="NAME", help="Translation table of liblouis.", **_TEXT)
@@ -364,7 +364,7 @@ geometry = _shared("--geometry", type=Known("geometry", _geometries), metavar="N
 
 # Device and hand
 device = _shared("--device", metavar="SPEC", default="sim", show_default=True,
-                 help="Device, such as serial:/dev/ttyACM0 or latero:HOST.")  # fmt: skip
+                 help="Device: serial:PORT, latero:HOST or sim.")  # fmt: skip
 model = _shared("--model", type=Known("display model", _models), metavar="NAME",
                 help="Display model; any other device is rejected.", **_DEVICE)  # fmt: skip
 travel = _shared("--travel", type=Number(1, 10_000), metavar="MM",
@@ -380,8 +380,8 @@ straying = _shared("--straying", type=click.Choice(["line", "free"]),
 band = _shared("--band", type=Number(0, 0.9), help="How far past a line's edge the finger may "
                "stray, in line pitches.", **_DEVICE)  # fmt: skip
 hand = _shared("--hand", metavar="HAND", default="sweep:60", show_default=True,
-               help="Simulated hand: sweep:MM_S, slow, fluent, wide, spot:X,Y, recorded:FILE.csv "
-               "or still.")  # fmt: skip
+               help="Simulated hand: slow, fluent, still, sweep:MM_S, wide or recorded:FILE."
+               )  # fmt: skip
 seed = _shared("--seed", type=whole(0), metavar="N", default=1, help="Seed for random numbers.",
                **_DEVICE)  # fmt: skip
 

@@ -145,7 +145,7 @@ def read_settings(path: str | None) -> Settings:
     import tomllib
 
     from vbraille.files import read_text
-    from vbraille.tomlfile import lines_of
+    from vbraille.toml import lines_of
 
     text = read_text(found, "settings file")
     try:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from vbraille.devices.calibration import correction_for
+from vbraille.devices.calibration import Correction
 from vbraille.devices.events import Placing
 from vbraille.errors import DeviceError
 
@@ -18,10 +18,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.devices.calibration import Calibration, Correction
+    from vbraille.devices.calibration import Calibration
     from vbraille.devices.events import Event
     from vbraille.display import Display, Pose
 
+__all__ = ["Device", "Particulars", "Placing"]
 _DOUBLE = np.dtype(np.float64)
 
 
@@ -31,37 +32,29 @@ class Particulars:
 
     Parameters
     ----------
-    firmware
-        Version of the device's firmware.
-    encoder
-        What the encoder knows of its place, in words.
-    largest_slew_per_s
-        Fastest that an actuator may be moved, in full swings a second; 0 for no limit.
-    disabled, inverted
-        Row and column, from 0, of each actuator that is broken, not fitted or without a swing,
-        and of each whose rest is the highest level.
     protocol
-        What the device speaks, with the version; empty if it does not say.
+        What the device speaks, with the version.
+    fastest
+        Share of the full swing that an actuator goes in a millisecond; 0 if that is not known.
     buttons, knobs
-        Number of buttons and of knobs that it has; None if it does not say.
+        Number of buttons and of knobs.
+    analog
+        Names of its analog inputs.
     """
 
-    firmware: str
-    encoder: str
-    largest_slew_per_s: float
-    disabled: tuple[tuple[int, int], ...]
-    inverted: tuple[tuple[int, int], ...]
-    protocol: str = ""
-    buttons: int | None = None
-    knobs: int | None = None
+    protocol: str
+    fastest: float = 0.0
+    buttons: int = 0
+    knobs: int = 0
+    analog: tuple[str, ...] = ()
 
 
 class Device(ABC):
-    """A device: `read`, `write`, `close`, and `info`. A context manager.
+    """A device: `read`, `write`, `close`, and `display`. A context manager.
 
-    A driver gives `info`, `read`, `_send` and `_release`; what it inherits
-    keeps a bad frame from the actuators and brings them to rest before the
-    device is let go. The rest is for devices that can do more, or fail.
+    A driver gives `display`, `read`, `_send` and `_release`; what it inherits keeps a bad frame
+    from the actuators and brings them to rest before the device is let go. The rest is for devices
+    that can do more, or fail.
 
     A device that can be lost and found (unplugged, silent) goes on by itself: as long as it is
     away `read` gives None, frames are dropped, and `take_events` tells what has happened.
@@ -70,39 +63,44 @@ class Device(ABC):
     ----------
     display : Display
         Display that the device is, which stays the same as long as it is open.
+    descriptor : int or None
+        File descriptor that becomes readable when there may be a new pose, which then begins a
+        tick; None for ticks at even times.
     rested : int
         How often the actuators went to rest otherwise than by a frame of 0, after which the next
         frames must fade in.
+    taking : bool
+        Whether frames reach the actuators. It is False while they rest by themselves.
     placing : Placing
         What the device waits for before it can tell places; `read` gives None until then.
-    taking : bool
-        Whether frames reach the actuators. It is False while they rest by themselves; after that
-        frames fade in.
     acknowledges : bool
         Whether the device tells which frames it has received.
     acknowledged_ns : int or None
-        How long after the last frame was written the device told that it had received it; None as
-        long as it did not.
+        How long after a frame was written the device told that it had received it, of the last
+        frame of which that is known; None before.
     watchdog_trips : int or None
-        How often the device's watchdog brought the actuators to rest, by the device's own count;
-        None if it does not tell.
+        How often the device's watchdog brought the actuators to rest; None if it does not tell.
+    tripped_ms : float or None
+        How long after the last frame reached it the watchdog last tripped, by the device's clock.
     particulars : Particulars or None
         What else the device says of itself.
     serial_number : str
         Number of this very device, which tells it from others of its name; empty if none is known.
     calibration : Calibration or None
-        What `correct` was told last, and makes up for.
+        What `calibrate` was told last, and makes up for.
     ahead_ns : int
         How long before each tick `ask` is called; 0 if it never is.
     """
 
     display: Display
+    descriptor: int | None = None
     rested = 0
-    placing = Placing.DONE
     taking = True
+    placing = Placing.DONE
     acknowledges = False
     acknowledged_ns: int | None = None
     watchdog_trips: int | None = None
+    tripped_ms: float | None = None
     particulars: Particulars | None = None
     serial_number = ""
     calibration: Calibration | None = None
@@ -112,17 +110,23 @@ class Device(ABC):
 
     @abstractmethod
     def read(self) -> Pose | None:
-        """Newest sample since the last call, or None; this never waits.
+        """Newest pose since the last call, or None; this never waits.
 
         Raises
         ------
         DeviceError
-            If the device is gone.
+            If the device is gone for good.
         """
 
     @abstractmethod
-    def _send(self, frame: NDArray[np.float64]) -> None:
-        """Send a checked frame; this never waits. The array is the caller's: copy what is kept."""
+    def _send(self, frame: NDArray[np.float64]) -> bool | None:
+        """Send a checked frame; this never waits. The array is the caller's: copy what is kept.
+
+        Returns
+        -------
+        bool or None
+            False if the frame was not sent, and the actuators stay as they are.
+        """
 
     @abstractmethod
     def _release(self) -> None:
@@ -142,22 +146,11 @@ class Device(ABC):
         """Counts of what went wrong, by name: frames not sent, samples missed, corrupt messages."""
         return {}
 
-    @property
-    def has_own_gains(self) -> bool:
-        """Tell whether the device itself makes up for unequal actuators, so that no host must."""
-        told = self.particulars
-        return told is not None and bool(told.disabled or told.inverted)
-
-    def correct(self, calibration: Calibration | None) -> None:
+    def calibrate(self, calibration: Calibration | None) -> None:
         """Make up for what was found of the actuators, from the next frame on, without a jump.
 
         What a frame asks for and what is recorded of it stays as it is: only what goes to the
-        actuators differs.
-
-        Parameters
-        ----------
-        calibration
-            What was found, for an array of this shape; None to send deflections as they are.
+        actuators differs. None sends deflections as they are.
 
         Raises
         ------
@@ -170,25 +163,17 @@ class Device(ABC):
                 f"reaches; tell its author to have _send only"
             )
         if self._correction is None:
-            self._correction = correction_for(self._shape, self.display.rate_hz)
-        self._correction.aim(calibration)
+            self._correction = Correction(self._shape, self.display.rate_hz)
+        self._correction.aim(None if calibration is None else calibration.gains)
         self.calibration = calibration
 
-    def uncorrect(self) -> bool:
-        """Have inverted actuators go to where the device itself rests, by the next frames of rest.
+    @property
+    def moving(self) -> bool:
+        """Tell whether actuators are on their way to what `calibrate` was told last."""
+        return self._correction is not None and self._correction.moving
 
-        Returns
-        -------
-        bool
-            Whether they are still on their way, and want another frame.
-        """
-        if self._correction is None:
-            return False
-        self._correction.leave()
-        return self._correction.moving
-
-    def write(self, frame: NDArray[np.float64]) -> None:
-        """Send a frame.
+    def write(self, frame: NDArray[np.float64]) -> bool:
+        """Send a frame; tell whether it was sent.
 
         Parameters
         ----------
@@ -210,14 +195,15 @@ class Device(ABC):
             )
         if not self._allows(frame):
             raise DeviceError("a deflection is not in [0, 1]; the frame was not sent")
-        correction = self._correction
-        self._send(frame if correction is None else correction.of(frame, self.rested))
+        if self._correction is not None:
+            frame = self._correction.of(frame, self.rested)
+        return self._send(frame) is not False
 
     @cached_property
     def _allows(self) -> Callable[[NDArray[np.float64]], bool]:
         """Tell whether all deflections of a frame are in [0, 1]."""
         # numba is heavy, and those who only know of devices need none.
-        from vbraille.devices.framekernels import in_range
+        from vbraille.devices.levels import in_range
 
         def allows(frame: NDArray[np.float64]) -> bool:
             if frame.dtype is _DOUBLE and frame.flags.carray:  # for others nothing is compiled
@@ -228,7 +214,7 @@ class Device(ABC):
 
     @cached_property
     def _shape(self) -> tuple[int, int]:
-        return self.display.rows, self.display.columns
+        return self.display.shape
 
     def rest(self) -> None:
         """Send every actuator to rest at once."""

@@ -1,281 +1,193 @@
-"""Findings on each actuator of a device, and deflections that make up for them."""
+"""Gains of a device's actuators: what was found, its file beside the settings, how it is made up.
+
+A gain is the share of the full swing that an actuator is driven with: 1 is all of it, 0 is an
+actuator that does not move, and a negative gain one that moves the other way.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final, Literal
+import json
+import tomllib
+from typing import TYPE_CHECKING, Annotated, Any, Final, Protocol
+from urllib.parse import quote
 
+import msgspec
 import numpy as np
 
-from vbraille.errors import check_range
+from vbraille.errors import InputError
+from vbraille.files import read_text, write_file
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
-State = Literal["ok", "weak", "dead"]
-LEAST_GAIN: Final = 0.05
-# Time in which inverted actuators go over to where the others rest, and back.
-_TURN_S = 0.1
+    from vbraille.display import Display
+
+    class _Device(Protocol):
+        """What is asked of a device here."""
+
+        display: Display
+        serial_number: str
 
 
-@dataclass(frozen=True, slots=True)
-class Tried:
-    """Findings on one actuator.
-
-    Parameters
-    ----------
-    row, column
-        Place of the actuator in the array, from 0; row 0 is far from the reader.
-    state
-        "ok", "weak" if it moves less than the others, or "dead" if it does not move.
-    inverted
-        Whether it moves the other way: level 0 has it where others are at full swing.
-    gain
-        Share of the full swing that it is driven with, 0.05 to 1.
-
-    Raises
-    ------
-    ValueError
-        If the gain is out of range.
-    """
-
-    row: int
-    column: int
-    state: State = "ok"
-    inverted: bool = False
-    gain: float = 1.0
-
-    def __post_init__(self) -> None:
-        check_range("gain", self.gain, LEAST_GAIN, 1)
-
-    @property
-    def place(self) -> tuple[int, int]:
-        """Row and column, from 0."""
-        return self.row, self.column
+Gain = Annotated[float, msgspec.Meta(ge=-1, le=1)]
+_Row = Annotated[list[Gain], msgspec.Meta(min_length=1)]
+_TURN_S: Final = 0.1  # in which an actuator goes over to another gain
+_MOST_NAME: Final = 150
 
 
-@dataclass(frozen=True, slots=True)
-class Calibration:
-    """Findings on the actuators of a device; one that was not tried is taken to be well.
+class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What was found of a device's actuators.
 
     Parameters
     ----------
     device
         Name of the device, with its serial number if it has one.
-    rows, columns
-        Shape of its array.
-    tried
-        What was found, in the order in which it was.
-
-    Raises
-    ------
-    ValueError
-        If an actuator is not in the array, or is there twice.
+    gain
+        Gain of each actuator: row by row from the far one, columns from the left.
     """
 
     device: str
-    rows: int
-    columns: int
-    tried: tuple[Tried, ...] = ()
+    gain: Annotated[
+        list[Annotated[list[Gain], msgspec.Meta(min_length=1)]], msgspec.Meta(min_length=1)
+    ]
 
     def __post_init__(self) -> None:
-        seen = set()
-        for one in self.tried:
-            if not (0 <= one.row < self.rows and 0 <= one.column < self.columns):
-                raise ValueError(
-                    f"row {one.row + 1}, column {one.column + 1} is not in an array of "
-                    f"{self.rows} × {self.columns}"
-                )
-            if one.place in seen:
-                raise ValueError(f"row {one.row + 1}, column {one.column + 1} is there twice")
-            seen.add(one.place)
-
-    def of(self, place: tuple[int, int]) -> Tried | None:
-        """Tell what was found of an actuator; None if it was not tried."""
-        return next((one for one in self.tried if one.place == place), None)
-
-    def with_tried(self, found: Tried) -> Calibration:
-        """Make a calibration with what was found of one more actuator, or found anew."""
-        others = tuple(one for one in self.tried if one.place != found.place)
-        return replace(self, tried=(*others, found))
-
-    def without_last(self) -> Calibration:
-        """Make a calibration without what was found last."""
-        return replace(self, tried=self.tried[:-1])
-
-    def places(self, state: State) -> list[tuple[int, int]]:
-        """Row and column, from 0, of each actuator in a state."""
-        return sorted(one.place for one in self.tried if one.state == state)
+        if len({len(row) for row in self.gain}) > 1:
+            raise ValueError("its rows of `gain` are not alike in length")
 
     @property
-    def inverted(self) -> list[tuple[int, int]]:
-        """Row and column, from 0, of each actuator that moves the other way and is not dead."""
-        return sorted(one.place for one in self.tried if one.inverted and one.state != "dead")
-
-    @property
-    def whole(self) -> bool:
-        """Tell whether every actuator was tried."""
-        return len(self.tried) == self.rows * self.columns
-
-    def scale(self) -> NDArray[np.float64]:
-        """Tell what deflections are multiplied by; float64[rows, columns], -1 … 1.
-
-        A dead actuator has 0, and an inverted one less than 0: its deflections count from 1 down.
-        """
-        scale = np.ones((self.rows, self.columns))
-        for one in self.tried:
-            gain = 0.0 if one.state == "dead" else one.gain
-            scale[one.place] = -gain if one.inverted and gain else gain
-        return scale
-
-    def sentences(self) -> Iterator[str]:
-        """Tell what was found, in sentences for people: "label: value"."""
-        count = self.rows * self.columns
-        yield f"actuators tried: {len(self.tried)} of {count}"
-        named = (
-            ("dead", self.places("dead")),
-            ("weak", self.places("weak")),
-            ("inverted", self.inverted),
-        )
-        for name, places in named:
-            yield f"{name}: {_said(places)}"
-        for one in sorted(self.tried, key=lambda one: one.place):
-            if one.gain < 1 and one.state != "dead":
-                yield f"gain of {_said([one.place])}: {100 * one.gain:.0f} %"
+    def gains(self) -> NDArray[np.float64]:
+        """The gains; float64[rows, columns]."""
+        return np.array(self.gain, np.float64)
 
     def to_json(self) -> dict[str, Any]:
-        """Tell what a session keeps of it; rows and columns count from 0."""
-        return {
-            "device": self.device,
-            "tried": len(self.tried),
-            "actuators": self.rows * self.columns,
-            "scale": self.scale().tolist(),
-            "dead": [list(place) for place in self.places("dead")],
-            "weak": [list(place) for place in self.places("weak")],
-        }
+        """What a session keeps of it."""
+        return msgspec.to_builtins(self)
+
+    def to_toml(self) -> str:
+        """Text of its file."""
+        rows = "".join(f"  [{', '.join(f'{gain:g}' for gain in row)}],\n" for row in self.gain)
+        return (
+            "# Made by vbraille calibrate: a gain for each actuator, the far row first, the left "
+            "column first.\n# 1 is the full swing, 0 an actuator that does not move; a negative "
+            f"gain one that moves the other way.\n"
+            f"device = {json.dumps(self.device, ensure_ascii=False)}\ngain = [\n{rows}]\n"
+        )
 
 
-def _said(places: list[tuple[int, int]]) -> str:
-    return "; ".join(f"row {row + 1}, column {column + 1}" for row, column in places) or "none"
+def even_gains(device: _Device) -> Calibration:
+    """Calibration in which every actuator is well."""
+    rows, columns = device.display.shape
+    return Calibration(name_of(device), [[1.0] * columns] * rows)
+
+
+def name_of(device: _Device) -> str:
+    """Name by which a calibration knows a device: its own, and its serial number if it has one."""
+    return f"{device.display.name} {device.serial_number}".strip()
+
+
+def path_of(settings: Path, device: str) -> Path:
+    """Path of a device's calibration, which stands beside the settings file."""
+    kept = quote(device, safe=" ").replace(" ", "-")[:_MOST_NAME]
+    return settings.with_name(f"{settings.stem}-calibration-{kept}.toml")
+
+
+def load(settings: Path, device: _Device) -> Calibration | None:
+    """Read what is kept of a device; None if nothing is.
+
+    Raises
+    ------
+    InputError
+        If there is a file that is no calibration, or is for another device or array.
+    """
+    name = name_of(device)
+    path = path_of(settings, name)
+    if not path.exists():
+        return None
+    try:
+        table = tomllib.loads(read_text(path, "calibration"))
+        found = msgspec.convert(table, Calibration, strict=False)
+    except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
+        raise InputError(f"{path} is no calibration: {error}; mend it or move it away") from None
+    if found.device != name:
+        raise InputError(f"{path} is of {found.device} and not of {name}; move it away")
+    if found.gains.shape != device.display.shape:
+        rows, columns = device.display.shape
+        raise InputError(
+            f"{path} has {len(found.gain)} × {len(found.gain[0])} gains and {name} has "
+            f"{rows} × {columns} actuators; move it away, and calibrate anew"
+        )
+    return found
+
+
+def save(settings: Path, calibration: Calibration) -> None:
+    """Keep a calibration, whole and on the disk, in place of the one before.
+
+    Raises
+    ------
+    InputError
+        If no file can be made.
+    VbrailleError
+        If the disk cannot take it.
+    """
+    path = path_of(settings, calibration.device)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{path.parent} cannot be made: {error.strerror}") from None
+    write_file(path, calibration.to_toml().encode(), replace=True, durable=True)
 
 
 class Correction:
-    """Deflections on their way to the actuators of a device that does not correct them itself.
+    """Deflections on their way to actuators of different gains.
 
-    What an actuator is sent is ``scale · deflection + offset``, with an offset of 1 where it is
-    inverted. A change of these two is spread over some frames, and so is the way of an inverted
-    actuator from where the device itself rests to where it must rest, and back.
-
-    Parameters
-    ----------
-    shape
-        Rows and columns of the array.
-    frames
-        Number of frames over which a change is spread.
+    An actuator is sent ``scale · deflection + offset``: an inverted one has an offset of 1 and a
+    negative scale. Both go to what is wanted in steps, so that no actuator jumps; where the device
+    has gone to rest by itself, all actuators stand at 0, and inverted ones set out from there.
 
     Attributes
     ----------
-    scale, offset : float64[rows, columns]
-        What deflections are multiplied by now, and what is then added.
     moving : bool
-        Whether they are on their way to others.
+        Whether scale and offset are still on their way.
     """
 
-    def __init__(self, shape: tuple[int, int], frames: int) -> None:
-        self.scale, self.offset = np.ones(shape), np.zeros(shape)
-        self._wanted = np.ones(shape), np.zeros(shape)
-        self._from = np.ones(shape), np.zeros(shape)
-        self._to = np.ones(shape), np.zeros(shape)
-        self._work, self._out = np.zeros(shape), np.zeros(shape)
-        self._share, self._step = 1.0, 1.0 / max(frames, 1)
-        self._left = False
-        self._rested = 0
+    def __init__(self, shape: tuple[int, int], rate_hz: float) -> None:
+        self.moving = False
+        self._scale, self._offset = np.ones(shape), np.zeros(shape)
+        self._to_scale, self._to_offset = np.ones(shape), np.zeros(shape)
+        self._step = 1 / max(_TURN_S * rate_hz, 1)
+        self._rested: int | None = None
 
-    @property
-    def moving(self) -> bool:
-        """Tell whether scale and offset are on their way."""
-        return self._share < 1
-
-    def aim(self, calibration: Calibration | None) -> None:
-        """Go over to what a calibration says; None for deflections as they are."""
-        scale, offset = self._wanted
-        scale[:] = 1.0 if calibration is None else calibration.scale()
-        offset[:] = scale < 0
-        self._go(*self._wanted)
-
-    def from_rest(self) -> None:
-        """Begin where the device itself rests: it has gone there, and frames fade in from there."""
-        np.maximum(self._wanted[0], 0.0, out=self.scale)
-        self.offset.fill(0.0)
-        self._go(*self._wanted)
-
-    def leave(self) -> None:
-        """Go back to where the device itself rests, until there is anything to feel."""
-        if not self._left:
-            self._go(np.maximum(self._wanted[0], 0.0), np.zeros_like(self.offset))
-            self._left = True
+    def aim(self, gains: NDArray[np.float64] | None) -> None:
+        """Go over to these gains, float64[rows, columns]; None for deflections as they are."""
+        self._to_scale[:] = 1.0 if gains is None else gains
+        self._to_offset[:] = self._to_scale < 0
+        self.moving = True
 
     def of(self, frame: NDArray[np.float64], rested: int) -> NDArray[np.float64]:
-        """Correct a frame.
+        """Correct a frame, float64[rows, columns] in [0, 1].
 
         Parameters
         ----------
-        frame : float64[rows, columns]
-            Deflections that are wanted, in [0, 1].
+        frame
+            Deflections that are wanted.
         rested
             How often the device has gone to rest by itself so far.
-
-        Returns
-        -------
-        float64[rows, columns]
-            Deflections to send, in [0, 1]; the same array at each call.
         """
         if rested != self._rested:
             self._rested = rested
-            self.from_rest()
-        elif self._left and frame.any():
-            self._go(*self._wanted)
-        self.advance()
-        out = self._out
-        np.multiply(frame, self.scale, out=out)
-        np.add(out, self.offset, out=out)
-        np.clip(out, 0.0, 1.0, out=out)  # what rounding adds
-        return out
+            self._scale[:] = np.maximum(self._to_scale, 0.0)
+            self._offset[:] = 0.0
+            self.moving = True
+        if self.moving:
+            self._go()
+        return np.clip(self._scale * frame + self._offset, 0.0, 1.0)
 
-    def advance(self) -> bool:
-        """Go on by a frame; tell whether anything has changed."""
-        if self._share >= 1:
-            return False
-        self._share = min(self._share + self._step, 1.0)
-        for one, other, now in zip(self._from, self._to, (self.scale, self.offset), strict=True):
-            np.subtract(other, one, out=self._work)
-            np.multiply(self._work, self._share, out=self._work)
-            np.add(one, self._work, out=now)
-            if self._share >= 1:
-                now[:] = other
-        return True
-
-    def _go(self, scale: NDArray[np.float64], offset: NDArray[np.float64]) -> None:
-        """Set out from here to another scale and offset."""
-        self._left = False
-        self._from[0][:], self._from[1][:] = self.scale, self.offset
-        self._to[0][:], self._to[1][:] = scale, offset
-        self._share = 0.0
-
-
-def correction_for(shape: tuple[int, int], rate_hz: float, slew_per_s: float = 0.0) -> Correction:
-    """Make a correction for a device's rate, and for the fastest that its actuators may be moved.
-
-    Parameters
-    ----------
-    shape
-        Rows and columns of the array.
-    rate_hz
-        Frames a second.
-    slew_per_s
-        Largest number of full swings a second; 0 for no limit.
-    """
-    turn_s = max(_TURN_S, 1 / slew_per_s if slew_per_s else 0.0)
-    return Correction(shape, round(turn_s * rate_hz))
+    def _go(self) -> None:
+        left = 0.0
+        for now, to in ((self._scale, self._to_scale), (self._offset, self._to_offset)):
+            now += np.clip(to - now, -self._step, self._step)
+            left = max(left, float(np.abs(to - now).max()))
+        self.moving = left > 0.0

@@ -95,6 +95,11 @@ def opened_device(
         yield device
 
 
+def drivers() -> list[tuple[str, str]]:
+    """Kinds of devices that there are, with the module that opens each."""
+    return sorted((each.name, each.module) for each in entry_points(group=GROUP))
+
+
 def find_driver(spec: str) -> EntryPoint:
     """Find the entry point of a spec's kind, without loading it.
 
@@ -107,7 +112,7 @@ def find_driver(spec: str) -> EntryPoint:
     found = entry_points(group=GROUP, name=kind) if kind else ()
     if not found:
         kinds = ", ".join(sorted(entry_points(group=GROUP).names))
-        raise InputError(f"there is no device kind {kind!r}; there are {kinds}")
+        raise InputError(f"unknown device kind {kind!r}; known: {kinds}")
     return next(iter(found))
 
 
@@ -129,6 +134,11 @@ def _naming(driver: EntryPoint, *, opening: bool = False) -> Iterator[None]:
         others = isinstance(error, OSError) and not opening and package not in parts
         if package == "vbraille" or others:
             raise
+        if opening and isinstance(error, OSError | ValueError):
+            raise DeviceError(
+                f"{driver.name} cannot open this device: {' '.join(str(error).split())}; see that "
+                f"its address is right, and that it is on"
+            ) from error
         print_traceback(error)
         what = f"{type(error).__name__}: {' '.join(str(error).split())}".removesuffix(": ")
         raise DeviceError(

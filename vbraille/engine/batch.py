@@ -43,7 +43,7 @@ class BatchEngine(LocalEngine):
     InputError
         If the device has no hand that can be told to read a line.
     ValueError
-        If the rate is not 1 to 10,000 Hz, ``poll_ticks`` is below 1, or the hand is not steered.
+        If the rate is not 1 to 10,000 Hz, or ``poll_ticks`` is below 1.
     """
 
     device: SimulatedDevice
@@ -56,8 +56,6 @@ class BatchEngine(LocalEngine):
             raise InputError(
                 f"{setting('fast')} needs a hand that reads lines: slow, fluent or sweep:SPEED"
             )
-        if device.steering is None:
-            raise ValueError("nothing steers the hand; a poll would not know when it is done")
         clock = ManualClock()
         device.go_by(clock.now_ns)
         super().__init__(device, clock, rate_hz=rate_hz, poll_ticks=poll_ticks)
@@ -67,13 +65,11 @@ class BatchEngine(LocalEngine):
         device, state, ring = self.device, self.state, self.ring
         due_ns = (self.tally.ticks + np.arange(self.poll_ticks)) * self._period_ns
         self.clock.sleep_until_ns(int(due_ns[0]))
-        device.obey()
         due_ns = due_ns[: device.until_done(due_ns)]
         poses = np.zeros((due_ns.size, 4))
         poses[:, POSED] = 1.0
         poses[:, POSE_X : POSE_THETA + 1] = device.poses_at(due_ns).T
         self.clock.sleep_until_ns(int(due_ns[-1]))
-        device.read()  # this tells the caller that steers the hand that it has ended
         times_ns = np.repeat(due_ns[:, None], 2, axis=1)
         slot = ring.begin()
         state.advance(times_ns, poses, device.rested, device.taking, ring.columns, slot)

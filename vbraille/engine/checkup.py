@@ -1,22 +1,24 @@
 """The checkup of a device for its builder: measurements, limits, and whether it may be read on.
 
-Actuators swing, and rate, clock, place, round trip and watchdog are measured.
+Actuators swing; rate, clock, place, round trip and watchdog are measured; and the computer, the
+line and the device are told apart where something is late.
 """
 
 from __future__ import annotations
 
 import gc
 import math
-import resource
+import os
+import socket
 from collections import deque
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from vbraille.devices.events import Placing, WatchdogTripped, shown_place, told
-from vbraille.devices.serial.wire import RAMP_MS, WATCHDOG_MS
+from vbraille.devices.protocol import RAMP_MS, REST_MS, WATCHDOG_MS
 from vbraille.display import Pose
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.constants import FADE_S, JUMP_MM_S, NS_PER_S
@@ -26,68 +28,35 @@ from vbraille.render.program import vibration
 from vbraille.simulation.simulated import SimulatedDevice
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
-    from vbraille.devices import Device
+    from vbraille.devices.base import Device
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
 
 _RATE_S = 3.0
-_ROUND_TRIPS = 500
-# A longer round trip is felt: a hand at 70 mm/s goes a tenth of a dot in 4 ms.
-_MOST_ROUND_TRIP_MS = 4.0
+_ROUND_TRIPS_S = 1.0
+_MOST_ROUND_TRIP_MS = 4.0  # a hand at 70 mm/s goes a tenth of a dot in 4 ms
+_HELD_PERIODS = 3  # poses that come so far apart, and none was lost, were held back
 _MOST_LATE = 0.01  # as a share of all ticks
 _MOST_FAULTS = 50  # of each kind: 1 % of some 5000 ticks
-_MARK_S = 60.0
-# What the clocks of simple controllers may be off by; more is heard in a speed.
-_MOST_CLOCK = 0.02
-# A carriage pressed against its stop may be so far beyond it.
-_PLACE_SLACK_MM = 2.0
+_MOST_CLOCK = 0.02  # that a simple controller's clock may be off
+_PLACE_SLACK_MM = 2.0  # that a carriage pressed against its stop may be beyond it
+_PLACE_S = 60.0  # that a place is waited for
 _TRIPS = 3
-# Too early, the watchdog trips while nothing is wrong; a report takes as long as a round trip.
 _EARLIEST_TRIP_MS = 0.9 * WATCHDOG_MS
 _REPORT_MS = 5.0
-
-
-_SWING_S = 0.25  # time of one actuator's swing, out and back
-_MOST_SWINGS = 8  # as long as so many swings for one actuator, if the device keeps going to rest
-_PATIENCE_S = 0.25  # time until a frame counts as never acknowledged
-_LOOK_NS = 50_000
-# How far the actuators go, and how long they take, before a watchdog is left without frames.
-_HELD = 0.3
-_HOLD_S = 0.1
-_TRIP_PATIENCE_S = 0.5
-# What a driver's read and write may take together, as a share of a tick.
-_MOST_OF_TICK = 0.5
-
-
-@dataclass(frozen=True, slots=True)
-class Rate:
-    """Result of a test of how well a device holds a rate of frames.
-
-    Parameters
-    ----------
-    ticks, late
-        How many ticks were done, and how many came too late.
-    work_us
-        Time that a tick took to read, render and write, in µs: median and 99th percentile.
-    clock_s
-        Seconds that the device's clock goes on in one second of the computer's.
-    x_mm
-        Leftmost and rightmost place of the array's centre.
-    host_ms, place_ms
-        Greatest lateness of a tick, and longest time from one place to the next, in ms.
-    """
-
-    ticks: int
-    late: int
-    work_us: tuple[float, float]
-    clock_s: float
-    x_mm: tuple[float, float]
-    host_ms: float
-    place_ms: float
+_TRIP_PATIENCE_S = 0.25
+_SWING_S = 0.25
+_HELD, _HOLD_S = 0.3, 0.1  # how far actuators go before a watchdog is left without frames
+_MOST_OF_TICK = 0.5  # for a driver's read and write together, as a share of a tick
+_PARTS = 5  # frames of which a line takes a part at first
+_LATENCY = (
+    "set the latency timer of its adapter to 1 ms (echo 1 | sudo tee "
+    "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer), as docs/building.md says"
+)
 
 
 @dataclass(slots=True)
@@ -96,8 +65,19 @@ class Checkup:
 
     Parameters
     ----------
-    rate
-        How well the device held its rate; None before that is measured.
+    ticks, late
+        How many ticks were done, and how many came too late.
+    work_us
+        Time that a tick took to read, render and write, in µs: median and 99th percentile.
+    clock_s
+        Seconds that the device's clock goes on in one second of the computer's; None if it told no
+        time.
+    x_mm
+        Leftmost and rightmost place of the array's centre.
+    host_ms, device_ms, line_ms
+        Greatest lateness of the computer, of the device by its own clock, and of the line.
+    held_ms
+        Usual time from poses to the next poses that came; 0 if they came one by one.
     round_trips_ms
         First percentile, median and 99th percentile of the round trips; empty without any.
     trips_ms
@@ -108,7 +88,15 @@ class Checkup:
         Clauses on why the device is not fit to be read on.
     """
 
-    rate: Rate | None = None
+    ticks: int = 0
+    late: int = 0
+    work_us: tuple[float, float] = (0.0, 0.0)
+    clock_s: float | None = None
+    x_mm: tuple[float, float] | None = None
+    host_ms: float = 0.0
+    device_ms: float = 0.0
+    line_ms: float = 0.0
+    held_ms: float = 0.0
     round_trips_ms: list[float] = field(default_factory=list)
     trips_ms: list[float | None] = field(default_factory=list)
     counts: dict[str, int] = field(default_factory=dict)
@@ -120,14 +108,8 @@ class Checkup:
         return not self.wrong
 
     def to_json(self) -> dict[str, Any]:
-        """Tell all of it for JSON, which has no NaN: null stands for what was not told."""
-        rate = {} if self.rate is None else asdict(self.rate)
-        if self.rate is not None:
-            if math.isnan(self.rate.clock_s):
-                rate["clock_s"] = None
-            if math.isnan(self.rate.x_mm[0]):
-                rate["x_mm"] = None
-        return {"fit": self.fit, **asdict(self), "rate": rate}
+        """All of it, for JSON."""
+        return {"fit": self.fit, **asdict(self)}
 
 
 class Watch:
@@ -145,8 +127,7 @@ class Watch:
     """
 
     def __init__(self, device: Device, clock: Clock) -> None:
-        self._device = device
-        self._clock = clock
+        self._device, self._clock = device, clock
         self._calls = {"read": device.read, "write": device.write}
         self._own = {name: call for name, call in self._calls.items() if name in vars(device)}
         self._spent_ns: dict[str, list[int]] = {name: [] for name in self._calls}
@@ -181,10 +162,6 @@ class Watch:
         if sum(median_ms.values()) > _MOST_OF_TICK * period_ms:
             told = " and ".join(f"its {name} takes {ms:.2f} ms" for name, ms in median_ms.items())
             found.append(f"{told}, of the {period_ms:g} ms that a tick has; neither may wait")
-        for name, spent_ns in self._spent_ns.items():
-            longest_ms = max(spent_ns, default=0) / 1e6
-            if longest_ms > WATCHDOG_MS:
-                found.append(f"its {name} took {longest_ms:.0f} ms once; it may not wait")
         return found
 
     def _read(self) -> Pose | None:
@@ -195,9 +172,13 @@ class Watch:
             self._find("kind", f"its read gives {sample!r}, where it must give a Pose or None")
             return None
         if not all(map(math.isfinite, sample)):
-            where = ", ".join(f"{name} {value}" for name, value in sample._asdict().items())
-            self._find("number", f"its read gives a place that is no number ({where})")
+            self._find("number", f"its read gives a place that is no number ({sample})")
             return None
+        if self._device.placing is not Placing.DONE:
+            self._find(
+                "placing",
+                "its read gives a place while it waits to be shown one; it must give None",
+            )
         if sample.theta_rad and not self._device.display.turns:
             self._find(
                 "angle",
@@ -225,47 +206,72 @@ class Watch:
                 )
         self._last, self._last_ns = sample, now_ns
 
-    def _write(self, frame: NDArray[np.float64]) -> None:
-        self._timed("write", frame)
+    def _write(self, frame: NDArray[np.float64]) -> bool:
+        return self._timed("write", frame)
 
     def _timed(self, name: str, *given: Any) -> Any:
-        clock, call = self._clock, self._calls[name]
-        waits, queued_ns = _waits(), _queued_ns()
-        busy_ns, now_ns = clock.busy_ns(), clock.now_ns()
+        begun_ns = self._clock.now_ns()
         try:
-            return call(*given)
+            return self._calls[name](*given)
         finally:
-            # Time for which the system gave the processor to others is not the driver's.
-            own_ns = clock.busy_ns() - busy_ns
-            if _waits() != waits:
-                own_ns = clock.now_ns() - now_ns - (_queued_ns() - queued_ns)
-            self._spent_ns[name].append(max(own_ns, 0))
+            self._spent_ns[name].append(self._clock.now_ns() - begun_ns)
 
     def _find(self, kind: str, fault: str) -> None:
         self._found.setdefault(kind, fault)
 
 
-def _waits() -> int:
-    """Tell how often this thread has waited for something of its own accord."""
-    return resource.getrusage(resource.RUSAGE_THREAD).ru_nvcsw
+@contextmanager
+def taking_parts(most: int = 5) -> Iterator[list[str]]:
+    """Have `os.write` and `socket.send` take a few bytes of each message at first, as lines may.
 
+    Gives a list, to which a clause is added if what is sent next is not the rest of it.
+    """
+    faults: list[str] = []
+    rest: dict[object, bytes] = {}
+    real_write, real_send = os.write, socket.socket.send
 
-def _queued_ns() -> int:
-    """Time for which this thread could have gone on and had no processor; 0 if no kernel tells."""
+    def part(key: object, data: Any) -> bytes:
+        data, left = bytes(data), rest.pop(key, b"")
+        if left and not data.startswith(left):
+            faults[:] = ["its write does not finish a message of which the line took a part"]
+        if not left and len(data) > most:
+            rest[key] = data[most:]
+            return data[:most]
+        return data
+
+    def write(descriptor: int, data: Any) -> int:
+        return real_write(descriptor, part(descriptor, data))
+
+    def send(self: socket.socket, data: Any, *flags: int) -> int:
+        if self.type is not socket.SOCK_STREAM:
+            return real_send(self, data, *flags)
+        return real_send(self, part(self, data), *flags)
+
+    os.write, socket.socket.send = write, send
     try:
-        return int(Path("/proc/thread-self/schedstat").read_text().split()[1])
-    except OSError:
-        return 0
+        yield faults
+    finally:
+        os.write, socket.socket.send = real_write, real_send
+
+
+def finishes_parts(device: Device) -> list[str]:
+    """Clause on a driver that does not finish a frame of which the line took a part, if so."""
+    frame = np.zeros(device.display.shape)
+    with taking_parts() as faults:
+        for _ in range(2 * _PARTS):
+            device.write(frame)
+    device.write(frame)
+    return faults
 
 
 def warm_up(display: Display) -> None:
-    """Compile and load what `hold_rate` calls, before a device's watchdog could trip meanwhile."""
+    """Compile and load what a checkup calls, before a device's watchdog could trip meanwhile."""
     clock = ManualClock()
     with SimulatedDevice(display, clock.now_ns) as device:
-        hold_rate(device, clock, 1 / display.rate_hz)
+        _hold_rate(device, clock, 1 / display.rate_hz, Checkup())
 
 
-def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
+def _hold_rate(device: Device, clock: Clock, seconds: float, found: Checkup) -> None:
     """Drive the device at its rate for a number of seconds.
 
     Raises
@@ -274,7 +280,7 @@ def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
         If the device is gone.
     """
     rate_hz = device.display.rate_hz
-    engine = LocalEngine(device, clock, rate_hz=rate_hz, poll_ticks=round(rate_hz / 4))
+    engine = LocalEngine(device, clock, rate_hz=rate_hz, poll_ticks=max(round(rate_hz / 4), 1))
     # All actuators swell and sink, once a second.
     engine.show(vibration(device.display, 1.0, exposure_s=math.inf))
     engine.restart_clock()
@@ -283,128 +289,37 @@ def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
         polled.append(engine.poll())
     engine.fade_to_rest()
     ticks = np.concatenate(polled)
-    median, most = np.percentile(ticks["work_ns"] / 1e3, (50, 99))
+    found.ticks, found.late = engine.tally.ticks, engine.tally.late
+    found.work_us = tuple(np.percentile(ticks["work_ns"] / 1e3, (50, 99)).tolist())
     known = ticks[~np.isnan(ticks["x_mm"])]
-    x_mm = (math.nan, math.nan)
-    if known.size:
-        x_mm = float(known["x_mm"].min()), float(known["x_mm"].max())
-    return Rate(
-        ticks=engine.tally.ticks,
-        late=engine.tally.late,
-        work_us=(float(median), float(most)),
-        clock_s=_clock_s(known),
-        x_mm=x_mm,
-        host_ms=float(ticks["lateness_ns"].max()) / 1e6,
-        place_ms=_longest_ms(known),
-    )
+    if not known.size:
+        return
+    found.x_mm = float(known["x_mm"].min()), float(known["x_mm"].max())
+    new = known[np.diff(known["device_ns"], prepend=-1) > 0]
+    arrived, taken = np.diff(new["time_ns"]) / 1e6, np.diff(new["device_ns"]) / 1e6
+    period_ms = 1e3 / rate_hz
+    if arrived.size:
+        usual_ms = float(np.median(arrived))
+        found.held_ms = usual_ms if usual_ms > _HELD_PERIODS * period_ms else 0.0
+        found.line_ms = max(float((arrived - taken).max()), 0.0)
+        if not found.held_ms:
+            found.device_ms = max(float(taken.max()) - period_ms, 0.0)
+    found.clock_s = _clock_s(known)
 
 
-def _longest_ms(ticks: NDArray[np.void]) -> float:
-    """Longest time from a tick with a new place to the next such tick, in ms."""
-    new = ticks["time_ns"][np.diff(ticks["device_ns"], prepend=-1) > 0]
-    return float(np.diff(new).max(initial=0)) / 1e6
-
-
-def _clock_s(ticks: NDArray[np.void]) -> float:
-    """Way of the device's clock in a second of the computer's; NaN if it never told a time.
+def _clock_s(ticks: NDArray[np.void]) -> float | None:
+    """Way of the device's clock in a second of the computer's.
 
     Compares how far the device's clock is ahead in the first third of the samples and in the last.
     Medians are taken, so that samples which came late, as after a stall, weigh little.
     """
     third = ticks.size // 3
     if not third:
-        return math.nan
+        return None
     first, last = ticks[:third], ticks[-third:]
     ahead_ns = [float(np.median(part["device_ns"] - part["time_ns"])) for part in (first, last)]
     passed_ns = float(np.median(last["time_ns"]) - np.median(first["time_ns"]))
-    return 1 + (ahead_ns[1] - ahead_ns[0]) / passed_ns
-
-
-def round_trips_ms(device: Device, clock: Clock, count: int) -> NDArray[np.float64]:
-    """Times from a frame until the device has said that it has that frame, in ms.
-
-    Returns
-    -------
-    float64[n]
-        One time for each frame acknowledged; empty if the device acknowledges none.
-
-    Raises
-    ------
-    DeviceError
-        If the device is gone.
-    """
-    frame = np.zeros((device.display.rows, device.display.columns))
-    taken = []
-    for _ in range(count):
-        _begin(device, clock, frame)
-        device.write(frame)
-        give_up_ns = clock.now_ns() + round(_PATIENCE_S * NS_PER_S)
-        while device.acknowledged_ns is None and clock.now_ns() < give_up_ns:
-            clock.sleep_until_ns(clock.now_ns() + _LOOK_NS)
-            device.read()
-        if device.acknowledged_ns is None:
-            break
-        taken.append(device.acknowledged_ns / 1e6)
-    return np.array(taken)
-
-
-def trip_ms(device: Device, clock: Clock) -> float | None:
-    """Send nothing, with the actuators a little off their rest, until the device's watchdog trips.
-
-    Afterwards the actuators are at rest and frames are sent again.
-
-    Returns
-    -------
-    float or None
-        Time from the last frame until the device said that the watchdog tripped, in ms; None if
-        it said so not within half a second, or never does.
-
-    Raises
-    ------
-    DeviceError
-        If the device is gone.
-    """
-    _begin(device, clock, np.zeros((device.display.rows, device.display.columns)))
-    _move(device, clock, 0.0, _HELD)
-    _move(device, clock, _HELD, _HELD)
-    trips, last_ns = device.watchdog_trips, clock.now_ns()
-    while device.watchdog_trips == trips:
-        if clock.now_ns() - last_ns > _TRIP_PATIENCE_S * NS_PER_S:
-            _move(device, clock, _HELD, 0.0)
-            return None
-        clock.sleep_until_ns(clock.now_ns() + _LOOK_NS)
-        device.read()
-    taken_ms = (clock.now_ns() - last_ns) / 1e6
-    clock.sleep_until_ns(clock.now_ns() + round(_HOLD_S * NS_PER_S))  # wait while it ramps to rest
-    _move(device, clock, 0.0, 0.0)
-    return taken_ms
-
-
-def _move(device: Device, clock: Clock, from_: float, to: float) -> None:
-    """Move all actuators from one deflection to another, at the device's rate."""
-    info = device.display
-    steps = round(_HOLD_S * info.rate_hz)
-    frame = np.empty((info.rows, info.columns))
-    due_ns = clock.now_ns()
-    for step in range(1, steps + 1):
-        frame.fill(from_ + (to - from_) * step / steps)
-        due_ns += round(NS_PER_S / info.rate_hz)
-        clock.sleep_until_ns(due_ns)
-        device.read()
-        device.write(frame)
-
-
-def _begin(device: Device, clock: Clock, frame: NDArray[np.float64]) -> None:
-    """Send rest until the device takes frames, or until that has taken too long."""
-    give_up_ns = clock.now_ns() + round(_PATIENCE_S * NS_PER_S)
-    while not device.taking and clock.now_ns() < give_up_ns:
-        device.write(frame)
-        clock.sleep_until_ns(clock.now_ns() + round(NS_PER_S / device.display.rate_hz))
-        device.read()
-
-
-SWING_S = 1.0  # time of a swing, out and back
-SWINGS = 4  # how often an actuator swings before it rests again
+    return 1 + (ahead_ns[1] - ahead_ns[0]) / passed_ns if passed_ns else None
 
 
 class ActuatorSwings:
@@ -415,7 +330,7 @@ class ActuatorSwings:
     Parameters
     ----------
     device
-        Open device, whose correction is that of its opener.
+        Open device.
     clock
         Clock by which ticks are due.
     begun
@@ -431,8 +346,8 @@ class ActuatorSwings:
         device: Device,
         clock: Clock,
         begun: Callable[[tuple[int, int]], None] = lambda _: None,
-        swing_s: float = SWING_S,
-        swings: int = SWINGS,
+        swing_s: float = 1.0,
+        swings: int = 4,
     ) -> None:
         rate_hz = device.display.rate_hz
         self._device, self._clock, self._say_begun = device, clock, begun
@@ -454,13 +369,8 @@ class ActuatorSwings:
 
     def swing(self, *places: tuple[int, int]) -> None:
         """Have actuators swing one after the other, once the present one has faded to rest."""
-        self._next.clear()
-        self._next.extend(places)
+        self._next = deque(places)
         self._ending = True
-
-    def stop(self) -> None:
-        """Have the actuator that swings fade to rest."""
-        self.swing()
 
     def tick(self) -> None:
         """Wait for the next frame's time, read the device, and send the frame.
@@ -470,9 +380,9 @@ class ActuatorSwings:
         DeviceError
             If the device is gone for good.
         """
+        device = self._device
         self._due_ns = max(self._due_ns + self._period_ns, self._clock.now_ns() - self._period_ns)
         self._clock.sleep_until_ns(self._due_ns)
-        device = self._device
         device.read()
         now = device.rested, device.taking
         if now != self._was:
@@ -484,15 +394,15 @@ class ActuatorSwings:
         device.write(self._frame)
 
     def rest(self) -> None:
-        """Fade to rest, and have inverted actuators go to where the device itself rests.
+        """Fade to rest.
 
         Raises
         ------
         DeviceError
             If the device is gone for good.
         """
-        self.stop()
-        while not self.resting or self._device.uncorrect():
+        self.swing()
+        while not self.resting or self._device.moving:
             self.tick()
 
     def _move(self) -> None:
@@ -534,65 +444,76 @@ def check(
     DeviceError
         If the device is gone, or gives no place within a minute.
     """
+    warm_up(device.display)
+    device.read()  # what came meanwhile
     with Watch(device, clock) as watch:
-        return _Check(device, clock, say, watch, rate_s).run()
+        return _Check(device, clock, say, watch).run(rate_s)
 
 
 class _Check:
     """One check; each of its parts says what it measured and gives what is wrong."""
 
     def __init__(
-        self,
-        device: Device,
-        clock: Clock,
-        say: Callable[[str], None],
-        watch: Watch,
-        rate_s: float,
+        self, device: Device, clock: Clock, say: Callable[[str], None], watch: Watch
     ) -> None:
-        self._device = device
-        self._clock = clock
-        self._say = say
-        self._watch = watch
-        self._rate_s = rate_s
+        self._device, self._clock, self._say, self._watch = device, clock, say, watch
+        self._period_ns = round(NS_PER_S / device.display.rate_hz)
+        self._rest = np.zeros(device.display.shape)
+        self._counted = dict(device.counts())  # before
         self._shown = False  # whether its place was chosen here, and says nothing
         self._found = Checkup()
 
-    def run(self) -> Checkup:
-        device = self._device
+    def run(self, rate_s: float) -> Checkup:
+        device, found = self._device, self._found
         self._wait_for_place()
         self._swing_each()
+        found.host_ms = self._computer_ms()
         missed = device.counts().get("states missed", 0)
-        rate = self._found.rate = hold_rate(device, self._clock, self._rate_s)
+        _hold_rate(device, self._clock, rate_s, found)
         missed = device.counts().get("states missed", 0) - missed
-        wrong = self._found.wrong
-        wrong += [
-            *self._actuators(),
-            *self._rate(rate, missed),
-            *self._time(rate),
-            *self._place(rate),
-            *self._round_trips(),
-            *self._faults(),
-        ]
+        found.wrong += [*self._rate(missed), *self._time(), *self._place(), *self._round_trips()]
+        found.counts = {
+            name: count - self._counted.get(name, 0) for name, count in device.counts().items()
+        }
+        for name, count in found.counts.items():
+            self._say(f"{name}: {count}")
+            found.wrong += [f"{name}: {count}"] * (count > _MOST_FAULTS)
         self._say_notes()
-        wrong += self._watchdog()
+        found.wrong += [*self._watchdog(), *self._watch.faults()]
         self._say_notes(tripped=True)
-        wrong += [*self._watch.faults(), *self._end()]
-        if wrong:
-            self._say(f"verdict: not fit to be read on: {'; '.join(wrong)}")
-        else:
-            self._say(f"verdict: fit to be read on{self._but()}")
-        return self._found
+        found.wrong += [*finishes_parts(device), *self._end()]
+        verdict = f"not fit to be read on: {'; '.join(found.wrong)}" if found.wrong else self._fit()
+        self._say(f"verdict: {verdict}")
+        return found
+
+    def _fit(self) -> str:
+        untold = ["what it has taken"] * (not self._device.acknowledges)
+        untold += ["its watchdog"] * (self._device.watchdog_trips is None)
+        but = f", but {' and '.join(untold)} could not be tested" if untold else ""
+        return f"fit to be read on{but}"
+
+    def _wait_for_place(self) -> None:
+        """Wait for any place, or a wrong one: frames are not taken without one."""
+        device, clock = self._device, self._clock
+        begun_ns, asked = clock.now_ns(), False
+        while device.read() is None and not self._watch.found:
+            if device.placing is Placing.STOP and not self._shown:
+                device.set_zero()
+                self._shown = True
+            elif device.placing is Placing.MARK and not asked:
+                asked = True
+                self._say("place: move the carriage over its mark")
+            if clock.now_ns() - begun_ns > _PLACE_S * NS_PER_S:
+                raise DeviceError(f"{device.display.name} gives no place; look at its encoder")
+            clock.sleep_until_ns(clock.now_ns() + 1_000_000)
 
     def _swing_each(self) -> None:
-        """Swing one actuator after the other, but for those that the device reports as disabled."""
-        told, shape = self._device.particulars, self._device.display.shape
-        off = () if told is None else told.disabled
-        places = [place for place in np.ndindex(*shape) if place not in off]
+        """Swing one actuator after the other."""
+        places = list(np.ndindex(*self._device.display.shape))
         swings = ActuatorSwings(self._device, self._clock, self._say_actuator, _SWING_S, 1)
         swings.swing(*places)
         # A device that keeps going to rest is given up at last.
-        most = _MOST_SWINGS * _SWING_S * self._device.display.rate_hz * len(places)
-        for _ in range(round(most)):
+        for _ in range(round(8 * _SWING_S * self._device.display.rate_hz * len(places))):
             if swings.resting:
                 break
             swings.tick()
@@ -603,8 +524,7 @@ class _Check:
     def _say_notes(self, *, tripped: bool = False) -> None:
         """Say what the device has told, but for trips of its watchdog that were asked for."""
         events = self._device.take_events()
-        asked = WatchdogTripped if tripped else ()
-        for sentence in told(event for event in events if not isinstance(event, asked)):
+        for sentence in told(e for e in events if not (tripped and isinstance(e, WatchdogTripped))):
             self._say(sentence)
 
     def _end(self) -> list[str]:
@@ -615,79 +535,59 @@ class _Check:
             return [f"its driver cannot let it go ({type(fault).__name__}: {fault})"]
         return []
 
-    def _but(self) -> str:
-        """Remarks that go with a verdict that is good."""
-        untold = []
-        if not self._device.acknowledges:
-            untold.append("what it has taken")
-        if self._device.watchdog_trips is None:
-            untold.append("its watchdog")
-        but = f", but {' and '.join(untold)} could not be tested" if untold else ""
-        off = len(self._device.particulars.disabled) if self._device.particulars else 0
-        return but + (f", without {off} of its actuators, which are disabled" if off else "")
+    def _computer_ms(self) -> float:
+        """Greatest lateness of this computer alone, in half a second of ticks."""
+        clock, latest_ns = self._clock, 0
+        due_ns = clock.now_ns()
+        for tick in range(500):
+            due_ns += 1_000_000
+            clock.sleep_until_ns(due_ns)
+            latest_ns = max(latest_ns, clock.now_ns() - due_ns)
+            due_ns = max(due_ns, clock.now_ns() - 1_000_000)
+            if tick % 20 == 0:
+                self._device.read()
+                self._device.write(self._rest)
+        return latest_ns / 1e6
 
-    def _actuators(self) -> list[str]:
-        told, info = self._device.particulars, self._device.display
-        all_off = told is not None and len(told.disabled) == info.rows * info.columns
-        return ["every one of its actuators is disabled"] if all_off else []
-
-    def _wait_for_place(self) -> None:
-        """Wait for any place, or a wrong one: frames are not taken without one."""
-        device, clock = self._device, self._clock
-        begun_ns, minutes = clock.now_ns(), 0
-        while device.read() is None and not self._watch.found:
-            passed_s = (clock.now_ns() - begun_ns) / NS_PER_S
-            if device.placing is Placing.STOP:
-                device.set_zero()
-                self._shown = True
-            elif device.placing is Placing.MARK and passed_s > 0.5 + minutes * _MARK_S:
-                self._say("place: move the carriage over its mark")
-                minutes += 1
-            if passed_s > (1 + minutes) * _MARK_S:
-                raise DeviceError(f"{device.display.name} gives no place; look at its encoder")
-            clock.sleep_until_ns(clock.now_ns() + 1_000_000)
-
-    def _rate(self, rate: Rate, missed: int) -> list[str]:
-        due = rate.ticks + rate.late
-        share = rate.late / due
-        self._say(f"rate: {self._device.display.rate_hz:g} Hz, {rate.late} of {due} ticks late")
-        self._say(f"work: median {rate.work_us[0]:.0f} µs, 99 % under {rate.work_us[1]:.0f} µs")
-        part = f"the device, or a line that lost {missed} places," if missed else "the line"
+    def _rate(self, missed: int) -> list[str]:
+        found = self._found
+        due = found.ticks + found.late
+        self._say(f"rate: {self._device.display.rate_hz:g} Hz, {found.late} of {due} ticks late")
+        median_us, most_us = found.work_us
+        self._say(f"work: median {median_us:.0f} µs, 99 % under {most_us:.0f} µs")
         self._say(
-            f"late: this computer by {rate.host_ms:.1f} ms at most, {part} by "
-            f"{max(rate.place_ms - 1000 / self._device.display.rate_hz, 0.0):.1f} ms"
+            f"late: this computer by {found.host_ms:.1f} ms at most, the device by "
+            f"{found.device_ms:.1f} ms, the line by {found.line_ms:.1f} ms"
         )
-        return (
-            [f"{share:.1%} of the ticks come late on this computer"] if share > _MOST_LATE else []
-        )
+        self._say(f"lost: {missed} of its places")
+        if found.held_ms:
+            return [f"the line holds bytes back for {found.held_ms:.0f} ms; {_LATENCY}"]
+        if found.late / due > _MOST_LATE:
+            return [f"{found.late / due:.1%} of the ticks come late on this computer"]
+        return []
 
-    def _time(self, rate: Rate) -> list[str]:
+    def _time(self) -> list[str]:
+        clock_s = self._found.clock_s
+        if clock_s is None:
+            return ["it told neither its time nor its place"]
         self._say(
-            f"clock: {rate.clock_s:.3f} s pass on it in a second, {1 - _MOST_CLOCK:g} to "
+            f"clock: {clock_s:.3f} s pass on it in a second, {1 - _MOST_CLOCK:g} to "
             f"{1 + _MOST_CLOCK:g} s are allowed"
         )
-        if abs(rate.clock_s - 1) <= _MOST_CLOCK:
+        if abs(clock_s - 1) <= _MOST_CLOCK:
             return []
-        if math.isnan(rate.clock_s):
-            return ["it told neither its time nor its place"]
-        return [
-            f"its clock goes {rate.clock_s:.2f} times as fast as it should; see to its time_us, or "
-            f"to time_ns of its driver's poses"
-        ]
+        return [f"its clock goes {clock_s:.2f} times as fast as it should"]
 
-    def _place(self, rate: Rate) -> list[str]:
-        info = self._device.display
-        if self._shown:
-            self._say(f"place: not tested, since its reader must show it {shown_place(info)}")
-            return []
-        if math.isnan(rate.x_mm[0]):
-            self._say("place: none was told")
+    def _place(self) -> list[str]:
+        info, x_mm = self._device.display, self._found.x_mm
+        if self._shown or x_mm is None:
+            why = f"its reader must show it {shown_place(info)}" if self._shown else "none was told"
+            self._say(f"place: not tested, since {why}")
             return []
         edge = "left edge" if info.height_mm else "left stop"
-        low_mm, high_mm = (round(x_mm + info.span_mm / 2, 1) + 0.0 for x_mm in rate.x_mm)
+        low_mm, high_mm = (round(mm + info.span_mm / 2, 1) + 0.0 for mm in x_mm)
         self._say(
-            f"place: {low_mm:.1f} to {high_mm:.1f} mm from the {edge}, of "
-            f"{info.travel_mm:g} mm; {_PLACE_SLACK_MM:g} mm beyond either end are allowed"
+            f"place: {low_mm:.1f} to {high_mm:.1f} mm from the {edge}, of {info.travel_mm:g} mm"
         )
         if low_mm >= -_PLACE_SLACK_MM and high_mm <= info.travel_mm + _PLACE_SLACK_MM:
             return []
@@ -697,24 +597,34 @@ class _Check:
             f"{shown_place(info)}, its counts and their sign"
         ]
 
+    def _frames(self, level: float, to: float, seconds: float) -> Iterator[None]:
+        """Send frames that go from one deflection to another; gives control after each."""
+        steps = max(round(seconds * NS_PER_S / self._period_ns), 1)
+        due_ns = self._clock.now_ns()
+        for step in range(1, steps + 1):
+            due_ns += self._period_ns
+            self._clock.sleep_until_ns(due_ns)
+            self._device.read()
+            self._device.write(np.full_like(self._rest, level + (to - level) * step / steps))
+            yield
+
     def _round_trips(self) -> list[str]:
-        taken = round_trips_ms(self._device, self._clock, _ROUND_TRIPS)
-        if not self._device.acknowledges:
+        device = self._device
+        if not device.acknowledges:
             self._say("round trip: not tested, since this device does not say what it has taken")
             return []
-        if not taken.size:
+        for _ in self._frames(0.0, 0.0, _HOLD_S):  # until one of these is measured
+            pass
+        told = (device.acknowledged_ns for _ in self._frames(0.0, 0.0, _ROUND_TRIPS_S))
+        taken = [now_ns / 1e6 for now_ns in told if now_ns is not None]
+        if not taken:
             self._say("round trip: none, for no frame was acknowledged")
-            return [
-                "it acknowledges none of the frames that it is sent; see to its frame_sequence, "
-                "or to acknowledged_ns of its driver"
-            ]
+            return ["it acknowledges none of the frames that it is sent"]
         low, median, high = self._found.round_trips_ms = np.percentile(taken, (1, 50, 99)).tolist()
         self._say(f"round trip: median {median:.2f} ms, 98 % within {low:.2f} to {high:.2f} ms")
-        if taken.size < _ROUND_TRIPS:
-            return [f"only {taken.size} frames were acknowledged before one was not"]
-        if median <= _MOST_ROUND_TRIP_MS:
+        if median <= _MOST_ROUND_TRIP_MS or self._found.held_ms:
             return []
-        return [f"a round trip takes {median:.1f} ms; have the port's latency set to 1 ms"]
+        return [f"a round trip takes {median:.1f} ms, so the line holds bytes back; {_LATENCY}"]
 
     def _watchdog(self) -> list[str]:
         """Leave the device without frames several times, and see how long it takes to say so."""
@@ -722,30 +632,44 @@ class _Check:
             self._say("watchdog: not tested, since this device does not tell of one")
             return []
         self._say("watchdog: the device is sent nothing now, so that it trips")
-        taken = [trip_ms(self._device, self._clock) for _ in range(_TRIPS)]
-        self._found.trips_ms = taken
-        tripped = [ms for ms in taken if ms is not None]
+        trips = self._found.trips_ms = [self._trip_ms() for _ in range(_TRIPS)]
+        tripped = [ms for ms in trips if ms is not None]
         if not tripped:
             self._say("watchdog: no trip was reported")
-            return ["its watchdog does not trip in time when no frame comes; do not read on it"]
-        median = float(np.median(tripped))
-        promised_ms = WATCHDOG_MS + RAMP_MS + 1000 / self._device.display.rate_hz
+            return ["its watchdog does not trip when no frame comes; do not read on it"]
+        after_ms = float(np.median(tripped))
         self._say(
-            f"watchdog: tripped {len(tripped)} of {_TRIPS} times, median {median:.1f} ms after "
-            f"the last frame, and so at rest after {median + RAMP_MS:.1f} ms with a ramp of "
-            f"{RAMP_MS} ms; {promised_ms:g} ms are promised, and {_REPORT_MS:g} ms allowed for "
-            f"its report"
+            f"watchdog: tripped {len(tripped)} of {_TRIPS} times, {after_ms:.1f} ms after the last "
+            f"frame, and so at rest after {after_ms + RAMP_MS:.1f} ms; {REST_MS} ms are promised"
         )
         if len(tripped) < _TRIPS:
             return [f"its watchdog trips {len(tripped)} of {_TRIPS} times that no frame comes"]
-        early = median < _EARLIEST_TRIP_MS
-        if not early and median + RAMP_MS <= promised_ms + _REPORT_MS:
+        early = after_ms < _EARLIEST_TRIP_MS
+        if not early and after_ms + RAMP_MS <= REST_MS + _REPORT_MS:
             return []
         how = "early" if early else "late"
-        return [f"its watchdog trips after {median:.0f} ms, too {how}; {WATCHDOG_MS} ms are right"]
+        return [
+            f"its watchdog trips after {after_ms:.0f} ms, too {how}; {WATCHDOG_MS} ms are right"
+        ]
 
-    def _faults(self) -> list[str]:
-        counts = self._found.counts = dict(self._device.counts())
-        for name, count in counts.items():
-            self._say(f"{name}: {count}")
-        return [f"{name}: {count}" for name, count in counts.items() if count > _MOST_FAULTS]
+    def _trip_ms(self) -> float | None:
+        """Send nothing, with the actuators off their rest, until the device's watchdog trips."""
+        device, clock = self._device, self._clock
+        for _ in self._frames(0.0, 0.0, _HOLD_S):
+            pass
+        for level, to in ((0.0, _HELD), (_HELD, _HELD)):
+            for _ in self._frames(level, to, _HOLD_S):
+                pass
+        trips = device.watchdog_trips
+        # It is not read meanwhile either: a host that owes frames tells the device to rest.
+        clock.sleep_until_ns(clock.now_ns() + round(_TRIP_PATIENCE_S * NS_PER_S))
+        taken_ms = None
+        for _ in range(round(_TRIP_PATIENCE_S * 1e3)):
+            device.read()
+            if device.watchdog_trips != trips:
+                taken_ms = device.tripped_ms
+                break
+            clock.sleep_until_ns(clock.now_ns() + 1_000_000)
+        for _ in self._frames(0.0, 0.0, 2 * _HOLD_S):  # it rests by now, and takes frames again
+            pass
+        return taken_ms

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import select
 import time
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 # Python needs so long to come back from a sleep, and is woken so much earlier.
 _RETURN_NS = 6_000
@@ -16,12 +20,12 @@ class Clock(Protocol):
         """Time since some fixed moment."""
         ...
 
-    def busy_ns(self) -> int:
-        """Time since some fixed moment that this thread has had a processor."""
-        ...
-
     def sleep_until_ns(self, deadline_ns: int) -> None:
         """Return at the deadline, or at once if it has passed."""
+        ...
+
+    def wait_ns(self, descriptors: Sequence[int], deadline_ns: int) -> list[int]:
+        """Return once a descriptor can be read, or at the deadline; give those that can."""
         ...
 
 
@@ -32,10 +36,6 @@ class RealClock:
         """Time since some fixed moment."""
         return time.monotonic_ns()
 
-    def busy_ns(self) -> int:
-        """Time since some fixed moment that this thread has had a processor."""
-        return time.thread_time_ns()
-
     def sleep_until_ns(self, deadline_ns: int) -> None:
         """Return at the deadline, or at once if it has passed."""
         left = deadline_ns - _RETURN_NS - time.monotonic_ns()
@@ -43,6 +43,11 @@ class RealClock:
             time.sleep(left / 1e9)
         while time.monotonic_ns() < deadline_ns:
             pass
+
+    def wait_ns(self, descriptors: Sequence[int], deadline_ns: int) -> list[int]:
+        """Return once a descriptor can be read, or at the deadline; give those that can."""
+        left_s = max(deadline_ns - time.monotonic_ns(), 0) / 1e9
+        return select.select(descriptors, (), (), left_s)[0]
 
 
 class ManualClock:
@@ -55,13 +60,16 @@ class ManualClock:
         """Time by which the clock was turned so far."""
         return self._now_ns
 
-    def busy_ns(self) -> int:
-        """Time by which the clock was turned so far."""
-        return self._now_ns
-
     def sleep_until_ns(self, deadline_ns: int) -> None:
         """Turn the clock to the deadline."""
         self._now_ns = max(self._now_ns, deadline_ns)
+
+    def wait_ns(self, descriptors: Sequence[int], deadline_ns: int) -> list[int]:
+        """Give the descriptors that can be read; turn the clock to the deadline if none can."""
+        ready = select.select(descriptors, (), (), 0)[0]
+        if not ready:
+            self.sleep_until_ns(deadline_ns)
+        return ready
 
     def advance_ns(self, step_ns: int) -> None:
         """Turn the clock on."""

@@ -11,9 +11,9 @@ import sys
 
 import numpy as np
 
+from vbraille.devices.levels import pack
 from vbraille.engine import ticks
 from vbraille.engine.hostprocess import warm_up
-from vbraille.engine.mailbox import Extent
 from vbraille.engine.record import FLOATS, INTS
 from vbraille.render import MODELS, work
 from vbraille.render.compiling import SceneMap, compile_scene
@@ -42,9 +42,10 @@ def compile_all() -> None:
 
 def _compile_ticks() -> None:
     """Ticks of each display, and the frames of a replay."""
+    pack(np.zeros((1, 1)), 1, np.zeros(1, np.uint8))
     for model in MODELS.values():
         display = model.display
-        warm_up(display, Extent(display.rows, display.columns, 0, 2))
+        warm_up(display)
         line = model.style.render(np.zeros(1, np.uint8), display)
         ints, floats = np.zeros((1, len(INTS)), np.int64), np.zeros((1, len(FLOATS)))
         frames = np.zeros((4, 1, *display.shape))

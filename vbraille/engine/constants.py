@@ -5,6 +5,12 @@ from typing import Final
 NS_PER_S: Final = 1_000_000_000
 FADE_S: Final = 0.1
 PAUSE_FADE_S: Final = 0.02
+# What a hand moved in a gap of so long, or of more periods, is faded in over so long.
+GAP_S: Final = 0.004
+GAP_PERIODS: Final = 2.5
+CATCH_S: Final = 0.05
+# A frame counts for no more of a fade, however late it is.
+STEP_S: Final = 0.005
 IDLE_S: Final = 5.0
 SILENCE_S: Final = 0.1
 # A hand that moved less than this is at rest: some counts of a fine encoder.
@@ -16,7 +22,4 @@ REACH_MM: Final = 10.0
 # N poses and M velocities of Lévesque 2009, eqs. 9.4 and 9.5: the velocity is of 59 poses.
 DIFFERENCE: Final = 10
 MEAN: Final = 50
-GAP_NS: Final = NS_PER_S // 2  # poses so far apart are no one movement
-# A gap between poses of more ticks is caught up with, and this many times as fast as the hand goes.
-GAP_PERIODS: Final = 2
-CATCH_UP: Final = 1.5
+APART_NS: Final = NS_PER_S // 2  # poses so far apart are no one movement

@@ -4,46 +4,45 @@ from __future__ import annotations
 
 import json
 import logging
+import mmap
 import os
 import select
+import socket
 import subprocess
 import sys
 import time
+from collections import deque
 from contextlib import suppress
-from dataclasses import asdict, replace
-from typing import TYPE_CHECKING, Any, Self
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, Final, Self
+from urllib.parse import parse_qs
 
-from vbraille.devices.events import Back, Stalled, from_json
+from vbraille.devices.events import Back, HandDone, Stalled, from_json
+from vbraille.devices.registry import find_driver
 from vbraille.display import Display
-from vbraille.engine.engine import place_of
-from vbraille.engine.mailbox import RING_S, Extent, attach, watch
+from vbraille.engine.engine import Watcher
 from vbraille.engine.record import RingReader, Tally
-from vbraille.engine.spawning import spawn
 from vbraille.errors import DeviceError, InputError, VbrailleError
-from vbraille.files import settings_path
+from vbraille.files import open_memory, settings_path
 from vbraille.logs import kept, tracebacks_wanted
+from vbraille.simulation.specs import device_spec
+from vbraille.simulation.steering import to_json
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     import numpy as np
     from numpy.typing import NDArray
 
     from vbraille.devices.events import Event
-    from vbraille.engine.mailbox import Mailbox
-    from vbraille.engine.record import RingReader
-    from vbraille.engine.spawning import Spawned
     from vbraille.render.program import Program
+    from vbraille.simulation.steering import HandOrder
 
-# Opening may take a second or two; a controller that starts up, or a name that must be found, more.
-OPEN_S = 10.0
-OPENING = "open its device"
-# Fading takes 0.1 s; a driver may have to wait for a device that is gone.
-_END_S = 5.0
-# A loop that has done no tick for so long is held up by its driver.
-_STALL_S = 1.0
-# How long to wait for an answer before looking whether there is a process that could give it.
-_LOOK_S = 0.1
+OPEN_S: Final = 10.0  # that a driver may take to open its device, beside the start of its board
+_END_S: Final = 5.0  # that fading takes, and letting a device go that may be gone
+_STALL_S: Final = 1.0  # after which a loop that has done no tick is held up by its driver
+_LOOK_S: Final = 0.1  # between looks whether the process is still there
+_MOST_BYTES: Final = 1 << 16
 _log = logging.getLogger(__name__)
 
 
@@ -51,41 +50,29 @@ class HostDiedError(VbrailleError):
     """The host process ended without a word; `Host.start` begins another."""
 
 
-def too_slow(device: str, what: str) -> DeviceError:
-    """Fault of a driver that has not opened its device, or done a first tick, in `OPEN_S`."""
-    return DeviceError(
-        f"the driver {device.partition(':')[0]} did not {what} within {OPEN_S:g} s; see whether "
-        f"the device is there and switched on, or tell the driver's author"
-    )
-
-
 class Host:
-    """An `Engine` whose loop has a process of its own; it is a context manager.
+    """An `Engine` whose loop has a process of its own; a context manager.
 
     No other work of the program can hold up such a loop.
 
     Parameters
     ----------
-    device
-        The device's spec, as `vbraille.devices.open_device` takes it.
+    spec
+        The device, as `vbraille.devices.open_device` takes it.
     wanted
-        The actuators, travel and rate that the page was laid out for. If ``room`` is None they
-        are a wish, which a simulated device fulfils and a real one need not.
-    room
-        Bytes of the largest picture; None if pictures are made for the device that is found:
-        `open` it, then tell `fit`, then `start`.
+        The actuators, travel and rate that pages are laid out for.
+    hand, seed
+        Hand that moves a simulated device, and seed of what is random in it; None for the hand of
+        the spec.
+    fits
+        Whether the device must have those actuators; otherwise they are a wish, which a simulated
+        device fulfils and a real one need not.
     often
         Whether the device must take frames at that rate; otherwise the loop goes at the device's
         own rate where that is lower.
-    pass_fds
-        Descriptors that the process inherits, for its device: the spec names them.
-    spawned
-        Process that was begun for the first start, with those descriptors; None to begin it then.
 
     Attributes
     ----------
-    newest : record or None
-        Record of the last tick polled.
     counts : dict[str, int]
         Counts of what went wrong with the device, by name; known after `close`.
     lost : int
@@ -93,163 +80,146 @@ class Host:
     calibration : dict or None
         What is made up for in the device's actuators, as `Calibration.to_json` says it; known once
         the device is open, and None if deflections are sent as they are.
-    on_share : callable or None
-        Function that is called, at each start, with a descriptor of the memory that is shared,
-        which is closed after the call, and what decides its size; for others who watch.
+    steered : bool
+        Whether a simulated hand moves the device, and takes orders.
     """
 
     def __init__(
         self,
-        device: str,
+        spec: str,
         wanted: Display,
         room: int | None = None,
         *,
+        hand: str | None = None,
+        seed: int = 1,
+        fits: bool | None = None,
         often: bool = True,
-        pass_fds: Sequence[int] = (),
-        spawned: Spawned | None = None,
+        pass_fds: Sequence[Any] | None = None,
+        spawned: object = None,  # noqa: ARG002
     ) -> None:
-        self.newest: np.void | None = None
+        # Until readings and sessions call this as it is described: `room`, and steering by memory.
+        for each in pass_fds or ():
+            each.bind(self)
+        fits = (room is not None or pass_fds is None) if fits is None else fits
+        self.on_share: Any = None
+        self.hand_done_ns: int | None = None
         self.counts: dict[str, int] = {}
         self.lost = 0
         self.calibration: dict[str, Any] | None = None
-        self.on_share: Callable[[int, Extent], None] | None = None
-        self._device = device
+        self.steered = False
+        self._spec = device_spec(spec, hand, seed)
         self._wanted = wanted
-        self._room = room
-        self._often = often
-        self._pass_fds = tuple(pass_fds)
-        self._spawned = spawned
-        self._info: Display | None = None
-        self._first: Display | None = None  # what the device was at the first start
+        self._fits, self._often = fits, often
+        self._display: Display | None = None
         self._process: subprocess.Popen[bytes] | None = None
-        self._descriptor: int | None = None  # shared memory that is not mapped here yet
-        self._mailbox: Mailbox | None = None
+        self._socket: socket.socket | None = None
+        self._memory = -1  # descriptor of the ring's memory
         self._ring: RingReader | None = None
-        self._shown: tuple[Program, int] | None = None
+        self._ring_of: tuple[memoryview, tuple[int, int], int] | None = None
+        self._watcher: Watcher | None = None
+        self._unsent: deque[tuple[bytes, int | None]] = deque()
+        self._shown: tuple[Program, int, float | None] | None = None
+        self._order: HandOrder | None = None
         self._events: list[Event] = []
-        self._heard = b""
         self._fault: VbrailleError | None = None
-        self._before = Tally()
-        self._lost_before = 0
+        self._before, self._lost_before = Tally(), 0  # of earlier starts
         self._paused = False
         self._switches = 0
-        self._launched = self._ready = False
-        self._at_driver = False  # whether all is compiled and loaded, and the driver has its turn
-        self._ended = False  # whether its end was told
-        self._empty_s: float | None = None  # since when polls have found no tick
-        self._stalled = False
-
-    def open(self) -> Display:
-        """Start the process, wait until it has opened the device, and tell what that device is.
-
-        The device is read, and sent nothing, until `start`.
-
-        Raises
-        ------
-        VbrailleError
-            If the device cannot be opened, or not in time, or is another than at the first start.
-        """
-        if not self._launched:
-            self.launch()
-        self._wait(lambda: self._info is not None, OPENING)
-        assert self._info is not None
-        if self._first not in (None, self._info):
-            raise InputError(f"{self._info.name} is another device than before; start anew with it")
-        return self._info
-
-    def fit(self, display: Display, room: int) -> None:
-        """Say how many bytes a picture may take at most, and what the device must be."""
-        self._wanted = replace(display, rate_hz=self._wanted.rate_hz)
-        self._room = room
-        if self._launched:
-            self._share()
-
-    def start(self) -> None:
-        """Start the process, and wait until it has opened the device; again after its death.
-
-        Raises
-        ------
-        VbrailleError
-            If the device cannot be opened, or not in time, or is another than at the first start.
-        """
-        self._first = self.open()
-        self._wait(lambda: self._ready, "do a first tick")
-        self._launched = False
-        if self._shown is not None:
-            self._posted.switches = self._switches
-            self._posted.post(*self._shown)
+        self._opened = False
+        self._started = self._at_driver = self._ended = self._stalled = False
+        self._ticked_s = 0.0  # when a poll last found a tick
 
     def launch(self) -> None:
         """Start the process without waiting for it; `start` waits, once other work is done.
 
-        The system ends the process with the thread that calls this.
+        Raises
+        ------
+        InputError
+            If there is no such kind of device.
         """
+        find_driver(self._spec)  # before a process is begun for what is not there
         if self._process is not None:
             self.close()
-        self._launched = True
-        if self.newest is not None:
-            self._before, self._lost_before = self.tally, self.lost
-        self._info = self._fault = self.newest = None
-        self._paused = self._ready = False
-        self._at_driver = self._ended = self._stalled = False
-        self._empty_s = None
-        self._heard = b""
-        spawned, self._spawned = self._spawned or spawn(self._pass_fds), None
-        spawned.taken = True
-        self._process, self._descriptor = spawned.process, spawned.descriptor
-        _log.info("started process %d to drive %s", self._process.pid, self._device)
-        os.set_blocking(self._answers(), False)
+        self._before, self._lost_before = self.tally, self.lost
+        self._ring = self._ring_of = self._watcher = self._fault = None
+        self._started = self._at_driver = self._ended = self._stalled = False
+        self._paused = False
+        self._unsent.clear()
+        self._memory = open_memory("vbraille", 0)
+        self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        descriptors = theirs.fileno(), self._memory
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "vbraille.engine.hostprocess"]
+            + [str(number) for number in (*descriptors, os.getpid())],
+            stdin=subprocess.DEVNULL,
+            stdout=2,  # what a driver prints is no answer of the program
+            pass_fds=descriptors,
+        )
+        theirs.close()
+        self._socket.setblocking(False)
+        _log.info("started process %d to drive %s", self._process.pid, self._spec)
         self._tell(
-            device=self._device,
+            device=self._spec,
             wanted=asdict(self._wanted),
-            fits=self._room is not None,
+            fits=self._fits,
             often=self._often,
             log=kept(),
             verbose=tracebacks_wanted(),
             settings=str(settings_path().absolute()),
         )
-        if self._room is not None:
-            self._share()
 
-    def _share(self) -> None:
-        """Share memory for pictures and records, whose size is known by now."""
-        assert self._descriptor is not None
-        assert self._room is not None
-        wanted = self._wanted
-        ticks = round(RING_S * wanted.rate_hz)
-        extent = Extent(wanted.rows, wanted.columns, self._room, ticks)
-        memory = attach(self._descriptor, extent)
-        if self.on_share is not None:
-            self.on_share(self._descriptor, extent)
-        self._forget_memory()
-        self._mailbox, self._ring = watch(memory, extent)
-        self._tell(**asdict(extent))
+    def start(self) -> Display:
+        """Start the process if need be, and wait until ticks run; again after its death.
 
-    def _tell(self, **what: object) -> None:
-        """Send the host a line on its standard input."""
-        assert self._process is not None
-        assert self._process.stdin is not None
-        with suppress(BrokenPipeError):  # the host has ended, and `_hear` will tell why
-            self._process.stdin.write(json.dumps(what).encode() + b"\n")
-            self._process.stdin.flush()
+        Raises
+        ------
+        VbrailleError
+            If the device cannot be opened, or not in time, or is another than at the first start.
+        """
+        first = self._display
+        if self._opened and self._started and not self._ended:  # `open` has started it
+            self._opened = False
+            return self.display
+        if self._process is None or self._started or self._ended:
+            self.launch()
+        until_s = None
+        while not self._started:
+            select.select((self._channel,), (), (), _LOOK_S)
+            if not self._hear() and not self._started:
+                raise self._end()
+            if self._at_driver and until_s is None:
+                until_s = time.monotonic() + OPEN_S + self._boot_s()
+            if until_s is not None and time.monotonic() > until_s:
+                assert self._process is not None
+                self._process.kill()
+                self._fault = too_slow(self._spec)
+                raise self._end()
+        if first not in (None, self._display):
+            self.close()
+            raise InputError(f"{self.display.name} is another device than before; start anew")
+        self._ticked_s = time.monotonic()
+        if self._shown is not None:
+            self.switches = self._switches
+            self.show(*self._shown)
+            if self._order is not None:
+                self.give(self._order)
+        return self.display
 
-    @property
-    def _posted(self) -> Mailbox:
-        """The mailbox to which orders go; there is one once the host is started."""
-        if self._mailbox is None:
-            raise DeviceError("no device is open; start the host first")
-        return self._mailbox
+    def _boot_s(self) -> float:
+        """Time that the spec gives a board to start."""
+        try:
+            return float(parse_qs(self._spec.partition("?")[2])["boot"][0])
+        except (KeyError, ValueError):
+            return 0.0
 
     @property
     def _driver(self) -> str:
-        """Name of the driver in sentences."""
-        return self._device.partition(":")[0]
+        return self._spec.partition(":")[0]
 
-    def reader(self) -> RingReader:
-        """Make another reader of the records, for a live view."""
-        if self._ring is None:
-            raise DeviceError("no device is open; start the host first")
-        return self._ring.another()
+    @property
+    def _channel(self) -> int:
+        assert self._socket is not None
+        return self._socket.fileno()
 
     @property
     def process_id(self) -> int | None:
@@ -259,19 +229,30 @@ class Host:
     @property
     def display(self) -> Display:
         """The actuators and the carriage of the device; known once the host is started."""
-        if self._info is None:
+        if self._display is None:
             raise DeviceError("no device is open; start the host first")
-        return self._info
+        return self._display
+
+    @property
+    def newest(self) -> np.void | None:
+        """Record of the last tick polled; None before the first."""
+        return None if self._watcher is None else self._watcher.newest
 
     @property
     def tally(self) -> Tally:
         """Counts of what the loops have done, up to the last poll, over all starts of the host."""
-        return self._before if self.newest is None else self._before + Tally.of(self.newest)
+        newest = self.newest
+        return self._before if newest is None else self._before + Tally.of(newest)
 
     @property
     def x_mm(self) -> float | None:
         """Place of the array's centre at the last poll; None before it is known."""
-        return place_of(self.newest)
+        return None if self._watcher is None else self._watcher.x_mm
+
+    @property
+    def ready(self) -> bool:
+        """Tell whether the device works and its array was at the left at the last poll."""
+        return self._watcher is not None and self._watcher.ready
 
     @property
     def paused(self) -> bool:
@@ -280,7 +261,8 @@ class Host:
 
     @paused.setter
     def paused(self, paused: bool) -> None:
-        self._paused = self._posted.paused = paused
+        self._paused = paused
+        self._tell(paused=paused)
 
     @property
     def switches(self) -> int:
@@ -289,23 +271,51 @@ class Host:
 
     @switches.setter
     def switches(self, switches: int) -> None:
-        self._switches = self._posted.switches = switches
+        self._switches = switches
+        self._tell(switches=switches)
 
-    def show(self, picture: Program, line: int) -> None:
-        """Put a picture of a line under the hand; see `Engine`.
+    def show(self, picture: Program, line: int, end_mm: float | None = None) -> None:
+        """Put a picture of a line under the hand; see `vbraille.engine.engine.Engine`.
 
         Raises
         ------
         ValueError
-            If the picture was compiled for another array, or is larger than there is room for.
+            If the picture was compiled for another array.
         """
         picture.check_shape(self.display.shape)
-        self._shown = picture, line
-        self._posted.post(picture, line)
+        self._shown = picture, line, end_mm
+        if self._watcher is not None:
+            self._watcher.show(line, end_mm)
+        memory = open_memory("vbraille-picture", max(picture.nbytes, 1))
+        for part, at in ((picture.numbers, 0), (picture.table, picture.numbers.nbytes)):
+            _write(memory, part.tobytes(), at)
+        sizes = picture.numbers.size, picture.table.size
+        self._tell(memory, show={"line": line, "sizes": sizes})
+
+    def give(self, order: HandOrder) -> None:
+        """Tell a simulated hand what to do; nothing happens where a person moves the device."""
+        if self.steered:
+            self._order = order
+            self._tell(hand=to_json(order).decode())
+
+    def open(self) -> Display:
+        """Start the host, as readings do that fit a page to the device."""
+        display = self.start()
+        self._opened = True
+        return display
+
+    def fit(self, *_: object) -> None:
+        """Do nothing: a picture of any size goes to the host."""
 
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""
-        self._posted.zero()
+        self._tell(zero=True)
+
+    def reader(self) -> RingReader:
+        """Make another reader of the records, for what watches beside; it only reads."""
+        if self._ring_of is None:
+            raise DeviceError("no device is open; start the host first")
+        return RingReader(*self._ring_of)
 
     def poll(self) -> NDArray[np.void]:
         """Give the records of all ticks since the last poll.
@@ -315,14 +325,14 @@ class Host:
         VbrailleError
             If the loop has ended: the fault of the device, or `HostDiedError`.
         """
+        self._flush()
         alive = self._hear()
-        if self._ring is None:
+        if self._ring is None or self._watcher is None:
             raise self._end()
         ticks = self._ring.drain()
         self.lost = self._lost_before + self._ring.lost
-        if ticks.size:
-            self.newest = ticks[-1]
-        elif not alive:
+        self._watcher.watch(ticks)
+        if not ticks.size and not alive:
             raise self._end()
         self._look(ticks.size > 0)
         return ticks
@@ -331,20 +341,18 @@ class Host:
         """Tell once that the driver holds up the loop, and once that it does no more."""
         now_s = time.monotonic()
         if ticked:
-            self._empty_s = None
+            self._ticked_s = now_s
             if self._stalled:
-                self._stalled = False
                 self._events.append(Back())
-        elif self._empty_s is None:
-            self._empty_s = now_s
-        elif not self._stalled and now_s - self._empty_s > _STALL_S:
+            self._stalled = False
+        elif not self._stalled and now_s - self._ticked_s > _STALL_S:
             self._stalled = True
-            self._events.append(Stalled(1e3 * (now_s - self._empty_s)))
+            self._events.append(Stalled(now_s - self._ticked_s))
 
     def take_events(self) -> Sequence[Event]:
-        """Take the events of the device and its host since the last call."""
+        """Take the events of the device, its loop and its ticks since the last call."""
         events, self._events = self._events, []
-        return events
+        return events + (self._watcher.take_events() if self._watcher is not None else [])
 
     def close(self) -> None:
         """Have the host bring the array to rest and end; further calls do nothing.
@@ -355,16 +363,10 @@ class Host:
             If the device could not be let go. An error that is under way is more, and goes on.
         """
         process = self._process
-        if process is None:
-            if self._spawned is not None:
-                self._spawned.end()
-                self._spawned = None
+        if process is None or self._socket is None:
             return
-        if self._mailbox is not None:
-            self._mailbox.stop()
-        if process.stdin is not None:
-            with suppress(BrokenPipeError):
-                process.stdin.close()  # a host that still waits to be told more ends by this, too
+        with suppress(OSError):
+            self._socket.shutdown(socket.SHUT_WR)  # the host takes this for the end
         code = self._reap()
         _log.info("process %d has ended: exit code %d", process.pid, code)
         while self._hear():
@@ -372,20 +374,17 @@ class Host:
         # A host that still compiles may be ended like this; one whose end was told is told of once.
         well = self._ended or not self._at_driver or (code == 0 and self._fault is None)
         fault = None if well else self._end()
-        if process.stdout is not None:
-            process.stdout.close()
         self._process = None
-        self._forget_memory()
-        if fault is not None:
-            _log.info("closing failed: %s", fault)
-            if sys.exc_info()[0] is None:
-                raise fault
-
-    def _forget_memory(self) -> None:
-        self._mailbox = self._ring = None  # the view of shared memory holds a descriptor
-        if self._descriptor is not None:
-            os.close(self._descriptor)
-            self._descriptor = None
+        self._socket.close()
+        for _, descriptor in self._unsent:
+            if descriptor is not None:
+                os.close(descriptor)
+        self._unsent.clear()
+        if self._memory >= 0:
+            os.close(self._memory)
+            self._memory = -1
+        if fault is not None and sys.exc_info()[0] is None:
+            raise fault
 
     def __enter__(self) -> Self:
         try:
@@ -398,45 +397,66 @@ class Host:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _answers(self) -> int:
-        assert self._process is not None
-        assert self._process.stdout is not None
-        return self._process.stdout.fileno()
+    def _tell(self, descriptor: int | None = None, **what: object) -> None:
+        """Send the host a message, with a descriptor that is closed once it is sent."""
+        self._unsent.append((json.dumps(what).encode(), descriptor))
+        self._flush()
 
-    def _wait(self, done: Callable[[], bool], what: str) -> None:
-        """Wait until the driver has done something; if it never will, raise the reason."""
-        assert self._process is not None
-        until_s = None
-        while not done():
-            select.select((self._answers(),), (), (), _LOOK_S)
-            if not self._hear():
-                raise self._end()
-            if not self._at_driver:
-                continue
-            if until_s is None:
-                until_s = time.monotonic() + OPEN_S
-            elif time.monotonic() > until_s:
-                self._process.kill()
-                self._fault = too_slow(self._device, what)
-                raise self._end()
+    def _flush(self) -> None:
+        """Send what a host that is held up had no room for."""
+        if self._socket is None:
+            return
+        while self._unsent:
+            message, descriptor = self._unsent[0]
+            try:
+                socket.send_fds(self._socket, [message], [] if descriptor is None else [descriptor])
+            except BlockingIOError:
+                return
+            except OSError:
+                pass  # the host has ended, and `_hear` will tell why
+            if descriptor is not None:
+                os.close(descriptor)
+            self._unsent.popleft()
 
     def _hear(self) -> bool:
-        """Take the host's answers; tell whether more may come.
-
-        No more come once the process has ended and all that it said was read, even if the pipe is
-        still open: a program that a driver started may hold its other end.
-        """
+        """Take the host's messages; tell whether more may come."""
+        assert self._socket is not None
         assert self._process is not None
         # Asked before reading: all that a process said which has ended is there by then.
         ended = self._process.poll() is not None
-        try:
-            said = os.read(self._answers(), 1 << 16)
-        except BlockingIOError:
-            return not ended
-        *lines, self._heard = (self._heard + said).split(b"\n")
-        for line in lines:
-            self._take(json.loads(line))
-        return bool(said)
+        for _ in range(1000):
+            try:
+                message = self._socket.recv(_MOST_BYTES)
+            except BlockingIOError:
+                return not ended
+            except OSError:
+                return False
+            if not message:
+                return False
+            self._take(json.loads(message))
+        return True
+
+    def _take(self, told: dict[str, Any]) -> None:
+        self._at_driver = self._at_driver or "opening" in told
+        if "ready" in told:
+            display = self._display = Display(**told["ready"])
+            self.calibration, self.steered = told["calibration"], told["steered"]
+            memory = mmap.mmap(self._memory, 0)
+            self._ring_of = memoryview(memory), display.shape, told["ticks"]
+            self._ring = RingReader(*self._ring_of)
+            self._watcher = Watcher(display)
+            self._started = True
+            if self.on_share is not None:
+                self.on_share(self.reader())
+        if told.get("event"):
+            event = from_json(json.dumps(told["event"]))
+            if isinstance(event, HandDone):
+                self.hand_done_ns = event.at_ns
+            self._events.append(event)
+        if "fault" in told:
+            kind = InputError if told["code"] == InputError.exit_code else DeviceError
+            self._fault = kind(told["fault"])
+        self.counts = told.get("counts", self.counts)
 
     def _reap(self) -> int:
         """Wait for the process to end, kill it if that takes too long, and return its exit code."""
@@ -453,19 +473,6 @@ class Host:
                 )
             return self._process.wait()
 
-    def _take(self, answer: dict[str, Any]) -> None:
-        if "opened" in answer:
-            self._info = Display(**answer["opened"])
-            self.calibration = answer["calibration"]
-        self._at_driver = self._at_driver or "opening" in answer
-        self._ready = self._ready or "ready" in answer
-        if answer.get("event"):
-            self._events.append(from_json(answer["event"]))
-        if "fault" in answer:
-            kind = InputError if answer["code"] == InputError.exit_code else DeviceError
-            self._fault = kind(answer["fault"])
-        self.counts = answer.get("counts", self.counts)
-
     def _end(self) -> VbrailleError:
         """Reason why there is no host any more."""
         code = self._reap()
@@ -476,3 +483,17 @@ class Host:
             return fault
         how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
         return HostDiedError(f"the process that drives the device has ended ({how})")
+
+
+def too_slow(spec: str) -> DeviceError:
+    """Fault of a driver that has not opened its device in `OPEN_S`."""
+    return DeviceError(
+        f"the driver {spec.partition(':')[0]} did not open its device within {OPEN_S:g} s; see "
+        f"whether the device is there and switched on, or tell the driver's author"
+    )
+
+
+def _write(descriptor: int, content: bytes, at: int) -> None:
+    done = 0
+    while done < len(content):
+        done += os.pwrite(descriptor, content[done:], at + done)

@@ -60,6 +60,7 @@ class Flag(IntFlag):
     HELD = 256  # the device is at rest by itself and takes none of the frames that it is sent
     EXPOSED = 512  # the picture has moved by itself for as long as it may, and rests
     TURNED = 1024  # the array is turned too far for the picture, and rests
+    UNFELT = 2048  # something is to be felt, and for one of these reasons cannot be
 
 
 def tick_dtype(shape: tuple[int, int]) -> np.dtype:
@@ -139,6 +140,7 @@ class Tally:
 
 
 _HEADER_BYTES = 64
+RING_S = 8.0  # of ticks are kept for readers
 
 
 class Ring:

@@ -7,15 +7,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.devices.events import Exposed
-from vbraille.engine import serialtick, ticks
+from vbraille.engine import ticks
 from vbraille.engine.constants import (
+    CATCH_S,
     DIFFERENCE,
     FADE_S,
+    GAP_PERIODS,
+    GAP_S,
     IDLE_S,
     MEAN,
     NS_PER_S,
     PAUSE_FADE_S,
     SILENCE_S,
+    STEP_S,
 )
 from vbraille.errors import check_range
 from vbraille.render import work
@@ -26,28 +30,23 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.events import Event
-    from vbraille.devices.serial.kernels import SteadyConversation
     from vbraille.display import Display
-    from vbraille.engine.record import Ring
     from vbraille.render.program import Program
-
-    _Three = tuple[NDArray, NDArray, NDArray]
-    _Eleven = tuple[*_Three, *_Three, *_Three, NDArray, NDArray]
 
 _STATE = np.dtype(
     [
         (name, "<i8")
         for name in (
-            "period_ns", "fade_ns", "pause_ns", "idle_ns", "silence_ns",  # which do not change
-            "free_y",  # whether the carriage has an axis y
+            # What does not change: durations, and whether the carriage has an axis y.
+            "period_ns", "fade_ns", "pause_ns", "catch_ns", "gap_ns", "step_ns", "idle_ns",
+            "silence_ns", "free_y",
             "serial",  # how many pictures were wanted under the hand, and so the last one's number
             "line",  # what records call it
             "paused",
             "switches",  # states of a scene's switches, three bits for each signal
             "tick",  # number of the next one
-            "ticked_ns", "done_ns",  # when the last one woke, and when its frame had gone out
+            "ticked_ns", "sent_ns",  # when the last one woke, and when a frame last went out
             "faded_ns", "fading_ns",  # how far a fade has come, and how long it takes
-            "behind_ns",  # how much of the hand's way is to be caught up with, by the time it took
             "placed",  # whether it is known where the array is
             "device_ns", "sampled_ns",  # of the last pose, by the device's clock and by ours
             "moved_ns",  # when the hand last moved
@@ -84,10 +83,6 @@ class LoopState:
         Ticks a second, 1 to 10,000.
     now_ns
         Time at which it begins, by the clock of its ticks.
-    fade_s
-        Duration of a change that the hand did not cause.
-    idle_s
-        Time without motion before the array goes to rest.
     rested
         How often the device has gone to rest by itself.
 
@@ -95,8 +90,6 @@ class LoopState:
     ----------
     now : record
         The numbers that a tick knows, by the names below.
-    done_ns : int64[1, …]
-        View of these numbers, of which the first is when the last frame had gone out.
     output : float64[rows, columns]
         The frame last made.
 
@@ -106,27 +99,25 @@ class LoopState:
         If the rate is out of range.
     """
 
-    def __init__(
-        self,
-        display: Display,
-        rate_hz: float,
-        now_ns: int,
-        *,
-        fade_s: float = FADE_S,
-        idle_s: float = IDLE_S,
-        rested: int = 0,
-    ) -> None:
+    def __init__(self, display: Display, rate_hz: float, now_ns: int, rested: int = 0) -> None:
         check_range("rate", rate_hz, 1, 10_000, " Hz")
         self.shape = display.shape
         self._numbers = np.zeros(1, _STATE)
         self.now = now = self._numbers[0]
-        now["period_ns"] = round(NS_PER_S / rate_hz)
-        now["fade_ns"] = now["fading_ns"] = now["faded_ns"] = int(fade_s * NS_PER_S)
-        now["pause_ns"] = int(PAUSE_FADE_S * NS_PER_S)
-        now["idle_ns"] = int(idle_s * NS_PER_S)
-        now["silence_ns"] = int(SILENCE_S * NS_PER_S)
+        period_s = 1 / rate_hz
+        for name, duration_s in (
+            ("period_ns", period_s),
+            ("fade_ns", FADE_S),
+            ("pause_ns", PAUSE_FADE_S),
+            ("catch_ns", CATCH_S),
+            ("gap_ns", max(GAP_S, GAP_PERIODS * period_s)),
+            ("step_ns", max(STEP_S, period_s)),
+            ("idle_ns", IDLE_S),
+            ("silence_ns", SILENCE_S),
+        ):
+            now[name] = round(duration_s * NS_PER_S)
         now["free_y"] = "y" in display.axes
-        now["ticked_ns"] = now["moved_ns"] = now["sampled_ns"] = now_ns
+        now["ticked_ns"] = now["moved_ns"] = now["sampled_ns"] = now["sent_ns"] = now_ns
         now["rested"] = rested
         now["share"] = 1.0
         self._window_ns = np.zeros(DIFFERENCE, np.int64)
@@ -137,11 +128,13 @@ class LoopState:
         self._target = np.zeros(display.shape)
         self._at = np.zeros(work.AT)
         self._scratch = scratch_for(display.shape)
-        self.done_ns = self._numbers.view(np.int64)[list(_STATE.fields or ()).index("done_ns") :]
+        self._sent_ns, self._faded_ns = self._numbers["sent_ns"], self._numbers["faded_ns"]
+        # The frame before, the time at which it was sent, and how far its fade had come.
+        self._before = self.output.copy()
+        self._before_ns = now_ns, 0
         self._program = nothing(display)
-        self._arrays = self._gathered()
-        self._serials = 0
-        self._exposures = 0  # that were told
+        self._gather()
+        self._serials = self._exposures = 0
 
     def want(self, program: Program | None, line: int) -> None:
         """Put another picture under the hand from the next tick on; it fades in. None is rest.
@@ -160,7 +153,7 @@ class LoopState:
         self._serials += 1
         now["serial"] = self._serials
         self._program = program
-        self._arrays = self._gathered()
+        self._gather()
 
     def pause(self, paused: bool, now_ns: int) -> None:
         """Let the array rest, or go on, from the next tick on."""
@@ -179,18 +172,41 @@ class LoopState:
         limit_s = float(self._program.numbers[work.EXPOSURE])
         return [Exposed(limit_s)] * (self._exposures - told)
 
-    def fade(self, share: float) -> None:
-        """Make a frame between the one that `hold` kept and rest."""
-        self._target.fill(0.0)
-        blend(self._held, self._target, share, self.output)
+    def advance(
+        self,
+        times_ns: NDArray[np.int64],
+        poses: NDArray[np.float64],
+        rested: int,
+        taking: bool,
+        columns: tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float32]],
+        first: int = 0,
+    ) -> int:
+        """Do ticks and return how many were done; see `vbraille.engine.ticks.advance`."""
+        np.copyto(self._before, self.output)
+        self._before_ns = self._sent_ns[0], self._faded_ns[0]
+        return ticks.advance(*self._arrays, times_ns, poses, rested, taking, *columns, first)
+
+    def sent(self, now_ns: int) -> None:
+        """Note when the frame last made went out."""
+        self._sent_ns[0] = now_ns
+
+    def unsent(self) -> None:
+        """Forget the frame last made, which did not go out: the actuators are where they were."""
+        np.copyto(self.output, self._before)
+        self._sent_ns[0], self._faded_ns[0] = self._before_ns
 
     def hold(self) -> None:
         """Keep the frame last made, to fade from it."""
         self._held[:] = self.output
 
-    def _gathered(self) -> _Eleven:
-        """The arrays that compiled code takes, in its order."""
-        return (
+    def fade(self, share: float) -> None:
+        """Make a frame between the one that `hold` kept and rest."""
+        self._target.fill(0.0)
+        blend(self._held, self._target, share, self.output)
+
+    def _gather(self) -> None:
+        """Gather the arrays that compiled code takes, in its order."""
+        self._arrays = (
             self._numbers,
             self._window_ns,
             self._window_mm,
@@ -202,43 +218,4 @@ class LoopState:
             self._program.numbers,
             self._program.table,
             self._scratch,
-        )
-
-    def advance(
-        self,
-        times_ns: NDArray[np.int64],
-        poses: NDArray[np.float64],
-        rested: int,
-        taking: bool,
-        columns: tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float32]],
-        first: int = 0,
-    ) -> int:
-        """Do ticks and return how many were done; see `vbraille.engine.ticks.advance`."""
-        return ticks.advance(*self._arrays, times_ns, poses, rested, taking, *columns, first)
-
-    def run_steadily(
-        self,
-        told: NDArray[np.int64],
-        orders: NDArray[np.int64],
-        known: NDArray[np.int64],
-        steady: SteadyConversation,
-        times_ns: NDArray[np.int64],
-        poses: NDArray[np.float64],
-        ring: Ring,
-    ) -> int:
-        """Do ticks of a steady serial conversation; see `vbraille.engine.serialtick.run`."""
-        return serialtick.run(
-            told,
-            orders,
-            known,
-            steady.received,
-            steady.work,
-            steady.out,
-            steady.talk,
-            steady.actuators,
-            *self._arrays,
-            times_ns,
-            poses,
-            ring.published,
-            *ring.columns,
         )

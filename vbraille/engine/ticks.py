@@ -1,17 +1,13 @@
-"""The compiled tick: the one place that says what it does, for loop, blocks and replay.
+"""The compiled tick: the one place that says what it does, for the loop, blocks and replay.
 
 `advance` takes where the array is and what is wanted, decides what belongs under the hand, makes
 the frame and fills the tick's record; `replay` makes the frames again from records. Both show a
 tick by the same function, so that what is replayed is what was sent, bit for bit.
 
 Whatever changes without the hand's doing - a new line, a tuning, a jump, the start, a pause,
-rest, a page's next line - fades from the frame last sent. A fade goes by ticks: a loop that was
-held up would jump if it took the time that it lost for time in which it faded. So does the time
-of a picture that moves by itself.
-
-The hand goes on while the loop is held up, or while no pose comes. What it moved in such a gap is
-caught up with from the frame last sent, at half as much again as the hand's own pace: in as long
-as the gap was where the hand stands by then, and in twice as long where it goes on.
+rest, a page's next line - fades from the frame last sent. So does what the hand moved in a gap
+without poses or frames. A fade goes by ticks: a loop that was held up would jump if it took the
+time that it lost for time in which it faded. So does the time of a picture that moves by itself.
 """
 
 import numpy as np
@@ -19,10 +15,8 @@ from numba import njit
 
 from vbraille.caching import keep_compiled
 from vbraille.engine.constants import (
-    CATCH_UP,
+    APART_NS,
     DIFFERENCE,
-    GAP_NS,
-    GAP_PERIODS,
     JUMP_MM_S,
     MEAN,
     NS_PER_S,
@@ -55,7 +49,7 @@ from vbraille.render.signalkernels import begin, compute
 
 _PAUSED, _SILENT, _RESTING = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.RESTING)
 _CHANGED, _RESTED, _HELD = int(Flag.CHANGED), int(Flag.RESTED), int(Flag.HELD)
-_EXPOSED, _TURNED = int(Flag.EXPOSED), int(Flag.TURNED)
+_EXPOSED, _TURNED, _UNFELT = int(Flag.EXPOSED), int(Flag.TURNED), int(Flag.UNFELT)
 # What a tick is given, each a row of float64; times are whole numbers that fit into one.
 (POSED, POSE_X, POSE_Y, POSE_THETA) = range(4)
 _NOWHERE_MM = 1e6
@@ -75,7 +69,7 @@ def add_velocity(state, window_ns, window_mm, velocities, time_ns, x_mm, y_mm):
         step_ns = time_ns - now["last_ns"]
         if step_ns == 0:
             return
-        if not 0 < step_ns < GAP_NS:
+        if not 0 < step_ns < APART_NS:
             forget_velocity(state, velocities)
     at = now["samples"] % DIFFERENCE
     if now["samples"] >= DIFFERENCE:
@@ -115,36 +109,6 @@ def _change(state, fade_ns, output, held):
     now["flags"] |= _CHANGED
     now["fading_ns"] = fade_ns
     now["faded_ns"] = 0
-    now["behind_ns"] = 0
-
-
-@_compiled
-def _fall_behind(state, gap_ns):
-    """Note a gap between two poses: the hand is to be caught up with.
-
-    The actuators are no further from where they belong than the hand goes in so long, and a fade
-    in what was left of it. That is made up for together.
-    """
-    now = state[0]
-    if now["behind_ns"] == 0:
-        left_ns = max(now["fading_ns"] - now["faded_ns"], 0)
-        now["behind_ns"] = max(int(CATCH_UP * left_ns), gap_ns)  # so that a fade goes no faster
-        now["faded_ns"] = now["fading_ns"]
-    else:
-        now["behind_ns"] += gap_ns
-
-
-@_compiled
-def _catch_up(state, passed_ns, output, held):
-    """Go so far from the frame last sent that the hand is caught up with at `CATCH_UP`."""
-    now = state[0]
-    copy(output, held)
-    now["flags"] |= _CHANGED
-    step_ns = int(CATCH_UP * passed_ns)
-    now["share"] = 1.0
-    if now["behind_ns"] > step_ns:
-        now["share"] = step_ns / now["behind_ns"]
-    now["behind_ns"] = max(now["behind_ns"] - step_ns, 0)
 
 
 @_compiled
@@ -175,13 +139,10 @@ def _take_pose(state, window_ns, window_mm, velocities, now_ns, device_ns, pose,
             forget_velocity(state, velocities)
             _change(state, now["fade_ns"], output, held)
         else:
-            gap = gap_ns > GAP_PERIODS * now["period_ns"]
-            # Where the hand stood still, what lies under it is what was sent; a frame that goes by
-            # the hand's speed changes with that speed, which a gap makes 0.
-            still = step == 0.0 and y == now["y_mm"] and turn_mm == 0.0
-            still = still and now["vx_mm_s"] == 0.0 and now["vy_mm_s"] == 0.0
-            if now["shown"] != 0 and ((gap and not still) or now["behind_ns"] != 0):
-                _fall_behind(state, gap_ns)
+            # A fade that is under way is not begun anew, or it would never end on a slow line.
+            fading = now["faded_ns"] < now["fading_ns"]
+            if gap_ns > now["gap_ns"] and now["shown"] != 0 and not fading:
+                _change(state, now["catch_ns"], output, held)
             if step > 0:
                 now["forward_mm"] += step
                 now["forward_s"] += elapsed_ns / NS_PER_S
@@ -218,7 +179,7 @@ def _wanted(state, now_ns, taking, numbers):
 
 
 @_compiled
-def _decide(state, now_ns, passed_ns, y_mm, rested, taking, numbers, output, held):
+def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
     """Decide what is shown in this tick, and how far it has faded in."""
     now = state[0]
     if rested != now["rested"]:
@@ -230,7 +191,6 @@ def _decide(state, now_ns, passed_ns, y_mm, rested, taking, numbers, output, hel
         output[:] = 0.0
         now["shown"] = 0
         now["faded_ns"] = now["fading_ns"]
-        now["behind_ns"] = 0
     is_wanted = now["shown"] != 0 and now["shown"] == now["serial"]
     if is_wanted and now["shown_ns"] >= numbers[work.EXPOSURE] * NS_PER_S:
         now["exhausted"] = now["serial"]
@@ -252,8 +212,6 @@ def _decide(state, now_ns, passed_ns, y_mm, rested, taking, numbers, output, hel
     now["part"] = part
     fading = now["faded_ns"] < now["fading_ns"]
     now["share"] = now["faded_ns"] / now["fading_ns"] if fading else 1.0
-    if now["behind_ns"] != 0:
-        _catch_up(state, passed_ns, output, held)
 
 
 @_compiled
@@ -358,15 +316,17 @@ def advance(
     for n in range(times_ns.shape[0]):
         now_ns = times_ns[n, 0]
         now["flags"] = 0
-        passed_ns = min(now_ns - now["ticked_ns"], now["period_ns"])
+        passed_ns = min(now_ns - now["ticked_ns"], now["step_ns"])
+        now["ticked_ns"] = now_ns
         shown_before_s = now["shown_ns"] / NS_PER_S
-        now["faded_ns"] += passed_ns
         if now["shown"] != 0:
             now["shown_ns"] += passed_ns
-        if now["done_ns"] - now["ticked_ns"] > now["period_ns"]:
-            # A frame that went out late has only just moved the actuators.
-            passed_ns = max(min(passed_ns, now_ns - now["done_ns"]), 0)
-        now["ticked_ns"] = now_ns
+        unsent_ns = now_ns - now["sent_ns"]
+        fading = now["faded_ns"] < now["fading_ns"]
+        if unsent_ns > now["gap_ns"] and now["shown"] != 0 and not fading:
+            _change(state, now["catch_ns"], output, held)
+        # A frame that went out late has only just moved the actuators.
+        now["faded_ns"] += max(min(passed_ns, unsent_ns), 0)
         if poses[n, POSED] != 0.0:
             possible = _take_pose(
                 state,
@@ -382,7 +342,7 @@ def advance(
             if not possible:
                 return n
         y_mm = now["y_mm"] if now["free_y"] != 0 else numbers[work.OWN_Y]
-        _decide(state, now_ns, passed_ns, y_mm, rested, taking, numbers, output, held)
+        _decide(state, now_ns, y_mm, rested, taking, numbers, output, held)
         if now["shown"] == 0:
             now["flags"] |= _RESTING
         shown_s = now["shown_ns"] / NS_PER_S
@@ -413,6 +373,10 @@ def advance(
             now["flags"] |= _EXPOSED
         if now["turned"]:
             now["flags"] |= _TURNED
+        if now["serial"] != 0 and not now["paused"]:
+            away = now["placed"] == 0 or now["turned"] != 0 or not taking
+            if away or now["flags"] & (_SILENT | _RESTED):
+                now["flags"] |= _UNFELT
         slot = (first + n) % size
         ints[slot, TICK] = now["tick"]
         ints[slot, TIME] = now_ns
@@ -436,6 +400,7 @@ def advance(
             for column in range(columns):
                 frames[slot, row, column] = output[row, column]
         now["tick"] += 1
+        now["sent_ns"] = now_ns  # the loop knows better, if it sends the frame
     return times_ns.shape[0]
 
 

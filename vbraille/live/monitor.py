@@ -3,10 +3,8 @@
 
 from __future__ import annotations
 
-import mmap
 from typing import TYPE_CHECKING, Self
 
-from vbraille.engine.mailbox import Extent, watch
 from vbraille.errors import VbrailleError
 from vbraille.live.messages import LetGo, Point
 from vbraille.live.view import LiveView
@@ -14,6 +12,7 @@ from vbraille.simulation.steering import BeAt
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
+    from vbraille.engine.record import RingReader
     from vbraille.live.messages import PagePress, Turn, ViewState
     from vbraille.simulation.steering import Pointer
 
@@ -43,9 +42,8 @@ class Monitor:
         except VbrailleError as error:
             self._notes.append(spelled(f"live view: {error}"))
 
-    def share(self, descriptor: int, extent: Extent) -> None:
-        memory = memoryview(mmap.mmap(descriptor, extent.total_bytes))
-        self._view.watch(watch(memory, extent)[1])
+    def share(self, ticks: RingReader) -> None:
+        self._view.watch(ticks)
 
     def tell(self, state: ViewState) -> None:
         self._view.tell(state)

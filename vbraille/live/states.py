@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from vbraille.braille.geometry import Geometry
     from vbraille.display import Display
-    from vbraille.layout.pages import Line
+    from vbraille.layout import Line
     from vbraille.render.braille.style import BrailleStyle
 
 _DISTANCES: Final = ("dot_width_mm", "dot_spacing_mm", "cell_gap_mm", "row_spacing_mm",
@@ -143,7 +143,7 @@ def line_shown(
         text = text[cut : int(known[:, 1].max())]
     sources = np.clip(np.where(sources < 0, cut, sources) - cut, 0, len(text))
     return LineShown(
-        number=line.number if number is None else number,
+        number=line.id if number is None else number,
         text=text,
         start_mm=start_mm,
         top_mm=top_mm,
@@ -155,10 +155,10 @@ def line_shown(
 
 def _sources(line: Line) -> NDArray[np.int64]:
     """Give where the text begins and ends that each cell stands for."""
-    starts, places = line.cells.starts, line.block.text.places
+    starts = line.cells.starts
     after = np.searchsorted(starts, starts, side="right")
     following = np.append(starts, line.cells.end)[after]
-    there = np.searchsorted(places, np.stack((starts, following), axis=1)) - line.first
+    there = np.stack((starts, following), axis=1) - line.block.start - line.first
     return np.clip(there, 0, line.after - line.first)
 
 

@@ -15,9 +15,8 @@ import numpy as np
 
 from vbraille.braille.cells import PLACES, mask_of
 from vbraille.braille.spelling import to_braille
-from vbraille.render.braille.mappings import MAPPINGS, NONE
+from vbraille.render.braille.mappings import MAPPINGS, NONE, single_row
 from vbraille.render.braille.models import STRESS2, VBD
-from vbraille.render.braille.reference import SWINGS, deflections
 from vbraille.render.braille.style import Profile
 
 if TYPE_CHECKING:
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from vbraille.braille.geometry import Geometry
-    from vbraille.layout.pages import Line
+    from vbraille.layout import Line
     from vbraille.render.braille.mappings import Mapping
     from vbraille.render.braille.models import Model
     from vbraille.render.braille.style import BrailleStyle, Tuning
@@ -109,6 +108,7 @@ def page(
     *,
     x_mm: float,
     line_index: int = 0,
+    first: int = 1,
 ) -> FigureTable:
     """Dots of some lines where they stand on the surface, and the array upon one of them.
 
@@ -122,6 +122,8 @@ def page(
         Place of the array's centre.
     line_index
         The line that the array is on, from 0.
+    first
+        Number of the first line.
 
     Returns
     -------
@@ -140,15 +142,18 @@ def page(
         raise ValueError(f"line index is {line_index}; there are {len(lines)} lines, from 0")
     style, geometry = model.style, model.style.geometry
     six = not any((line.masks > 0x3F).any() for line in lines)
-    parts = [_dots(line, n * geometry.line_pitch_mm, geometry, six) for n, line in enumerate(lines)]
+    parts = [
+        _dots(line, first + n, n * geometry.line_pitch_mm, geometry, six)
+        for n, line in enumerate(lines)
+    ]
     line, array = lines[line_index], model.display
     row, column = (grid.ravel() for grid in np.indices(array.shape))
-    frame = deflections(x_mm, line.masks, style, array)
+    frame = style.render(line.masks, array).path(np.array([x_mm]))[0]
     top = line_index * geometry.line_pitch_mm + _first_row_mm(model)
     parts.append(
         {
             "what": np.full(row.size, "actuator"),
-            "line": np.full(row.size, line.number),
+            "line": np.full(row.size, first + line_index),
             "x_mm": x_mm - array.span_mm / 2 + array.column_offsets_mm()[column],
             "y_mm": top + array.row_offsets_mm()[row],
             "width_mm": np.full(row.size, array.column_pitch_mm),
@@ -163,13 +168,16 @@ def page(
         for name in names
     }
     title = (
-        f"{model.title}: line {line.number}, left column at {x_mm - array.span_mm / 2:g} mm, "
+        f"{model.title}: line {first + line_index}, "
+        f"left column at {x_mm - array.span_mm / 2:g} mm, "
         f"{style.mapping.name}{tuning_words(style.tuning)}"
     )
     return FigureTable("page", title, columns)
 
 
-def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str, NDArray]:
+def _dots(
+    line: Line, number: int, top_mm: float, geometry: Geometry, six: bool
+) -> dict[str, NDArray]:
     """Tell the places of the dots of a line whose first dot row is at `top_mm`."""
     dots = list(PLACES)[: 6 if six else 8]
     bits = [mask_of([dot]) for dot in dots]
@@ -178,7 +186,7 @@ def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str,
     centre = right * geometry.dot_spacing_mm + geometry.dot_width_mm / 2
     return {
         "what": np.full(cell.size, "dot"),
-        "line": np.full(cell.size, line.number),
+        "line": np.full(cell.size, number),
         "x_mm": cell * geometry.cell_pitch_mm + np.tile(centre, len(line)),
         "y_mm": top_mm + np.tile(dot_row * geometry.row_spacing_mm, len(line)),
         "width_mm": np.full(cell.size, geometry.dot_width_mm),
@@ -204,6 +212,7 @@ LEVELS = {Profile.RAISED_COSINE: (0.0, 0.25, 1.0), Profile.HALF_SINE: (0.0, 1.0)
 STRAIN_WIDTHS_MM = (0.5, 1.0, 2.0)
 # The letter of fig. 4.5, z: dots in all three rows and in both columns, no two rows alike.
 LETTER = np.array([0b110101], np.uint8)
+_ONE_DOT = np.array([1], np.uint8)
 
 
 def profile(model: Model) -> FigureTable:
@@ -266,9 +275,7 @@ def mapping(
     geometry, tuning = style.geometry, style.tuning
     extent = geometry.extent_mm(len(masks))
     x = _grid(-1.0, extent + 1.0, _step_mm(geometry.dot_width_mm))
-    frames = [
-        deflections(x, masks, replace(style, mapping=way), column)[:, :, 0] for way in methods
-    ]
+    frames = [replace(style, mapping=way).render(masks, column).path(x)[:, :, 0] for way in methods]
     columns = {
         "method": np.repeat([method.name for method in methods], x.size),
         "x_mm": np.tile(x, len(methods)),
@@ -346,12 +353,22 @@ def strain(geometry: Geometry, tuning: Tuning) -> FigureTable:
 def _swing(
     u_mm: ArrayLike, width_mm: float, shape: Profile, tuning: Tuning
 ) -> NDArray[np.floating]:
-    return tuning.contrast * SWINGS[shape](u_mm, width_mm, tuning)
+    """Swing of a dot at distances from its left edge, float[n] or float[m, n]."""
+    geometry = replace(VBD.style.geometry, dot_width_mm=width_mm)
+    style = replace(
+        VBD.style, profile=shape, mapping=single_row(1), geometry=geometry, tuning=tuning
+    )
+    one = replace(VBD.display, columns=1)
+    places_mm = np.asarray(u_mm, np.float64)
+    return style.render(_ONE_DOT, one).path(places_mm.ravel())[:, 0, 0].reshape(places_mm.shape)
 
 
-def _grid(low: float, high: float, step: float) -> NDArray[np.floating]:
+def _grid(low: float, high: float, step: float) -> NDArray[np.float64]:
     """Make the multiples of a step from `low` to `high`, 0 among them."""
-    return np.arange(math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9) + 1) * step
+    return np.asarray(
+        np.arange(math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9) + 1) * step,
+        np.float64,
+    )
 
 
 def _step_mm(width_mm: float) -> float:

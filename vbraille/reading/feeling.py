@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 from vbraille.errors import InputError, VbrailleError
 from vbraille.knobs import KNOBS
 from vbraille.reading.commands import command
-from vbraille.reading.texts import Book
 from vbraille.render import MAPPINGS
 from vbraille.render.braille.mappings import single_row
-from vbraille.translate import BrailleTable, find_table
+from vbraille.translate import Book, BrailleTable, find_table
 
 if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
@@ -198,7 +197,7 @@ def _translate(reader: Reader, language: str, grade: int | None = None) -> None:
         if name == before.table.name:
             reader.say(f"braille: {before.table.said}, as before")
             return
-        table = BrailleTable(name, before.table.how)
+        table = BrailleTable(name, before.table.undefined)
         book = Book(before.source, table, language=language, grade=grade, switch=before.switch)
         reader.lay_out(book)
     except InputError as error:

@@ -12,7 +12,7 @@ from urllib.parse import unquote
 
 from vbraille.errors import InputError
 from vbraille.reading.commands import Where
-from vbraille.translate.source import MarkKind
+from vbraille.translate import MarkKind
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

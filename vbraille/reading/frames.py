@@ -12,9 +12,10 @@ import numpy as np
 
 from vbraille.display import check_rate
 from vbraille.errors import InputError
-from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
+from vbraille.layout import cells_per_line, lay_out_text
 from vbraille.live.states import line_shown
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
+from vbraille.translate import choose_table
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
     from vbraille.braille.cells import Cells
     from vbraille.display import Display
-    from vbraille.layout.pages import Layout, Line
+    from vbraille.layout import Layout, Line
     from vbraille.recording import Print, Recording
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program

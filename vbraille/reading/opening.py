@@ -10,15 +10,14 @@ from vbraille.devices.base import Device
 from vbraille.devices.registry import check_actuators, check_travel
 from vbraille.display import Display, check_rate
 from vbraille.errors import DeviceError, InputError
-from vbraille.layout.texts import cells_per_line, choose_table
+from vbraille.layout import Layout, cells_per_line
 from vbraille.reading.device import HAND, POLL_S, ReadingDevice
 from vbraille.reading.outputs import Cue
 from vbraille.reading.places import Places
 from vbraille.reading.reader import Reader
-from vbraille.reading.texts import Book, Layout, Source
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.simulation.specs import refuse_hand
-from vbraille.translate import Document
+from vbraille.translate import Book, choose_table, text_source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -132,7 +131,7 @@ class OpenDevice(ReadingDevice):
         if not text.strip():
             raise InputError("the text has nothing to read in it; give some")
         width = cells_per_line(self.style.geometry, self.display)
-        source = Source(Document.from_text(text, keep_lines=keep_lines))
+        source = text_source(text, keep_lines=keep_lines)
         book = Book(source, choose_table(language, grade, table))
         self._reader = None
         self._reader = Reader(

@@ -13,7 +13,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
-from vbraille.layout.texts import lay_out_text
+from vbraille.layout import lay_out_text
 from vbraille.reading.outputs import Cue, system_module
 from vbraille.wording import setting
 

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 from vbraille.braille.cells import dots_of
 from vbraille.errors import InputError
 from vbraille.knobs import KNOBS
-from vbraille.layout.texts import cells_per_line
+from vbraille.layout import Layout, cells_per_line
 from vbraille.reading.commands import Where
 from vbraille.reading.explored import Explored
 from vbraille.reading.hand import HELD, HandWatch, too_fast_note
 from vbraille.reading.outputs import Cue
 from vbraille.reading.places import around, nearest
 from vbraille.reading.surface import MOST_CELLS, Part, Surface
-from vbraille.reading.texts import Layout
 
 if TYPE_CHECKING:
     import re

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.feeling.paths import PosedPath
-    from vbraille.layout.pages import Layout, Line
+    from vbraille.layout import Layout, Line
     from vbraille.render import Model
     from vbraille.scene.scene import Canvas
     from vbraille.simulation.hand import Hand

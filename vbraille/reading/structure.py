@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING
 from vbraille.errors import InputError
 from vbraille.reading.commands import both_ways, command
 from vbraille.reading.outputs import Cue
-from vbraille.translate import BlockKind
-from vbraille.translate.source import MarkKind
+from vbraille.translate import BlockKind, MarkKind
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.reading.reader import Reader
-    from vbraille.translate import Block
-    from vbraille.translate.source import Mark
+    from vbraille.translate import Block, Mark
 
 LINES_PER_PAGE = 25  # of a braille page, where the book has no pages of print
 _LINKS = (MarkKind.LINK, MarkKind.NOTE)

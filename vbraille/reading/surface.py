@@ -13,7 +13,7 @@ import numpy as np
 
 from vbraille.engine.engine import EndOfLine
 from vbraille.engine.record import Flag
-from vbraille.layout.texts import cells_per_line
+from vbraille.layout import cells_per_line
 from vbraille.simulation.steering import ReadLine, ReadPage
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from vbraille.adaptive.questplus import GridAxis, geometric, nearer_quest, order
 from vbraille.errors import InputError
 from vbraille.files import write_file
 from vbraille.knobs import KNOBS
-from vbraille.layout.texts import cells_per_line
+from vbraille.layout import cells_per_line
 from vbraille.reading.commands import Where, command
 from vbraille.reading.explored import Explored
 

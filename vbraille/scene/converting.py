@@ -20,7 +20,7 @@ from vbraille.scene.pattern import Pattern
 from vbraille.scene.patterns import Group, Image, ImageDots
 from vbraille.scene.reading import form_of
 from vbraille.scene.traversal import with_children
-from vbraille.tomlfile import Table
+from vbraille.toml import Table
 
 if TYPE_CHECKING:
     from vbraille.scene.locations import FoundScene

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from vbraille.scene.measures import RidgeWave, check_file, check_share, check_zooms
 from vbraille.scene.strokes import Vibration
-from vbraille.tomlfile import Table
+from vbraille.toml import Table
 
 
 class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):

@@ -32,7 +32,7 @@ from vbraille.scene.textures import (
     Uniform,
     UniformVibration,
 )
-from vbraille.tomlfile import Table
+from vbraille.toml import Table
 
 
 class Label(Pattern, frozen=True, kw_only=True, tag="label"):

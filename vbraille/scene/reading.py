@@ -18,7 +18,7 @@ from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import AnySignal
 from vbraille.scene.svg.looks import ClassLook
 from vbraille.scene.traversal import with_children
-from vbraille.tomlfile import Table, TomlFile
+from vbraille.toml import Table, TomlFile
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -201,7 +201,7 @@ class _Gathering:
         """Read the text of a scene file in TOML, at the end of a way of files that ends with it."""
         if text.count("kind") > MOST_PATTERNS:  # each has one
             raise InputError(f"{name} has more than {MOST_PATTERNS} patterns; use fewer")
-        file = TomlFile(text, str(name), several_lines=True)
+        file = TomlFile(text, str(name))
         textures = {
             key: file.read(AnyPattern, under=("textures", key))  # pyright: ignore[reportArgumentType]
             for key in file.names("textures")

@@ -6,7 +6,7 @@ from vbraille.errors import check_range
 from vbraille.scene.pattern import Pattern
 from vbraille.scene.patterns import AnyPattern, Operation
 from vbraille.scene.signals import AnySignal
-from vbraille.tomlfile import Table
+from vbraille.toml import Table
 
 
 class Canvas(Table, frozen=True, kw_only=True):

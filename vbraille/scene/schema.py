@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 
 from vbraille.scene.reading import SceneFile
-from vbraille.tomlfile import Table
+from vbraille.toml import Table
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _SECTION = re.compile(r"^Parameters\n-+\n(.*?)(?=^\S[^\n]*\n-{3,}|\Z)", re.MULTILINE | re.DOTALL)

@@ -12,7 +12,7 @@ from msgspec.structs import replace
 
 from vbraille.errors import check_range
 from vbraille.scene.measures import check_angle, check_share
-from vbraille.tomlfile import Table
+from vbraille.toml import Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

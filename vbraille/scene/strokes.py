@@ -17,7 +17,7 @@ from vbraille.scene.measures import (
     check_share,
     check_velocity_by,
 )
-from vbraille.tomlfile import Table
+from vbraille.toml import Table
 
 _MOST_CYCLES = 100
 

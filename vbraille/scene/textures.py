@@ -20,7 +20,7 @@ from vbraille.scene.measures import (
     check_velocity_by,
 )
 from vbraille.scene.pattern import Pattern
-from vbraille.tomlfile import Table
+from vbraille.toml import Table
 
 _LEAST_FACTOR, _MOST_FACTOR = 0.05, 20.0
 _LEAST_DEG = 0.5

@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from vbraille.display import Display
-    from vbraille.engine.spawning import Spawned
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.running.conventional import OnConventional
     from vbraille.sessions.running.liveview import SessionView
@@ -201,7 +200,7 @@ class Session:
         conditions: Conditions,
         progress: Progress,
         engine: MakeEngine | None = None,
-        begun: tuple[Spawned, Steering] | None = None,
+        begun: Any = None,
     ) -> None:
         self.folder = folder
         self.protocol = protocol
@@ -256,7 +255,7 @@ class Session:
         fields: Mapping[str, str] | None = None,
         conditions: Conditions = USUAL,
         engine: MakeEngine | None = None,
-        begun: tuple[Spawned, Steering] | None = None,
+        begun: Any = None,
     ) -> Session:
         """Plan a new session; nothing is written to the disk before `run`.
 
@@ -305,7 +304,7 @@ class Session:
         folder: str | Path,
         *,
         engine: MakeEngine | None = None,
-        begun: tuple[Spawned, Steering] | None = None,
+        begun: Any = None,
         **changed: Any,
     ) -> Session:
         """Go on with a session that was begun earlier.
@@ -519,7 +518,7 @@ def usual_engine(
     channels: Sequence[Steering | Pointer],
     *,
     fast: bool,
-    spawned: Spawned | None = None,
+    spawned: Any = None,
 ) -> RunEngine:
     """Make the usual engine: a process of its own, or a loop in this one if it runs fast.
 

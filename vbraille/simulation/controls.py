@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.serial.wire import MOST_KNOBS
 from vbraille.errors import InputError, check_range
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
 MOST_BUTTONS: Final = 8
+MOST_KNOBS: Final = 4
 LONGEST_S: Final = 3600.0
 SHORT_S: Final = 0.1  # how long a button is held if its end is not given
 _TIME = r"([0-9]{1,6}(?:\.[0-9]{1,6})?)s"

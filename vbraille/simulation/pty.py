@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import select
 import tty
 from contextlib import suppress
 from pathlib import Path
@@ -73,7 +74,7 @@ class Port:
     def __init__(self, link: Link | None = None) -> None:
         self._link = link
         self._master: int | None = None
-        self._slave: int | None = None
+        self._poll = select.poll()
         self._left = b""  # rest of a message that was written in part
         self.path = ""
         self.plug()
@@ -83,13 +84,21 @@ class Port:
         """Descriptor to wait for with select; None while the port is unplugged."""
         return self._master
 
+    @property
+    def is_open(self) -> bool:
+        """Tell whether a host has the port open."""
+        if self._master is None:
+            return False
+        return not any(event & select.POLLHUP for _, event in self._poll.poll(0))
+
     def plug(self) -> None:
         """Make the port, perhaps at another path than before."""
-        # The host's end is kept open here: the line must not hang up each time a host leaves.
-        self._master, self._slave = os.openpty()
-        self.path = os.ttyname(self._slave)
-        tty.setraw(self._slave)
+        self._master, slave = os.openpty()
+        self.path = os.ttyname(slave)
+        tty.setraw(slave)
+        os.close(slave)
         os.set_blocking(self._master, False)
+        self._poll.register(self._master, select.POLLHUP)
         self._left = b""
         if self._link is not None:
             try:
@@ -102,10 +111,10 @@ class Port:
         """Hang up, and let the port go."""
         if self._link is not None:
             self._link.remove()
-        for descriptor in (self._master, self._slave):
-            if descriptor is not None:
-                os.close(descriptor)
-        self._master = self._slave = None
+        if self._master is not None:
+            self._poll.unregister(self._master)
+            os.close(self._master)
+        self._master = None
 
     def read(self) -> bytes:
         """Give the bytes that have come."""
@@ -113,7 +122,7 @@ class Port:
             return b""
         try:
             return os.read(self._master, _CHUNK)
-        except BlockingIOError:
+        except OSError:  # there is nothing, or no host has the port open
             return b""
 
     def send(self, message: bytes) -> bool:
@@ -133,5 +142,5 @@ class Port:
             return 0
         try:
             return os.write(self._master, message)
-        except BlockingIOError:
+        except OSError:
             return 0

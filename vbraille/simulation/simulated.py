@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 from urllib.parse import parse_qsl
 
 import numpy as np
 
 from vbraille.devices.base import Device
-from vbraille.devices.events import Button, HandHeld, Knob
+from vbraille.devices.events import Button, HandDone, HandHeld, Knob
 from vbraille.display import Pose
 from vbraille.errors import InputError, check_range
 from vbraille.simulation.controls import MOST_BUTTONS, Controls, parse_presses
@@ -17,7 +17,7 @@ from vbraille.simulation.hand import STILL_S, Area, Still
 from vbraille.simulation.motion import Course
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
-from vbraille.simulation.steering import BeAt, GlideTo, Pointer, ReadLine, ReadPage, Steering
+from vbraille.simulation.steering import BeAt, GlideTo, Hold, LetGo, ReadLine, ReadPage, Steering
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from vbraille.simulation.hand import Hand
     from vbraille.simulation.motion import Motion
     from vbraille.simulation.steering import HandOrder
-
-_Channel = TypeVar("_Channel", Steering, Pointer)
 
 NS_PER_S = 1_000_000_000
 HELD_MM_S = 1000.0  # speed at which a hand goes to where it is put
@@ -55,21 +53,17 @@ class SimulatedDevice(Device):
     now_ns
         Clock by which the hand moves, in nanoseconds.
     hand
-        Hand that moves the carriage; `move` moves it as well.
-    steering
-        Orders to the hand, one after the other. Without it the hand sets out with the first frame,
-        and reads lines as wide as the travel, one after the other.
-    pointer
-        Where a person holds the hand meanwhile, ahead of all orders: these wait until it is let
-        go, and what was not done yet is then done again.
+        Hand that moves the carriage, as `obey` is told; `move` moves it as well.
     presses
         Presses of its buttons, in seconds since the device was opened; `press`, `let_go` and
         `turn` do more of the same at once.
 
     Attributes
     ----------
-    hand, steering, pointer
-        As they were given.
+    hand : Hand or Recorded or None
+        As it was given.
+    hand_done_ns : int or None
+        When the hand had followed its last order; None while it follows one.
     levels : int64[rows, columns]
         Levels that were last sent to the actuators, 0 … info.levels - 1.
     frames : int
@@ -81,27 +75,34 @@ class SimulatedDevice(Device):
         info: Display,
         now_ns: Callable[[], int] = time.monotonic_ns,
         hand: Hand | Recorded | None = None,
-        steering: Steering | None = None,
         presses: Sequence[ControlEvent] = (),
-        pointer: Pointer | None = None,
     ) -> None:
         self.display = info
+        self.hand = hand
         self._controls = Controls(presses)
         self._opened_ns = now_ns()
         self._pressed: list[Event] = []
-        self.hand, self.steering, self.pointer = hand, steering, pointer
-        self._at: BeAt | None = None  # where a person holds the hand
-        self._held_ns = 0  # when that was last told
+        self._held_ns: int | None = None  # when a person who holds the hand last moved it
         self._left: Motion | None = None  # what the hand had not done yet when it was taken
-        self._order: HandOrder | None = None
+        self._ordered = False  # whether an order is not done yet
         self._has_set_out = False  # whether a recorded hand has set out
-        self._ordered = False  # whether an order is not known to be done yet
+        self._is_free = True  # whether no order came yet: it reads over the whole travel
         self._now_ns = now_ns
-        self.levels = np.zeros((info.rows, info.columns), np.int64)
+        self.hand_done_ns: int | None = None
+        self.levels = np.zeros(info.shape, np.int64)
         self.frames = 0
         self._course = Course(
             -info.span_mm, free_y=info.height_mm > 0, turns=info.turns, now_ns=now_ns()
         )
+
+    @property
+    def steering(self) -> Steering:
+        """Orders as readings give them, until they call `Engine.give`."""
+        steering = Steering()
+        steering.bind(self)
+        return steering
+
+    pointer = None
 
     def go_by(self, now_ns: Callable[[], int]) -> None:
         """Use another clock from now on; a motion goes on from where it has come to."""
@@ -126,9 +127,13 @@ class SimulatedDevice(Device):
         self._pressed.append(Knob(knob, value))
 
     def take_events(self) -> Sequence[Event]:
-        """Buttons and knobs that were moved since the last call, and who the hand was."""
-        told, self._pressed = self._pressed, []
+        """Buttons and knobs that were moved since the last call, and what the hand has done."""
         controls, before, now_ns = self._controls, self._controls.buttons, self._now_ns()
+        if self._ordered and self._course.is_over(now_ns):
+            self._ordered = False
+            self.hand_done_ns = now_ns
+            self._pressed.append(HandDone(now_ns))
+        told, self._pressed = self._pressed, []
         controls.advance((now_ns - self._opened_ns) / NS_PER_S)
         if changed := before ^ controls.buttons:
             told += [
@@ -139,44 +144,34 @@ class SimulatedDevice(Device):
         return told
 
     @property
-    def moving(self) -> bool:
+    def moving_hand(self) -> bool:
         """Tell whether the hand is still on its way."""
         return not self._course.is_over(self._now_ns())
 
-    def obey(self) -> None:
-        """Have the hand follow the newest order from now on; `read` does this too."""
-        was_held = self._at is not None
-        if self.pointer is not None and self._is_held(self.pointer.at()):
-            return
-        if was_held and isinstance(self.hand, Recorded) and self._left is not None:
-            self.move(self._left)
-        steering = self.steering
-        if steering is None:
-            if self.frames and not self.moving:
-                self._do(ReadLine(self.display.travel_mm - self.display.span_mm))
-            return
-        order = steering.take()
-        if order is None and was_held and self._ordered:
-            order = self._order
-        if order is not None:
-            self._ordered, self._order = True, order
-            self._do(order)
-        if self._ordered and not self.moving:
-            self._ordered = False
-            steering.answer(self._now_ns())
-
-    def _is_held(self, at: BeAt | None) -> bool:
-        """Have the hand go where a person holds it; False if no person does."""
-        if at is self._at:
-            return at is not None
-        if (at is None) is not (self._at is None):
-            self._pressed.append(HandHeld(at is not None))
+    def obey(self, order: HandOrder) -> None:
+        """Have the hand follow an order from now on; a person who holds it goes first."""
         now_ns = self._now_ns()
-        if self._at is None:
+        if isinstance(order, Hold):
+            self._be_held(order, now_ns)
+        elif isinstance(order, LetGo):
+            if self._held_ns is not None:
+                self._held_ns = None
+                self._pressed.append(HandHeld(held=False))
+                if self._left is not None:
+                    self.move(self._left)
+        elif self._held_ns is None:
+            self._ordered, self._is_free, self.hand_done_ns = True, False, None
+            self._do(order)
+
+    def _be_held(self, at: Hold, now_ns: int) -> None:
+        """Have the hand go where a person holds it."""
+        since_s = GLIDE_S
+        if self._held_ns is None:
+            self._pressed.append(HandHeld(held=True))
             self._left = self._course.rest(now_ns)
-        self._at = at
-        if at is None:
-            return False
+        else:
+            since_s = min((now_ns - self._held_ns) / NS_PER_S, GLIDE_S)
+        self._held_ns = now_ns
         info = self.display
         left_mm, right_mm = -info.span_mm, info.travel_mm - info.span_mm
         to = (
@@ -184,9 +179,7 @@ class SimulatedDevice(Device):
             min(max(at.y_mm, 0.0), info.height_mm),
             at.theta_rad if info.turns else 0.0,
         )
-        since_s, self._held_ns = (now_ns - self._held_ns) / NS_PER_S, now_ns
-        self._course.go_to(to, now_ns, HELD_MM_S, min(since_s, GLIDE_S))
-        return True
+        self._course.go_to(to, now_ns, HELD_MM_S, since_s)
 
     def until_done(self, times_ns: NDArray[np.int64]) -> int:
         """Number of given times that come until the hand has done its order.
@@ -229,9 +222,10 @@ class SimulatedDevice(Device):
 
     def read(self) -> Pose | None:
         """Pose of the carriage now, to the nearest count of its encoders."""
-        self.obey()
         now_ns = self._now_ns()
         info = self.display
+        if self._is_free and self.frames and self._course.is_over(now_ns):
+            self._do(ReadLine(info.travel_mm - info.span_mm))
         hand_mm, y_mm, theta_rad = self._course.at(now_ns)
         way = min(max(hand_mm + info.span_mm, 0.0), info.travel_mm)
         counts = round(way * info.counts_per_mm)
@@ -272,8 +266,6 @@ class SimulatedDevice(Device):
 def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
     """Open ``sim:?hand=HAND&seed=N&press=1@2.5s,2@4s``, as the page wants it.
 
-    A program adds ``&steering=DESCRIPTOR&pointer=DESCRIPTOR``, by which the hand is moved.
-
     Raises
     ------
     InputError
@@ -283,32 +275,9 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
         raise InputError(
             f"a simulated device is made for a model; say which, with {setting('model')}"
         )
-    if not address:
-        return SimulatedDevice(wanted)
     given = dict(parse_qsl(address.removeprefix("?"), keep_blank_values=True))
-    seed = given.pop("seed", "1")
-    hand = given.pop("hand", None)
-    descriptor = given.pop("steering", None)
-    held_by = given.pop("pointer", None)
-    presses = parse_presses(given.pop("press", ""))
-    if given or not address.startswith("?") or hand is None or not seed.isdecimal():
-        said = address.partition("&steering=")[0]  # a program adds this part, never a person
-        raise InputError(f"there is no device sim:{said}; give sim:?hand=HAND&seed=N, or sim")
-    return SimulatedDevice(
-        wanted,
-        hand=parse_hand(hand, int(seed), pointed=held_by is not None),
-        steering=None if descriptor is None else _inherited(Steering, "steering", descriptor),
-        presses=presses,
-        pointer=None if held_by is None else _inherited(Pointer, "pointer", held_by),
-    )
-
-
-def _inherited(kind: type[_Channel], name: str, descriptor: str) -> _Channel:
-    """Tell what moves a hand, in memory that this process has made or inherited."""
-    try:
-        return kind(int(descriptor))
-    except (ValueError, OverflowError):
-        raise InputError(
-            f"nothing can steer a hand by {name}={descriptor}; leave it out, for it is what a "
-            f"program tells the process that it starts"
-        ) from None
+    seed, hand, presses = given.pop("seed", "1"), given.pop("hand", ""), given.pop("press", "")
+    if given or not seed.isdecimal() or (address and not address.startswith("?")):
+        raise InputError(f"there is no device sim:{address}; give sim, or sim:?hand=HAND&seed=N")
+    moved = parse_hand(hand, int(seed), pointed=True) if hand else None
+    return SimulatedDevice(wanted, hand=moved, presses=parse_presses(presses))

@@ -14,7 +14,6 @@ from vbraille.wording import setting
 if TYPE_CHECKING:
     from vbraille.simulation.hand import Hand
     from vbraille.simulation.recorded import Recorded
-    from vbraille.simulation.steering import Pointer
 
 SLOW = ("slow", "device")  # names of the hand that reads slowly; the second is its older name
 STILL = "still"  # name of the hand that only moves in the live view
@@ -26,8 +25,8 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
     Parameters
     ----------
     spec
-        ``sweep:SPEED`` in mm/s, ``slow`` (or ``device``), ``fluent``, ``wander:SPEED`` in mm/s,
-        ``recorded:FILE``, ``wide``, ``wide:SPACING``, ``spot:X,Y`` in mm, or ``still``.
+        ``sweep:SPEED`` in mm/s, ``slow`` (or ``device``), ``fluent``, ``recorded:FILE``,
+        ``wide``, ``wide:SPACING``, ``spot:X,Y`` in mm, or ``still``.
     seed
         Seed of a hand that is drawn at random.
     pointed
@@ -50,10 +49,6 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
             return load_recorded(rest)
         if kind == "sweep":
             return Sweep(_speed(rest, kind))
-        if kind == "wander":
-            from vbraille.simulation.wander import Wander
-
-            return Wander(_speed(rest, kind), seed)
         if spec != STILL:  # a hand is loaded when it is asked for
             from vbraille.simulation.exploring import parse_explorer
 
@@ -71,7 +66,7 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
         )
     raise InputError(
         f"there is no hand {spec!r}; give sweep:SPEED in mm/s, slow, fluent or recorded:FILE, "
-        f"wander:SPEED to go about without reading, or wide or spot:X,Y to go over a picture"
+        f"or wide or spot:X,Y to go over a picture"
     )
 
 
@@ -108,20 +103,11 @@ def steering_of(device: str) -> Steering | None:
     return Steering() if has_hand(device) else None
 
 
-def device_spec(
-    device: str,
-    hand: str,
-    seed: int,
-    steering: Steering | None,
-    pointer: Pointer | None = None,
-) -> str:
-    """Spec of a device; that of the simulated one has its hand and what moves it added."""
-    if steering is None:
+def device_spec(device: str, hand: str | None, seed: int, *_: object) -> str:
+    """Spec of a device; that of the simulated one has its hand added."""
+    if not is_simulated(device) or hand is None:
         return device
-    if is_simulated(device):
-        device = f"sim:?{urlencode({'hand': hand, 'seed': seed})}"
-    pointed = "" if pointer is None else f"&pointer={pointer.descriptor}"
-    return f"{device}&steering={steering.descriptor}{pointed}"
+    return f"sim:?{urlencode({'hand': hand, 'seed': seed})}"
 
 
 def _speed(text: str, kind: str) -> float:

@@ -22,7 +22,7 @@ import numpy as np
 from vbraille.devices.base import Device, Particulars
 from vbraille.devices.events import Placing, is_known
 from vbraille.display import Display
-from vbraille.engine.checkup import NS_PER_S, Watch
+from vbraille.engine.checkup import NS_PER_S, Watch, finishes_parts
 from vbraille.engine.clock import RealClock
 from vbraille.engine.engine import HOME_MM
 from vbraille.errors import DeviceError, InputError
@@ -46,6 +46,8 @@ _VALUES: dict[str, tuple[type, ...]] = {
     "acknowledges": (bool,),
     "acknowledged_ns": (int, type(None)),
     "watchdog_trips": (int, type(None)),
+    "tripped_ms": (float, type(None)),
+    "descriptor": (int, type(None)),
     "particulars": (Particulars, type(None)),
 }
 
@@ -133,6 +135,13 @@ def check_bad_frames(open_device: Open) -> None:
         device.write(_frame(device, 0.5))
 
 
+def check_parts(open_device: Open) -> None:
+    """A message of which the line took a part is finished before another is begun."""
+    with _opened(open_device) as device:
+        faults = finishes_parts(device)
+    assert not faults, faults[0]
+
+
 def check_close(open_device: Open) -> None:
     """Closing twice is closing once; nothing is written after it."""
     device = _opened(open_device)
@@ -149,6 +158,7 @@ CHECKS = (
     check_left_stop,
     check_frames,
     check_bad_frames,
+    check_parts,
     check_close,
 )
 

@@ -6,17 +6,14 @@ from contextlib import contextmanager
 from threading import Event, Thread
 from typing import TYPE_CHECKING
 
-from vbraille.devices.serial.wire import Encoder
 from vbraille.engine.clock import RealClock
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.simulation.carriage import area_of
 from vbraille.simulation.controls import Controls, parse_presses, parse_script
-from vbraille.simulation.firmware import describe
 from vbraille.simulation.pty import Port
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.simulator import Simulator
 from vbraille.simulation.specs import parse_hand
-from vbraille.simulation.steering import Steering
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -24,7 +21,6 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
     from vbraille.simulation.simulator import Faults
-    from vbraille.simulation.steering import Pointer
 
 
 def simulated_device(
@@ -33,7 +29,6 @@ def simulated_device(
     hand: str = "sweep:60",
     seed: int = 1,
     clock: Clock | None = None,
-    pointer: Pointer | None = None,
 ) -> SimulatedDevice:
     """Make a device in memory, whose hand reads what is shown on it.
 
@@ -47,8 +42,6 @@ def simulated_device(
         Hand that moves the carriage, and its seed, as in `parse_hand`.
     clock
         Clock of the device; None for the machine's.
-    pointer
-        Where a person may hold the hand; None if no person can.
 
     Raises
     ------
@@ -65,8 +58,7 @@ def simulated_device(
     check_shown(display)
     info = display.display if isinstance(display, Model) else display
     now_ns = (RealClock() if clock is None else clock).now_ns
-    moved = parse_hand(hand, seed, pointed=pointer is not None)
-    return SimulatedDevice(info, now_ns, moved, Steering(), pointer=pointer)
+    return SimulatedDevice(info, now_ns, parse_hand(hand, seed, pointed=True))
 
 
 @contextmanager
@@ -75,7 +67,7 @@ def simulated_controller(
     *,
     hand: str = "sweep:60",
     seed: int = 1,
-    encoder: str = "absolute",
+    placed: bool = True,
     faults: Faults | None = None,
     presses: Sequence[str] = (),
     script: str = "",
@@ -86,11 +78,11 @@ def simulated_controller(
     Parameters
     ----------
     display
-        Display of the device; its rate must be 50 Hz or more, and whole.
+        Display of the device; its rate must divide 1000 and be 50 Hz or more.
     hand, seed
         Hand that moves the carriage, and its seed, as in `parse_hand`.
-    encoder
-        What the encoder knows of its place at the start: "absolute", "index" or "incremental".
+    placed
+        Whether its encoders know where the carriage is; otherwise it waits for ZERO.
     faults
         Ways in which the controller misbehaves; None for none.
     presses
@@ -107,7 +99,7 @@ def simulated_controller(
     InputError
         If there is no such hand, or a press or a line of the script is none.
     ValueError
-        If a number of the display does not fit into its field on the wire.
+        If the protocol has no room for the display.
 
     Examples
     --------
@@ -120,13 +112,13 @@ def simulated_controller(
     info = display.display if isinstance(display, Model) else display
     port, stopped = Port(), Event()
     try:
-        described = describe(info, Encoder[encoder.upper()])
         simulator = Simulator(
-            described,
+            info,
             parse_hand(hand, seed),
             port,
             say=say,
             faults=faults,
+            placed=placed,
             area=area_of(info, model_of(info).style.geometry.line_pitch_mm),
             controls=Controls(
                 (*parse_script(script, "the script"), *parse_presses(",".join(presses)))

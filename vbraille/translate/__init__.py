@@ -1,26 +1,38 @@
-"""Text in, cells out; nothing here knows of millimetres."""
+"""Any book in, blocks and cells out; nothing here knows of millimetres."""
 
 from vbraille.braille.cells import Cells
-from vbraille.translate.book import Book
-from vbraille.translate.documents.document import Document
-from vbraille.translate.languages import find_table, six_dot_table, tables_of
-from vbraille.translate.liblouis import BrailleTable, TableInfo, list_tables
-from vbraille.translate.source import Block, BlockKind, Source, Text
-from vbraille.translate.substitutes import Undefined
+from vbraille.translate.blocks import Block, BlockKind, Mark, MarkKind
+from vbraille.translate.book import Book, Remarks, describe
+from vbraille.translate.formats import FORMATS, open_source, text_source
+from vbraille.translate.languages import TableInfo, find_table, has_tables, list_tables, tables_of
+from vbraille.translate.liblouis import liblouis_version
+from vbraille.translate.source import Heading, Source
+from vbraille.translate.spellings import Undefined
+from vbraille.translate.tables import BrailleTable, choose_table, six_dot_table, translate_text
 
 __all__ = [
+    "FORMATS",
     "Block",
     "BlockKind",
     "Book",
     "BrailleTable",
     "Cells",
-    "Document",
+    "Heading",
+    "Mark",
+    "MarkKind",
+    "Remarks",
     "Source",
     "TableInfo",
-    "Text",
     "Undefined",
+    "choose_table",
+    "describe",
     "find_table",
+    "has_tables",
+    "liblouis_version",
     "list_tables",
+    "open_source",
     "six_dot_table",
     "tables_of",
+    "text_source",
+    "translate_text",
 ]

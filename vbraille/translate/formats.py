@@ -4,26 +4,21 @@ from __future__ import annotations
 
 import io
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
-from operator import attrgetter
-from pathlib import PurePath
-from typing import TYPE_CHECKING, BinaryIO
+from pathlib import Path, PurePath
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from vbraille.errors import InputError
-from vbraille.translate.documents.encodings import (
-    SAMPLE_BYTES,
-    find_encoding,
-    keep_stream,
-    open_file,
-)
+from vbraille.translate.archive import MOST_BYTES, Archive
+from vbraille.translate.encodings import binary_kind, decode
+from vbraille.translate.plain import text_blocks
+from vbraille.translate.source import Source
 from vbraille.wording import nearest, setting
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping
-    from zipfile import ZipFile
-
-    from vbraille.translate.source import Source
+    from collections.abc import Collection
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,292 +30,74 @@ class Format:
     name
         Name by which an option calls it.
     reader
-        Function that opens a book, as a module of this package and a name in it. It is loaded when
-        a book needs it, and is given the book's bytes, its name in messages, and options.
+        Function that reads its blocks, as a module of this package and a name in it. It is loaded
+        when a book needs it.
     suffixes
         Ends of files' names, for those whose bytes do not show it.
-    root
-        Name of the first element, where it is markup.
     takes
         Options of `open_source` that the reader takes.
-    keeps_lines
-        Whether lines are kept in any case, so that the option for that is right and needless.
-    given
-        What the reader is given beside options.
     """
 
     name: str
     reader: str
     suffixes: tuple[str, ...] = ()
-    root: str = ""
     takes: tuple[str, ...] = ()
-    keeps_lines: bool = False
-    given: Mapping[str, object] = field(default_factory=dict)
-
-    def read(self, stream: BinaryIO, name: str, **options: object) -> Source:
-        """Open a book of this format by its bytes."""
-        module, _, path = self.reader.partition(":")
-        read = attrgetter(path)(import_module(f"vbraille.translate.{module}"))
-        return read(stream, name, **self.given, **options)
 
 
-_TEXT = Format("text", "documents.document:Document", takes=("encoding", "keep_lines"))
-_HTML = Format(
-    "html",
-    "documents.html:HtmlBook.open",
-    (".html", ".htm", ".xhtml"),
-    "html",
-    takes=("encoding",),
-)
-# EPUB 2 and 3, and eBraille, which is made like one.
-_EPUB = Format("epub", "documents.epub:EpubBook")
-_DOCX, _ODT, _RTF = (
-    Format(name, "documents.office.officebook:open_office", given={"form": name})
-    for name in ("docx", "odt", "rtf")
-)
-_BRF = Format(
-    "brf",
-    "braillefiles.lines:open_brf",
-    (".brf", ".brl"),
-    takes=("encoding", "brf_table"),
-    keeps_lines=True,
-)
-_UNICODE_BRAILLE = Format(
-    "unicode-braille",
-    "braillefiles.lines:open_unicode_braille",
-    takes=("encoding",),
-    keeps_lines=True,
-)
-FORMATS = (
-    _TEXT,
-    Format(
-        "markdown",
-        "documents.markdown:read_markdown",
-        (".md", ".markdown"),
-        takes=("encoding",),
-    ),
-    _HTML,
-    _EPUB,
-    Format("dtbook", "documents.html:HtmlBook.open", root="dtbook", given={"is_dtbook": True}),
-    _DOCX,
-    _ODT,
-    _RTF,
-    _BRF,
-    _UNICODE_BRAILLE,
-    Format("pef", "braillefiles.pef:PefBook.open", (".pef",), "pef", keeps_lines=True),
-)
-_BY_SUFFIX = {suffix: format_ for format_ in FORMATS for suffix in format_.suffixes}
-_BY_ROOT = {format_.root: format_ for format_ in FORMATS if format_.root}
-# Roots of files that people take for a book in XML, some with the prefixes that their writers set.
-_OTHER_ROOTS = {
-    "office:document": "a flat OpenDocument file (FODT); save it as ODT",
-    "w:wordDocument": "a Word document as XML; save it as DOCX",
-    "pkg:package": "a Word document as XML; save it as DOCX",
-    "FictionBook": "a FictionBook (FB2); save it as EPUB",
-    "fulfillmentToken": "a ticket for a book that Adobe locks, not the book; "
-    "get the book as EPUB without a lock",
+_FORMATS = {
+    form.name: form
+    for form in (
+        Format("text", "plain:read_text", takes=("encoding", "keep_lines")),
+        Format("markdown", "markdown:read_markdown", (".md", ".markdown"), ("encoding",)),
+        Format("html", "html:read_html", (".html", ".htm", ".xhtml"), ("encoding",)),
+        Format("epub", "epub:read_epub"),
+        Format("dtbook", "html:read_dtbook"),
+        Format("docx", "docx:read_docx"),
+        Format("odt", "odt:read_odt"),
+        Format("rtf", "rtf:read_rtf"),
+        Format("brf", "braillefiles:read_brf", (".brf", ".brl"), ("encoding", "brf_table")),
+        Format("unicode-braille", "braillefiles:read_brf", takes=("encoding",)),
+        Format("pef", "braillefiles:read_pef", (".pef",)),
+    )
 }
-_HTML_BEGINS = ("html", "head", "title", "body")  # a file may leave the first two out
-_OTHER_ZIPS = (
-    ("xl/", "an Excel workbook; save its table as HTML or text"),
-    ("ppt/", "a PowerPoint presentation; save it as HTML or text"),
-    ("Index/Document.iwa", "a document of Apple's Pages; save it as DOCX or EPUB"),
-    ("ncc.html", "a zip archive of a DAISY book; unpack it and give the HTML file with the text"),
-)
+FORMATS = tuple(_FORMATS)
+_KEEP_LINES = ("brf", "unicode-braille", "pef")  # whatever is asked for
+_BY_SUFFIX = {suffix: form.name for form in _FORMATS.values() for suffix in form.suffixes}
+_ROOTS = {"html": "html", "head": "html", "title": "html", "body": "html"}
+_ROOTS |= {"dtbook": "dtbook", "pef": "pef"}
 _PICTURE = "a picture, not a text; vbraille feel shows it to the finger"
-# Roots of drawings, and of OpenLatero's files.
-_PICTURE_ROOTS = ("svg", "laterographics_xml")
 _PICTURE_SUFFIXES = (".scene", ".svg", ".svgz", ".gen", ".tx")
-# A scene is TOML from its first statement on, and says how large it is.
-_SCENE = re.compile(
-    r"\A(?:[ \t\r]*(?:\#[^\n]*)?\n)*(?=[ \t]*(?:\w+[ \t]*=|\[)).*?^(?:\[canvas\]|canvas[ \t]*=)",
-    re.MULTILINE | re.DOTALL,
-)
-# Beginnings of books that cannot be read here, and what to do.
-_OTHER_BEGINS = (
-    (
-        b"%PDF-",
-        "a PDF document, which does not say in what order it reads; get the book as EPUB or DOCX",
-    ),
-    (b"AT&TFORM", "a DjVu document, which is made of pictures; get the book as EPUB"),
-    (b"ITSF\3\0", "a compiled help file (CHM); unpack it and give its HTML files"),
-    (b"ITOLITLS", "a book for Microsoft Reader (LIT); get it as EPUB"),
-    (b"CONT\1\0", "a Kindle book (KFX); get it as EPUB"),
-    (b"CONT\2\0", "a Kindle book (KFX); get it as EPUB"),
-    (
-        b"\xeaDRMION\xee",
-        "a Kindle book (KFX) with Amazon's lock; get it as EPUB without a lock",
-    ),
-    (b"TPZ0", "a Kindle book (Topaz); get it as EPUB"),
-)
+# A scene is TOML that says how large its canvas is.
+_SCENE = re.compile(r"\A(?:\s*#.*\n)*\s*[\w\[].*?^(?:\[canvas\]|canvas[ \t]*=)", re.M | re.S)
+_OTHER_ROOTS = {
+    "svg": _PICTURE,
+    "laterographics_xml": _PICTURE,
+    "office:document": "a flat OpenDocument file (FODT); save it as ODT",
+    "w:worddocument": "a Word document as XML; save it as DOCX",
+    "pkg:package": "a Word document as XML; save it as DOCX",
+    "fictionbook": "a FictionBook (FB2); save it as EPUB",
+    "fulfillmenttoken": "a ticket for a book that Adobe locks; get the book as EPUB without a lock",
+}
+_OTHER_BEGINS = {
+    b"%PDF-": "a PDF document, which does not say in what order it reads; get it as EPUB or DOCX",
+    b"AT&TFORM": "a DjVu document, which is made of pictures; get the book as EPUB",
+    b"ITSF\3\0": "a compiled help file (CHM); unpack it and give its HTML files",
+    b"ITOLITLS": "a book for Microsoft Reader (LIT); get it as EPUB",
+    b"CONT\1\0": "a Kindle book (KFX); get it as EPUB",
+    b"CONT\2\0": "a Kindle book (KFX); get it as EPUB",
+    b"\xeaDRMION\xee": "a Kindle book (KFX) with Amazon's lock; get it as EPUB without a lock",
+    b"TPZ0": "a Kindle book (Topaz); get it as EPUB",
+}
+_OTHER_ZIPS = {
+    "xl/": "an Excel workbook; save its table as HTML or text",
+    "ppt/": "a PowerPoint presentation; save it as HTML or text",
+    "Index/Document.iwa": "a document of Apple's Pages; save it as DOCX or EPUB",
+    "ncc.html": "a zip archive of a DAISY book; unpack it and give the HTML file with the text",
+}
 _OLE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
-_OLE_SEARCHED_BYTES = 64 << 20
-_BEFORE_ROOT = re.compile(r"[ \t\r\n\f]+|<\?.*?\?>|<!--.*?-->", re.DOTALL)
-_ROOT = re.compile(r"<(?:!doctype[ \t\r\n]+)?([\w.-]+:)?([\w.-]+)(?=[\s/>\[])", re.IGNORECASE)
-_BRAILLE_SAMPLE = 4096  # characters
-
-
-def find_format(stream: BinaryIO, name: str) -> Format:
-    """Find the format of a book.
-
-    Parameters
-    ----------
-    stream
-        Bytes of the book; the stream must be able to seek.
-    name
-        Name of the file, by whose ending formats are told apart that look alike.
-
-    Returns
-    -------
-    Format
-        The format; plain text for all that is nothing else.
-
-    Raises
-    ------
-    InputError
-        If it is a book that cannot be read here, or cannot be read at all.
-    """
-    try:
-        stream.seek(0)
-        sample = stream.read(SAMPLE_BYTES)
-    except OSError as error:
-        raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
-    if sample.startswith((b"PK\3\4", b"PK\5\6")):
-        return _zipped(stream, name)
-    if sample.startswith(b"{\\rtf"):
-        return _RTF
-    refused = _refused(stream, sample)
-    if refused is not None:
-        raise InputError(f"{name} is {refused}")
-    text = _beginning(sample)
-    form = _marked_up(text, name)
-    if form is not None:
-        return form
-    if _mostly_braille(text):
-        return _UNICODE_BRAILLE
-    suffix = PurePath(name).suffix.lower()
-    if suffix in _PICTURE_SUFFIXES or (suffix not in _BY_SUFFIX and _SCENE.match(text)):
-        raise InputError(f"{name} is {_PICTURE}")
-    return _BY_SUFFIX.get(suffix, _TEXT)
-
-
-def _refused(stream: BinaryIO, sample: bytes) -> str | None:
-    """End of a sentence on a book that cannot be read here; None for others."""
-    for beginning, said in _OTHER_BEGINS:
-        if sample.startswith(beginning):
-            return said
-    if sample[60:68] in (b"BOOKMOBI", b"TEXtREAd"):
-        first = int.from_bytes(sample[78:82])  # where the first record is, which tells of a lock
-        locked = int.from_bytes(sample[first + 12 : first + 14])
-        if locked:
-            return "a Kindle book with Amazon's lock; get it as EPUB without a lock"
-        return "a Kindle book (MOBI); save it as EPUB"
-    if sample.startswith(_OLE):
-        return _old_office(stream)
-    return None
-
-
-def _old_office(stream: BinaryIO) -> str:
-    """Tell what a compound file of Microsoft's is, by the names of its streams, and what to do."""
-    stream.seek(0)
-    content = stream.read(_OLE_SEARCHED_BYTES)
-    for stored, said in (
-        ("EncryptedPackage", "locked with a password; open it with that and save it without one"),
-        ("WordDocument", "a Word document of before 2007 (DOC); save it as DOCX or ODT"),
-    ):
-        if stored.encode("utf-16-le") in content:
-            return said
-    return "an old Office document, not text; save it as DOCX or ODT"
-
-
-def _zipped(stream: BinaryIO, name: str) -> Format:
-    from zipfile import BadZipFile, ZipFile
-
-    try:
-        with ZipFile(stream) as archive:
-            form = _packed(archive)
-            if isinstance(form, Format):
-                return form
-            members = archive.namelist()
-    except (BadZipFile, ValueError, NotImplementedError, OverflowError, OSError):
-        raise InputError(
-            f"{name} is a zip archive that is damaged or cut short, as a book can be; get it again"
-        ) from None
-    for beginning, said in _OTHER_ZIPS:
-        if any(member.startswith(beginning) for member in members):
-            raise InputError(f"{name} is {said}")
-    if form is not None:
-        raise InputError(f"{name} is {form}")
-    return _TEXT  # which says that a zip archive is none
-
-
-def _packed(archive: ZipFile) -> Format | str | None:
-    """Form of a zip archive's book, or the end of a sentence on another; None if it has none."""
-    members = frozenset(archive.namelist())
-    kind = _member(archive, "mimetype") if "mimetype" in members else ""
-    if kind in ("application/epub+zip", "application/ebrl+zip"):
-        return _EPUB
-    if kind.startswith("application/vnd.oasis.opendocument.text"):
-        return _ODT
-    if "META-INF/container.xml" in members or "package.opf" in members:
-        return _EPUB  # a book without its mimetype is one nevertheless
-    if "[Content_Types].xml" in members and _any_begins(members, "word/"):
-        return _DOCX
-    if kind.startswith("application/vnd.oasis.opendocument."):
-        return "an OpenDocument file, not a text; save it as ODT, HTML or text"
-    if any(member.lower().endswith(".opf") for member in members):
-        return "a zip archive of a DAISY book; unpack it and give the XML file with the text"
-    return None
-
-
-def _any_begins(members: Iterable[str], beginning: str) -> bool:
-    return any(member.startswith(beginning) for member in members)
-
-
-def _member(archive: ZipFile, name: str) -> str:
-    """Beginning of a small member as text; empty if it cannot be read."""
-    import zlib
-    from zipfile import BadZipFile
-
-    try:
-        with archive.open(name) as member:
-            return member.read(100).decode("ascii", "replace").strip()
-    except (BadZipFile, zlib.error, RuntimeError, NotImplementedError, EOFError, OSError):
-        return ""  # damaged, locked, or packed in a way that this Python does not know
-
-
-def _beginning(sample: bytes) -> str:
-    """Text of the first bytes of a file, whatever stands for the rest."""
-    if 0 in sample[:64] or sample.startswith((b"\xff\xfe", b"\xfe\xff")):
-        encoding = find_encoding(sample)
-        return sample[encoding.skip :].decode(encoding.name, "replace")
-    return sample.decode("utf-8", "replace").removeprefix("\ufeff")
-
-
-def _marked_up(text: str, name: str) -> Format | None:
-    """Form of a text that begins as XML or HTML does; None if it is neither."""
-    at = 0
-    while (passed := _BEFORE_ROOT.match(text, at)) is not None:
-        at = passed.end()
-    root = _ROOT.match(text, at)
-    if root is None:
-        return None
-    found = root[2]
-    if found.lower() in _PICTURE_ROOTS:
-        raise InputError(f"{name} is {_PICTURE}")
-    for other in (f"{root[1] or ''}{found}", found):
-        if other in _OTHER_ROOTS:
-            raise InputError(f"{name} is {_OTHER_ROOTS[other]}")
-    if found.lower() in _HTML_BEGINS:
-        return _HTML
-    return _BY_ROOT.get(found.lower())
-
-
-def _mostly_braille(text: str) -> bool:
-    """Tell whether nearly all that is no blank is a pattern of braille."""
-    printed = "".join(text[:_BRAILLE_SAMPLE].split())
-    patterns = sum("\u2800" <= character <= "\u28ff" for character in printed)
-    return patterns > 0.9 * len(printed)
+_BEFORE_ROOT = r"(?:\s+|<\?.*?\?>|<!--.*?-->)*"
+_ROOT = re.compile(_BEFORE_ROOT + r"<(?:!doctype\s+)?([\w.:-]+)(?=[\s/>\[])", re.I | re.S)
+_SAMPLE = 65_536
 
 
 def open_source(
@@ -333,22 +110,21 @@ def open_source(
     brf_table: str | None = None,
     keep_lines: bool = False,
 ) -> Source:
-    """Open a book of any form that can be read here.
+    """Open a book of any format that can be read here.
 
     Parameters
     ----------
     file
-        Name of the file, or a stream such as standard input, which is read to its end first and
-        must have a file number.
+        Name of the file, or a stream such as standard input, which is read to its end first.
     name
         Name of the book in messages; empty for that of the file.
     form
-        Name of the form that the book is in; None to find it out.
+        Name of the format that the book is in; None to find it out.
     wishes
-        Options, of ``encoding`` and ``keep_lines``, that are passed over in a form that has no use
-        for them.
+        Options, of ``encoding`` and ``keep_lines``, that are passed over in a format that has no
+        use for them.
     encoding
-        Text encoding that overrides what the bytes say, for forms that are text.
+        Text encoding that overrides what the bytes say, for formats that are text.
     brf_table
         Display table of liblouis that says which character of a BRF file is which cell.
     keep_lines
@@ -357,69 +133,189 @@ def open_source(
     Raises
     ------
     InputError
-        If there is no such file or form, the book cannot be read, or an option is not for it.
+        If there is no such file or format, the book cannot be read, or an option is not for it.
     """
     name = name or str(file)
-    stream = open_file(file) if isinstance(file, str) else keep_stream(file, name)
-    options = {"encoding": encoding, "brf_table": brf_table, "keep_lines": keep_lines or None}
+    stream = _stream(file, name)
     try:
-        found = find_format(stream, name) if form is None else named_format(form)
-        if _is_empty(stream):
-            # What is empty is so in all formats, and the text's sentence says so.
-            found = _TEXT
-        elif found in (_BRF, _UNICODE_BRAILLE) and _is_blank(stream):
-            raise InputError(f"{name} has no braille in it; give a file of braille")
-        return found.read(stream, name, **_fitting(found, name, options, wishes))
+        found = _named(form) if form is not None else _FORMATS[find_format(stream, name)]
+        given = {"encoding": encoding, "brf_table": brf_table, "keep_lines": keep_lines or None}
+        options = _fitting(found, name, given, wishes)
+        stream.seek(0)
+        module, _, function = found.reader.partition(":")
+        reader = getattr(import_module(f"vbraille.translate.{module}"), function)
+        return Source(name, found.name, stream, partial(reader, **options))
     except BaseException:
         stream.close()
         raise
 
 
+def text_source(text: str, *, keep_lines: bool = False, name: str = "the text") -> Source:
+    """Make a source of a string; blank lines part its paragraphs.
+
+    Raises
+    ------
+    InputError
+        If there is nothing in it.
+    """
+    reader = partial(text_blocks, text=text, keep_lines=keep_lines)
+    return Source(name, "text", io.BytesIO(text.encode("utf-8", "replace")), reader)
+
+
+def _stream(file: str | BinaryIO, name: str) -> BinaryIO:
+    """Stream that can seek; a file that may be large stays on the disk if it is an archive."""
+    try:
+        if not isinstance(file, str):
+            return _kept(file.read(MOST_BYTES + 1), name)
+        path = Path(file)
+        if path.is_dir():
+            raise InputError(f"{name} is a directory; give a file in it")
+        if path.is_char_device():
+            raise InputError(f"{name} is a device, not a file; give a file")
+        stream = path.open("rb")
+        beginning = stream.read(4)
+        if path.is_file() and beginning.startswith(b"PK"):
+            return stream
+        with stream:
+            return _kept(beginning + stream.read(MOST_BYTES), name)
+    except FileNotFoundError:
+        raise InputError(f"there is no file {name}; check the name") from None
+    except (OSError, ValueError) as error:
+        said = getattr(error, "strerror", None) or error
+        raise InputError(f"{name} cannot be read: {said}") from None
+
+
+def _kept(content: bytes, name: str) -> BinaryIO:
+    if len(content) > MOST_BYTES:
+        raise InputError(f"{name} has more than {MOST_BYTES / 1e6:.0f} MB; give a part of it")
+    if not content:
+        raise InputError(f"{name} is empty; give a file with text in it")
+    return io.BytesIO(content)
+
+
+def _named(name: str) -> Format:
+    """Format of a name; InputError with the nearest name if there is none."""
+    if name.lower() not in _FORMATS:
+        raise InputError(f"there is no form of books {name!r}{nearest(name, FORMATS)}")
+    return _FORMATS[name.lower()]
+
+
 def _fitting(
-    form: Format, name: str, options: Mapping[str, str | bool | None], wishes: Collection[str]
-) -> dict[str, str | bool]:
-    """Options for a reader, of those that are not None, without wishes that it has no use for.
+    form: Format, name: str, given: dict[str, Any], wishes: Collection[str]
+) -> dict[str, Any]:
+    """Options for a reader, of those that are given.
 
     Raises
     ------
     InputError
         If an option is not for the format.
     """
-    fits = {*form.takes, "keep_lines"} if form.keeps_lines else {*form.takes}
-    passed_over = {"encoding", "keep_lines"}.intersection(wishes) - fits
-    if form is _BRF and "encoding" in wishes:
-        passed_over.add("encoding")  # which is that of texts
-    given = {
-        option: value
-        for option, value in options.items()
-        if value is not None and option not in passed_over
-    }
-    if "encoding" in given:
-        fits.discard("brf_table")
-    for option in given:
-        if option not in fits:
+    options = {}
+    for option, value in given.items():
+        needless = option == "keep_lines" and form.name in _KEEP_LINES
+        in_settings = option in wishes and (option not in form.takes or form.name == "brf")
+        if value is None or needless or in_settings:
+            continue
+        if option not in form.takes:
             raise InputError(
                 f"{name} is read as {form.name}, for which there is no "
                 f"{setting(option.replace('_', '-'))}; leave it out"
             )
-    return {option: value for option, value in given.items() if option in form.takes}
+        options[option] = value
+    return options
 
 
-def named_format(name: str) -> Format:
-    """Format of a name; InputError with the nearest name if there is none."""
-    found = {format_.name: format_ for format_ in FORMATS}
-    if name.lower() not in found:
-        known = nearest(name, list(found))
-        raise InputError(f"there is no form of books {name!r}{known}")
-    return found[name.lower()]
+def find_format(stream: BinaryIO, name: str) -> str:
+    """Name of the format of a book; plain text for all that is nothing else.
 
+    Parameters
+    ----------
+    stream
+        Bytes of the book; the stream must be able to seek.
+    name
+        Name of the file, by whose ending formats are told apart that look alike.
 
-def _is_empty(stream: BinaryIO) -> bool:
-    """Tell whether a stream ends where it begins, as that of an empty file or of a device."""
-    return not stream.seek(0, io.SEEK_END)
-
-
-def _is_blank(stream: BinaryIO) -> bool:
-    """Tell whether a stream of ASCII characters has nothing but blanks, as far as one looks."""
+    Raises
+    ------
+    InputError
+        If it is a book that cannot be read here, or no text at all.
+    """
     stream.seek(0)
-    return not stream.read(SAMPLE_BYTES).strip(b" \t\r\n\f\x1a\0")
+    sample = stream.read(_SAMPLE)
+    if sample.startswith(b"PK"):
+        return _zipped(stream, name)
+    if sample.startswith(b"{\\rtf"):
+        return "rtf"
+    refused = _refused(stream, sample)
+    if refused:
+        raise InputError(f"{name} is {refused}")
+    text = decode(sample)[0]
+    root = _ROOT.match(text)
+    if root is not None:
+        for found in (root[1].lower(), root[1].lower().rpartition(":")[2]):
+            if found in _OTHER_ROOTS:
+                raise InputError(f"{name} is {_OTHER_ROOTS[found]}")
+            if found in _ROOTS:
+                return _ROOTS[found]
+    printed = "".join(text[:4096].split())
+    if sum("\u2800" <= character <= "\u28ff" for character in printed) > 0.9 * len(printed):
+        return "unicode-braille" if printed else "text"
+    suffix = PurePath(name).suffix.lower()
+    if suffix in _PICTURE_SUFFIXES or (suffix not in _BY_SUFFIX and _SCENE.match(text)):
+        raise InputError(f"{name} is {_PICTURE}")
+    found = _BY_SUFFIX.get(suffix, "text")
+    if found == "text" and (kind := binary_kind(sample)) is not None:
+        raise InputError(f"{name} is {kind}, not text; give a book or a text file")
+    return found
+
+
+def _refused(stream: BinaryIO, sample: bytes) -> str:
+    """End of a sentence on a book that cannot be read here; empty for others."""
+    for beginning, said in _OTHER_BEGINS.items():
+        if sample.startswith(beginning):
+            return said
+    if sample[60:68] in (b"BOOKMOBI", b"TEXtREAd"):
+        first = int.from_bytes(sample[78:82])  # where the first record is, which tells of a lock
+        if int.from_bytes(sample[first + 12 : first + 14]):
+            return "a Kindle book with Amazon's lock; get it as EPUB without a lock"
+        return "a Kindle book (MOBI); save it as EPUB"
+    if not sample.startswith(_OLE):
+        return ""
+    stream.seek(0)
+    content = stream.read()
+    if "EncryptedPackage".encode("utf-16-le") in content:
+        return "locked with a password; open it with that and save it without one"
+    if "WordDocument".encode("utf-16-le") in content:
+        return "a Word document of before 2007 (DOC); save it as DOCX or ODT"
+    return "an old Office document, not text; save it as DOCX or ODT"
+
+
+def _zipped(stream: BinaryIO, name: str) -> str:
+    """Name of the format of a zip archive's book.
+
+    Raises
+    ------
+    InputError
+        If it holds none that can be read here.
+    """
+    archive = Archive(stream, name)
+    members = archive.members
+    kind = archive.read_if("mimetype").decode("ascii", "replace").strip()
+    if kind in ("application/epub+zip", "application/ebrl+zip"):
+        return "epub"
+    if kind.startswith("application/vnd.oasis.opendocument.text"):
+        return "odt"
+    if "META-INF/container.xml" in members or "package.opf" in members:
+        return "epub"  # a book without its mimetype is one nevertheless
+    if "[Content_Types].xml" in members and any(each.startswith("word/") for each in members):
+        return "docx"
+    for beginning, said in _OTHER_ZIPS.items():
+        if any(member.startswith(beginning) for member in members):
+            raise InputError(f"{name} is {said}")
+    if kind.startswith("application/vnd.oasis.opendocument."):
+        raise InputError(f"{name} is an OpenDocument file, not a text; save it as ODT or HTML")
+    if any(member.lower().endswith(".opf") for member in members):
+        raise InputError(
+            f"{name} is a zip archive of a DAISY book; unpack it and give its XML file"
+        )
+    raise InputError(f"{name} is a zip archive, not text; unpack it and give the file in it")

@@ -1,112 +1,138 @@
 """Braille tables of languages: those that their readers use today.
 
-liblouis's own order of preference does not know that: asked for French it gives eight-dot computer
-braille. The rule here is six dots before eight, literary braille before computer braille, the
-standard in force before a dated one, uncontracted before contracted. What is customary otherwise is
-listed in `USUAL`. `docs/languages.md` has the outcome for every language.
+liblouis finds the literary, uncontracted table of a language; what its readers have otherwise is
+listed in `_USUAL`. `docs/languages.md` has the outcome for every language.
 """
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cache
 
 from vbraille.errors import InputError
-from vbraille.translate.liblouis import BrailleTable, list_tables
+from vbraille.translate import liblouis
 from vbraille.wording import nearest, setting
 
-if TYPE_CHECKING:
-    from vbraille.translate.liblouis import TableInfo
-    from vbraille.translate.scripts import Script
+# Uncontracted and contracted tables that readers have where liblouis has others, or none with
+# metadata. Books of general interest are contracted in the languages of `_CONTRACTED`.
+_USUAL = {
+    "ar": ("ar.tbl", "ar-ar-g2.ctb"),
+    "cmn": ("zhcn-cbs.ctb", ""),
+    "cmn-hans": ("zhcn-cbs.ctb", ""),
+    "cmn-hant": ("zh-tw.ctb", ""),
+    "da": ("da-dk-g16.ctb", "da-dk-g26.ctb"),
+    "de": ("de-g1.ctb", "de-g2.ctb"),
+    "en": ("en-ueb-g1.ctb", "en-ueb-g2.ctb"),
+    "es": ("es.tbl", "es-g2.ctb"),
+    "fr": ("fr-bfu-comp6.utb", "fr-bfu-g2.ctb"),
+    "hu": ("hu.tbl", "hu-hu-g2.ctb"),
+    "ko": ("ko-g1.ctb", "ko-g2.ctb"),
+    "mn": ("mn-MN-g1.utb", "mn-MN-g2.ctb"),
+    "no": ("no-no-g0.utb", "no-no-g2.ctb"),
+    "pt": ("pt-pt-g1.utb", "pt.tbl"),
+    "ru": ("ru-litbrl.ctb", "ru-ru-g1.ctb"),
+    "sv": ("sv-g0.utb", "sv-g2.ctb"),
+    "tr": ("tr-g1.ctb", "tr-g2.ctb"),
+    "vi": ("vi-vn-g0.utb", "vi-vn-g2.ctb"),
+}
+_CONTRACTED = frozenset(("da", "de", "en", "ko"))
+# Tags that people write, those of older books (ISO 639-2) among them, and those of liblouis.
+_SAME = dict(
+    pair.split("=")
+    for pair in [
+        "iw=he",
+        "ku=kmr",
+        "nb=no",
+        "nn=no",
+        "prs=fa",
+        "zh=cmn",
+        "zh-cn=cmn-hans",
+        "zh-hans=cmn-hans",
+        "zh-hant=cmn-hant",
+        "zh-hk=yue",
+        "zh-mo=yue",
+        "zh-sg=cmn-hans",
+        "zh-tw=cmn-hant",
+        "ara=ar",
+        "cze=cs",
+        "ces=cs",
+        "dan=da",
+        "ger=de",
+        "deu=de",
+        "gre=el",
+        "ell=el",
+        "eng=en",
+        "spa=es",
+        "fin=fi",
+        "fre=fr",
+        "fra=fr",
+        "heb=he",
+        "hun=hu",
+        "ita=it",
+        "dut=nl",
+        "nld=nl",
+        "nor=no",
+        "nob=no",
+        "nno=no",
+        "pol=pl",
+        "por=pt",
+        "rus=ru",
+        "swe=sv",
+        "tur=tr",
+        "chi=cmn",
+        "zho=cmn",
+    ]
+)
+# Tables of a standard that is no longer in force, or with signs that books leave out.
+_DATED = re.compile(r"_\d{4}\b|-\d{4}[-.]|-detailed\b")
+_SIX_DOTS = ("dra.tbl", "mn-MN-g1.utb", "mn-MN-g2.ctb")  # whatever their metadata say
 
 
-@dataclass(frozen=True, slots=True)
-class Usual:
-    """Tables of a language that its readers expect.
+@dataclass(frozen=True, slots=True, order=True)
+class TableInfo:
+    """Metadata of a table.
 
     Parameters
     ----------
-    uncontracted, contracted
-        Names of tables; empty where there is no table, or the general rule finds it.
-    customary
-        Whether books in the language are contracted as a rule.
+    name
+        File name, which is what `BrailleTable` takes.
+    title
+        Display name.
+    language
+        BCP 47 tag, such as ``fr`` or ``en-GB``; empty if unsaid.
+    grade
+        "0", "1", "2" …; empty if unsaid.
+    dots
+        6 or 8; 0 if unsaid.
+    kind
+        "literary" or "computer"; empty if unsaid.
     """
 
-    uncontracted: str = ""
-    contracted: str = ""
-    customary: bool = False
+    name: str
+    title: str
+    language: str
+    grade: str
+    dots: int
+    kind: str
+
+    def speaks(self, language: str) -> bool:
+        """Tell whether the table is for a language, given by a tag in lower case with hyphens."""
+        tag = self.language.lower()
+        return tag == language or tag.startswith(f"{language}-")
 
 
-# Languages with contracted tables here: books of general interest are contracted in English and
-# German, Danish (the standard of 2022) and Korean. French, Spanish, Portuguese, Hungarian, Arabic
-# and Turkish books are not as a rule; contractions are for those who ask for them. For Chinese it
-# is the common scheme of 2018.
-USUAL = {
-    "ar": Usual("ar.tbl", "ar-ar-g2.ctb"),
-    "cmn": Usual("zhcn-cbs.ctb"),
-    "cmn-hans": Usual("zhcn-cbs.ctb"),
-    "cmn-hant": Usual("zh-tw.ctb"),
-    "da": Usual("da-dk-g16.ctb", "da-dk-g26.ctb", customary=True),
-    "de": Usual("de-g1.ctb", "de-g2.ctb", customary=True),
-    "en": Usual("en-ueb-g1.ctb", "en-ueb-g2.ctb", customary=True),
-    "es": Usual("es.tbl", "es-g2.ctb"),
-    "fr": Usual("fr-bfu-comp6.utb", "fr-bfu-g2.ctb"),
-    "hu": Usual("hu.tbl", "hu-hu-g2.ctb"),
-    "ko": Usual("ko-g1.ctb", "ko-g2.ctb", customary=True),
-    "mn": Usual("mn-MN-g1.utb", "mn-MN-g2.ctb"),  # six dots, whatever their metadata say
-    "no": Usual("no-no-g0.utb", "no-no-g2.ctb"),
-    "pt": Usual("pt-pt-g1.utb", "pt.tbl"),
-    "ru": Usual("ru-litbrl.ctb", "ru-ru-g1.ctb"),
-    "sv": Usual("sv-g0.utb", "sv-g2.ctb"),
-    "tr": Usual("tr-g1.ctb", "tr-g2.ctb"),  # the first has no metadata
-    "vi": Usual("vi-vn-g0.utb", "vi-vn-g2.ctb"),
-}
-# Tags that people write, and the tags that liblouis has instead.
-_SAME = {
-    "iw": "he",
-    "ku": "kmr",
-    "nb": "no",
-    "nn": "no",
-    "prs": "fa",
-    "zh": "cmn",
-    "zh-cn": "cmn-hans",
-    "zh-hans": "cmn-hans",
-    "zh-hant": "cmn-hant",
-    "zh-hk": "yue",
-    "zh-mo": "yue",
-    "zh-sg": "cmn-hans",
-    "zh-tw": "cmn-hant",
-}
-# Three letters that older books have (ISO 639-2) for two.
-_SAME |= {
-    three: two
-    for two, codes in {
-        "ar": "ara",
-        "cs": "cze ces",
-        "da": "dan",
-        "de": "ger deu",
-        "el": "gre ell",
-        "en": "eng",
-        "es": "spa",
-        "fi": "fin",
-        "fr": "fre fra",
-        "he": "heb",
-        "hu": "hun",
-        "it": "ita",
-        "nl": "dut nld",
-        "no": "nor nob nno",
-        "pl": "pol",
-        "pt": "por",
-        "ru": "rus",
-        "sv": "swe",
-        "tr": "tur",
-        "cmn": "chi zho",
-    }.items()
-    for three in codes.split()
-}
-# Tables of a standard that is no longer in force, or with signs that books leave out.
-_DATED = re.compile(r"_\d{4}\b|-\d{4}[-.]|-detailed\b")
+@cache
+def list_tables() -> tuple[TableInfo, ...]:
+    """All tables that have metadata, by name."""
+    found = []
+    for said in liblouis.list_tables():
+        dots = 6 if said["name"] in _SIX_DOTS else int(said["dots"] or 0)
+        title = said["display-name"] or said["index-name"]
+        found.append(
+            TableInfo(said["name"], title, said["language"], said["grade"], dots, said["type"])
+        )
+    return tuple(sorted(found))
 
 
 def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
@@ -132,7 +158,7 @@ def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
     while tag:
         tag = _SAME.get(tag, tag)
         found = tuple(table for table in list_tables() if table.speaks(tag))
-        if found or tag in USUAL:
+        if found or tag in _USUAL:
             return tag, found
         tag = tag.rpartition("-")[0]
     tags = sorted({table.language for table in list_tables() if table.language})
@@ -165,90 +191,38 @@ def find_table(language: str = "en", grade: int | None = None) -> str:
     Raises
     ------
     InputError
-        If there is no such table; the message names the nearest.
+        If there is no such table; the message says which grades there are.
     """
     tag, tables = tables_of(language)
-    usual = USUAL.get(tag, Usual())
+    uncontracted, contracted = _USUAL.get(tag, ("", ""))
     if grade is None:
-        chosen = usual.contracted if usual.customary else usual.uncontracted
-    else:
-        chosen = _graded(usual, tables, grade)
-    if chosen:
-        return chosen
-    fitting = [table for table in tables if grade is None or not _is_contracted(table)]
-    if not fitting or (grade is not None and grade > 1):
-        there = ", ".join(_grades(usual, tables))
+        usual = contracted if tag in _CONTRACTED else uncontracted
+        return usual or min(tables, key=preference).name
+    if (grade, bool(uncontracted)) == (1, True) or (grade, bool(contracted)) == (2, True):
+        return (uncontracted, contracted)[grade - 1]
+    plain = [table for table in tables if not _is_contracted(table)]
+    fitting = [t for t in tables if t.grade == str(grade) and t.kind != "computer"]
+    if not fitting and grade < 2:
+        if uncontracted:
+            return uncontracted
+        fitting = plain
+    if not fitting:
+        there = {table.grade for table in tables if table.grade.isdecimal()}
+        there |= {"1"} if plain or uncontracted else set()
+        there |= {"2"} if contracted else set()
         raise InputError(
-            f"there is no grade {grade} for language {language!r}; there is {there} "
-            f"(vbraille tables {setting('language')} {language})"
+            f"there is no grade {grade} for language {language!r}; there is "
+            f"{', '.join(sorted(there))} (vbraille tables {setting('language')} {language})"
         )
-    return min(fitting, key=_preference).name
-
-
-def six_dot_table(language: str) -> str | None:
-    """Name of the most usual six-dot table of a language; None if there is none."""
-    try:
-        _, tables = tables_of(language)
-    except InputError:
-        return None
-    names = [find_table(language), *(table.name for table in sorted(tables, key=_preference))]
-    return next((name for name in names if not BrailleTable(name).eight_dots), None)
-
-
-def table_note(table: BrailleTable) -> str | None:
-    """Note on what a table cannot translate that is due: endless texts, a script; each once."""
-    if table.take_endless():
-        return (
-            f"liblouis does not come to an end with this passage by the table {table.name}; such "
-            f"passages are translated word by word, and words of that kind marked {table.marker}"
-        )
-    script = table.take_foreign()
-    if script is None:
-        return None
-    return (
-        f"most of this passage is in {script.name}, which the table {table.name} does not "
-        f"know; {tables_for(script)}"
-    )
-
-
-def tables_for(script: Script) -> str:
-    """End of a sentence that says which languages and tables there are for a script."""
-    there = {table.language for table in list_tables()}
-    found = [
-        f"{tag} ({name}, {find_table(tag)})"
-        for tag, name in script.languages.items()
-        if tag in there
-    ]
-    if not found:
-        return f"liblouis has no table for {script.name}"
-    return f"give its language: {setting('language')} {', '.join(found)}"
-
-
-def _graded(usual: Usual, tables: tuple[TableInfo, ...], grade: int) -> str:
-    """Name of the table of a grade; empty if no table has that grade."""
-    if grade == 1 and usual.uncontracted:
-        return usual.uncontracted
-    if grade == 2 and usual.contracted:
-        return usual.contracted
-    named = [table for table in tables if table.grade == str(grade) and table.kind != "computer"]
-    if named:
-        return min(named, key=_preference).name
-    return usual.uncontracted if grade == 0 else ""
-
-
-def _grades(usual: Usual, tables: tuple[TableInfo, ...]) -> list[str]:
-    """Grades that a language has, as `find_table` takes them."""
-    listed = {table.grade for table in tables if table.grade.isdecimal()}
-    if usual.uncontracted or not all(map(_is_contracted, tables)):
-        listed.add("1")
-    return sorted(listed | ({"2"} if usual.contracted else set()))
+    return min(fitting, key=preference).name
 
 
 def _is_contracted(table: TableInfo) -> bool:
     return table.grade not in ("", "0", "1")
 
 
-def _preference(table: TableInfo) -> tuple[bool, bool, bool, bool, int, str]:
+def preference(table: TableInfo) -> tuple[bool, bool, bool, bool, int, str]:
+    """Key by which the most usual of a language's tables sorts first."""
     dated = _DATED.search(table.name) is not None
     computer, contracted = table.kind == "computer", _is_contracted(table)
     return computer, table.dots == 8, dated, contracted, len(table.language), table.name

@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from tests.render.scenes import cell, line, models
-from vbraille.render import MAPPINGS, Tuning, single_row
-from vbraille.render.braille.reference import (
+from tests.render.braille.reference import (
     bump,
     half_sine,
     half_sine_peak,
     raised_cosine,
     texture,
 )
+from tests.render.scenes import cell, line, models
+from vbraille.render import MAPPINGS, Tuning, single_row
 
 ODD = [1, 3, 5, 7, 9, 11]
 

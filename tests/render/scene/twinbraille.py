@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tests.render.braille.reference import SWINGS
 from vbraille.braille.cells import PLACES, dots_of
-from vbraille.render.braille.reference import SWINGS
 from vbraille.render.cellkernels import FADE_MM
 from vbraille.render.labels import size_mm
 

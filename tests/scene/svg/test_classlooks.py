@@ -52,9 +52,12 @@ def test_a_scene_file_says_what_classes_of_the_drawings_it_includes_become(tmp_p
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("stroke = {widht_mm = 3}", "line 4: [classes.water.stroke] has no key 'widht_mm'"),
-        ("stroke = {width_mm = 0}", "line 4: [classes.water.stroke] width is 0 mm"),
-        ("strok = {}", "line 4: [classes.water] has no key 'strok'"),
+        (
+            "stroke = {widht_mm = 3}",
+            "line 4: widht_mm: there is no such key; did you mean width_mm?",
+        ),
+        ("stroke = {width_mm = 0}", "line 4: width is 0 mm; it must be 0.05 to 10000 mm"),
+        ("strok = {}", "line 4: strok: there is no such key; did you mean stroke?"),
     ],
 )
 def test_classes_that_are_not_right_are_said_with_their_line(tmp_path, line, said):

@@ -3,8 +3,6 @@
 import io
 import zipfile
 
-from vbraille.translate.documents.epub import EpubBook
-
 CONTAINER = (
     '<container xmlns="urn:oasis:names:tc:opendocument:xmlns:container" version="1.0"><rootfiles>'
     '<rootfile full-path="OPS/p.opf" media-type="application/oebps-package+xml"/></rootfiles>'
@@ -57,21 +55,3 @@ def epub(bodies, *, metadata="", items="", order=None, **members):
     for name, body in bodies.items():
         parts[f"OPS/{name}"] = body if body.startswith("<?") else xhtml(body)
     return packed(parts | members)
-
-
-def opened(content):
-    """Book of an EPUB's bytes."""
-    return EpubBook(io.BytesIO(content), "b.epub")
-
-
-def blocks(source):
-    """All blocks of a source."""
-    found = []
-    while (block := source.block(len(found))) is not None:
-        found.append(block)
-    return found
-
-
-def texts(source):
-    """Texts of all blocks of a source."""
-    return [str(block.text) for block in blocks(source)]

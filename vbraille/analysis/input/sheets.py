@@ -20,7 +20,7 @@ from vbraille.braille.cells import UNICODE_BLANK
 from vbraille.braille.spelling import LETTERS, UNREAD, to_braille
 from vbraille.errors import InputError
 from vbraille.files import cell_text
-from vbraille.translate.documents.encodings import binary_kind, find_encoding
+from vbraille.translate.encodings import binary_kind, decode
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
@@ -120,8 +120,7 @@ def read_csv(path: Path) -> Sheet:
     kind = binary_kind(content[:512])
     if kind is not None:
         raise InputError(f"{path} is {kind}; give a CSV file or the directory of a session")
-    found = find_encoding(content[:65_536])
-    text = content[found.skip :].decode(found.name, "replace")
+    text, _, _ = decode(content)
     first = text.lstrip().split("\n", 1)[0]
     delimiter = max(_DELIMITERS, key=first.count)
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter)

@@ -30,9 +30,9 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     from vbraille.cli.printing import say
     from vbraille.errors import InputError
     from vbraille.feeling.loading import check_fits, load_scene
-    from vbraille.layout.texts import choose_table
     from vbraille.reading.picture import Picture
     from vbraille.render import MODELS
+    from vbraille.translate import choose_table
 
     asked = MODELS[chosen["model"] or "stress2-8x8"]
     loaded = load_scene(chosen["file"], asked.style)

@@ -27,9 +27,9 @@ def command(ctx: click.Context, **chosen: Any) -> None:
 
     from vbraille.cli.exploring import equipped, find_model, refuse_terminal, say_summary
     from vbraille.errors import InputError
-    from vbraille.layout.texts import choose_table
     from vbraille.reading.game import DECK, Game, load_deck
     from vbraille.render import MODELS
+    from vbraille.translate import choose_table
 
     seed = random.randrange(1000) if chosen["seed"] is None else chosen["seed"]
     chosen["seed"] = ctx.params["seed"] = seed

@@ -91,7 +91,8 @@ def _table(ctx: click.Context, kind: str, chosen: dict[str, Any]) -> FigureTable
     page = Page(ctx, build_book(ctx), model)
     lines = list(islice(page.lines(), None if page.last else _LINES))
     page.say_end()
-    return pictures.page(lines, model, x_mm=chosen["x"] + model.display.span_mm / 2)
+    x_mm = chosen["x"] + model.display.span_mm / 2
+    return pictures.page(lines, model, x_mm=x_mm, first=page.first)
 
 
 def _letter(ctx: click.Context, letter: str | None) -> dict[str, Any]:
@@ -100,7 +101,7 @@ def _letter(ctx: click.Context, letter: str | None) -> dict[str, Any]:
         return {}
     from vbraille.cli.build import table_options
     from vbraille.errors import InputError
-    from vbraille.layout.texts import translate_text
+    from vbraille.translate import translate_text
 
     language, grade, table = table_options(ctx)
     cells = translate_text(letter, language=language, grade=grade, table=table)

@@ -54,10 +54,9 @@ def read(ctx: click.Context, number: int = 1) -> None:
     from vbraille.cli.printing import say
     from vbraille.cli.settings import given, save_profile, settings_of
     from vbraille.knobs import profile_values
-    from vbraille.layout.texts import cells_per_line
+    from vbraille.layout import Layout, cells_per_line
     from vbraille.reading.places import Places, places_path
     from vbraille.reading.reader import Reader
-    from vbraille.reading.texts import Layout, wrapped
     from vbraille.render import MODELS
 
     chosen, asked = ctx.params, given(ctx)
@@ -81,7 +80,7 @@ def read(ctx: click.Context, number: int = 1) -> None:
         kept = _kept(places, file)
         if not asked & {"language", "grade", "table"}:
             chosen.update({n: v for n, v in kept.options.items() if n not in asked})
-        book = wrapped(build_book(ctx, file))
+        book = build_book(ctx, file)
         kept.set_options(**{name: chosen[name] for name in _OF_TEXT})
         model = find_model(ctx, device, wanted)
         if model.display is not wanted_display:
@@ -89,7 +88,7 @@ def read(ctx: click.Context, number: int = 1) -> None:
         if chosen["speech"]:
             equipment.speak(_spoken(chosen["language"], book))
         if chosen["also"]:
-            from vbraille.layout.texts import choose_table
+            from vbraille.translate import choose_table
 
             equipment.add_pins(chosen["also"], book.table or choose_table())
         width = chosen["cells"] or cells_per_line(model.style.geometry, model.display)
@@ -115,7 +114,7 @@ def read(ctx: click.Context, number: int = 1) -> None:
             echo=echo,
             figures=_figures(ctx, book, device),
             save=save,
-            changed=_changes(file, lambda: wrapped(build_book(ctx, file))),
+            changed=_changes(file, lambda: build_book(ctx, file)),
         )
         try:
             equipment.explore(ctx, reader, own=True)
@@ -152,9 +151,8 @@ def _figures(ctx: click.Context, book: Any, device: Any) -> Any:
     """Figures of a book that shows them; None for others."""
     from vbraille.cli.printing import say
     from vbraille.reading.figures import BookFigures
-    from vbraille.translate.documents.epub import EpubBook
 
-    in_container = isinstance(book.source.old, EpubBook)
+    in_container = book.source.form == "epub"
     return BookFigures(
         book.source,
         None if in_container else Path(ctx.params["file"]).parent,

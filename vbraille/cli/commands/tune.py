@@ -29,20 +29,19 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     from vbraille.cli.exploring import equipped, find_model, refuse_terminal
     from vbraille.cli.settings import save_profile, settings_of
     from vbraille.knobs import profile_values
-    from vbraille.layout.texts import cells_per_line, choose_table
+    from vbraille.layout import Layout, cells_per_line
     from vbraille.reading.places import Places
     from vbraille.reading.reader import Reader
-    from vbraille.reading.texts import Book, Layout, Source
     from vbraille.reading.tuning import Tuning, practice_text
     from vbraille.render import MODELS
-    from vbraille.translate import Document
+    from vbraille.translate import Book, choose_table, open_source, text_source
 
     settings = settings_of(ctx)
     table = choose_table(chosen["language"], chosen["grade"], chosen["table"])
     if chosen["file"] is None:
-        source = Source(Document.from_text(practice_text(chosen["language"])))
+        source = text_source(practice_text(chosen["language"]))
     else:
-        source = Source(Document.open(chosen["file"]))
+        source = open_source(chosen["file"])
     asked = MODELS[chosen["model"] or "stress2"]
     with equipped(ctx, asked.display, hand=chosen["hand"]) as equipment:
         refuse_terminal(equipment.keyboard, "vbraille tune")

@@ -9,36 +9,34 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.geometry import PRESETS
+from vbraille.cli.old.reading.library import book_options, book_to_open, last_book, resume
+from vbraille.cli.old.reading.search.questions import BookOpening
+from vbraille.cli.old.reading.search.seeker import Seeker
 from vbraille.cli.old.terminal import say_line
 from vbraille.config.options import BOOK, CHOICE_OF_TABLE, OPTIONS, held_in
 from vbraille.config.settings import display_name, kept_values, missing_profile, with_values
 from vbraille.errors import InputError
-from vbraille.layout.pages import Layout
-from vbraille.layout.texts import Unknown, Unshown, cells_per_line, choose_table
-from vbraille.reading.library import book_options, book_to_open, last_book, resume
-from vbraille.reading.search.questions import BookOpening
-from vbraille.reading.search.seeker import Seeker
+from vbraille.layout import Layout
+
+Unknown = None
+Unshown = None
+from vbraille.layout import cells_per_line
 from vbraille.render import MAPPINGS, Model, Profile, single_row
-from vbraille.translate import (
-    Book,
-    BrailleTable,
-    Document,
-    Undefined,
-    six_dot_table,
-)
-from vbraille.translate.formats import open_source
-from vbraille.translate.languages import has_tables
+from vbraille.translate import Book, BrailleTable, choose_table
+
+Document = None
+from vbraille.translate import Undefined, has_tables, open_source, six_dot_table
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator
 
+    from vbraille.cli.old.reading.keptplace import KeptPlace
+    from vbraille.cli.old.reading.library import BookOptions, KeptBook, KeptPlaces
+    from vbraille.cli.old.reading.reader import Reader
     from vbraille.config.settings import Settings
-    from vbraille.layout.pages import Line
-    from vbraille.reading.keptplace import KeptPlace
-    from vbraille.reading.library import BookOptions, KeptBook, KeptPlaces
-    from vbraille.reading.reader import Reader
+    from vbraille.layout import Line
     from vbraille.render import BrailleStyle, Model
     from vbraille.translate import Source
 

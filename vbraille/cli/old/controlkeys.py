@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
-    from vbraille.reading.keyboard import Keyboard
+    from vbraille.cli.old.reading.keyboard import Keyboard
 
 
 class ControlKeys:
@@ -21,7 +21,7 @@ class ControlKeys:
         self._keyboard: Keyboard | None = None
         self._taken = False
         if sys.stdin and sys.stdin.isatty():
-            from vbraille.reading.keyboard import Keyboard
+            from vbraille.cli.old.reading.keyboard import Keyboard
 
             self._keyboard = Keyboard()
 

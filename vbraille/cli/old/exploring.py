@@ -9,11 +9,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
+from vbraille.cli.old.reading.device import OpenDevice
+from vbraille.cli.old.reading.outputs import (
+    ConsoleOutput,
+    Cues,
+    Echo,
+    Outputs,
+    SpeechOutput,
+    choose_cues,
+)
 from vbraille.cli.old.terminal import say_line
 from vbraille.devices.registry import opened_device
-from vbraille.engine.host import OPEN_S, OPENING, too_slow
-from vbraille.reading.device import OpenDevice
-from vbraille.reading.outputs import ConsoleOutput, Cues, Echo, Outputs, SpeechOutput, choose_cues
+from vbraille.engine.host import OPEN_S, too_slow
 from vbraille.signals import EAR
 from vbraille.simulation.specs import has_hand
 
@@ -21,10 +28,10 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator
 
+    from vbraille.cli.old.reading.keyboard import Keyboard
+    from vbraille.cli.old.reading.liveview import LiveView
     from vbraille.devices.base import Device
     from vbraille.display import Display
-    from vbraille.reading.keyboard import Keyboard
-    from vbraille.reading.liveview import LiveView
 
 
 @contextmanager
@@ -38,7 +45,7 @@ def opened_in_time(spec: str, wanted: Display | None) -> Iterator[Device]:
     """
 
     def late(*_: object) -> None:
-        raise too_slow(spec, OPENING)
+        raise too_slow(spec)
 
     before = signal.signal(signal.SIGALRM, late)
     try:
@@ -115,7 +122,7 @@ def around_device(
         outputs = closing.enter_context(Outputs(ConsoleOutput(say_line)))
         if arguments.monitor:
             # Only who has a live view waits for what it needs.
-            from vbraille.reading.liveview import LiveView
+            from vbraille.cli.old.reading.liveview import LiveView
 
             live = LiveView(arguments.host, arguments.port, pointer, say_line)
             closing.enter_context(live)
@@ -134,7 +141,7 @@ def around_device(
             on_share=None if live is None else live.monitor.share,
         )
         if arguments.speech:
-            from vbraille.reading.speech import Speech
+            from vbraille.cli.old.reading.speech import Speech
 
             outputs.add(SpeechOutput(Speech(language), lambda: device.line, echo=echo))
         try:

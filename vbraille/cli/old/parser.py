@@ -184,11 +184,11 @@ class CommandParser(argparse.ArgumentParser):
 def _keys(program: str) -> str:
     """Lines on what the keys of a command do at a terminal, one for each key; none without keys."""
     if program == "vbraille read":
-        from vbraille.reading.commands.table import COMMANDS as KEYS
+        from vbraille.cli.old.reading.commands.table import COMMANDS as KEYS
     elif program == "vbraille feel":
-        from vbraille.reading.commands.scene import COMMANDS as KEYS
+        from vbraille.cli.old.reading.commands.scene import COMMANDS as KEYS
     elif program == "vbraille play":
-        from vbraille.reading.commands.game import COMMANDS as KEYS
+        from vbraille.cli.old.reading.commands.game import COMMANDS as KEYS
     else:
         return ""
     width = max(len(command.spoken_keys) for command in KEYS)

@@ -15,9 +15,9 @@ import tty
 from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
-from vbraille.reading.commands.table import TYPING
-from vbraille.reading.keys import Keys
-from vbraille.reading.view import Prompt
+from vbraille.cli.old.reading.commands.table import TYPING
+from vbraille.cli.old.reading.keys import Keys
+from vbraille.cli.old.reading.view import Prompt
 from vbraille.sessions.running.responses import KeyPress, Typed
 
 if TYPE_CHECKING:

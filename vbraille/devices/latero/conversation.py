@@ -28,14 +28,13 @@ from vbraille.devices.events import (
     Back,
     Button,
     Notice,
-    Notices,
     Placed,
     Placing,
     Silent,
+    Throttle,
     Unplugged,
     WatchdogTripped,
 )
-from vbraille.devices.framekernels import step_levels
 from vbraille.devices.latero.wire import (
     BLADES,
     BLADES_AT,
@@ -318,7 +317,9 @@ class Blades:
             self._may_go = _PACE
         steps = min(self._behind, self._may_go)
         self._may_go -= steps
-        step_levels(frame, float(REST), steps / self._behind, self._grid_at, self._grid)
+        wanted = REST - REST * frame
+        self._grid_at += (wanted - self._grid_at) * (steps / self._behind)
+        self._grid[:] = np.clip(np.rint(self._grid_at), 0, REST)
         self._behind -= steps
         self.at_rest = False
 
@@ -461,7 +462,7 @@ class LateroConversation:
         self._trusted = trusted
         self._half_span_mm = half_span_mm
         self._late_ns = max(LATE_NS, 2 * period_ns)
-        self._notices = Notices()
+        self._notices = Throttle()
         self._buttons = tuple(Debounced() for _ in BUTTONS)
         self._pose: Pose | None = None
         self._now_ns = self._heard_ns = self._begun_ns = self._tended_ns = now_ns
@@ -615,10 +616,10 @@ class LateroConversation:
         self._resting = None
         self._go(LateroStage.RAMPING)
 
-    def _fall_silent(self, silent_ns: int) -> None:
+    def _fall_silent(self) -> None:
         if self.stage is not LateroStage.SILENT:
             if self.stage is not LateroStage.BLIND:
-                self._tell(Silent(silent_ns / 1e6))
+                self._tell(Silent())
             self.blades.begin_ramp(self._now_ns)
             self._go(LateroStage.SILENT)
             self._let_go()
@@ -644,7 +645,7 @@ class LateroConversation:
             self._tell(Notice(PLACE, WHERE))
 
     def _tell(self, event: Event) -> None:
-        self._notices.add(event, self._now_ns)
+        self._notices.add(event)
 
     # What is wanted.
 
@@ -704,7 +705,7 @@ class LateroConversation:
         self._begun_ns = self._heard_ns = now_ns  # what came meanwhile is judged by its own time
         if self.stage is LateroStage.LIVE:
             self._stop()
-            self._tell(WatchdogTripped(trips, "host"))
+            self._tell(WatchdogTripped(trips))
         self._may_power = True  # the watchdog may have switched it off
         self._resting = None
         self.blades.stand_at(levels, now_ns)
@@ -730,7 +731,7 @@ class LateroConversation:
         elif stage not in OPENING and stage is not LateroStage.LEAVING:
             silent_ns = now_ns - self._heard_ns
             if silent_ns >= SILENCE_NS:
-                self._fall_silent(silent_ns)
+                self._fall_silent()
         if stage is LateroStage.POWERING and now_ns - self._begun_ns > PROBE_NS:
             self._tell_power()
         stage = self.stage

@@ -13,7 +13,6 @@ import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
-from vbraille.carriers import latero
 from vbraille.carriers.carrier import LATERO, LATERO_ARRAY
 from vbraille.devices.base import Device, Particulars
 from vbraille.devices.latero import watchdog
@@ -443,13 +442,11 @@ def _particulars(answer: Answer, offsets: Sequence[int] | None) -> Particulars:
     if offsets is not None:
         where = f"offsets={','.join(map(str, offsets))}"
     return Particulars(
-        firmware=(
-            f"controller {_version(answer.controller)}, I/O interface {_version(answer.interface)}"
+        protocol=(
+            f"latero, controller {_version(answer.controller)}, "
+            f"I/O interface {_version(answer.interface)}, {where}"
         ),
-        encoder=f"{latero.COUNTS_A_TURN} a turn in each of three joints, {where}",
-        largest_slew_per_s=0.0,
-        disabled=(),
-        inverted=(),
+        buttons=2,
     )
 
 

@@ -10,7 +10,7 @@ from importlib.resources import files
 from typing import TYPE_CHECKING
 
 from vbraille.scene.patterns import AnyPattern
-from vbraille.tomlfile import TomlFile
+from vbraille.toml import TomlFile
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

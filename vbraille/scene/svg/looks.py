@@ -10,7 +10,7 @@ from vbraille.scene.measures import LEAST_MM
 from vbraille.scene.patterns import Fill, Uniform, Use
 from vbraille.scene.strokes import Along, Dotting, Stroke
 from vbraille.scene.svg.values import length_of
-from vbraille.tomlfile import Table
+from vbraille.toml import Table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -5,8 +5,6 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from vbraille.braille.spelling import UNREAD, spell, spell_string, to_answer, to_braille
 from vbraille.errors import InputError
 from vbraille.tomlfile import quote
@@ -14,7 +12,7 @@ from vbraille.tomlfile import quote
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.translate.liblouis import BrailleTable
+    from vbraille.translate import BrailleTable
 
 
 class SpellingKeys(dict[str, int]):
@@ -121,9 +119,9 @@ def read_keys(_kind: type, table: Any) -> SpellingKeys:
 
 def made_by() -> dict[str, str]:
     """Version of the library whose tables make cells, by its name."""
-    from vbraille.translate.liblouis import library_version
+    from vbraille.translate import liblouis_version
 
-    return {"liblouis": library_version()}
+    return {"liblouis": liblouis_version()}
 
 
 def problem_of(table: str) -> str:
@@ -213,20 +211,15 @@ def _translated(text: str, table: str) -> tuple[tuple[int, ...], str]:
     """Dot masks of a text, and the first character of it that the table does not know."""
     if all("⠀" <= character <= "⣿" for character in text):
         return spell(text, {}), ""
-    # These imports stand here because liblouis takes a while to load, and few protocols need it.
-    from vbraille.translate.source import Text, to_codes
-
     braille = _table(table)
-    codes = to_codes(text)
-    alphabet = frozenset(codes.tolist())
-    cells = braille.translate(Text(codes, np.arange(codes.size), codes.size, alphabet))
-    unknown = next((character for character in text if ord(character) in braille.undefined), "")
-    return tuple(cells.masks.tolist()), unknown
+    masks = tuple(braille.translate(text).masks.tolist())
+    return masks, braille.unknown(text)[:1]
 
 
 @cache
 def _table(name: str) -> BrailleTable:
     """Table of a name; InputError if liblouis has none."""
-    from vbraille.translate.liblouis import BrailleTable
+    # It stands here because liblouis takes a while to load, and few protocols need it.
+    from vbraille.translate import BrailleTable
 
     return BrailleTable(name)

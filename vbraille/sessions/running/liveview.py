@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     import numpy as np
 
-    from vbraille.engine.mailbox import Extent
+    from vbraille.engine.record import RingReader
     from vbraille.live.messages import LineShown
     from vbraille.live.monitor import Monitor
     from vbraille.sessions.planning.protocol import Protocol
@@ -305,8 +305,8 @@ class SessionView:
         if isinstance(engine, Host):
             engine.on_share = self._share
 
-    def _share(self, descriptor: int, extent: Extent) -> None:
-        self._try("was not given the memory", lambda monitor: monitor.share(descriptor, extent))
+    def _share(self, ticks: RingReader) -> None:
+        self._try("was not given the memory", lambda monitor: monitor.share(ticks))
 
     def relay(self, say: Callable[[str], None]) -> Callable[[str], None]:
         """Give the function that says a sentence to the experimenter by ``say``, and to the pages.

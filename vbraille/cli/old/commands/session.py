@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Callable, Iterator
 
-    from vbraille.reading.speech import Speech
+    from vbraille.cli.old.reading.speech import Speech
     from vbraille.sessions.planning.pace import ParticipantField
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
@@ -142,7 +142,7 @@ def _taken(
     say = _say
     with ExitStack() as stack:
         if speech:
-            from vbraille.reading.speech import Speech
+            from vbraille.cli.old.reading.speech import Speech
 
             say = partial(_say_aloud, stack.enter_context(closing(Speech())))
         if isinstance(answers, Typed) and sys.stdin and takes_lines(sys.stdin.fileno()):

@@ -1,0 +1,1 @@
+"""Commands of a reader: a table, and a function for each."""

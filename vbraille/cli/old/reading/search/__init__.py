@@ -1,0 +1,1 @@
+"""Search in a whole book, by a process of its own."""

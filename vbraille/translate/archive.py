@@ -1,0 +1,153 @@
+"""Members of a ZIP archive that holds a book, read within bounds."""
+
+from __future__ import annotations
+
+import unicodedata
+import zipfile
+import zlib
+from typing import BinaryIO
+
+from vbraille.errors import InputError
+from vbraille.translate.trees import Element, parse_xml
+from vbraille.wording import printable
+
+MOST_BYTES = 200_000_000  # of a member, when it is unpacked
+MOST_MARKUP = 100_000_000  # bytes of a member that is parsed
+_ENCRYPTED = 0x1
+# Fonts are garbled in books that are open otherwise; no text is.
+_FONTS = ("http://www.idpf.org/2008/embedding", "http://ns.adobe.com/pdf/enc#RC")
+_LOCKS = (
+    ("META-INF/license.lcpl", "Readium LCP"),
+    ("META-INF/sinf.xml", "Apple FairPlay"),
+    ("META-INF/rights.xml", "Adobe ADEPT"),
+)
+_FAULTS = (
+    zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError, ValueError
+)  # fmt: skip
+
+
+class Archive:
+    """A ZIP archive that holds a book.
+
+    Parameters
+    ----------
+    stream
+        Bytes of the archive; the stream must be able to seek.
+    name
+        Name of the book in messages.
+
+    Raises
+    ------
+    InputError
+        If it is no ZIP archive, or damaged.
+    """
+
+    def __init__(self, stream: BinaryIO, name: str) -> None:
+        self.name = name
+        try:
+            self._zip = zipfile.ZipFile(stream)
+        except _FAULTS:
+            raise InputError(
+                f"{name} is a zip archive that is damaged or cut short, as a book can be; "
+                f"get it again"
+            ) from None
+        self.members = self._zip.namelist()
+        self._alike: dict[str, list[str]] = {}
+        for member in self.members:
+            self._alike.setdefault(_plain(member), []).append(member)
+
+    def find(self, name: str) -> str | None:
+        """Member of a name, or the only one that differs from it in case or accents alone."""
+        if name in self._zip.NameToInfo:
+            return name
+        alike = self._alike.get(_plain(name), [])
+        return alike[0] if len(alike) == 1 else None
+
+    def size(self, name: str) -> int:
+        """Number of bytes of a member; 0 if it is not there."""
+        member = self.find(name)
+        return 0 if member is None else self._zip.getinfo(member).file_size
+
+    def read(self, name: str, most: int = MOST_BYTES) -> bytes:
+        """Read a member.
+
+        Raises
+        ------
+        InputError
+            If it is not there, locked, damaged or too large.
+        """
+        member, told = self.find(name), printable(name)
+        if member is None:
+            raise InputError(f"{self.name} lacks its part {told}; get the book again")
+        info = self._zip.getinfo(member)
+        if info.flag_bits & _ENCRYPTED:
+            raise InputError(
+                f"{self.name} is locked by a password of the zip archive; unpack it with that "
+                f"and pack it again without one"
+            )
+        if info.file_size > most:
+            raise InputError(
+                f"{self.name} has a part {told} of {info.file_size / 1e6:.0f} MB, more than "
+                f"{most / 1e6:.0f} MB; that is no text of a book"
+            )
+        try:
+            with self._zip.open(info) as stream:  # which gives no more than it says it has
+                return stream.read(most)
+        except _FAULTS as error:
+            raise InputError(
+                f"{self.name} is damaged in its part {told} ({printable(str(error))}); get it again"
+            ) from None
+
+    def read_if(self, name: str) -> bytes:
+        """Read a member that need not be there; without it, nothing."""
+        return b"" if self.find(name) is None else self.read(name)
+
+    def xml(self, name: str, *, needed: bool = True) -> Element:
+        """Root of a member in XML, without namespaces.
+
+        Parameters
+        ----------
+        name
+            Name of the member.
+        needed
+            Whether it must be there; otherwise an element with nothing in it stands for it.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read or is not XML.
+        """
+        if not needed and self.find(name) is None:
+            return Element("missing")
+        return parse_xml(self.read(name, MOST_MARKUP), f"{self.name} ({printable(name)})")
+
+    def check_unlocked(self) -> None:
+        """Check that a book is not locked.
+
+        Raises
+        ------
+        InputError
+            If it is; the message says by whose lock.
+        """
+        lock = next((said for member, said in _LOCKS if self._locks(member)), "")
+        for method in self.xml("META-INF/encryption.xml", needed=False).iter("EncryptionMethod"):
+            if method.get("Algorithm", "").replace("#rc", "#RC") not in _FONTS:
+                lock = lock or "a lock that it does not name"
+                break
+        else:
+            if self.find("META-INF/encryption.xml") is not None:
+                return  # only fonts are garbled
+        if lock:
+            raise InputError(
+                f"{self.name} is locked by {lock}, so that only the seller's programs can read "
+                f"it; ask the seller or your library for a copy without a lock"
+            )
+
+    def _locks(self, member: str) -> bool:
+        # What Adobe calls its file, others call what tells who owns a book.
+        content = self.read_if(member)
+        return bool(content) and (not member.endswith("rights.xml") or b"adept" in content)
+
+
+def _plain(name: str) -> str:
+    return unicodedata.normalize("NFC", name).casefold()

@@ -1,1 +1,0 @@
-"""Files that are in braille already: read as they are, and written."""

@@ -1,1 +1,0 @@
-"""Word processors' files: DOCX, ODT and RTF, each made into a tree of HTML."""

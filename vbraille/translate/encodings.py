@@ -1,0 +1,148 @@
+"""Bytes of a text file to text."""
+
+from __future__ import annotations
+
+import codecs
+import re
+import unicodedata
+
+from vbraille.errors import InputError
+
+_MARKS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF32_LE, "utf-32-le"),
+    (codecs.BOM_UTF32_BE, "utf-32-be"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+_MAGIC = {
+    b"\x89PNG": "a PNG picture",
+    b"\xff\xd8\xff": "a JPEG picture",
+    b"GIF8": "a GIF picture",
+    b"\x1f\x8b": "a gzip archive",
+    b"PK\3\4": "a zip archive",
+    b"Rar!": "a RAR archive",
+    b"7z\xbc\xaf": "a 7z archive",
+    b"\x7fELF": "a program",
+    b"ID3": "a sound",
+    b"OggS": "a sound",
+    b"RIFF": "a sound or a film",
+    b"\x89HDF": "an HDF5 file",
+    b"SQLite format 3": "an SQLite database",
+}
+_SAMPLE = 65_536
+_TEXT_CONTROLS = frozenset(b"\t\n\v\f\r\b\x1a\x1b\0")
+# Controls, where windows-1252 has characters that browsers read; what is only for typesetters.
+_ODD = re.compile("[\x80-\x9f\u00ad\u200b\ufeff]")
+_TAG = re.compile(rb"<[^<>]{1,1000}>")
+_NOT_ASCII = re.compile(r"[^\x00-\x7f\ufffd]")
+_ACCENTED = re.compile("[^\u0300-\u036f\u3099\u309a][\u0300-\u036f\u3099\u309a]+")
+
+
+def decode(content: bytes, encoding: str | None = None) -> tuple[str, str, str]:
+    """Text of a file.
+
+    A byte-order mark decides; else UTF-8, if it is that; else windows-1252, or what is likeliest
+    where most bytes are not ASCII.
+
+    Parameters
+    ----------
+    content
+        Bytes of the file.
+    encoding
+        Name of an encoding that overrides what the bytes say.
+
+    Returns
+    -------
+    text, name, note : str
+        The text, the name of the encoding, and a sentence's end on it if that is a guess.
+
+    Raises
+    ------
+    InputError
+        If there is no such encoding.
+    """
+    if encoding is not None:
+        try:
+            codecs.lookup(encoding)
+            text = content.decode(encoding, "replace")
+        except (LookupError, ValueError):
+            raise InputError(
+                f"there is no text encoding {encoding!r}; give one such as utf-8 or cp1252"
+            ) from None
+        return text.removeprefix("\ufeff"), encoding, ""
+    for mark, name in _MARKS:
+        if content.startswith(mark):
+            return content[len(mark) :].decode(name, "replace"), name, ""
+    wide = _wide(content[:4096])
+    if wide:
+        return content.decode(wide, "replace"), wide, ""
+    try:
+        return content.decode(), "utf-8", ""
+    except UnicodeDecodeError as error:
+        wrong = error.start
+    text = content.decode("utf-8", "replace")
+    sample = _TAG.sub(b" ", content)
+    if len(sample) > _SAMPLE:
+        sample = sample[: sample.rfind(b"\n", 0, _SAMPLE) + 1] or sample[:_SAMPLE]
+    beyond = sum(byte > 127 for byte in sample)
+    if text.count("\ufffd") * 50 < len(_NOT_ASCII.findall(text)):
+        return text, "utf-8", f"is UTF-8 with wrong bytes, the first at {wrong}"
+    name = "cp1252"
+    if beyond * 3 > len(sample):
+        import charset_normalizer
+
+        found = charset_normalizer.from_bytes(sample).best()
+        name = found.encoding if found else name
+    return _by_bytes(content, name), name, f"is not UTF-8 at byte {wrong}, and is read as {name}"
+
+
+def _by_bytes(content: bytes, name: str) -> str:
+    """Text by an encoding; a byte that it does not have is taken as windows-1252."""
+    text = content.decode(name, "surrogateescape" if name != "utf_16" else "replace")
+    return re.sub(
+        "[\udc80-\udcff]",
+        lambda found: bytes([ord(found[0]) - 0xDC00]).decode("cp1252", "replace"),
+        text,
+    )
+
+
+def _wide(sample: bytes) -> str:
+    """UTF-16 or UTF-32 if zeros stand where a mostly Western text has them; otherwise nothing."""
+    if len(sample) < 2 or sample.count(0) * 3 <= len(sample):
+        return ""
+    zeros = [sample[number::4].count(0) for number in range(4)]
+    quarter = len(sample) // 4
+    if min(zeros[2:]) > 0.9 * quarter and zeros[0] == 0:
+        return "utf-32-le"
+    if min(zeros[:2]) > 0.9 * quarter and zeros[3] == 0:
+        return "utf-32-be"
+    return "utf-16-le" if zeros[1] + zeros[3] > zeros[0] + zeros[2] else "utf-16-be"
+
+
+def binary_kind(sample: bytes) -> str | None:
+    """Kind of a file whose beginning shows that it is no text; None if it may be text."""
+    for magic, kind in _MAGIC.items():
+        if sample.startswith(magic):
+            return kind
+    if sample.startswith(tuple(mark for mark, _ in _MARKS)) or _wide(sample):
+        return None
+    controls = sum(byte < 32 and byte not in _TEXT_CONTROLS for byte in sample) + sample.count(0)
+    return "binary data" if controls > 1 + len(sample) / 20 else None
+
+
+def tidy(text: str) -> str:
+    r"""Text as blocks have it: accents with their letters, without soft hyphens and C1 controls.
+
+    >>> tidy("e\u0301te\u0301 Schiff\u00adfahrt \x93x\x94")
+    'été Schifffahrt “x”'
+    """
+    if text.isascii():
+        return text
+    text = _ODD.sub(_evened, text)
+    return _ACCENTED.sub(lambda found: unicodedata.normalize("NFC", found[0]), text)
+
+
+def _evened(found: re.Match[str]) -> str:
+    code = ord(found[0])
+    return bytes([code]).decode("cp1252", "ignore") if code < 0xA0 else ""

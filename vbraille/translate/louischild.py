@@ -1,0 +1,122 @@
+"""liblouis, in a process of its own: answers questions on stdin until it closes.
+
+It is run as a script, knows nothing of vbraille, and sets itself a limit of processor time before
+each question; when that runs out the system ends it, as a crash does.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import pickle
+import signal
+import sys
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import louis
+
+COMPILING_S = 20.0  # the largest tables take a second or two
+KEYS = ("language", "grade", "contraction", "type", "dots", "display-name", "index-name")
+
+LIBRARY = louis.liblouis
+LIBRARY.lou_findTable.restype = ctypes.c_void_p
+LIBRARY.lou_getTableInfo.restype = ctypes.c_void_p
+LIBRARY.lou_listTables.restype = ctypes.POINTER(ctypes.c_char_p)
+LIBRARY.lou_version.restype = ctypes.c_char_p
+LIBRARY.lou_getTypeformForEmphClass.restype = ctypes.c_ushort
+LIBRARY.lou_setLogLevel(60_000)
+FREE = ctypes.CDLL(None).free
+FREE.argtypes = [ctypes.c_void_p]
+
+
+def translate(
+    table: str, more: str, text: str, forms: list[int] | None
+) -> tuple[list[int], list[int]]:
+    """Dots of a text, and for each cell the character that it stands for."""
+    compile_table(f"{table},{more}")
+    limit_processor_time(0.5 + len(text) / 10_000)
+    dots, places, _, _ = louis.translate([table, more], text, forms, mode=louis.dotsIO)
+    return [*map(ord, dots)], places
+
+
+@cache
+def compile_table(tables: str) -> None:
+    """Have liblouis read a table, which may take long; RuntimeError if there is none."""
+    limit_processor_time(COMPILING_S)
+    louis.checkTable([tables])
+
+
+def list_tables() -> list[dict[str, str]]:
+    """File name and metadata of each table that has some."""
+    paths = LIBRARY.lou_listTables()
+    found = []
+    for number in range(10_000):
+        path = paths[number]
+        if path is None:
+            break
+        said = {key: text_at(LIBRARY.lou_getTableInfo(path, key.encode())) for key in KEYS}
+        found.append({"name": Path(path.decode()).name, **said})
+    return found
+
+
+def find_table(query: str) -> str:
+    """File name of the table that liblouis finds for a query, or nothing."""
+    return Path(text_at(LIBRARY.lou_findTable(query.encode()))).name
+
+
+def emphasis_bit(table: str, name: str) -> int:
+    """Bit that a table has for a class of emphasis; 0 if it has no such class."""
+    compile_table(table)
+    return LIBRARY.lou_getTypeformForEmphClass(table.encode(), name.encode())
+
+
+def display_dots(table: str, characters: str) -> list[int]:
+    """Dots that a display table has for characters."""
+    return [ord(dots) & 0xFF for dots in louis.charToDots([table], characters)]
+
+
+def version() -> str:
+    """Version of liblouis."""
+    return LIBRARY.lou_version().decode()
+
+
+def text_at(address: int | None) -> str:
+    """String of C, which is freed."""
+    if not address:
+        return ""
+    text = ctypes.string_at(address).decode("utf-8", "replace")
+    FREE(address)
+    return text
+
+
+def limit_processor_time(seconds: float) -> None:
+    """Have the system end this process when it has worked for that long."""
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+
+
+def answer(question: tuple[Any, ...]) -> Any:
+    """Answer one question: the name of a function, and what it is given."""
+    name, *given = question
+    try:
+        return globals()[name](*given)
+    except (RuntimeError, ValueError) as error:
+        return RuntimeError(str(error))
+    finally:
+        limit_processor_time(0)
+
+
+def serve() -> None:
+    """Answer questions until there are no more."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the program that asks decides when to end
+    while True:
+        try:
+            question = pickle.load(sys.stdin.buffer)
+        except EOFError:
+            return
+        sys.stdout.buffer.write(pickle.dumps(answer(question)))
+        sys.stdout.buffer.flush()
+
+
+if __name__ == "__main__":
+    serve()

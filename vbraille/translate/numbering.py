@@ -1,0 +1,77 @@
+"""What stands before the items of lists: bullets, and numbers in all their forms."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.translate.trees import Element
+
+BULLET = "• "
+_ROMAN = [
+    "m1000",
+    "cm900",
+    "d500",
+    "cd400",
+    "c100",
+    "xc90",
+    "l50",
+    "xl40",
+    "x10",
+    "ix9",
+    "v5",
+    "iv4",
+    "i1",
+]
+
+
+def numeral(number: int, form: str) -> str:
+    """Number of an item: in letters (a, A), in Roman numerals (i, I), with a zero (01), or plain.
+
+    >>> numeral(28, "a"), numeral(14, "I"), numeral(3, "01"), numeral(0, "a")
+    ('ab', 'XIV', '03', '0')
+    """
+    if form in ("a", "A") and number > 0:
+        letters = ""
+        while number > 0:
+            number, letter = divmod(number - 1, 26)
+            letters = chr(ord(form) + letter) + letters
+        return letters
+    if form in ("i", "I") and 0 < number < 4000:
+        text = ""
+        for sign in _ROMAN:
+            letters, value = sign.rstrip("0123456789"), int(sign.lstrip("mdclxvi"))
+            text += letters * (number // value)
+            number %= value
+        return text.upper() if form == "I" else text
+    return f"{number:02}" if form == "01" else str(number)
+
+
+def whole(text: str | None, otherwise: int = 1) -> int:
+    """Number that an attribute says; another if it says none."""
+    return int(text) if text and re.fullmatch(r"\s*-?\d{1,6}\s*", text) else otherwise
+
+
+def list_markers(element: Element) -> Callable[[Element], str]:
+    """Make what gives the number or bullet of each item of a list of HTML or DTBook."""
+    style = element.get("style") + element.get("list-style-type")
+    is_daisy = element.name == "list"
+    if "none" in style.replace(" ", "") or (is_daisy and element.get("type", "pl") == "pl"):
+        return lambda _: ""
+    if element.name in ("ul", "menu") or (is_daisy and element.get("type") == "ul"):
+        return lambda _: BULLET
+    form = element.get("enum", "1") if is_daisy else element.get("type", "1")
+    step = -1 if "reversed" in element.attributes else 1
+    items = sum(child.name == "li" for child in element.elements)
+    following = whole(element.get("start"), items if step < 0 else 1)
+
+    def marker(item: Element) -> str:
+        nonlocal following
+        number = whole(item.get("value"), following)
+        following = number + step
+        return f"{numeral(number, form)}. "
+
+    return marker

@@ -1,0 +1,241 @@
+"""A braille table: text and its marks to cells."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.braille.cells import Cells
+from vbraille.errors import InputError
+from vbraille.translate.blocks import MarkKind
+from vbraille.translate.languages import find_table, list_tables, preference, tables_of
+from vbraille.translate.liblouis import LOUIS, emphasis_bit
+from vbraille.translate.spellings import Kind, Undefined
+from vbraille.translate.undefined import Written, cells_of, write
+from vbraille.wording import setting
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vbraille.translate.blocks import Mark
+    from vbraille.translate.languages import TableInfo
+
+_SIX_DOTS = 0x3F
+_SMALL = "abcdefghijklmnopqrstuvwxyz"
+_DIGITS = "1234567890"
+_CLASSES = {
+    MarkKind.ITALIC: "italic",
+    MarkKind.BOLD: "bold",
+    MarkKind.UNDERLINE: "underline",
+    MarkKind.SUPERSCRIPT: "super",
+    MarkKind.SUBSCRIPT: "sub",
+}
+_HYPHEN = b"\x24"  # dots 3 and 6
+_UEB_CONTINUATION = b"\x10"  # dot 5, after which a number goes on without its sign
+_MARKED = (Kind.MARKED, Kind.UNENDING)
+
+
+class BrailleTable:
+    """A table of liblouis.
+
+    Parameters
+    ----------
+    name
+        File name of a table that liblouis has, or a path.
+    undefined
+        What is written for a character that neither the table nor a plain spelling can write.
+
+    Raises
+    ------
+    InputError
+        If there is no such table; the message names the nearest.
+    """
+
+    def __init__(self, name: str, undefined: Undefined = Undefined.MARK) -> None:
+        self.name = name
+        self.undefined = undefined
+        LOUIS.translate(name, "a")
+
+    def translate(self, text: str, marks: Sequence[Mark] = (), start: int = 0) -> Cells:
+        """Cells of a text, whose first character is at a place of a book.
+
+        Parameters
+        ----------
+        text, marks
+            Text of a paragraph, and the emphasis of its parts.
+        start
+            Place of its first character.
+        """
+        return to_cells(self.write(text, marks), len(text), start)
+
+    def write(self, text: str, marks: Sequence[Mark] = ()) -> Written:
+        """Dots of a text, with what was written otherwise than it stands."""
+        written = write(self.name, text, self._forms(text, marks), self.undefined)
+        if not self.eight_dots:
+            written.masks = bytes(mask & _SIX_DOTS for mask in written.masks)
+        return written
+
+    def unknown(self, text: str) -> str:
+        """Characters of a text that only a marker can stand for, each once."""
+        found = self.write(text).otherwise
+        return "".join(part for kind, part in found if kind in _MARKED)
+
+    def cells_of(self, text: str) -> bytes:
+        """Dot masks of a short text; none if the table leaves some of it undefined."""
+        return cells_of(self.name, text)
+
+    def divide(self, text: str, place: int, rest: bytes) -> tuple[bytes, bytes]:
+        """Cells that end a line within a word or a number, and those that begin the next line.
+
+        Parameters
+        ----------
+        text
+            Text of the block.
+        place
+            Index of the character at which the next line begins.
+        rest
+            Cells of the word from there on.
+        """
+        before, after = text[place - 1], text[place]
+        if self.is_ueb and before.isdecimal() and after.isdecimal():
+            return _UEB_CONTINUATION, b""
+        hyphen = self.cells_of("-")
+        ending = hyphen if len(hyphen) == 1 and any(hyphen) else _HYPHEN
+        alike = (before.isdecimal() and after.isdecimal()) or (before.isupper() and after.isupper())
+        whole = self.cells_of(text[place:].split(None, 1)[0]) if alike else b""
+        sign = whole.removesuffix(rest)
+        return ending, sign if len(sign) < len(whole) else b""
+
+    @cached_property
+    def info(self) -> TableInfo | None:
+        """Metadata of the table; None if it has none."""
+        return next((table for table in list_tables() if table.name == self.name), None)
+
+    @cached_property
+    def eight_dots(self) -> bool:
+        """Tell if the table writes with dots 7 and 8, but for letters of other scripts."""
+        if self.info is not None and self.info.dots:
+            return self.info.dots == 8
+        literary = self.info is not None and self.info.kind == "literary"
+        for sample in (_DIGITS, _SMALL) if literary else (_SMALL + _SMALL.upper() + _DIGITS,):
+            masks = LOUIS.translate(self.name, sample).masks
+            if any(masks):
+                return max(masks) > _SIX_DOTS
+        return False
+
+    @cached_property
+    def is_ueb(self) -> bool:
+        """Tell if this is a table of Unified English Braille."""
+        return self.name.startswith("en-ueb")
+
+    @property
+    def said(self) -> str:
+        """Language and grade in words, such as "German contracted braille, grade 2"."""
+        if self.info is None or not self.info.title:
+            return self.name
+        return f"{self.info.title}{f', grade {self.info.grade}' if self.info.grade else ''}"
+
+    @cached_property
+    def brackets(self) -> str:
+        """Opening and closing bracket that the table can write; full cells if it has none."""
+        return next((pair for pair in ("[]", "()") if self.cells_of(pair)), "⠿⠿")
+
+    def _forms(self, text: str, marks: Sequence[Mark]) -> list[int] | None:
+        """Bits of the classes of emphasis for each character; None if there is none."""
+        forms = None
+        for mark in marks:
+            name = _CLASSES.get(mark.kind)
+            bit = 0 if name is None else emphasis_bit(self.name, name)
+            if bit:
+                forms = forms or [0] * len(text)
+                for place in range(mark.start, min(mark.end, len(text))):
+                    forms[place] |= bit
+        return forms
+
+
+def to_cells(written: Written, length: int, start: int = 0) -> Cells:
+    """Cells of what was written for a text of a length that begins at a place of a book."""
+    masks = np.frombuffer(written.masks, np.uint8)
+    return Cells(masks, np.array(written.places, np.int64) + start, start + length)
+
+
+def choose_table(
+    language: str | None = None,
+    grade: int | None = None,
+    table: str | None = None,
+    undefined: Undefined | str = Undefined.MARK,
+) -> BrailleTable:
+    """Table by its name, or by a language and a grade.
+
+    Parameters
+    ----------
+    language
+        Language, such as "fr" or "pt-BR"; English if nothing is given.
+    grade
+        0 or 1 for uncontracted braille, 2 and up for contracted; None for what is usual.
+    table
+        Name of a liblouis table, in place of a language and grade.
+    undefined
+        What is written for a character that the table cannot write.
+
+    Raises
+    ------
+    InputError
+        If there is no such table, or both a table and a language are given.
+    """
+    try:
+        how = Undefined(undefined)
+    except ValueError:
+        raise InputError(
+            f"undefined is {undefined!r:.40}; it must be {' or '.join(Undefined)}"
+        ) from None
+    if table is None:
+        return BrailleTable(find_table("en" if language is None else language, grade), how)
+    if language is not None or grade is not None:
+        raise InputError(
+            f"a table has its language and grade; give either {setting('table')} or those"
+        )
+    return BrailleTable(table, how)
+
+
+def six_dot_table(language: str) -> str | None:
+    """Name of the most usual six-dot table of a language; None if there is none."""
+    try:
+        _, tables = tables_of(language)
+        names = [find_table(language), *(table.name for table in sorted(tables, key=preference))]
+        return next((name for name in names if not BrailleTable(name).eight_dots), None)
+    except InputError:
+        return None
+
+
+def translate_text(
+    text: str,
+    language: str | None = None,
+    grade: int | None = None,
+    table: str | None = None,
+    undefined: Undefined | str = Undefined.MARK,
+) -> Cells:
+    """Translate a text to cells, each of which knows the characters that it stands for.
+
+    Parameters
+    ----------
+    text
+        Text of one paragraph.
+    language, grade, table, undefined
+        As of `choose_table`.
+
+    Raises
+    ------
+    InputError
+        If something cannot be used.
+
+    Examples
+    --------
+    >>> import vbraille
+    >>> cells = vbraille.translate_text("the world", language="en", grade=2)
+    >>> cells.to_unicode(), cells.source(0), cells.of_source(4)
+    ('⠮⠀⠸⠺', (0, 3), (2, 4))
+    """
+    return choose_table(language, grade, table, undefined).translate(text)
