@@ -1,4 +1,4 @@
-"""The live view: frames a second in one browser and in three, and from the pointer to the picture."""
+"""The live view: frames a second in one and in three browsers, and from pointer to picture."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ def _flood(screen: Any, client: Any) -> Result:
         begun_s = due_s = time.monotonic()
         count = 0
 
-        def write() -> bool:
+        def write(floods: bool = floods, begun_s: float = begun_s) -> bool:
             nonlocal due_s, count
             while floods and time.monotonic() >= due_s:
                 client.writeText(f"{count % 10000:04d} updates")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
@@ -156,7 +157,7 @@ class LiveOutput:
             words = mapping_said(other.mapping)
             beside = beside_shown(other, self._device.display, masks, start_mm, words)
         return {
-            "title": source.title or source.name,
+            "title": source.title or Path(source.name).name,
             "geometry": geometry_shown(geometry),
             "rows_shown": rows_shown(style, self._device.display),
             "lines": list(self._lines(reader)),

@@ -14,7 +14,7 @@ from vbraille.braille.spelling import to_braille
 from vbraille.engine.engine import EndOfLine
 from vbraille.engine.record import Flag
 from vbraille.knobs import KNOBS
-from vbraille.layout.texts import cells_per_line
+from vbraille.layout import cells_per_line
 from vbraille.reading.brltty import Talk
 from vbraille.reading.commands import Where, command
 from vbraille.reading.explored import Explored

@@ -25,10 +25,10 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     """The line that BRLTTY shows is under the hand. At a terminal, h says the keys."""
     from vbraille.cli.build import build_model
     from vbraille.cli.exploring import equipped, find_model, say_summary
-    from vbraille.layout.texts import choose_table
     from vbraille.reading.brltty import Port
     from vbraille.reading.screen import Screen
     from vbraille.render import MODELS
+    from vbraille.translate import choose_table
 
     usual = MODELS[chosen["model"] or "stress2"]
     wanted = build_model(ctx, usual, usual.style.geometry.travel_mm)
