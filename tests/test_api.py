@@ -89,42 +89,8 @@ def test_the_notebook_runs(tmp_path, monkeypatch):
     for cell in cells:
         exec(compile(cell, "notebook.ipynb", "exec"), known)
     assert known["recording"].frames.max() == pytest.approx(1.0, abs=0.05)
-    assert len(known["results"].table("legibility")) == 1
+    assert len(known["results"].tables["legibility"]) == 1
     assert known["scene"]._repr_png_()[:4] == b"\x89PNG"
-    assert known["results"].findings[0] in known["results"]._repr_html_()
-
-
-def test_results_show_themselves_and_draw_their_figures(tmp_path):
-    table = Path(tmp_path, "t.csv")
-    rows = "".join(f"P{n},<b>{c},a,{'ab'[n % 2]}\n" for n in range(4) for c in "xy")
-    table.write_text(f"participant,condition,presented,answered\n{rows}")
-    results = vbraille.analyse(table)
-    shown = results._repr_html_()
-    assert results.title in shown
-    assert "&lt;b&gt;x" in shown
-    assert "<b>" not in shown
-    assert shown.count("<tr>") == len(results.shown.rows)
-    drawn = {figure.name: figure for figure in results.figures()}
-    assert len(results.plot().axes) == len(drawn[results.main].chart.panels)
-    for name in drawn:
-        assert results.plot(name).axes
-    with pytest.raises(vbraille.InputError, match=r"no figure .legibilty.; there are .*primary"):
-        results.plot("legibilty")
-
-
-def test_a_session_that_never_ran_lets_its_device_go(tmp_path):
-    closed = []
-
-    class Engine:
-        def close(self):
-            closed.append(True)
-
-    with vbraille.Session.create(
-        "letters", "P01", folder=tmp_path / "P01", seed=1, engine=lambda *_: Engine()
-    ) as session:
-        assert not closed
-    assert closed
-    assert not session.folder.exists()
 
 
 @heavy  # pyright takes seconds
@@ -215,9 +181,9 @@ class Still(vbraille.Device):
         (lambda: vbraille.open(Still), r"^Still is a class; give a device of it, as in open\(S"),
         (lambda: vbraille.open(3), "^device is 3; give a spec such as 'sim', or a"),
         (lambda: vbraille.open("sim", "vbd"), "'vbd'; give vbraille.VBD$"),
-        (lambda: vbraille.analyse([]), "^nothing is given to analyse; give directories"),
-        (lambda: vbraille.analyse("Q1"), "^there is no Q1; give the directory"),
-        (lambda: vbraille.analyse(Path("Q1")), "^there is no Q1; give the directory"),
+        (lambda: vbraille.analyse([]), "^nothing is given to analyse; give files of sessions"),
+        (lambda: vbraille.analyse("Q1"), "^Q1: No such file"),
+        (lambda: vbraille.analyse(Path("Q1")), "^Q1: No such file"),
     ],
 )
 def test_what_cannot_be_used_is_said_in_one_sentence(call, says):
@@ -260,45 +226,6 @@ def test_a_device_whose_lines_are_never_done_says_why():
     assert "the next line comes at the left stop, which is at -3.8 mm" in said[0]
 
 
-TWO = """
-format = 1
-name = "two"
-title = "Two letters"
-source = "ours"
-model = "vbd"
-[design]
-kind = "combinations"
-characters = ["a", "c"]
-length = 1
-"""
-
-
-def test_answers_and_folders_of_a_session_that_cannot_be_used_are_said(tmp_path):
-    Path(tmp_path, "two.toml").write_text(TWO)
-    fast = vbraille.Conditions(fast=True, hand="sweep:150")
-
-    def create():
-        return vbraille.Session.create(
-            tmp_path / "two.toml", "P01", folder=tmp_path / "P01", seed=1, conditions=fast
-        )
-
-    assert repr(create().progress) == "<Progress: 0 of 2 trials have answers>"
-    with pytest.raises(
-        vbraille.InputError, match=r"^simulate:0\.3 is no file; give typed, simulated:N"
-    ):
-        create().run("simulate:0.3")
-    session = create()
-    with pytest.raises(vbraille.InputError, match=r"^the answer to trial 1 is 5; it must be a"):
-        session.run(lambda _trial: 5)
-    with pytest.raises(
-        vbraille.InputError, match="is there already; give a new directory with ‹fo"
-    ):
-        create()
-    done = vbraille.Session.resume(tmp_path / "P01").run(lambda trial: trial.presented).progress
-    assert (done.done, done.planned, done.ended) == (2, 2, True)
-    assert repr(done) == "<Progress: 2 of 2 trials have answers, ended>"
-
-
 WRONG = (None, 3.5, True, b"x", [], {}, object(), np.array(["a"]), float("nan"))
 
 
@@ -330,4 +257,4 @@ def calls():
     yield page.frames, {"x_mm": [1.0], "y_mm": [2.0]}
     yield vbraille.testing.parse_hand, {"spec": "slow", "seed": 1}
     yield vbraille.testing.simulated_device, {"display": vbraille.VBD, "hand": "slow"}
-    yield vbraille.analyse, {"paths": "x.csv", "correction": "holm"}
+    yield vbraille.analyse, {"paths": "x.csv", "measure": "right"}

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.commandline import helps, parsed
-from tests.documents import DOCS, PARTS, TABLES, with_part, with_table, words_of_guides
+from tests.documents import DOCS, TABLES, with_table, words_of_guides
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
@@ -134,10 +134,7 @@ def test_a_name_stands_for_one_thing():
     """No two classes of a folder are called the same; the glossary's names are in the program."""
     paths = set((ROOT / "vbraille").rglob("*.py"))
     texts = {path: path.read_text(encoding="utf-8") for path in paths}
-    events = {ROOT / "vbraille/sessions/record/events.py"}  # which are written `events.Answer`
-    named = Counter(
-        (path.parent, name) for path in paths - events for name in _CLASS.findall(texts[path])
-    )
+    named = Counter((path.parent, name) for path in paths for name in _CLASS.findall(texts[path]))
     assert [name for name, number in named.items() if number > 1] == []
     sources, classes = texts.values(), {name for _, name in named}
     aliases = {name for text in sources for name in _ALIAS.findall(text)}
@@ -157,9 +154,3 @@ def test_the_glossary_has_each_word_once():
 def test_each_table_is_what_the_program_has(name, rows):
     text = (DOCS / name).read_text(encoding="utf-8")
     assert with_table(text, rows) == text, "python -m tests.documents writes it"
-
-
-@pytest.mark.parametrize(("name", "part"), [(name, part) for name, *part in PARTS])
-def test_each_part_is_what_the_program_has(name, part):
-    text = (DOCS / name).read_text(encoding="utf-8")
-    assert with_part(text, *part) == text, "python -m tests.documents writes it"

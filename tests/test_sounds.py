@@ -8,7 +8,7 @@ from ctypes.util import find_library
 import numpy as np
 import pytest
 
-from vbraille.sessions.planning.pace import Tone
+from vbraille.sessions.running.runner import Tone
 from vbraille.sounds import wave
 
 # A sound card that hears everything and says nothing.
@@ -16,7 +16,7 @@ NULL_CARD = "pcm.!default { type null }\nctl.!default { type null }\n"
 MISSING_CARD = "pcm.!default { type hw card 77 }\nctl.!default { type hw card 77 }\n"
 PLAY = """
 import time
-from vbraille.sessions.planning.pace import Tone
+from vbraille.sessions.running.runner import Tone
 from vbraille.sounds import Tones
 tones = Tones()
 begun = time.monotonic()

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vbraille import tomlfile
-from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text
+from vbraille.sessions.planning.loading import FOLDER, shipped
 from vbraille.tomlfile import lines_of
 
 NASTY = (
@@ -103,9 +103,9 @@ class TestLines:
             path: line for path, line in known.items() if path not in braces
         }
 
-    @pytest.mark.parametrize("name", builtin_names())
+    @pytest.mark.parametrize("name", shipped())
     def test_a_protocol(self, name):
-        text = builtin_text(name)
+        text = (FOLDER / f"{name}.toml").read_text("utf-8")
         found, known = lines_of(text), first_lines(text)
         begun = sorted({*known.values(), text.count("\n") + 1})
 

@@ -16,7 +16,7 @@ TYPE_CHECKING = False  # importing typing, for its constant, takes as long as al
 if TYPE_CHECKING:
     from vbraille import testing as testing
     from vbraille.analysis import analyse as analyse
-    from vbraille.analysis.results import Results as Results
+    from vbraille.analysis.report import Analysis as Analysis
     from vbraille.braille.geometry import Geometry as Geometry
     from vbraille.devices.base import Device as Device
     from vbraille.display import Display as Display
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from vbraille.render.braille.style import Tuning as Tuning
     from vbraille.scene.scene import Canvas as Canvas
     from vbraille.scene.scene import Scene as Scene
-    from vbraille.sessions.conditions import Conditions as Conditions
+    from vbraille.sessions.session import Conditions as Conditions
     from vbraille.sessions.session import Session as Session
     from vbraille.translate.tables import translate_text as translate_text
 
@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 _PLACES = {
     "BrailleStyle": "vbraille.render.braille.style",
     "Canvas": "vbraille.scene.scene",
-    "Conditions": "vbraille.sessions.conditions",
+    "Conditions": "vbraille.sessions.session",
     "Device": "vbraille.devices.base",
     "DeviceError": "vbraille.errors",
     "Display": "vbraille.display",
@@ -65,7 +65,7 @@ _PLACES = {
     "Recording": "vbraille.recording",
     "RenderedLine": "vbraille.reading.frames",
     "RenderedPage": "vbraille.reading.frames",
-    "Results": "vbraille.analysis.results",
+    "Analysis": "vbraille.analysis.report",
     "STRESS2": "vbraille.render.braille.models",
     "STRESS2_8X8": "vbraille.render.braille.models",
     "Scene": "vbraille.scene.scene",
@@ -87,6 +87,7 @@ __all__ = [
     "STRESS2",
     "STRESS2_8X8",
     "VBD",
+    "Analysis",
     "BrailleStyle",
     "Canvas",
     "Conditions",
@@ -101,7 +102,6 @@ __all__ = [
     "Recording",
     "RenderedLine",
     "RenderedPage",
-    "Results",
     "Scene",
     "Session",
     "Straying",

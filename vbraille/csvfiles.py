@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vbraille.errors import InputError
+from vbraille.files import cell_text
 
 SEPARATORS = ",;\t"
 _UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
@@ -63,7 +64,8 @@ def parse_csv(data: bytes, name: str) -> Sheet:
 
     Text is UTF-8, UTF-16 with its mark, or else Windows-1252. Cells are separated by commas,
     semicolons or tabs; a first line such as ``sep=;`` says by which. Blanks around a cell go, and a
-    line break inside one becomes a blank. Columns without a name and rows without a cell are left
+    line break inside one becomes a blank. An apostrophe goes that keeps a spreadsheet from taking a
+    cell for a formula. Columns without a name and rows without a cell are left
     out.
 
     Raises
@@ -123,5 +125,5 @@ def _decode(data: bytes) -> str:
 def _tidy(cell: str) -> str:
     cell = cell.strip()
     if "\n" in cell or "\r" in cell:
-        return " ".join(line.strip() for line in cell.splitlines())
-    return cell
+        cell = " ".join(line.strip() for line in cell.splitlines())
+    return cell_text(cell) if cell.startswith("'") else cell

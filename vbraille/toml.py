@@ -42,7 +42,7 @@ class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A table of a TOML file. Its fields are the keys that the table may have."""
 
 
-class WrongValue(ValueError):  # noqa: N818
+class WrongValue(ValueError):
     """A value that contradicts another one.
 
     Parameters

@@ -1,92 +1,59 @@
-"""Trials in a few words, and all the tables that are made of them."""
+"""Tables of trials and of scores for tests, and analyses of them."""
 
-import pandas as pd
+import csv
+import io
+from pathlib import Path
 
-from vbraille.analysis.input.parsing import parse
-from vbraille.analysis.input.sheets import Sheet
-from vbraille.analysis.input.trials import Places
-from vbraille.analysis.measures import (
-    confusion,
-    covariates,
-    legibility,
-    movement,
-    trends,
-)
-from vbraille.analysis.results import Schema
+from vbraille.analysis import analyse, analyse_scores
 
-COLUMNS = "participant condition presented answered duration_s"
+CASES = Path(__file__).parent / "cases"
 
 
-def from_rows(name, rows):
-    """Sheet of rows, as text."""
-    table = [{column: str(value) for column, value in row.items()} for row in rows]
-    return Sheet(name, pd.DataFrame(table, range(1, len(table) + 1), dtype=object))
+def trials_of(shares, trials=26, **columns):
+    """Rows of strings: people by conditions, each with a number of right answers.
+
+    `shares` has the numbers of right answers of each person by condition; one may be a pair of
+    right answers and trials.
+    """
+    rows = []
+    for condition, people in shares.items():
+        for number, right in enumerate(people, 1):
+            if right is None:
+                continue
+            good, asked = right if isinstance(right, tuple) else (right, trials)
+            for trial in range(asked):
+                answered = "ab" if trial < good else "ac"
+                row = {"participant": f"P{number:02}", "condition": condition}
+                rows.append(row | {"presented": "ab", "answered": answered} | columns)
+    return rows
 
 
-def sheet(*lines, columns=COLUMNS, name="made"):
-    """A row a line: values with white space between, - for an empty one."""
-    rows = [line.split() for line in lines]
-    return from_rows(
-        name,
-        [
-            dict(zip(columns.split(), ["" if v == "-" else v for v in row], strict=True))
-            for row in rows
-        ],
-    )
+def to_csv(rows, separator=","):
+    """Rows as CSV."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(rows[0]), delimiter=separator, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
 
 
-def made(*lines, columns=COLUMNS):
-    """Trials of such lines, and their places."""
-    trials = parse([sheet(*lines, columns=columns)]).trials
-    return trials, Places.of(trials)
+def analysed(rows, folder, name="trials.csv", **options):
+    """The analysis of rows, by way of a file."""
+    path = Path(folder) / name
+    path.write_text(rows if isinstance(rows, str) else to_csv(rows), encoding="utf-8")
+    return analyse([path], **options)
 
 
-def answers(*lines, timed="-"):
-    """The same, of lines without a duration: "P1 T0 ac aa"."""
-    return made(*(f"{line} {timed}" for line in lines))
+def scored(rows, folder):
+    """The analysis of rows of scores, by way of a file."""
+    path = Path(folder) / "scores.csv"
+    path.write_text(to_csv(rows), encoding="utf-8")
+    return analyse_scores(path)
 
 
-def levels(column):
-    """Levels of a column, in their order."""
-    return tuple(column.cat.categories)
-
-
-def table_of(columns, rows, notes=(), marks=(), told=("t", "", "")):
-    """A table of rows whose values are in the columns' order."""
-    schema = Schema(*told, columns)
-    named = [dict(zip(schema.names, row, strict=True)) for row in rows]
-    return schema.fill(named, notes, marks=marks)
-
-
-def record(table, **where):
-    """The one row that has these values."""
-    (found,) = [
-        row for row in table.records() if all(row[name] == value for name, value in where.items())
-    ]
-    return found
-
-
-def all_tables(trials, places):
-    """Every table of trials."""
-    by_participant = legibility.legibility(trials, places)
-    seen = movement.trajectories([])
-    matrices = [
-        (confusion.CONFUSION_CHARACTERS, confusion.of_characters(places)),
-        (confusion.CONFUSION_PAIRS, confusion.of_pairs(trials)),
-    ]
-    return [
-        by_participant,
-        legibility.averages(by_participant),
-        legibility.characters(places),
-        legibility.strings(trials),
-        legibility.dots(places),
-        *(confusion.to_table(*of, places) for of in matrices if of[1] is not None),
-        confusion.transmitted(trials, places, seed=1),
-        confusion.errors(places),
-        trends.over_time(trials),
-        trends.slopes(trials),
-        seen,
-        movement.patterns(seen),
-        movement.correlations(trials),
-        covariates.covariates(trials, ["condition"]),
-    ]
+def row_of(table, **values):
+    """The only row of a table that has these values, as a dict."""
+    for name, value in values.items():
+        table = table[table[name].astype(str) == str(value)]
+    (row,) = table.to_dict("records")
+    return row

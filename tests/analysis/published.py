@@ -1,27 +1,58 @@
-"""What the thesis has published, and where each number comes from: Lévesque 2009, chapters 3 and 4.
-
-`published.json` tells it of each; the names of the tests repeat it. What is exact was printed so;
-what is reconstructed follows from the print arithmetically; what is inferred is the most
-plausible, and not certain.
-"""
+"""What the thesis has published: Lévesque 2009, chapters 3, 4 and 6."""
 
 import json
 from pathlib import Path
 
-import pytest
-
-EXACT, RECONSTRUCTED, INFERRED = "exact", "reconstructed", "inferred"
-EXACT_SPLIT = "exact_split"  # the digits are the print's, and were split by hand
 TOLD = json.loads((Path(__file__).parent / "published.json").read_text(encoding="utf-8"))
 
-
-def each(*cases):
-    """Parametrise by provenance, name and values: the ids tell them in ``pytest -v``."""
-    return pytest.mark.parametrize(
-        "told", [pytest.param(tuple(values), id=f"{tag} {name}") for tag, name, *values in cases]
-    )
-
-
-def printed(values, decimals=1):
-    """As the thesis has them."""
-    return [None if value is None else f"{value:.{decimals}f}" for value in values]
+# Table 6.2: counts of 36, by shape; sizes of 2 and 3 cm, each with grating, dot and vibration.
+TABLE_6_2 = {
+    "right": (27, 33, 34, 29, 30, 31),
+    "inverted": (31, 23, 31, 30, 32, 28),
+    "circle": (21, 35, 31, 17, 32, 32),
+    "square": (16, 28, 25, 31, 30, 34),
+    "diamond": (27, 21, 26, 25, 23, 32),
+    "plus": (7, 23, 29, 19, 27, 35),
+}
+METHODS, SIZES = ("grating", "dot", "vibration"), ("small", "large")
+# Its last row, as it is printed; 81.5 is printed as 82.
+TOTALS_6_2 = {
+    "small": (60, 76, 82, 72),
+    "large": (70, 81, 89, 80),
+    "all": (65, 78, 85, 76),
+}
+TABLE_6_3 = {  # counts of 216, presented in rows
+    "right": (184, 6, 5, 5, 11, 5),
+    "inverted": (5, 175, 2, 4, 18, 12),
+    "circle": (9, 7, 168, 14, 13, 5),
+    "square": (13, 8, 16, 164, 12, 3),
+    "diamond": (5, 12, 37, 4, 154, 4),
+    "plus": (8, 17, 5, 14, 32, 140),
+}
+PRINTED_6_3 = {
+    "right": (85.2, 2.8, 2.3, 2.3, 5.1, 2.3),
+    "inverted": (2.3, 81.0, 0.9, 1.9, 8.3, 5.6),
+    "circle": (4.2, 3.2, 77.8, 6.5, 6.0, 2.3),
+    "square": (6.0, 3.7, 7.4, 75.9, 5.6, 1.4),
+    "diamond": (2.3, 5.6, 17.1, 1.9, 71.3, 1.9),
+    "plus": (3.7, 7.9, 2.3, 6.5, 14.8, 64.8),
+}
+TABLE_6_4 = {"0": (82, 6, 1, 1), "45": (1, 77, 9, 3), "90": (0, 6, 78, 6), "-45": (2, 4, 8, 76)}
+PRINTED_6_4 = {
+    "0": (91.1, 6.7, 1.1, 1.1),
+    "45": (1.1, 85.6, 10.0, 3.3),
+    "90": (0.0, 6.7, 86.7, 6.7),
+    "-45": (2.2, 4.4, 8.9, 84.4),
+}
+# Every F of chapters 4 and 6 with its printed p, which has no correction.
+F_TESTS = [
+    (10.849, 2, 10, 0.003), (2.841, 2, 10, 0.105), (0.693, 2, 16, 0.514), (2.364, 10, 80, 0.017),
+    (4.420, 5, 40, 0.003), (0.698, 2, 16, 0.512), (7.955, 2, 16, 0.004), (8.884, 1, 8, 0.018),
+    (4.862, 5, 40, 0.001), (2.75, 10, 90, 0.005), (1.925, 2, 18, 0.175), (1.976, 2, 18, 0.168),
+    (0.336, 2, 18, 0.719), (7.042, 2, 18, 0.006), (5.062, 2, 18, 0.018), (28.47, 1, 8, 0.001),
+]  # fmt: skip
+T_TESTS = [
+    (-3.246, 5, 0.023), (-4.456, 5, 0.007), (-1.745, 5, 0.141), (1.167, 8, 0.277),
+    (1.111, 9, 0.295), (1.495, 9, 0.169), (-3.000, 9, 0.015), (-3.674, 9, 0.005),
+    (-3.597, 9, 0.006), (-2.250, 9, 0.051), (-0.391, 9, 0.705),
+]  # fmt: skip

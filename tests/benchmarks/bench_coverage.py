@@ -1,216 +1,167 @@
-"""Coverage of the analysis's 95 % intervals; its tables stand in docs/validation.md.
+"""False positives and coverage of the analysis: 20,000 studies of each kind, through its functions.
 
-`OMP_NUM_THREADS=1 python -m tests.benchmarks.bench_coverage` writes them there: every number
-comes from seeds of its own cell, so that a rerun writes the same.
+Run it by itself for the table of docs/analysis.md: ``python -m tests.benchmarks coverage``.
 """
 
 from __future__ import annotations
 
-import sys
-from concurrent.futures import ProcessPoolExecutor
-from itertools import product
-from pathlib import Path
+import os
+from itertools import combinations, product
 from typing import TYPE_CHECKING
 
-from tests.benchmarks import coverage_people as people
-from tests.benchmarks import coverage_trials as trials
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+from scipy import special
+
 from tests.benchmarks.timing import Result
+from vbraille.analysis import designs, stats
+from vbraille.analysis.power import MOST_LOG_ODDS, NODES, WEIGHTS
+from vbraille.analysis.thresholds import find_threshold
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator
 
-    from tests.benchmarks.coverage_people import Found
+STUDIES = 20_000
+PEOPLE = (3, 4, 6, 8, 12)
+SHARES = (0.05, 0.2, 0.5, 0.8, 0.95, 0.98)
+MIDDLE = (0.2, 0.5, 0.8)
+TRIALS = 26
+SPREAD, DIFFERING = 1.0, 0.3  # of people, and of each condition, in log odds
+READERS = 1000
 
-DOCUMENT = Path("docs/validation.md")
-BEGIN, END = "<!-- coverage: begin -->", "<!-- coverage: end -->"
-STUDIES, FEWER, SLOW, FEWEST = 10_000, 1_000, 500, 100
-LOW, HIGH = 93.0, 98.0
-TRIALS = (40, 78)
-ANSWERS = (130, 260, 520, 1040, 2080)
-PROCESSES = 2
 
-Table = tuple[str, list[str], list[list[str]], list["Found"]]
+def middle_of(share: float, spread: float) -> float:
+    """Log odds whose share, averaged over people, is this."""
+    low, high = -MOST_LOG_ODDS, MOST_LOG_ODDS
+    for _ in range(60):
+        middle = (low + high) / 2
+        mean = special.expit(middle + spread * NODES) @ WEIGHTS / WEIGHTS.sum()
+        low, high = (middle, high) if mean < share else (low, middle)
+    return middle
+
+
+def read(random, shares, people, trials) -> stats.Floats:
+    """Shares of people in conditions, float64[studies, people, conditions].
+
+    `shares` has one share for all conditions, or one for each, and `trials` the number of trials of
+    each condition, or of each person and condition.
+    """
+    spread = np.hypot(SPREAD, DIFFERING)
+    trials = np.asarray(trials)
+    own = np.array([middle_of(share, spread) for share in np.atleast_1d(shares)])
+    own = own + SPREAD * random.standard_normal((STUDIES, people, 1))
+    own = own + DIFFERING * random.standard_normal((STUDIES, people, trials.shape[-1]))
+    return random.binomial(np.broadcast_to(trials, own.shape[1:]), special.expit(own)) / trials
+
+
+def found(p) -> float:
+    """Share of studies with a p of 0.05 or less, in percent."""
+    return 100 * float((p <= stats.ALPHA).mean())
+
+
+def any_pair(values) -> tuple[float, float]:
+    """Percent of studies in which any pair is found, and in which p and interval are at odds."""
+    pairs = [pair.test for pair in designs.pairs_of(values, [values.shape[-1]])]
+    p, k = stats.holm(np.stack([pair.p for pair in pairs], axis=-1))
+    odds = np.zeros(len(values), bool)
+    for n, pair in enumerate(pairs):
+        low, high = stats.t_interval(pair.value, pair.error, pair.df, k[:, n])
+        odds |= ~np.isnan(p[:, n]) & ((p[:, n] <= stats.ALPHA) != ((low > 0) | (high < 0)))
+    return found(np.nanmin(np.where(np.isnan(p), 1, p), axis=-1)), 100 * float(odds.mean())
+
+
+def false_positives() -> Iterator[Result]:
+    random = np.random.default_rng(1)
+    worst = dict.fromkeys(("2 conditions", "3 conditions, any pair", "3 conditions, F", "2 groups"))
+    odds = 0.0
+    for people, share in product(PEOPLE, SHARES):
+        three = read(random, share, people, [TRIALS] * 3)
+        groups = read(random, share, 2 * people, [TRIALS])[..., 0]
+        pair, odd = any_pair(three)
+        odds = max(odds, odd)
+        effect = stats.effect_within(three @ stats.contrasts([3], (0,)))
+        rates = {
+            "2 conditions": any_pair(three[..., :2])[0],
+            "3 conditions, any pair": pair,
+            "3 conditions, F": found(effect.p),
+            "2 groups": found(stats.welch(groups[:, :people], groups[:, people:]).p),
+        }
+        for name, rate in rates.items():
+            told = (rate, people, share)
+            worst[name] = max(worst[name] or told, told)
+    for name, (rate, people, share) in worst.items():
+        got = f"{rate:.1f} % ({people} people, share {share:g})"
+        yield Result(f"false positives, largest: {name}", "≤ 6 %", got, rate <= 6)
+    yield Result("p and interval at odds", "0", f"{odds:g} %", odds == 0)
+    for trials, share in product(([20, 80], [8, 120]), (0.5, 0.9, 0.98)):
+        rate = max(any_pair(read(random, share, people, trials))[0] for people in PEOPLE)
+        what = f"false positives, {trials[0]} against {trials[1]} trials, share {share:g}"
+        yield Result(what, "told", f"{rate:.1f} %", met=True)
+    for share in (0.5, 0.9):
+        groups = read(random, share, 15, [TRIALS])[..., 0]
+        rate = found(stats.welch(groups[:, :3], groups[:, 3:]).p)
+        what = f"false positives, 3 against 12 people, share {share:g}"
+        yield Result(what, "told", f"{rate:.1f} %", met=True)
+
+
+def _held(ends, truth) -> float:
+    low, high = ends
+    known = ~np.isnan(low)
+    return 100 * float(((low <= truth) & (truth <= high))[known].mean())
+
+
+def coverage() -> Iterator[Result]:
+    random = np.random.default_rng(2)
+    gaps: dict[bool, list[float]] = {True: [], False: []}
+    means = []
+    for people in PEOPLE:
+        for one, other in combinations(SHARES, 2):
+            values = read(random, [one, other], people, [TRIALS, TRIALS])
+            test = stats.paired(values[..., 0] - values[..., 1])
+            held = _held(stats.t_interval(test.value, test.error, test.df), one - other)
+            gaps[one in MIDDLE and other in MIDDLE].append(held)
+        for share in SHARES:
+            for trials in (
+                [TRIALS],
+                np.array([[8, 26, 120][n % 3] for n in range(people)])[:, None],
+            ):
+                values = read(random, share, people, trials)[..., 0]
+                means.append(_held(stats.mean_share(values), share))
+    for middle, bar, least in ((True, "94-97 %", 94), (False, "≥ 86 %", 86)):
+        where = "shares .2 to .8" if middle else "shares .05 to .98"
+        got = f"{min(gaps[middle]):.1f} to {max(gaps[middle]):.1f} %"
+        yield Result(f"coverage, differences, {where}", bar, got, min(gaps[middle]) >= least)
+    got = f"{min(means):.1f} to {max(means):.1f} %"
+    yield Result("coverage, mean share", "≥ 90 %", got, min(means) >= 90)
+    held = []
+    for people in PEOPLE:
+        own = 0.3 * random.standard_normal((STUDIES, people, 1))
+        taken = np.log(random.gamma(4, 0.25, (STUDIES, people, 20))) + own
+        truth = special.digamma(4) + np.log(0.25)
+        held.append(_held(stats.mean_interval(taken.mean(axis=-1)), truth))
+    got = f"{min(held):.1f} to {max(held):.1f} %"
+    yield Result("coverage, geometric mean duration", "≥ 91 %", got, min(held) >= 91)
+
+
+def thresholds() -> Iterator[Result]:
+    levels = np.linspace(0.25, 1.75, 7)
+    for alarms, trials in product((0.02, 0.1, 0.3), (12, 24)):
+        random = np.random.default_rng([3, trials])
+        at = np.repeat(levels, trials)
+        share = alarms + (1 - alarms - 0.02) * special.expit((at - 1) / 0.25)
+        low, high = [], []
+        for _ in range(READERS):
+            blanks = int(random.binomial(trials, alarms)), trials
+            ends = find_threshold(at, random.random(at.size) < share, blanks=blanks)
+            low.append(ends.low)
+            high.append(ends.high)
+        held = _held((np.array(low), np.array(high)), 1.0)
+        what = f"coverage, threshold, {100 * alarms:.0f} % false alarms, {trials} trials a level"
+        yield Result(what, "93-97 %", f"{held:.1f} %", 92.5 <= held <= 97.5)
 
 
 def run() -> Iterator[Result]:
-    for name, table in tables():
-        yield _result(name, table[3])
-
-
-def tables() -> Iterator[tuple[str, Table]]:
-    """Each table by its name: what it says, its heads, its rows, and what its cells found."""
-    with ProcessPoolExecutor(PROCESSES) as pool:
-        every = list(product(people.SHARES, people.SPREAD))
-        # With the middle at a half the mean is a half as well.
-        inner = [cell for cell in every if cell[0] != people.SHARES[0]]
-        for centred, what, columns in (
-            ("mean", "mean share", every),
-            ("middle", "share of the middle of the log odds", inner),
-        ):
-            yield (
-                f"shares, {centred}",
-                _grid(
-                    f"Mean share over people ({STUDIES:,} studies a cell), by {what} and SD of log "
-                    f"odds",
-                    [(n, t) for n in people.PEOPLE for t in TRIALS],
-                    "{} people, {} trials",
-                    columns,
-                    "{}, SD {}",
-                    lambda row, column, c=centred: pool.submit(
-                        people.shares, *row, *column, c, STUDIES
-                    ),
-                ),
-            )
-        yield (
-            "shares of few answers",
-            _grid(
-                f"The same of a character: few answers of each person ({STUDIES:,} studies)",
-                [(n, t) for n in people.PEOPLE for t in (3, 15)],
-                "{} people, {} answers",
-                every,
-                "{}, SD {}",
-                lambda row, column: pool.submit(people.shares, *row, *column, "mean", STUDIES),
-            ),
-        )
-        yield (
-            "mean durations",
-            _grid(
-                f"Mean duration, by SD of its logarithm over people ({FEWER:,} studies)",
-                [(n,) for n in people.PEOPLE],
-                "{} people",
-                [(0.3,), (0.5,)],
-                "SD {}",
-                lambda row, column: pool.submit(people.durations, *row, *column, FEWER),
-            ),
-        )
-        yield (
-            "differences",
-            _grid(
-                f"Difference of two conditions' shares of 40 trials, by mean share and SD "
-                f"({FEWER:,} studies)",
-                [(n,) for n in people.PEOPLE],
-                "{} people",
-                every,
-                "{}, SD {}",
-                lambda row, column: pool.submit(people.differences, *row, *column, FEWER),
-            ),
-        )
-        yield (
-            "preferred values",
-            _grid(
-                f"Preferred value of 0.5 to 3 mm, by mean and SD over people ({SLOW:,} studies)",
-                [(n,) for n in (1, *people.PEOPLE[:4])],
-                "people: {}",
-                list(product((1.75, 2.0, 2.6), (0.2, 0.4, 0.8))),
-                "{} mm, SD {}",
-                lambda row, column: pool.submit(people.preference, *row, *column, SLOW),
-            ),
-        )
-        yield (
-            "slopes",
-            _grid(
-                f"Slope of one participant's right answers, by share and its change "
-                f"({FEWER:,} studies)",
-                [(t,) for t in TRIALS],
-                "{} trials",
-                [(0.5, 0.0), (0.5, 0.3), (0.8, 0.0), (0.8, 0.3), (0.95, 0.0), (0.95, 0.08)],
-                "{}, change {}",
-                lambda row, column: pool.submit(trials.slopes, *row, *column, FEWER),
-            ),
-        )
-        of_people = [("people", n) for n in people.PEOPLE[1:]]
-        yield (
-            "correlations",
-            _grid(
-                f"Correlation of duration and legibility, by share ({FEWER:,} studies)",
-                [("trials", t) for t in TRIALS] + of_people,
-                "{1} {0}",
-                [(share,) for share in people.SHARES],
-                "{}",
-                lambda row, column: pool.submit(
-                    trials.correlations if row[0] == "trials" else trials.correlations_of_people,
-                    row[1],
-                    *column,
-                    FEWER,
-                ),
-            ),
-        )
-        yield "transmitted bits", _bits(pool)
-
-
-def _grid(
-    title: str,
-    rows: Sequence[tuple],
-    row_name: str,
-    columns: Sequence[tuple],
-    column_name: str,
-    submit: Callable,
-) -> Table:
-    found = [[submit(row, column) for column in columns] for row in rows]
-    cells = [[future.result() for future in line] for line in found]
-    heads = ["", *(column_name.format(*column) for column in columns)]
-    lines = [
-        [row_name.format(*row), *(cell.text() for cell in line)]
-        for row, line in zip(rows, cells, strict=True)
-    ]
-    return title, heads, lines, [cell for line in cells for cell in line]
-
-
-def _bits(pool: ProcessPoolExecutor) -> Table:
-    """Errors and coverage of transmitted bits, where a number is given."""
-    heads = [
-        "reader", "bits", "answers", "plug-in, mean error", "corrected, mean error",
-        "typical error", "coverage", "number given (%)",
-    ]  # fmt: skip
-    waiting = [
-        (name, answers, pool.submit(trials.bits, shares, answers, FEWEST))
-        for name, shares in trials.readers().items()
-        for answers in ANSWERS
-    ]
-    lines, cells = [], []
-    for name, answers, future in waiting:
-        bits = future.result()
-        found = bits.found
-        ours = [f"{bits.error:+.2f}", f"{bits.typical_error:.2f}", f"{found.coverage:.1f}"]
-        lines.append(
-            [name, f"{bits.truth:.2f}", str(answers), f"{bits.plain_error:+.2f}"]
-            + (ours if found.given else ["none"] * 3)
-            + [f"{100 * found.given / found.studies:.0f}"]
-        )
-        cells.append(found)
-    return f"Transmitted bits ({FEWEST} tables a row)", heads, lines, cells
-
-
-def _result(name: str, cells: Sequence[Found]) -> Result:
-    given = [cell.coverage for cell in cells if cell.given]
-    held = sum(LOW <= coverage <= HIGH for coverage in given)
-    return Result(
-        f"95 % intervals of {name}: cells in which {LOW:g} to {HIGH:g} % hold the truth",
-        "all",
-        f"{held} of {len(given)}; {min(given):.1f} to {max(given):.1f} %",
-        held == len(given),
-    )
-
-
-def _markdown(table: Table) -> str:
-    title, heads, lines, _ = table
-    rows = [heads, ["---"] * len(heads), *lines]
-    return f"**{title}**\n\n" + "".join(f"| {' | '.join(row)} |\n" for row in rows)
-
-
-def _write(made: Sequence[str]) -> None:
-    """Put the tables into the document, in place of those that are there."""
-    text = DOCUMENT.read_text(encoding="utf-8")
-    before, _, rest = text.partition(BEGIN)
-    _, _, after = rest.partition(END)
-    if not after:
-        sys.exit(f"{DOCUMENT} has no place for the tables, between {BEGIN} and {END}")
-    DOCUMENT.write_text(f"{before}{BEGIN}\n{chr(10).join(made)}{END}{after}", encoding="utf-8")
-
-
-if __name__ == "__main__":
-    every = []
-    for name, table in tables():
-        print(_result(name, table[3]).row(), flush=True)
-        every.append(_markdown(table))
-    _write(every)
+    yield from false_positives()
+    yield from coverage()
+    yield from thresholds()

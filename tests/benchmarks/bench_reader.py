@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tests.benchmarks.timing import Result, vbraille
-from vbraille.sessions.planning.protocolfiles import builtin_text
+from vbraille.sessions.planning.loading import FOLDER
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -82,9 +82,8 @@ def _search(folder: Path, protocol: str) -> float:
 
 
 def _contrasts(folder: Path, condition: str) -> Result:
-    protocol = _only(folder, condition)
     shares = [
-        legibility(folder, protocol, 1, NOISE, "--contrast", f"{contrast:g}")[condition]
+        legibility(folder, _only(folder, condition, contrast), 1, NOISE)[condition]
         for contrast in CONTRASTS
     ]
     return Result(
@@ -96,24 +95,22 @@ def _contrasts(folder: Path, condition: str) -> Result:
     )
 
 
-def _only(folder: Path, condition: str) -> str:
+def _only(folder: Path, condition: str, contrast: float = 1.0) -> str:
     """A protocol of the letters in one condition alone."""
-    path = folder / f"{condition}.toml"
+    path = folder / f"{condition}-{contrast:g}.toml"
     conditions = re.compile(r'\[\[conditions\]\]\nname = "(\w+)"\n.*\n\n')
-    path.write_text(
-        conditions.sub(lambda m: m[0] if m[1] == condition else "", builtin_text("letters"))
-    )
+    text = (FOLDER / "letters.toml").read_text("utf-8")
+    text = conditions.sub(lambda m: m[0] if m[1] == condition else "", text)
+    path.write_text(text.replace("[display]\n", f"[display]\ncontrast = {contrast:g}\n"))
     return str(path)
 
 
-def legibility(
-    folder: Path, protocol: str, participant: int, noise: float, *options: str
-) -> dict[str, float]:
+def legibility(folder: Path, protocol: str, participant: int, noise: float) -> dict[str, float]:
     """Share of the letters that a simulated reader identifies, each in its place, by condition."""
     with tempfile.TemporaryDirectory(dir=folder) as name:
-        session = str(Path(name) / "session")
+        session = str(Path(name) / "one.session")
         who = ["--participant", f"P{participant:02}", "--seed", str(participant)]
-        how = ["--answers", f"simulated:{noise:g}", "--hand", "device", "--fast", *options]
+        how = ["--answers", f"simulated:{noise:g}", "--hand", "slow", "--fast"]
         command = vbraille("session", "run", protocol, *who, *how, "--out", session)
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         export = vbraille("session", "export", session)

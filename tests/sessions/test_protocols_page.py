@@ -1,62 +1,59 @@
-"""The page of protocols: each of its examples is a protocol that a session follows to its end."""
+"""The page of protocols: each example is a protocol that is planned, and all keys are there."""
 
 import re
 import tomllib
 
+import msgspec
 import pytest
+from msgspec import inspect
 
-from tests.documents import DOCS, protocol_tables
-from tests.sessions.sittings import Session, of
-from vbraille.sessions.planning.making import make_plan
-from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol, shipped_text
-from vbraille.sessions.record.folder import check_folder
+from tests.documents import DOCS
+from tests.sessions.sittings import HEAD
+from vbraille.errors import InputError
+from vbraille.sessions.planning.loading import FOLDER, OWN_FILE, parse_protocol
+from vbraille.sessions.planning.plan import make_plan
+from vbraille.sessions.planning.protocol import ProtocolFile
 
 PAGE = (DOCS / "protocols.md").read_text(encoding="utf-8")
-HEAD = """
-format = 1
-name = "page"
-title = "An example of the page"
-source = "ours"
-model = "vbd"
-"""
-REST = {
-    "design": '[design]\nkind = "list"\nstrings = ["ac", "ca"]\nrepeats = 2\n',
-    "display": "[display]\ndot_row = 1\n",
-}
-_MOST_RUN = 12  # trials of a session that is run
+DESIGN = '[design]\nkind = "list"\nstrings = ["ac", "ca"]\n'
 
 
 def examples():
     """Protocols of the page; those that are a part of a file with what they lack."""
     for text in re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL):
         given = tomllib.loads(text)
-        lacking = [] if "format" in given else [t for n, t in REST.items() if n not in given]
-        yield text if "format" in given else HEAD + "".join(lacking) + text
+        head = "" if "name" in given else HEAD
+        yield head + text + ("" if "design" in given else DESIGN)
 
 
-@pytest.mark.parametrize("toml", list(examples()))
-def test_an_example_is_a_protocol_that_a_session_follows(toml, tmp_path):
-    protocol = parse_protocol(toml, "page.toml", beside=shipped_text)
-    plan = make_plan(protocol, "P01", 1)
-    assert len(plan.trials) == protocol.trials
-    if (
-        len(plan.trials) > _MOST_RUN
-        or protocol.written
-        or protocol.pictures
-        or protocol.needs_conventional
-    ):
-        return
-    session = Session(tmp_path / "s", toml, participant="P01")
-    sat = session.sit()
-    assert sat.progress.ended
-    assert sat.progress.done == len(of(sat.events, "answer"))
-    assert all(finding.good for finding in check_folder(session.folder))
+@pytest.mark.parametrize("text", list(examples()))
+def test_an_example_is_planned(text):
+    beside = {path.name: path.read_bytes() for path in FOLDER.glob("*.scene")}
+    protocol = parse_protocol({OWN_FILE: text.encode(), **beside}, "page.toml")
+    assert make_plan(protocol, "P01", 1).trials
 
 
-def test_each_table_has_an_example():
-    named = set(re.findall(r"key of `\[\[?(\w+)\]", "\n".join(r[0] for r in protocol_tables())))
-    assert named <= {name for toml in examples() for name in tomllib.loads(toml)}
+def tables(kind, found):
+    """All tables that a type may have in it."""
+    if isinstance(kind, inspect.StructType) and kind.cls not in found:
+        found[kind.cls] = kind
+        for field in kind.fields:
+            tables(field.type, found)
+    for inner in (getattr(kind, "item_type", None), *getattr(kind, "types", ())):
+        if inner is not None:
+            tables(inner, found)
+    return found
 
 
-def test_the_example_that_comes_with_the_program_is_planned():
-    assert load_protocol("factors").trials == 68
+def test_every_key_and_every_kind_is_on_the_page():
+    for kind in tables(inspect.type_info(ProtocolFile), {}).values():
+        for field in kind.fields:
+            assert re.search(rf"\b{field.encode_name}\b", PAGE), (kind.cls, field.encode_name)
+        if kind.tag_field:
+            assert f'"{kind.tag}"' in PAGE
+
+
+def test_what_the_page_does_not_have_is_refused():
+    with pytest.raises(InputError, match="line 4"):
+        parse_protocol({OWN_FILE: f"{HEAD}other = 1\n{DESIGN}".encode()}, "page.toml")
+    assert msgspec.structs.fields(ProtocolFile)

@@ -1,1 +1,1 @@
-"""Choice of the next question by the answers so far; it knows no file, no device and no clock."""
+"""Questions chosen by the answers: staircases, QUEST+, and estimates on a grid."""

@@ -1,134 +1,116 @@
-r"""Sessions in, tables and figures out. Sees no device and no engine.
+"""Trials in; tables, the planned comparison, and a report out.
 
-`analyse` reads sessions and tables of trials, `analyse_scores` a table of scores; both give
-`vbraille.analysis.results.Results`, whose tables are pandas data frames:
-
->>> from pathlib import Path
->>> from tempfile import mkdtemp
->>> path = Path(mkdtemp(), "trials.csv")
->>> _ = path.write_text("participant,condition,presented,answered\nP1,T0,ab,ab\nP1,T0,ca,c?\n")
->>> results = analyse([path])
->>> results.table("legibility")[["participant", "condition", "trials", "correct", "legibility"]]
-  participant condition  trials  correct  legibility
-0          P1        T0       2        1         0.5
-
-Inside, `input` reads and checks what is given. Each module of `measures` makes tables for one
-question, and `figures` says what to draw of them. `primary` answers what the study asks, and
-`chapters` puts all together as `results`, which `report` writes. `statistics` knows plain numbers
-alone.
+analysis = analyse(["P01.session", "P02.session"])
+analysis.write("report")
 """
 
 from __future__ import annotations
 
-from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.errors import InputError
+from vbraille.errors import InputError, needing_extras
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
-    from vbraille.analysis.results import Results
-
-__all__ = ["analyse", "analyse_scores"]
+    from vbraille.analysis.report import Analysis
 
 
 def analyse(
-    paths: str | PathLike[str] | Iterable[str | PathLike[str]],
+    paths: str | Path | Sequence[str | Path],
     *,
-    exclude: Mapping[str, str] | None = None,
     protocol: str | None = None,
+    measure: str | None = None,
     factors: Sequence[str] | None = None,
-    correction: str | None = None,
-    marks: Sequence[int] | None = None,
-    seed: int | None = None,
-    report: Callable[[int, int], None] = lambda _done, _parts: None,
-) -> Results:
-    """Analyse sessions and tables of trials together.
+    exclude: Mapping[str, str] | None = None,
+) -> Analysis:
+    """Analyse sessions and tables of trials.
 
     Parameters
     ----------
     paths
-        Directories of sessions, and CSV files with the columns ``participant``, ``condition``,
-        ``presented`` and ``answered``, in any order; one may stand by itself.
-    exclude
-        Participants who are left out, each with the reason.
+        Files of sessions, and tables in CSV with the columns participant, presented and answered;
+        one, or several.
     protocol
-        Name of the protocol whose trials are taken; None takes those of all.
-    factors
-        Columns by which trials are compared; those that the protocol plans if not given, and
-        without a protocol the column ``condition``.
-    correction
-        How p are corrected for their number: "none", "bonferroni", "holm" or "fdr"; as planned if
-        not given.
-    marks
-        Errors above these counts are marked in the report's confusion matrices; 4 and 9 if not
-        given.
-    seed
-        Seed of random draws; the same one each time if not given.
-    report
-        Told how many parts of the work are done, out of how many: each path that is read is one,
-        and so are the measures that are compared, and all else.
+        Name of the protocol whose trials are taken; None if there is only one.
+    measure, factors
+        What is compared, and the columns by whose levels; None as the protocol plans, or as is
+        usual for the question.
+    exclude
+        People who are left out, each with the reason.
 
     Raises
     ------
     InputError
-        If something is no session and no table of trials, cannot be read, or leaves nothing to
-        analyse.
-    ValueError
-        If there is no such correction.
-    VbrailleError
-        If a session has lost what it began with.
+        If something cannot be read or compared.
     """
-    # Imported here, so that a program that only offers this function need not wait for statistics.
-    from vbraille.analysis.chapters import STAGES, analyse_study, options_of
-    from vbraille.analysis.input.study import load_study
+    with needing_extras():
+        from vbraille.analysis import primary, report
+        from vbraille.analysis.methods import methods
+        from vbraille.analysis.plan import asked_of, leave_out, plan_of
+        from vbraille.analysis.read import read_trials
 
-    try:
-        options = options_of(
-            correction=correction,
-            factors=None if factors is None else tuple(factors),
-            marks=marks,
-            seed=seed,
-        )
-        given = [Path(p) for p in ([paths] if isinstance(paths, str | PathLike) else paths)]
-    except TypeError:
-        raise InputError(
-            f"paths are {paths!r:.40} and factors {factors!r:.40}; give a path or several, and a "
-            f"list of names"
-        ) from None
-    read, parts = len(given), len(given) + STAGES
-    study = load_study(
-        given,
-        exclude=exclude,
-        protocol=protocol,
-        report=lambda done: report(done, parts),
+    trials = read_trials(_listed(paths), protocol=protocol, exclude=exclude)
+    plan = plan_of(trials, measure, factors)
+    leave_out(trials, plan)
+    asked = asked_of(trials, plan)
+    result = primary.compare(asked, plan) if plan.measure else None
+    tables = {} if result is None else report.tables_of(result)
+    people = asked["participant"].nunique()
+    return report.Analysis(
+        report.title_of(result, plan.question, people),
+        result,
+        tables | report.all_tables(trials, plan, asked),
+        trials.warnings + plan.departures + (result.warnings if result else []),
+        trials.notes,
+        trials.left_out + (result.left_out if result else []),
+        methods(trials, result),
+        trials.sources,
     )
-    return analyse_study(study, options, lambda done: report(read + done, parts))
 
 
-def analyse_scores(
-    path: str | PathLike[str], *, correction: str | None = None, seed: int | None = None
-) -> Results:
-    """Compare the levels of a table of scores.
-
-    Parameters
-    ----------
-    path
-        CSV file with the columns ``participant``, ``score``, and one or more columns of what was
-        varied.
-    correction, seed
-        What they are in `analyse`.
+def analyse_scores(path: str | Path) -> Analysis:
+    """Analyse a table of scores: columns participant, one to four factors, and score.
 
     Raises
     ------
     InputError
-        If the file is no such table.
-    ValueError
-        If there is no such correction.
+        If it is no such table.
     """
-    from vbraille.analysis.chapters import compare_scores, options_of
-    from vbraille.analysis.input.study import load_scores
+    with needing_extras():
+        from vbraille.analysis import primary, report
+        from vbraille.analysis.methods import of_tests
 
-    return compare_scores(*load_scores(Path(path)), options_of(correction=correction, seed=seed))
+    result = primary.compare_scores(path)
+    return report.Analysis(
+        report.title_of(result, "", 0),
+        result,
+        report.tables_of(result),
+        left_out=result.left_out,
+        methods=of_tests(result),
+        sources=[str(path)],
+    )
+
+
+def _listed(paths: str | Path | Sequence[str | Path]) -> list[Path]:
+    """Return paths, one or several, as a list."""
+    given = [paths] if isinstance(paths, str | Path) else list(paths or ())
+    if not given:
+        raise InputError("nothing is given to analyse; give files of sessions, or tables")
+    return [Path(path) for path in given]
+
+
+def methods_of(paths: str | Path | Sequence[str | Path]) -> list[str]:
+    """Return the paragraph on what was done in sessions, a sentence each.
+
+    Raises
+    ------
+    InputError
+        If one cannot be read.
+    """
+    with needing_extras():
+        from vbraille.analysis.methods import of_sessions
+        from vbraille.analysis.read import read_trials
+
+    return of_sessions(read_trials(_listed(paths)))

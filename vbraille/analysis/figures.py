@@ -1,464 +1,215 @@
-"""Figures of results, each with what it shows in words."""
+"""Figures for the report and for a paper: straight matplotlib.
+
+"Figure" numbers are those of Lévesque (2009).
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import io
+from typing import TYPE_CHECKING
 
+import matplotlib
 import numpy as np
+from matplotlib.figure import Figure
+from pandas import DataFrame, Series
 
-from vbraille.analysis.input.trials import UNREAD, cell_keys, name_string, times
-from vbraille.analysis.measures.discrimination import SHAPE_OF
-from vbraille.analysis.results import (
-    OTHER,
-    PARTICIPANT,
-    SESSION,
-    TRIAL,
-    Column,
-    Kind,
-    ReportFigure,
-    Schema,
-    parameter_words,
-    to_print,
-)
-from vbraille.analysis.statistics.psychometric import SHAPES
-from vbraille.pictures.charts import Bars, Curve, Matrix, Path, Paths, Rise, Rises, Runs, Series
-from vbraille.wording import count
+from vbraille.analysis.measures import LOGS, SHARES
+from vbraille.analysis.primary import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable
 
-    from vbraille.analysis.input.sessions import Example, SessionTrials
-    from vbraille.analysis.results import ResultTable, Row
-    from vbraille.pictures.charts import Chart, Numbers
+    from matplotlib.axes import Axes
 
+    from vbraille.analysis.primary import Result
 
-def interval_words(row: Row, kind: Kind, unit: str = "") -> str:
-    """Words for a row's 95 % interval."""
-    low, high = row.get("low"), row.get("high")
-    if low is None or high is None:
-        return "without an interval"
-    return f"95 % interval {to_print(low, kind)} to {to_print(high, kind)}{unit}"
-
-
-_SHARE = ("legibility", "low", "high")  # columns of a share with its interval
-MOST_ERRORS = 12  # kinds of errors that are drawn
+# The same figure gives the same bytes.
+STYLE = {"svg.hashsalt": "vbraille", "axes.spines.top": False, "axes.spines.right": False}
+MOST_RUNS = 24
+ACROSS = 3
+MOST_POINTS = 500
+MOST_KINDS = 12
+GREYS = (".85", ".6", ".35", ".1")
 
 
-def legibility(table: ResultTable, averages: ResultTable) -> ReportFigure:
-    """Bars of legibility by participant and condition: Lévesque 2009, figs. 4.7 and 4.9."""
-    people, conditions = _distinct(table, "participant"), _distinct(table, "condition")
-    at = {(row["participant"], row["condition"]): row for row in table.records()}
-    strings = ("strings read right (%)", _SHARE, 100.0)
-    panels: list[tuple[str, tuple[str, ...], float]] = [strings]
-    if any(row["characters"] >= 2 * row["trials"] for row in at.values() if row["trials"]):
-        panels.append(("characters read right (%)", ("character_legibility",), 100.0))
-    if (table.frame["timed"] > 0).any():
-        panels.append(("mean duration (s)", ("duration_mean_s",), 1.0))
-    drawn = tuple(
-        (
-            label,
-            tuple(
-                _series(condition, [at[who, condition] for who in people], names, scale)
-                for condition in conditions
-            ),
-        )
-        for label, names, scale in panels
-    )
-    means = ", ".join(
-        f"{row['condition']} {to_print(row['legibility'], Kind.PERCENT)} %"
-        for row in averages.records()
-        if row["legibility"] is not None
-    )
-    text = (
-        f"Bars for each participant in each condition, with 95 % intervals of legibility. "
-        f"Averages over participants: {means}."
-    )
-    return ReportFigure(
-        "legibility",
-        "Legibility and duration by participant and condition",
-        text,
-        table.name,
-        Bars("Legibility and duration", "participant", tuple(people), drawn),
-    )
+def means(result: Result) -> Figure:
+    """Draw each cell's mean with its interval, and a line or points for each person."""
+    shares = result.measure.scale == SHARES
+    times = 100 if shares else 1
+    shown = result.means
+    at = np.arange(len(shown))
+    figure = Figure(figsize=(1.5 + 1.1 * len(shown), 3.2))
+    axes = figure.subplots()
+    values = result.cells.to_numpy(float)
+    if result.measure.scale == LOGS:
+        values = np.exp(values)
+        axes.set_yscale("log")
+    axes.bar(at, times * shown["mean"], 0.6, color=".9", edgecolor="k")
+    first = 0
+    groups = Series("", result.cells.index) if result.groups is None else result.groups
+    for _, own in groups.groupby(groups):
+        people = values[result.cells.index.isin(own.index)]
+        places = np.arange(first, first + values.shape[1])
+        axes.plot(places, times * people.T, "o-", color=".45", mfc="w", ms=4, lw=0.7)
+        first += values.shape[1]
+    low, high = shown["mean"] - shown["low"], shown["high"] - shown["mean"]
+    reach = times * np.stack([low, high])
+    axes.errorbar(at, times * shown["mean"], reach, fmt="none", color="k", capsize=4, lw=1.5)
+    axes.set_xticks(at, shown["cell"], rotation=0 if len(shown) < 5 else 45)
+    axes.set_ylabel(result.measure.name + (" (%)" if shares else result.measure.unit))
+    return figure
 
 
-def dots(table: ResultTable, own: ResultTable) -> ReportFigure:
-    """Bars of legibility by number of dots: Lévesque 2009, fig. 4.8."""
-    rows = table.records()
-    points = _points(own.records(), "dots", [row["dots"] for row in rows], "legibility", 100.0)
-    series = _series("all", rows, _SHARE, 100.0, points)
-    shares = ", ".join(
-        f"{row['dots']}: {to_print(row['legibility'], Kind.PERCENT)} %" for row in rows
-    )
-    return ReportFigure(
-        "dots",
-        "Legibility of characters by their number of dots",
-        f"One bar a number of dots, the mean over participants, with 95 % intervals; a circle is "
-        f"a participant (table {own.title}). {shares}.",
-        table.name,
-        Bars(
-            "Legibility by number of dots",
-            "dots of the character",
-            tuple(str(row["dots"]) for row in rows),
-            (("characters read right (%)", (series,)),),
-        ),
-    )
+def confusion(counts: DataFrame) -> Figure:
+    """Draw how often each was answered where another was presented, darker for more."""
+    size = min(2 + 0.2 * counts.shape[1], 14), min(1.5 + 0.2 * counts.shape[0], 10)
+    figure = Figure(figsize=size)
+    axes = figure.subplots()
+    axes.imshow(np.sqrt(counts.to_numpy(float)), cmap="Greys", aspect="auto")
+    axes.set_xticks(range(counts.shape[1]), counts.columns, rotation=90, fontsize=6)
+    axes.set_yticks(range(counts.shape[0]), counts.index, fontsize=6)
+    axes.set_xlabel("answered")
+    axes.set_ylabel("presented")
+    return figure
 
 
-def errors(table: ResultTable, own: ResultTable) -> ReportFigure:
-    """Bars of the kinds of errors: Lévesque 2009, fig. 4.8."""
-    rows = table.records()[:MOST_ERRORS]
-    kinds = [row["error"] for row in rows]
-    points = _points(own.records(), "error", kinds, "share", 100.0)
-    series = _series("all", rows, ("share",), 100.0, points)
-    first = rows[0]
-    part = "" if len(rows) == len(table.rows) else f", of the {len(rows)} most frequent"
-    return ReportFigure(
-        "errors",
-        "Errors by dots added, removed and moved",
-        f"One bar a kind of error{part}: its share of all errors; a circle is a participant's "
-        f"share (table {own.title}). The most frequent is {first['error']}: {first['count']} "
-        f"places, {to_print(first['share'], Kind.PERCENT)} % of all errors.",
-        table.name,
-        Bars("Errors by dots", "error", tuple(kinds), (("of all errors (%)", (series,)),)),
-    )
+def _panels(count: int, high: float) -> tuple[Figure, list[Axes]]:
+    """Return a figure with some panels, three in a row."""
+    down = -(-count // ACROSS)
+    figure = Figure(figsize=(9, 1 + high * down))
+    space = {"hspace": 0.7, "wspace": 0.1}
+    grid = list(figure.subplots(down, ACROSS, sharey=True, squeeze=False, gridspec_kw=space).flat)
+    for axes in grid[count:]:
+        axes.remove()
+    return figure, grid[:count]
 
 
-def choices(table: ResultTable, preferred: ResultTable, own: ResultTable) -> Iterator[ReportFigure]:
-    """Counts of the choices of each value, one figure for a parameter: Lévesque 2009, fig. 3.12."""
-    for liked in preferred.records():
-        name = liked["parameter"]
-        rows = [row for row in table.records() if row["parameter"] == name]
-        most = max(rows, key=lambda row: row["chosen"])
-        said = liked["note"]
-        if liked["preferred"] is not None:
-            said = (
-                f"The preferred value is {to_print(liked['preferred'], Kind.NUMBER)}, "
-                f"{interval_words(liked, Kind.NUMBER)}."
-            )
-        values = [row["value"] for row in rows]
-        whose = [row for row in own.records() if row["parameter"] == name]
-        points = _points(whose, "value", values, "share", 100.0)
-        series = _series("chosen", rows, ("share",), 100.0, points)
-        yield ReportFigure(
-            f"choices_{_file_name(name)}",
-            f"How often each {_in_words(name)} was chosen",
-            f"One bar a value: in which share of its comparisons it was chosen; a circle is a "
-            f"participant (table {own.title}). Most often chosen was {most['value']:g}, "
-            f"{times(most['chosen'])} of {most['presented']}. {said}",
-            table.name,
-            Bars(
-                f"Choices of {_in_words(name)}",
-                _in_words(name),
-                tuple(f"{value:g}" for value in values),
-                (("chosen (%)", (series,)),),
-            ),
-        )
+def over_time(table: DataFrame) -> Figure:
+    """Draw the moving average of each person in each condition, figure 3.14."""
+    runs = list(table.groupby(["participant", "condition"], observed=True))[:MOST_RUNS]
+    figure, panels = _panels(len(runs), 1.3)
+    for axes, (names, run) in zip(panels, runs, strict=True):
+        many = len(run) > MOST_POINTS
+        axes.plot(run["number"], 100 * run["right"], ".", color=".65", ms=3, rasterized=True)
+        axes.plot(run["number"], 100 * run["average"], "k", lw=1, rasterized=many)
+        axes.set_title(", ".join(map(str, names)), fontsize=7)
+    figure.supxlabel("trial")
+    figure.supylabel("right (%), mean of the last 10")
+    return figure
 
 
-def _points(
-    records: Sequence[Row], group: str, groups: Sequence[object], value: str, scale: float
-) -> tuple[Numbers, ...]:
-    """Values of each participant, an array for each group; empty where there is one participant."""
-    of: dict[str, dict[object, float]] = {}
-    for row in records:
-        of.setdefault(row["participant"], {})[row[group]] = scale * row[value]
-    if len(of) < 2:
-        return ()
-    return tuple(tuple(own.get(each) for each in groups) for own in of.values())
+def _bars(labels: Series, parts: dict[str, Series], what: str, unit: str, reach=None) -> Figure:
+    """Draw a bar, or a group of bars, for each label."""
+    figure = Figure(figsize=(min(2 + 0.35 * len(labels) * len(parts), 12), 3))
+    axes = figure.subplots()
+    at = np.arange(len(labels))
+    width = 0.8 / len(parts)
+    for n, (name, values) in enumerate(parts.items()):
+        off = (n - (len(parts) - 1) / 2) * width
+        grey = GREYS[n % len(GREYS)]
+        axes.bar(at + off, values, width, label=name, color=grey, edgecolor="k")
+    if reach is not None:
+        axes.errorbar(at, next(iter(parts.values())), reach, fmt="none", color="k", capsize=3)
+    axes.set_xticks(at, labels.astype(str), rotation=0 if len(labels) < 9 else 90)
+    axes.set_xlabel(what)
+    axes.set_ylabel(unit)
+    if len(parts) > 1:
+        axes.legend(frameon=False, loc="upper left", bbox_to_anchor=(1, 1))
+    return figure
 
 
-def _series(
-    name: str,
-    rows: Sequence[Row],
-    names: Sequence[str],
-    scale: float,
-    points: tuple[Numbers, ...] = (),
-) -> Series:
-    """Values of one kind, a column of rows, and the ends of their intervals, if there are any."""
-    values, lows, highs = (
-        *(tuple(_scaled(row.get(each), scale) for row in rows) for each in names),
-        *((),) * (3 - len(names)),
-    )
-    return Series(name, values, lows, highs, points)
+def legibility(table: DataFrame) -> Figure:
+    """Draw legibility by character of each person in each condition, figure 4.7."""
+    wide = table.pivot(index="participant", columns="condition", values="character_legibility")
+    parts = {str(name): 100 * wide[name] for name in wide}
+    return _bars(wide.index.to_series(), parts, "participant", "characters right (%)")
 
 
-def _distinct(table: ResultTable, name: str) -> list[str]:
-    return table.frame[name].unique().tolist()
+def dots(table: DataFrame) -> Figure:
+    """Draw legibility by the number of dots of a character, figure 4.8."""
+    shares = 100 * table["legibility"]
+    reach = [shares - 100 * table["low"], 100 * table["high"] - shares]
+    return _bars(table["level"], {"": shares}, "dots", "characters right (%)", reach)
 
 
-def _scaled(value: float | None, scale: float) -> float | None:
-    return None if value is None else scale * value
-
-
-def _in_words(parameter: str) -> str:
-    """Words for a parameter with its unit: "dot width (mm)" for dot_width_mm."""
-    words, unit = parameter_words(parameter)
-    return f"{words} ({unit.strip()})" if unit else words
-
-
-def _file_name(name: str) -> str:
-    """Name for the files of a figure: letters and digits of what it shows."""
-    return "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in name)
-
-
-MOST_ROWS = 30  # rows of a matrix that fits upon A4
-
-
-def confusion(table: ResultTable) -> ReportFigure:
-    """Matrix of counts: Lévesque 2009, tables 3.4, 3.5 and 4.1.
-
-    If there are more rows than a page has room for, the figure shows those with the most errors.
-    """
-    shown = table.gathered()
-    errors = table.wrong()
-    text = "No answer was wrong."
-    if errors:
-        worst = sorted(errors, key=lambda error: -error[0])[:3]
-        said = "; ".join(
-            f"{row} for which {column} was answered, {times(n)}" for n, row, column in worst
-        )
-        text = f"{count(len(errors), 'kind')} of confusion. Most frequent: {said}."
-    headings = [column.heading for column in shown.columns[1:]]
-    rows, columns, part = list(shown.rows), list(range(len(headings))), ""
-    if len(rows) > MOST_ROWS:
-        rows, columns = _most_wrong(shown)
-        part = (
-            f" Of {len(shown)} rows the figure has the {len(rows)} with the most errors, and "
-            f"the {len(columns)} most frequent answers to them."
-        )
-    names = [headings[at] for at in columns]
-    known = {name: at for at, name in enumerate(names)}
-    return ReportFigure(
-        table.name,
-        table.title,
-        f"Rows are what was presented, columns what was answered; {UNREAD} is not read."
-        f"{_other(shown, table)}{part} {text}",
-        table.name,
-        Matrix(
-            table.title,
-            "presented",
-            "answered",
-            tuple(str(row[0]) for row in rows),
-            tuple(names),
-            tuple(tuple(_whole(row[at + 1]) for at in columns) for row in rows),
-            table.marks,
-            tuple(known.get(str(row[0])) for row in rows),
-        ),
-    )
-
-
-def _most_wrong(table: ResultTable) -> tuple[list[tuple], list[int]]:
-    """Rows of a matrix with the most errors, in their order, and the columns they use most."""
-    every = table.rows
-    wrong = [
-        sum(_whole(count) for at, count in enumerate(row) if at and not table.is_right(row, at))
-        for row in every
+def errors(table: DataFrame) -> Figure:
+    """Draw the most frequent errors by dots, figure 4.8."""
+    shown = table.head(MOST_KINDS)
+    kinds = [
+        ", ".join(f"{row[name]} {name}" for name in ("added", "removed", "moved") if row[name])
+        for row in shown.to_dict("records")
     ]
-    chosen = sorted(sorted(range(len(wrong)), key=lambda n: -wrong[n])[:MOST_ROWS])
-    rows = [every[n] for n in chosen]
-    used = [sum(_whole(row[at]) for row in rows) for at in range(1, len(table.columns))]
-    columns = sorted(sorted(range(len(used)), key=lambda at: -used[at])[:MOST_ROWS])
-    return rows, columns
+    return _bars(Series(kinds), {"": 100 * shown["share"]}, "dots", "of all errors (%)")
 
 
-def _other(shown: ResultTable, table: ResultTable) -> str:
-    if shown is table:
-        return ""
-    number = len(table.columns) - len(shown.columns) + 1
-    return f" {OTHER} gathers {number} rare answers that were never presented."
-
-
-def _whole(value: object) -> int:
-    return value if isinstance(value, int) else 0
-
-
-MOST_RUNS = 24  # panels in one figure of curves
-MOST_PAGES = 10  # figures of one kind
-PATHS = Schema(
-    "examples",
-    "Trajectories of the trials that are drawn",
-    "Of each reading pattern one trial: of all sessions, that whose duration is the median of "
-    "theirs. At most 600 ticks of it.",
-    (
-        Column("pattern", "pattern", "reading pattern"),
-        PARTICIPANT,
-        SESSION,
-        TRIAL,
-        Column("presented", "string", "names of its cells"),
-        Column("time_s", "time (s)", "since the trial began", Kind.NUMBER),
-        Column("x_mm", "x (mm)", "place of the array's left column", Kind.NUMBER),
-        Column("counts", "counts", "1 within the time that counts, else 0", Kind.COUNT),
-    ),
-)
-
-
-def over_time(table: ResultTable, slopes: ResultTable) -> Iterator[ReportFigure]:
-    """Single trials and their moving average, `MOST_RUNS` to a figure: Lévesque 2009, fig. 3.14."""
-    whose = ["participant", "session", "condition"]
-    runs = []
-    several = len(table.frame["session"].unique()) > len(table.frame["participant"].unique())
-    for (who, session, condition), rows in table.frame.groupby(whose, sort=False):
-        average = rows["average"].astype(object).where(rows["average"].notna(), None)
-        runs.append(
-            Curve(
-                f"{who}, {session}, {condition}" if several else f"{who}, {condition}",
-                tuple(rows["number"].tolist()),
-                tuple(rows["correct"].tolist()),
-                tuple(average.tolist()),
-            )
-        )
-    sure = [row for row in slopes.records() if row["p"] is not None and row["p"] < 0.05]
-    said = "; ".join(
-        f"{row['participant']}, {row['condition']}, by {to_print(row['slope'], Kind.PERCENT)} % in "
-        f"10 trials"
-        for row in sure
-    )
-    text = (
-        f"A panel a participant and condition; dots are single trials, the curve is the average of "
-        f"the past 10. Legibility changed with p below 0.05: {said or 'nowhere'}."
-    )
-    yield from _pages("over_time", "Legibility over time", text, table, runs, MOST_RUNS, Runs)
-
-
-def examples(sessions: Sequence[SessionTrials]) -> tuple[ResultTable, ReportFigure] | None:
-    """Trajectories, one for each pattern (Lévesque 2009, fig. 3.15); None if there are none."""
-    chosen = list(_chosen(sessions))
-    if not chosen:
-        return None
-    keys = cell_keys(session.protocol for session in sessions)
-    rows = [
-        {
-            "pattern": example.pattern,
-            "participant": example.participant,
-            "session": session,
-            "trial": example.trial,
-            "presented": name_string(example.presented, keys),
-            "time_s": time_s,
-            "x_mm": x_mm,
-            "counts": int(example.start_s <= time_s <= example.end_s),
-        }
-        for session, example in chosen
-        for time_s, x_mm in zip(example.time_s.tolist(), example.left_mm.tolist(), strict=True)
-    ]
-    paths = tuple(
-        Path(
-            f"{example.pattern}: {example.participant}, {name_string(example.presented, keys)}",
-            tuple(example.time_s.tolist()),
-            tuple(example.left_mm.tolist()),
-            example.start_s,
-            example.end_s,
-            example.span_mm,
-            example.dots_mm,
-        )
-        for _, example in chosen
-    )
-    said = "; ".join(
-        f"{example.pattern}: participant {example.participant} read "
-        f"{name_string(example.presented, keys)} in "
-        f"{to_print(example.end_s - example.start_s, Kind.TENTHS)} s (trial {example.trial} of "
-        f"{session})"
-        for session, example in chosen
-    )
-    table = PATHS.fill(rows)
-    return table, ReportFigure(
-        "trajectories",
-        "Typical reading patterns",
-        "Where the array was while a string was read, a trial of each pattern: a band from its "
-        f"left column to its right one, dotted where the time does not count. {said}.",
-        table.name,
-        Paths("Typical reading patterns", paths),
+def choices(table: DataFrame) -> Figure:
+    """Draw how often each value was chosen, figure 3.12."""
+    shares = {"": 100 * table["share"]}
+    return _bars(
+        table["value"].map("{:g}".format), shares, table["parameter"].iloc[0], "chosen (%)"
     )
 
 
-def _chosen(sessions: Sequence[SessionTrials]) -> Iterator[tuple[str, Example]]:
-    """One example of each pattern: the one whose duration is in the middle."""
-    found = [(session.name, example) for session in sessions for example in session.examples]
-    for pattern in dict.fromkeys(sorted(example.pattern for _, example in found)):
-        of = [pair for pair in found if pair[1].pattern == pattern]
-        of.sort(key=lambda pair: (pair[1].end_s - pair[1].start_s, pair[0], pair[1].trial))
-        yield of[(len(of) - 1) // 2]
+def levels(table: DataFrame) -> Figure:
+    """Draw right answers and times by level, with their SD over people, figure 6.7."""
+    figure = Figure(figsize=(8, 3))
+    shares = 100 * table["share"], 100 * table["share_sd"], "right (%)"
+    times = table["taken_s"], table["taken_sd_s"], "time (s)"
+    for axes, (mean, sd, unit) in zip(figure.subplots(1, 2), (shares, times), strict=True):
+        axes.errorbar(table["level"], mean, sd, fmt="ko-", capsize=3, mfc="w")
+        axes.set_xlabel("level, with SD over people")
+        axes.set_ylabel(unit)
+    return figure
 
 
-MOST_RISES = 12  # in one figure
-_POINTS = 80  # of a curve
-_WHOSE = ("question", "participant", "protocol", "level")
-_TOLD = 6  # thresholds that the text tells; the table has all
+def answers(table: DataFrame) -> Figure:
+    """Draw the distribution of answers to each name, figure 6.10."""
+    figure, panels = _panels(len(table), 1.6)
+    for axes, (name, row) in zip(panels, table.iterrows(), strict=True):
+        greys = [".35" if column == name else ".85" for column in table]
+        axes.bar(range(len(row)), 100 * row, color=greys, edgecolor="k")
+        axes.set_xticks(range(len(row)), table.columns, rotation=90, fontsize=6)
+        axes.set_title(str(name), fontsize=8)
+    figure.supylabel("answers (%)")
+    return figure
 
 
-def rises(table: ResultTable, levels: ResultTable) -> Iterator[ReportFigure]:
-    """Psychometric functions, `MOST_RISES` to a figure.
-
-    Parameters
-    ----------
-    table, levels
-        Tables of thresholds, and of answers by level.
-    """
-    answers: dict[tuple[str, ...], list[Row]] = {}
-    for row in levels.records():
-        answers.setdefault(tuple(row[name] for name in _WHOSE), []).append(row)
-    drawn = [row for row in table.records() if tuple(row[n] for n in _WHOSE) in answers]
-    panels = [_panel(row, answers[tuple(row[name] for name in _WHOSE)]) for row in drawn]
-    known = [row for row in drawn if row["threshold"] is not None]
-    said = "; ".join(
-        f"{row['participant']}, {row['level']}: {to_print(row['threshold'], Kind.NUMBER)} "
-        f"({to_print(row['low'], Kind.NUMBER)} to {to_print(row['high'], Kind.NUMBER)})"
-        for row in known[:_TOLD]
-    )
-    more = "; the table has all" if len(known) > _TOLD else ""
-    text = (
-        "A panel for each participant and level; the more trials, the larger the dot, and the "
-        f"curve is the psychometric function. Thresholds with their 95 % intervals: "
-        f"{said or 'none'}{more}."
-    )
-    title = "Answers by level, and thresholds"
-    yield from _pages("thresholds", title, text, levels, panels, MOST_RISES, Rises)
+DRAWN: dict[str, Callable[[DataFrame], Figure]] = {
+    "legibility": legibility,
+    "dots": dots,
+    "errors": errors,
+    "over_time": over_time,
+    "choices": choices,
+    "levels": levels,
+    "answers_names": answers,
+}
+"""Figures by the names of the tables that they show; confusions have `confusion`."""
 
 
-def _pages(
-    name: str,
-    title: str,
-    text: str,
-    table: ResultTable,
-    panels: Sequence[Any],
-    most: int,
-    chart: Callable[[str, tuple[Any, ...]], Chart],
-) -> Iterator[ReportFigure]:
-    """Figures of many panels, so many to a figure; of more than `MOST_PAGES` the table has all."""
-    pages = -(-len(panels) // most)
-    if pages > MOST_PAGES:
-        text += f" Of {pages} pages {MOST_PAGES} are drawn; the table has all."
-    for page in range(min(pages, MOST_PAGES)):
-        of_page = f"{title}, {page + 1} of {pages}" if pages > 1 else title
-        yield ReportFigure(
-            f"{name}_{page + 1}" if page else name,
-            of_page,
-            "As the figure before, of the participants that follow." if page else text,
-            table.name,
-            chart(of_page, tuple(panels[page * most : (page + 1) * most])),
-        )
+def draw(result: Result | None, tables: dict[str, DataFrame]) -> dict[str, bytes]:
+    """Return the content of each figure by the name of its file; the means are a PNG as well."""
+    files = {}
+    with matplotlib.rc_context(STYLE):
+        if result is not None and len(result.cells):
+            figure = means(result)
+            files["means.svg"] = _content(figure, "svg")
+            files["means.png"] = _content(figure, "png")
+        for name, table in tables.items():
+            drawn = confusion if name.startswith("confusion") else DRAWN.get(name)
+            if drawn is not None and len(table):
+                files[f"{name}.svg"] = _content(drawn(table), "svg")
+    return files
 
 
-def _panel(row: Row, answers: list[Row]) -> Rise:
-    answers = [answer for answer in answers if answer["value"] is not None]
-    levels = tuple(answer["value"] for answer in answers)
-    curve: tuple[tuple[float, float], ...] = ()
-    threshold = None
-    if row["threshold"] is not None:
-        x = np.linspace(min(levels), max(levels), _POINTS)
-        rising = SHAPES[SHAPE_OF[row["question"]]](
-            x, np.array(row["threshold"]), np.array(row["spread"])
-        )
-        shares = row["guesses"] + (1 - row["guesses"] - row["lapses"]) * rising
-        curve = tuple(zip(x.tolist(), shares.tolist(), strict=True))
-        threshold = (row["threshold"], row["low"], row["high"])
-    what = "difference of " if row["question"] != "detect" else ""
-    return Rise(
-        f"{row['participant']}, {row['question']}, {row['level']}",
-        f"{what}{_in_words(row['level'])}",
-        levels,
-        tuple(answer["share"] for answer in answers),
-        tuple(answer["trials"] for answer in answers),
-        curve,
-        threshold,
-    )
+def _content(figure: Figure, form: str) -> bytes:
+    content = io.BytesIO()
+    when = {"Date": None} if form == "svg" else None
+    figure.savefig(content, format=form, metadata=when, bbox_inches="tight", dpi=300)
+    return content.getvalue()
+
+
+def alt_of_means(result: Result) -> str:
+    """Return the figure of the means in words."""
+    times, unit = (100, " in percent") if result.measure.scale == SHARES else (1, "")
+    parts = [f"{row.cell} {plain(times * row.mean)}" for row in result.means.itertuples()]
+    return f"Mean {result.measure.name}{unit}: {', '.join(parts)}."

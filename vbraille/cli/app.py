@@ -59,6 +59,7 @@ SECTIONS = {
         "session": "Plan, run and export legibility sessions.",
         "analyse": "Analyse sessions: tables, statistics, a report.",
         "power": "Estimate the power of a study by simulation.",
+        "pilot": "Try a whole study with the simulated reader.",
     },
     "Shell": {
         "setup": "Compile what drives the actuators.",

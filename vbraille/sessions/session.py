@@ -1,175 +1,101 @@
-"""A session from its plan to its record: it is created, run, resumed, and read as rows."""
+"""A session from its plan to its table: it is created, run, resumed, and read as rows."""
 
 from __future__ import annotations
 
 import secrets
-from dataclasses import asdict, replace
-from datetime import datetime
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack, closing
+from dataclasses import asdict
+from datetime import UTC, datetime
+from importlib.metadata import version
+from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from platform import python_version
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self
 
-from vbraille.devices import open_device
-from vbraille.devices.registry import find_driver
-from vbraille.engine.host import Host
+from msgspec import Meta, Struct, ValidationError, convert, structs
+
 from vbraille.errors import InputError, VbrailleError
-from vbraille.files import check_free
-from vbraille.sessions.conditions import USUAL, Conditions
-from vbraille.sessions.planning.making import make_plan
-from vbraille.sessions.planning.nexttrial import procedure_of
+from vbraille.names import likeness
+from vbraille.sessions.planning.loading import load_protocol
+from vbraille.sessions.planning.plan import Plan, make_plan
 from vbraille.sessions.planning.protocol import Protocol
-from vbraille.sessions.planning.protocolfiles import load_protocol
-from vbraille.sessions.planning.spellings import made_by
-from vbraille.sessions.planning.style import CONVENTIONAL
-from vbraille.sessions.record import journal
-from vbraille.sessions.record.folder import FORMAT, Record, create, load, versions
+from vbraille.sessions.planning.values import Look
+from vbraille.sessions.record import record
 from vbraille.sessions.record.progress import Progress
-from vbraille.sessions.running.markers import Markers, parse_markers
-from vbraille.sessions.running.reader import seed_of
-from vbraille.sessions.running.sources import responses_of
-from vbraille.simulation.specs import device_spec, has_hand, refuse_hand, steering_of
-from vbraille.simulation.steering import Pointer
-from vbraille.wording import setting
+from vbraille.sessions.record.record import Content, Record
+from vbraille.simulation.specs import is_simulated
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from vbraille.display import Display
-    from vbraille.sessions.planning.plan import Plan
-    from vbraille.sessions.running.conventional import OnConventional
+    from vbraille.sessions.running.answers import Answers
+    from vbraille.sessions.running.device import MakeEngine, SessionDevice
     from vbraille.sessions.running.liveview import SessionView
-    from vbraille.sessions.running.presenters import RunEngine
-    from vbraille.sessions.running.responses import Responses
-    from vbraille.sessions.running.sources import Source
-    from vbraille.simulation.steering import Steering
-    from vbraille.sounds import Sound
+    from vbraille.sessions.running.markers import Markers
+    from vbraille.sessions.running.paper import Paper, Pins
 
-    Say = Callable[[str], None]
-    # Makes the engine that drives a device, from the device's spec and the display that the
-    # protocol is written for.
-    MakeEngine = Callable[[str, Display], RunEngine]
-
-_MOST_DRAWN = 1_000_000  # so that a seed that is drawn is short enough to be written down by hand
+Say = Callable[[str], None]
+_MOST_DRAWN = 1_000_000  # a seed that is drawn is short enough to be written down by hand
 
 
-def plan_session(
-    protocol: str | Path | Protocol,
-    participant: str,
-    seed: int | None = None,
-    order: int | None = None,
-    texture: float | None = None,
-    contrast: float | None = None,
-    group: str | None = None,
-) -> tuple[Protocol, Plan]:
-    """Make the protocol and the plan of a session; a seed is drawn if none is given.
-
-    `Session.create` describes the arguments.
-    """
-    if not isinstance(protocol, Protocol):
-        protocol = load_protocol(str(protocol))
-    if seed is None:
-        seed = secrets.randbelow(_MOST_DRAWN)
-    plan = make_plan(
-        protocol, participant, seed, order, group=group, texture=texture, contrast=contrast
-    )
-    return protocol.assigned(plan.group), plan
+def _nothing(*_: object) -> None:
+    """Do nothing."""
 
 
-def told_fields(protocol: Protocol, given: Mapping[str, str]) -> dict[str, str]:
-    """Answers to all of the protocol's questions about the participant; empty where none is given.
-
-    Raises
-    ------
-    InputError
-        If the protocol has no such question, or the answer is none of the question's choices.
-    """
-    names = [field.name for field in protocol.fields]
-    for name in given:
-        if name not in names:
-            raise InputError(
-                f"{protocol.name} does not ask for {name!r}; "
-                f"it asks for {', '.join(names) or 'nothing'}"
-            )
-    for field in protocol.fields:
-        value = given.get(field.name)
-        if value is None:
-            continue
-        if field.choices and value not in field.choices:
-            raise InputError(f"{field.name} is {value!r}; it must be {' or '.join(field.choices)}")
-        if not value.isprintable():
-            raise InputError(f"{field.name} is {value!r}; it must be one line of text")
-    return {name: given.get(name, "") for name in names}
-
-
-def head_of(
-    protocol: Protocol,
-    plan: Plan,
-    fields: Mapping[str, str],
-    conditions: Conditions,
-) -> dict[str, Any]:
-    """Content of session.json: who takes part, what is shown, and with which equipment.
+class Conditions(Struct, frozen=True, kw_only=True):
+    """What a session is run with; the record keeps it, and the next run has the same.
 
     Parameters
     ----------
-    protocol, plan, conditions
-        What the session shows, in which order, and with which equipment.
-    fields
-        Answers to the protocol's questions about the participant.
+    device, hand
+        Spec of the device, such as "serial:/dev/ttyACM0", and the hand of a simulated one.
+    answers
+        Source of the answers: "typed", "simulated:NOISE" or the name of a file.
+    rate_hz
+        Frames per second.
+    fast
+        Whether a simulated device runs as fast as the machine can.
+    sound
+        How the participant hears signals.
+    markers
+        Recorder that is sent markers: "lsl", "lsl:NAME", "serial:PORT" or "serial:PORT:BAUD".
+    also
+        Conventional display, such as "brlapi".
     """
-    display = protocol.model.display
-    group = {"group": plan.group} if plan.group else {}
-    also = {} if conditions.also is None else {"also": conditions.also}
-    return {
-        "format": FORMAT,
-        "protocol": protocol.name,
-        "participant": plan.participant,
-        "seed": plan.seed,
-        "order": plan.order,
-        **group,
-        "model": protocol.model.name,
-        "array": {
-            name: getattr(display, name)
-            for name in ("rows", "columns", "column_pitch_mm", "row_pitch_mm")
-        },
-        "mapping": protocol.mapping.name,
-        "geometry": asdict(protocol.geometry),
-        "fields": dict(fields),
-        "device": conditions.device,
-        "hand": conditions.hand,
-        "answers": conditions.answers,
-        "fast": conditions.fast,
-        "rate_hz": conditions.rate_hz,
-        **also,
-        "versions": versions() | (made_by() if protocol.written else {}),
-    }
 
+    device: str = "sim"
+    hand: str = "slow"
+    answers: str = "typed"
+    rate_hz: Annotated[float, Meta(ge=1, le=10_000)] = 1000.0
+    fast: bool = False
+    sound: Literal["auto", "tones", "bell", "none"] = "auto"
+    markers: str = ""
+    also: str = "brlapi"
 
-def _ignore(_sentence: str) -> None:
-    """Ignore a sentence."""
+    def changed(self, changes: Mapping[str, Any]) -> Conditions:
+        """Return conditions with other values.
 
-
-def _nothing() -> None:
-    """Do nothing, where no call was asked for before the array comes to rest."""
+        Raises
+        ------
+        InputError
+            If a value is out of range, or there is no such condition.
+        """
+        if changes.get("answers", self.answers) != self.answers:
+            changes = {"fast": False, **changes}
+        if unknown := set(changes) - set(self.__struct_fields__):
+            raise InputError(f"unknown condition {min(unknown)!r}")
+        try:
+            return convert(structs.asdict(self) | dict(changes), Conditions)
+        except ValidationError as error:
+            raise InputError(f"conditions: {error}") from None
 
 
 class Session:
-    r"""A legibility session: `create` or `resume` it, `run` it, read its `trials`.
+    r"""A session, which is one file.
 
     Parameters
     ----------
-    folder
-        Directory that the session is kept in.
-    protocol, plan
-        What the session shows, and in which order.
-    conditions
-        What the session is run with, such as its device.
-    progress
-        How far the session has come.
-    engine
-        Function that makes the engine which drives the device; None for the engine that the
-        conditions ask for.
-    begun
-        Host process of the usual engine that was begun beforehand, and the channel by which its
-        simulated hand is moved; None to begin one when it is needed.
+    path
+        File of the session.
 
     Examples
     --------
@@ -177,481 +103,420 @@ class Session:
 
     >>> from pathlib import Path
     >>> from tempfile import mkdtemp
-    >>> from vbraille import Conditions, Session
+    >>> from vbraille import Session
     >>> folder = Path(mkdtemp())
     >>> _ = Path(folder, "two.toml").write_text(
-    ...     'format = 1\nname = "two"\ntitle = "Two"\nsource = "ours"\nmodel = "vbd"\n'
+    ...     'name = "two"\ntitle = "Two"\nmodel = "vbd"\n'
     ...     '[design]\nkind = "combinations"\ncharacters = ["a", "c"]\nlength = 1\n'
     ... )
-    >>> fast = Conditions(fast=True, hand="sweep:150")
-    >>> session = Session.create(
-    ...     folder / "two.toml", "P01", folder=folder / "P01", seed=1, conditions=fast
-    ... )
-    >>> _ = session.run("simulated")
+    >>> session = Session.create(folder / "two.toml", "P01", path=folder / "P01.session", seed=1)
+    >>> _ = session.run("simulated", fast=True, hand="sweep:150")
     >>> [row["answered"] == row["presented"] for row in session.trials]
     [True, True]
     """
 
-    def __init__(
-        self,
-        folder: Path,
-        protocol: Protocol,
-        plan: Plan,
-        conditions: Conditions,
-        progress: Progress,
-        engine: MakeEngine | None = None,
-        begun: Any = None,
-    ) -> None:
-        self.folder = folder
-        self.protocol = protocol
-        self.plan = plan
-        self.conditions = conditions
-        self.progress = progress
-        self.fields = told_fields(protocol, {})
-        self._begun = False  # whether the session is on the disk
-        self._resumed: Record | None = None  # as it was read to be resumed
-        self._drawn = False  # whether the seed was drawn, since none was given
-        # The simulated hand differs between participants, and each time that a session is resumed.
-        drawn = f"{plan.protocol} {plan.participant} {plan.seed} hand {len(progress.runs)}"
-        spawned, steering = begun or (None, steering_of(conditions.device))
-        self._steering = steering if has_hand(conditions.device) else None
-        self._pointer: Pointer | None = None
-        if conditions.live is not None:
-            check_live(protocol, conditions, usual=engine is None)
-            self._pointer = Pointer() if has_hand(conditions.device) else None
-        if conditions.markers is not None:
-            parse_markers(conditions.markers)
-        check_conventional(protocol, conditions)
-        spec = device_spec(
-            conditions.device, conditions.hand, seed_of(drawn), self._steering, self._pointer
-        )
-        if conditions.fast and not spec.startswith("sim:"):
-            raise InputError(
-                f"{setting('fast')} is for the simulated device; leave out {setting('device')}"
-            )
-        self._engine: RunEngine | None = None
-        if protocol.medium == "device":
-            wanted = protocol.model.on(protocol.geometry, conditions.rate_hz)
-            if engine is None:
-                channels = [channel for channel in (self._steering, self._pointer) if channel]
-                self._engine = usual_engine(
-                    spec, wanted, protocol, plan, channels, fast=conditions.fast, spawned=spawned
-                )
-            else:
-                self._engine = engine(spec, wanted)
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
 
     @classmethod
     def create(
         cls,
-        protocol: str | Path | Protocol,
+        protocol: str | Path,
         participant: str,
         *,
-        folder: str | Path | None = None,
+        path: str | Path | None = None,
         seed: int | None = None,
         order: int | None = None,
-        texture: float | None = None,
-        contrast: float | None = None,
         group: str | None = None,
+        session: int | None = None,
+        best_from: str | Path | None = None,
         fields: Mapping[str, str] | None = None,
-        conditions: Conditions = USUAL,
-        engine: MakeEngine | None = None,
-        begun: Any = None,
-    ) -> Session:
-        """Plan a new session; nothing is written to the disk before `run`.
+    ) -> Self:
+        """Plan a session, and write its file.
 
         Parameters
         ----------
         protocol
-            Name of a protocol that comes with the program, a TOML file, or the protocol itself.
+            Name of a protocol that comes with the program, or a TOML file.
         participant
             Pseudonym of the participant.
-        folder
-            New directory for the session; PARTICIPANT-PROTOCOL-TIME if none is given.
+        path
+            New file; PARTICIPANT-PROTOCOL.session, with a number if that is there, by default.
         seed
-            Number that all random choices of the plan follow from; one is drawn if none is given.
-        order, texture, contrast, group
-            These are described at `vbraille.sessions.planning.making.make_plan`.
+            Number that all random choices follow from; drawn by default.
+        order, group, session
+            These are described at `make_plan`; the number of the session is found by default.
+        best_from
+            Session of the participant that tells the best texture.
         fields
-            Answers to the protocol's questions about the participant, by the names of the
-            questions; questions that are not answered stay empty.
-        conditions
-            What the session is run with, such as its device.
-        engine
-            Function that makes the engine which drives the device, from the device's spec and the
-            display that is wanted. It is for programs that have a loop of their own; None for
-            the usual engine.
-        begun
-            Host process that was begun beforehand, as for `Session`.
+            Answers to the protocol's questions about the participant, by their names.
 
         Raises
         ------
         InputError
-            If an argument cannot be used, or the directory exists already.
+            If an argument cannot be used.
+        RecordError
+            If the file is there already, or cannot be written.
         """
-        planned, plan = plan_session(protocol, participant, seed, order, texture, contrast, group)
-        name = f"{plan.participant}-{plan.protocol}-{datetime.now():%Y%m%d-%H%M%S}"
-        place = Path(name if folder is None else folder)
-        progress = Progress(plan, procedure=procedure_of(planned, plan))
-        session = cls(place, planned, plan, conditions, progress, engine, begun)
-        session.tell(fields or {})
-        session._drawn = seed is None
-        check_free(place, "folder")
-        return session
-
-    @classmethod
-    def resume(
-        cls,
-        folder: str | Path,
-        *,
-        engine: MakeEngine | None = None,
-        begun: Any = None,
-        **changed: Any,
-    ) -> Session:
-        """Go on with a session that was begun earlier.
-
-        Parameters
-        ----------
-        folder
-            The session's directory.
-        engine, begun
-            Function that makes the engine, or a host process, as for `create`.
-        changed
-            Fields of the `Conditions` that differ from when the session began: device, hand,
-            answers, fast, sound, live, markers or also. If the answers come from elsewhere now, the
-            session is not fast unless that is asked for again.
-
-        Raises
-        ------
-        InputError
-            If the directory holds no session, the session has ended, or an argument cannot be
-            used.
-        VbrailleError
-            If the session's record is damaged.
-        """
-        record = load(Path(folder))
-        if record.journal.damage is not None:
-            raise VbrailleError(
-                f"{record.folder} is damaged: of {journal.NAME} {record.journal.damage}; the "
-                f"{len(record.journal.events)} events before it are whole, and nothing was changed"
-            )
-        progress = record.progress()
-        if progress.ended:
-            raise InputError(f"{record.folder} has ended; session export makes tables of it")
-        began = Conditions.of(record.head)
-        refuse_hand(changed.get("device", began.device), hand=changed.get("hand"))
-        if changed.get("answers", began.answers) != began.answers:
-            changed = {"fast": False, **changed}
-        conditions = replace(began, **changed)
-        session = cls(
-            record.folder, record.protocol, record.plan, conditions, progress, engine, begun
-        )
-        session._begun = True
-        session._resumed = record
-        return session
-
-    def __enter__(self) -> Self:
-        """Hand over the session; at the block's end it lets its device go."""
-        return self
-
-    def __exit__(self, *_exception: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Let the device go, if the session has it; further calls do nothing.
-
-        `run` does so at its end. What was answered stays, and the session can be resumed.
-        """
-        if self._engine is not None:
-            self._engine.close()
+        loaded = load_protocol(str(protocol))
+        path = free_path(participant, loaded.name) if path is None else Path(path)
+        number = session or next_number(path, participant)
+        loaded, plan = plan_session(loaded, participant, seed, order, group, number, best_from)
+        head = {
+            "protocol": loaded.name,
+            "participant": participant,
+            "seed": plan.seed,
+            "order": plan.order,
+            "group": plan.group,
+            "session": plan.session,
+            "fields": check_fields(loaded, fields or {}),
+            "made": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}",
+        }
+        record.create(path, head, loaded.files, plan)
+        return cls(path)
 
     @property
-    def record(self) -> Record:
-        """Content of the session's directory, which exists once the session was run."""
-        return load(self.folder)
+    def content(self) -> Content:
+        """Content of the file: its head, plan and events."""
+        return record.read(self.path)
+
+    @property
+    def last_conditions(self) -> Conditions:
+        """What the session was run with last."""
+        return _conditions_now(self.content, {})
 
     @property
     def trials(self) -> list[dict[str, Any]]:
-        """A row for each planned trial, as `vbraille session export` writes them.
+        """A row for each planned trial, as `vbraille session export` writes them."""
+        from vbraille.sessions.record.trials import rows  # loads compiled code
 
-        The columns are described in `vbraille.sessions.record.codebook.COLUMNS`.
-        """
-        from vbraille.sessions.record.export import rows
-
-        return rows(self.record)
-
-    def tell(self, fields: Mapping[str, str]) -> None:
-        """Answer what the protocol asks about the participant.
-
-        Raises
-        ------
-        InputError
-            If the protocol has no such question, or the answer is none of the question's choices.
-        """
-        self.fields = told_fields(self.protocol, fields)
-
-    def answers(self, source: Source | None = None) -> Responses:
-        """Make the source of answers for `run`, and check it before anything is begun.
-
-        Raises
-        ------
-        InputError
-            If the answers cannot be used with this session.
-        """
-        chosen = self.conditions.answers if source is None else source
-        fast = self.conditions.fast
-        return responses_of(chosen, self.protocol, self.plan, self.progress, fast=fast)
+        return rows(self.path)
 
     def run(
         self,
-        answers: Source | None = None,
+        answers: Any = None,
         *,
-        say: Say = _ignore,
-        warn: Say = _ignore,
-        sound: Sound | None = None,
+        say: Say = _nothing,
+        make_engine: MakeEngine | None = None,
+        monitor: tuple[str | None, int | None] | None = None,
         before_rest: Callable[[], None] = _nothing,
-        view: SessionView | None = None,
+        **changed: Any,
     ) -> Self:
-        """Conduct the session until its end, or until it is stopped.
+        """Run the session from where it is: from its start, or from where it was stopped or killed.
 
         Parameters
         ----------
         answers
-            Source of the answers: a spec as in `Conditions`, the lines themselves, or a function
-            that gives the line for a `Trial`; None for the source that the conditions name.
+            Source of the answers: a spec as in `Conditions`, a source, the lines themselves, or a
+            function that returns the line for a trial; by default that of the last run.
         say
-            Function that is called with each sentence that the experimenter should hear.
-        warn
-            Function that is called with sentences which should be kept apart from those: that
-            code is being compiled, and which seed was drawn.
-        sound
-            Device that makes the participant's signals; None for the one that the conditions name.
+            Function that is called with each sentence for the experimenter.
+        make_engine
+            Function that makes another engine than the usual one.
+        monitor
+            Host and port of a live view; None for no live view.
         before_rest
-            Function that is called just before the array is brought to rest, which nothing may
-            interrupt.
-        view
-            Pages that watch; None for those that the conditions ask for.
-
-        Returns
-        -------
-        Session
-            This session itself.
+            Function that is called before the device is closed, which nothing may interrupt.
+        changed
+            Fields of the `Conditions` that differ from those of the last run.
 
         Raises
         ------
         InputError
-            If an argument cannot be used; a new session is then not on the disk.
+            If the session has ended, or an argument cannot be used.
         VbrailleError
-            If the device or the disk fails and does not recover.
+            If the device or the disk fails.
         """
-        given = self.answers(answers)
-        begins = not self._begun
-        if view is None:
-            view = usual_view(self.protocol, self.conditions, self._pointer)
-        if view is not None:
-            say = view.relay(say)
-            view.begin(self._engine)
-        markers = conventional = None
-        try:
-            if self.conditions.markers is not None:
-                markers = Markers(
-                    parse_markers(self.conditions.markers), self.protocol.marker_codes
-                )
-            conventional = usual_conventional(
-                self.protocol, self.plan, self.conditions, felt=given.felt
-            )
-            if isinstance(self._engine, Host):
-                self._engine.launch()
-            # This import stands here because numba takes long to load; the host starts meanwhile.
-            from vbraille.sessions.running.apparatus import Apparatus, make_sound
+        if isinstance(answers, str):
+            changed["answers"] = answers
+        from vbraille.sessions.record.trials import protocol_of  # loads compiled code
 
-            apparatus = Apparatus(
-                self._engine,
-                given,
-                self._steering,
-                sound=lambda: sound or make_sound(self.conditions.sound, given, say),
-                real=not self.conditions.fast,
-                say=say,
-                warn=warn,
-                before_rest=before_rest,
-                view=view,
-                markers=markers,
-                conventional=conventional,
-            )
-            if begins:
-                apparatus.open(self.protocol, self.plan)
-                began = replace(self.conditions, answers=given.name)
-                head = head_of(self.protocol, self.plan, self.fields, began)
-                create(self.folder, self.protocol, self.plan, head)
-                self._begun = True
-                if self._drawn:
-                    warn(f"seed: {self.plan.seed}")
-                say(f"session: {self.folder}")
-            # Its journal is read again once it is locked; all else cannot change meanwhile.
-            known = self.progress if self._resumed is not None else None
-            record, self._resumed = self._resumed or self.record, None
-            self.progress = apparatus.run(
-                record,
-                known,
-                why="start" if begins else "resume",
-                spec=self.conditions.device,
-                hand=self.conditions.hand,
-            )
-        finally:
-            if self._engine is not None:
-                before_rest()
-            self.close()
-            if view is not None:
-                view.close()
-            if conventional is not None:
-                conventional.close()
-            if markers is not None:
-                for sentence in markers.close():
-                    say(sentence)
+        with closing(Record(self.path)) as opened:
+            content = opened.read()
+            protocol = protocol_of(content)
+            progress = Progress(protocol, content.plan, content.events)
+            if progress.ended:
+                raise InputError(f"{self.path} has ended; session export makes a table of it")
+            conditions = _conditions_now(content, changed)
+            source = _open_answers(answers, conditions, progress)
+            conditions = structs.replace(conditions, answers=source.name)
+            if progress.runs:
+                say(f"resume: device {conditions.device}, answers {conditions.answers}")
+                _say_clock(content, say)
+            with ExitStack() as stack:
+                apparatus = _open_apparatus(
+                    stack, progress, conditions, source, say, make_engine, monitor, before_rest
+                )
+                _run(opened, progress, source, conditions, apparatus, before_rest)
+            say(f"record: {opened.sum.hex()}")
         return self
 
 
-def usual_engine(
-    spec: str,
-    wanted: Display,
-    protocol: Protocol,
-    plan: Plan,
-    channels: Sequence[Steering | Pointer],
-    *,
-    fast: bool,
-    spawned: Any = None,
-) -> RunEngine:
-    """Make the usual engine: a process of its own, or a loop in this one if it runs fast.
+def plan_session(
+    protocol: str | Path | Protocol,
+    participant: str,
+    seed: int | None = None,
+    order: int | None = None,
+    group: str | None = None,
+    session: int | None = None,
+    best_from: str | Path | None = None,
+) -> tuple[Protocol, Plan]:
+    """Plan a session; the arguments are those of `Session.create`.
 
-    Parameters
-    ----------
-    spec, wanted
-        Spec of the device, and the display that the protocol is written for.
-    protocol, plan
-        What the session shows, which says how much room a picture needs.
-    channels
-        Shared memory by which a simulated hand is moved, which the process inherits.
-    fast
-        Whether it runs as fast as the machine can.
-    spawned
-        Process that was begun beforehand, and inherits that memory already; None for a new one.
+    Returns
+    -------
+    Protocol, Plan
+        The protocol as the participant's group has it, and the plan.
     """
-    if fast:
-        from vbraille.engine.batch import BatchEngine
+    loaded = protocol if isinstance(protocol, Protocol) else load_protocol(str(protocol))
+    if seed is None:
+        seed = secrets.randbelow(_MOST_DRAWN)
+    look = None
+    if best_from is not None:
+        from vbraille.sessions.record.trials import best_level  # loads compiled code
 
-        return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
-    find_driver(spec)  # before anything is compiled for what is not there
-    inherited = [channel.descriptor for channel in channels]
-    return Host(spec, wanted, room_for(protocol, plan, wanted), pass_fds=inherited, spawned=spawned)
-
-
-def room_for(protocol: Protocol, plan: Plan, wanted: Display) -> int:
-    """Bytes of the largest program of a plan, at any contrast and texture."""
-    if protocol.pictures:
-        different = {(s.scene, s.picture): s for s in plan.stimuli()}.values()
-        # A picture of less than full contrast is a group, which takes a little more.
-        return max(protocol.program(s, replace(s.tuning, contrast=0.5)).nbytes for s in different)
-    most = max(len(protocol.line(stimulus.masks)) for stimulus in plan.stimuli())
-    return protocol.model.style.room(wanted, most)
+        look = Look(texture=best_level(Path(best_from), "texture"))
+    plan = make_plan(loaded, participant, seed, order, session=session or 1, group=group, look=look)
+    return loaded.of_group(plan.group), plan
 
 
-def usual_view(
-    protocol: Protocol, conditions: Conditions, pointer: Pointer | None
-) -> SessionView | None:
-    """Make the pages of the live view that is wanted; None if none is.
+def nearly_same(folder: Path, participant: str) -> str | None:
+    """Return a pseudonym with sessions in a folder that differs in case, zeros or signs alone.
 
-    Parameters
-    ----------
-    protocol, conditions
-        What the session shows, and what it is run with.
-    pointer
-        Pointer by which a page is the hand; None if no page may be.
+    None if there is no such pseudonym, or the participant has sessions there.
     """
-    live = conditions.live
-    if live is None:
+    known = {_participant_of(path) for path in folder.glob("*.session")} - {""}
+    if participant in known:
         return None
-    # Imported here, since a session without a live view needs none of it.
-    from vbraille.live.monitor import Monitor
-    from vbraille.sessions.running.liveview import LOOPBACK, SessionView
-
-    blind, steers = protocol.session.blind, pointer is not None
-    monitor = Monitor(host=live.host, port=live.port, pointer=pointer, blind=blind, steers=steers)
-    return SessionView(monitor, blind=blind, host=live.host or LOOPBACK, simulated=steers)
+    own = likeness(participant, person=True)
+    return next((each for each in sorted(known) if likeness(each, person=True) == own), None)
 
 
-def usual_conventional(
-    protocol: Protocol, plan: Plan, conditions: Conditions, *, felt: bool
-) -> OnConventional | None:
-    """Begin to drive the conventional display that the protocol needs; None if it needs none.
-
-    Parameters
-    ----------
-    protocol, plan, conditions
-        What the session shows, in which order, and what it is run with.
-    felt
-        Whether answers come from what is felt: a simulated reader compares nothing with what
-        stands there.
-    """
-    if conditions.fast or felt or not protocol.needs_conventional:
-        return None
-    from vbraille.conventional.display import ConventionalDisplay
-    from vbraille.sessions.running.conventional import OnConventional
-
-    spec = conditions.also or CONVENTIONAL
-    cells = cells_needed(protocol, plan)
-    table = protocol.conventional
-    return OnConventional(ConventionalDisplay(spec), table, cells=cells, spec=spec)
+def next_number(path: Path, participant: str) -> int:
+    """Return the number of a participant's next session in the folder of a new file."""
+    return 1 + sum(
+        _participant_of(each) == participant for each in path.absolute().parent.glob("*.session")
+    )
 
 
-def cells_needed(protocol: Protocol, plan: Plan) -> int:
-    """Number of cells that a conventional display must have for all of a plan."""
-    table = protocol.conventional
-    shown = [stimulus.masks for stimulus in plan.stimuli() if stimulus.conventional]
-    return max(len(table.placed(masks)) for masks in [table.reference, *shown])
+def _participant_of(path: Path) -> str:
+    try:
+        with record.reading(path) as db:
+            return db.execute("SELECT participant FROM session").fetchone()[0]
+    except (VbrailleError, OSError):
+        return ""
 
 
-def check_conventional(protocol: Protocol, conditions: Conditions) -> None:
-    """Check that the protocol and a conventional display go together.
+def free_path(participant: str, protocol: str) -> Path:
+    """Return the name of a new session in this folder: P01-letters.session, or P01-letters-2."""
+    for number in count(1):
+        ending = "" if number == 1 else f"-{number}"
+        path = Path(f"{participant}-{protocol}{ending}.session")
+        if not path.exists():
+            return path
+    raise AssertionError
+
+
+def check_fields(protocol: Protocol, given: Mapping[str, str]) -> dict[str, str]:
+    """Return the answers to the protocol's fields; those that were not given are empty.
 
     Raises
     ------
     InputError
-        If they do not.
+        If there is no such field, or an answer is none of its choices.
     """
-    if conditions.also is not None and not protocol.needs_conventional:
-        raise InputError(
-            f"{protocol.name} shows nothing on a conventional display; leave out {setting('also')}"
-        )
-    shows = any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions)
-    if conditions.fast and shows:
-        raise InputError(
-            f"{protocol.name} shows strings on a conventional display, which takes its time; "
-            f"leave out {setting('fast')}"
-        )
+    known = {field.name: field for field in protocol.fields}
+    for name, value in given.items():
+        if name not in known:
+            names = ", ".join(known) or "none"
+            raise InputError(f"{protocol.name} has no field {name!r}; known: {names}")
+        choices = known[name].choices
+        if choices and value not in choices:
+            raise InputError(f"{name} is {value!r}; give {' or '.join(choices)}")
+        if not value.isprintable():
+            raise InputError(f"{name} is {value!r}; give one line of text")
+    return {name: given.get(name, "") for name in known}
 
 
-def check_live(protocol: Protocol, conditions: Conditions, *, usual: bool) -> None:
-    """Check that there is a host process whose memory a live view can show.
+class _Apparatus(NamedTuple):
+    """What a run needs beside the record: all is open, and closed by the stack that opened it."""
 
-    Parameters
-    ----------
-    protocol, conditions
-        What the session shows, and what it is run with.
-    usual
-        Whether the engine is the usual one.
+    device: SessionDevice | Paper
+    pins: Pins | None
+    view: SessionView | None
+    markers: Markers
+    play: Callable[[Any], None]
+    say: Say
+
+
+def _conditions_now(content: Content, changed: Mapping[str, Any]) -> Conditions:
+    """Return the conditions of the last run, with changes."""
+    runs = [e.data["conditions"] for e in content.events if "conditions" in e.data]
+    return (convert(runs[-1], Conditions) if runs else Conditions()).changed(changed)
+
+
+def _open_answers(given: Any, conditions: Conditions, progress: Progress) -> Answers:
+    """Return the source of the answers.
 
     Raises
     ------
     InputError
-        If there is none.
+        If it cannot be used with this session.
     """
-    name = setting("monitor")
-    if protocol.medium == "paper":
-        raise InputError(
-            f"{protocol.name} is read on paper, and {name} shows a device; leave it out"
+    from vbraille.sessions.running.answers import Typed, answers_of
+
+    spec = conditions.answers if given is None or isinstance(given, str) else given
+    kind, _, habits = spec.partition(":") if isinstance(spec, str) else ("", "", "")
+    if kind == "simulated":
+        from vbraille.sessions.running.reader import simulated_answers
+
+        source: Answers = simulated_answers(progress.protocol, progress.plan, habits)
+    else:
+        source = answers_of(spec, progress.script_line)
+    if conditions.fast and isinstance(source, Typed):
+        raise InputError("--fast is for answers that are not typed; give --answers simulated")
+    if conditions.fast and not is_simulated(conditions.device):
+        raise InputError("--fast is for the simulated device; leave --device out")
+    return source
+
+
+def _open_apparatus(
+    stack: ExitStack,
+    progress: Progress,
+    conditions: Conditions,
+    source: Answers,
+    say: Say,
+    make_engine: MakeEngine | None,
+    monitor: tuple[str | None, int | None] | None,
+    before_rest: Callable[[], None],
+) -> _Apparatus:
+    """Open the device and all that stands beside it."""
+    # Imported here: compiled code takes long to load, and not every use of a session needs it.
+    from vbraille.sessions.running.device import SessionDevice, check_room
+    from vbraille.sessions.running.markers import Markers
+    from vbraille.sessions.running.paper import Paper, Pins
+
+    protocol, plan = progress.protocol, progress.plan
+    markers = Markers(conditions.markers, protocol.marker_codes, say)
+    stack.callback(markers.close)
+    view = None
+    if monitor is not None:
+        from vbraille.sessions.running.liveview import SessionView
+
+        view = stack.enter_context(SessionView(protocol, *monitor, fast=conditions.fast, say=say))
+        say = view.say
+    pins = None
+    if protocol.needs_pins and not source.felt and not conditions.fast:
+        pins = Pins(protocol, plan, conditions.also)
+        stack.callback(pins.close)
+    device: SessionDevice | Paper = Paper()
+    if protocol.medium == "device":
+        device = SessionDevice(
+            protocol,
+            plan,
+            conditions.device,
+            conditions.hand,
+            seed=_hand_seed(progress),
+            fast=conditions.fast,
+            rate_hz=conditions.rate_hz,
+            line=progress.line,
+            keeps=source.felt,
+            by_hand=not source.typed or protocol.trial.end is None,
+            make_engine=make_engine,
+            watched=None if view is None else view.watch,
         )
-    if conditions.fast:
-        raise InputError(
-            f"{name} is for sessions that run by the clock; leave it out, or {setting('fast')}"
-        )
-    if not usual:
-        raise InputError(f"{name} is for the usual engine; leave it out with one of your own")
+    stack.callback(device.close)
+    stack.callback(before_rest)
+    device.start()
+    if isinstance(device, SessionDevice):
+        check_room(protocol, plan, device.display)
+    if pins is not None:
+        pins.start()
+    play = _open_sound(conditions.sound, source, say)
+    return _Apparatus(device, pins, view, markers, play, say)
+
+
+def _run(
+    opened: Record,
+    progress: Progress,
+    source: Answers,
+    conditions: Conditions,
+    apparatus: _Apparatus,
+    before_rest: Callable[[], None],
+) -> None:
+    """Run a session, close its device, and write what went wrong with that."""
+    from vbraille.sessions.running.commands import COMMANDS
+    from vbraille.sessions.running.device import SessionDevice
+    from vbraille.sessions.running.runner import Runner
+
+    device, pins, view, markers, play, say = apparatus
+    runner = Runner(
+        opened,
+        progress,
+        source,
+        device,
+        commands=COMMANDS,
+        pins=pins,
+        real=not conditions.fast,
+        say=say,
+        play=play,
+        mark=markers.mark,
+        look=_nothing if view is None else view.look,
+    )
+    told: dict[str, Any] = {"conditions": structs.asdict(conditions), "versions": _versions()}
+    if isinstance(device, SessionDevice):
+        told |= {
+            "display": asdict(device.display),
+            "calibration": device.engine.calibration,
+            "simulated": is_simulated(conditions.device),
+        }
+    if view is not None:
+        told["monitor"] = view.described
+    over = runner.run(**told)
+    before_rest()
+    device.close()
+    if isinstance(device, SessionDevice):
+        counts = {name: number for name, number in device.engine.counts.items() if number}
+        runner.log("closed", lost=device.engine.lost, counts=counts)
+    runner.finish(over)
+
+
+def _hand_seed(progress: Progress) -> int:
+    """Return the seed of the simulated hand, which differs between participants and runs."""
+    from vbraille.sessions.running.reader import random_of
+
+    plan = progress.plan
+    drawn = f"{progress.protocol.name} {plan.participant} {plan.seed} hand {progress.runs}"
+    return int(random_of(drawn).integers(2**63))
+
+
+def _open_sound(wanted: str, source: Answers, say: Say) -> Callable[[Any], None]:
+    """Return what plays the participant's signals.
+
+    Raises
+    ------
+    InputError
+        If tones are asked for and there is no audio output.
+    """
+    from vbraille.sounds import Bell, Tones
+
+    if wanted == "none" or (wanted == "auto" and not source.typed):
+        return _nothing
+    if wanted != "bell":
+        try:
+            return Tones().play
+        except OSError as error:
+            if wanted == "tones":
+                raise InputError(f"{error}; give --cues bell or none") from None
+        say("sound: the terminal's bell, since there is no audio output")
+    return Bell().play
+
+
+def _say_clock(content: Content, say: Say) -> None:
+    """Say if the time of day has gone back since the last event."""
+    if content.events and datetime.fromisoformat(content.events[-1].wall) > datetime.now(UTC):
+        say("clock: set back since the last run; times of day go back in the record, t_s does not")
+
+
+def _versions() -> dict[str, str]:
+    return {"vbraille": version("vbraille"), "python": python_version(), "numpy": version("numpy")}

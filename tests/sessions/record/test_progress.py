@@ -1,131 +1,158 @@
-"""How far a session is, from its events alone."""
+"""How far a session has come, after each of its events."""
 
 import pytest
 
-from tests.sessions.sittings import COMPARED, MINI, Session
-from vbraille.sessions.planning.making import make_plan
-from vbraille.sessions.planning.protocolfiles import parse_protocol
-from vbraille.sessions.record import events
+from tests.sessions.planning.test_protocols import load
+from tests.sessions.sittings import MINI, SURE, WIDTHS
+from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.record.record import Event
 
-PLAN = make_plan(parse_protocol(MINI, "test"), "P1", 1)
+PRACTICE = '[practice]\nstrings = ["c"]\nuntil = { right = 2, of = 2, most = 6 }\n'
 
 
-def told(*happened, plan=PLAN):
-    """Progress after events, a second apart."""
-    return Progress(
-        plan,
-        [kind(t_s=float(n), wall=f"at {n}", **more) for n, (kind, more) in enumerate(happened)],
+class Story:
+    """A session of which events are told one by one."""
+
+    def __init__(self, folder, text):
+        protocol = load(folder, text)
+        self.progress = Progress(protocol, make_plan(protocol, "P01", 1))
+        self.events = []
+
+    def tell(self, kind, trial=None, attempt=1, **data):
+        where = (None, None, None) if trial is None else (*map(int, trial.key), attempt)
+        event = Event(len(self.events) + 1, kind, float(len(self.events)), "", *where, data)
+        self.events.append(event)
+        self.progress.take(event)
+
+    def show(self, trial, parameter="contrast"):
+        for number, stimulus in enumerate(trial.stimuli):
+            value = stimulus.value
+            value = getattr(stimulus.look, parameter) if value is None else value
+            self.tell("cue", trial, stimulus=number, line=len(self.events), value=value)
+
+    def answer(self, right=True):
+        """Show the next trial, and answer it."""
+        trial = self.progress.next_trial
+        self.show(trial)
+        wanted = self.progress.protocol.asks.right_answer(trial)
+        self.tell("answer", trial, answer=wanted if right else "?" * len(wanted))
+        return trial
+
+    @property
+    def again(self):
+        """What a session that is resumed with these events knows."""
+        return Progress(self.progress.protocol, self.progress.plan, self.events)
+
+
+def test_an_answer_that_is_taken_back_comes_again(tmp_path):
+    story = Story(tmp_path, MINI)
+    first, second = story.answer(), story.answer()
+    assert [first.number, second.number] == [1, 2]
+    story.tell("undo", second)
+    assert story.progress.next_trial == second
+    assert story.progress.is_taken_back(second)
+    story.tell("answer", second, answer="⠁⠁")
+    assert story.answer().number == 3
+    assert story.progress.next_trial is None
+    assert story.progress.last_answered.number == 3
+
+
+def test_a_confidence_alone_is_asked_after_a_resume(tmp_path):
+    story = Story(tmp_path, MINI + SURE)
+    first = story.answer()
+    for progress in (story.progress, story.again):
+        assert progress.next_trial == first
+        assert progress.lacks_confidence(first)
+    story.tell("confidence", first, confidence=3)
+    assert story.again.next_trial.number == 2
+
+
+def test_practice_ends_by_its_criterion_or_by_word(tmp_path):
+    story = Story(tmp_path, MINI + PRACTICE)
+    story.answer(right=False)
+    story.answer()
+    assert story.progress.next_trial.practice
+    story.answer()
+    assert not story.again.next_trial.practice
+    story = Story(tmp_path, MINI + PRACTICE)
+    story.tell("begin")
+    assert not story.progress.next_trial.practice
+
+
+def test_a_trial_that_was_missed_is_over_until_it_is_taken_back(tmp_path):
+    story = Story(tmp_path, MINI)
+    trial = story.progress.next_trial
+    story.show(trial)
+    story.tell("missed", trial)
+    assert story.progress.next_trial.number == 2
+    assert story.progress.done == 1
+    story.tell("undo", trial)
+    assert story.progress.next_trial == trial
+
+
+def test_questions_are_due_in_their_place(tmp_path):
+    items = "".join(
+        f'[[questionnaire]]\nkind = "text"\nname = "at_{when}"\nwhen = "{when}"\nask = "?"\n'
+        for when in ("begin", "trial", "block", "end")
     )
+    story = Story(tmp_path, MINI.replace("[design]", "[design]\nblocks = 2") + items)
+    asked = []
+    while True:
+        if (item := story.progress.next_item) is not None:
+            asked.append((item[0].name, item[1]))
+            story.tell("reply", name=item[0].name, number=item[1], reply="x")
+        elif story.progress.next_trial is None:
+            break
+        else:
+            story.answer()
+    assert (asked[0], asked[-1]) == (("at_begin", 0), ("at_end", 0))
+    assert [n for name, n in asked if name == "at_trial"] == [1, 2, 3]
+    assert [n for name, n in asked if name == "at_block"] == [1, 2]
+    newest = story.progress.newest_given
+    story.tell("undo", name=newest.data["name"], number=newest.data["number"])
+    assert story.progress.next_item[0].name == "at_end"
 
 
-RUN = (events.Run, {"why": "start", "trace": "trace-001.gz"})
+def test_breaks_are_due_after_so_many_trials(tmp_path):
+    story = Story(tmp_path, MINI + "repeats = 2\n[session]\nbreak_every = 2\n")
+    due = []
+    while (trial := story.progress.next_trial) is not None:
+        if story.progress.is_break_due(trial):
+            due.append(trial.number)
+            story.tell("break")
+            assert not story.progress.is_break_due(trial)
+        story.answer()
+    assert due == [3, 5]
 
 
-def shown(trial, attempt=1, line=1, stimulus=0, **more):
-    return events.Presented, {
-        "trial": trial, "attempt": attempt, "stimulus": stimulus, "line": line, "shown": {},
-        **more,
-    }  # fmt: skip
+CONTRAST = 'parameter = "contrast"\nleast = 0.0\nmost = 1.0\n'
+QUEST = f'[procedure]\nkind = "quest"\n{CONTRAST}step = 0.1\nspread = [0.1, 0.2]\ntrials = 8\n'
+STAIRCASE = f'[procedure]\nkind = "staircase"\n{CONTRAST}start = [0.5, 0.9]\nsteps = [0.2, 0.1]\n'
+PREFERRED = '[procedure]\nkind = "quest"\nstep = 0.25\nspread = [0.1, 0.3]\n'
 
 
-def answered(trial, answer="⠁", **more):
-    return events.Answer, {"trial": trial, "attempt": 1, "answer": answer, **more}
+@pytest.mark.parametrize(("table", "trials"), [(QUEST, 8), (STAIRCASE, 15)])
+def test_what_the_answers_choose_is_chosen_again_after_a_resume(table, trials, tmp_path):
+    story, levels = Story(tmp_path, f"{MINI}repeats = 5\n{table}"), []
+    while (trial := story.progress.next_trial) is not None:
+        assert trial == story.again.next_trial
+        levels.append(trial.stimuli[0].look.contrast)
+        story.show(trial)
+        story.tell("answer", trial, answer=trial.cells if levels[-1] > 0.35 else "??")
+    assert len(levels) == trials
+    assert len(set(levels)) > 2
+    assert story.progress.found
 
 
-def test_nothing_has_happened_before_the_first_event():
-    progress = told()
-    assert (progress.done, progress.ended, progress.line, progress.runs) == (0, False, 0, [])
-    assert progress.next_trial is PLAN.trials[0]
-    assert progress.last_answered is None
-
-
-def test_answers_go_from_trial_to_trial_until_there_is_none():
-    happened = [RUN]
-    for trial in PLAN.trials:
-        happened += [shown(trial.number, line=trial.number), answered(trial.number)]
-        progress = told(*happened)
-        assert progress.done == trial.number
-        assert progress.last_answered is trial
-    assert progress.next_trial is None
-    assert progress.line == len(PLAN.trials)
-    assert not progress.ended
-    assert told(*happened, (events.End, {"why": "all trials are done"})).ended
-
-
-def test_an_attempt_that_was_not_answered_is_the_next_trial_again():
-    cue = (events.Cue, {"trial": 1})
-    progress = told(
-        RUN, shown(1), cue, (events.Warning, {"trial": 1}),
-        (events.Run, {"why": "resume", "trace": "trace-002.gz"}), shown(1, 2, 2), cue,
-    )  # fmt: skip
-    trial = progress.trials[1]
-    assert progress.next_trial is PLAN.trials[0]
-    assert (trial.attempts, len(trial.showings)) == (2, 2)
-    assert [s.line for s in trial.last_attempt] == [2]
-    assert trial.trace == "trace-002.gz"
-    assert trial.t_s == {"presented": 5.0, "cue": 6.0}  # the warning was of the first
-
-
-def test_an_undo_keeps_both_answers_and_the_times_of_both():
-    taken_back = [RUN, shown(1), answered(1, "⠁"), shown(2, line=2), (events.Undo, {"trial": 1})]
-    progress = told(*taken_back)
-    assert progress.correcting is PLAN.trials[0]
-    assert (progress.trials[1].answer, progress.trials[1].first_answer) == (None, "⠁")
-    assert progress.done == 1
-    progress = told(*taken_back, answered(1, "⠉", corrects=True))
-    assert progress.correcting is None
-    assert (progress.trials[1].answer, progress.trials[1].first_answer) == ("⠉", "⠁")
-    assert (progress.trials[1].t_s["answer"], progress.trials[1].t_s["corrected"]) == (2.0, 5.0)
-    assert progress.done == 1
-    assert progress.next_trial is PLAN.trials[1]
-
-
-def test_pauses_of_a_trial_are_added_up_and_end_with_their_run():
-    pause, go = (events.Pause, {"trial": 1}), (events.Go, {"trial": 1})
-    progress = told(RUN, shown(1), pause, go, (events.Note, {"text": "x"}), pause, go)
-    assert progress.trials[1].paused_s == 2.0
-    progress = told(RUN, shown(1), pause, RUN, shown(1, 2, 2), go)
-    assert progress.trials[1].paused_s == 0.0
-
-
-def test_what_the_experimenter_sets_is_of_the_trials_that_follow():
-    tuned = (events.Tuning, {"trial": 1, "tuning": {"texture": 0.5}, "line": 2})
-    progress = told(RUN, shown(1), tuned)
-    assert progress.trials[1].tuning == progress.tuning == {"texture": 0.5}
-    assert [s.line for s in progress.trials[1].last_attempt] == [1, 2]
-    assert progress.line == 2
-
-
-def test_faults_are_of_the_trial_that_was_open():
-    fault = (events.Fault, {"trial": 1, "attempt": 1, "what": "silent"})
-    progress = told(RUN, shown(1), fault)
-    assert progress.trials[1].faults == ["silent"]
-
-
-def test_practice_counts_on_its_own_and_ends_when_it_is_over():
-    plan = make_plan(
-        parse_protocol(MINI + '[practice]\ntrials = 2\nstrings = ["aa"]\n', "test"), "P1", 1
-    )
-    practised = [RUN, shown(1, practice=True), answered(1, practice=True)]
-    progress = told(*practised, plan=plan)
-    assert (progress.done, progress.begun) == (0, False)
-    assert progress.next_trial is plan.practice[1]
-    for ended in ([(events.Begin, {})], [shown(1, line=2)]):
-        progress = told(*practised, *ended, plan=plan)
-        assert progress.begun
-        assert progress.next_trial is plan.trials[0]
-
-
-@pytest.mark.parametrize("toml", [MINI, COMPARED])
-def test_every_beginning_of_a_session_is_a_state_to_go_on_from(tmp_path, toml):
-    session = Session(tmp_path / "s", toml)
-    happened = session.sit().events
-    done = []
-    for count in range(len(happened) + 1):
-        progress = Progress(session.plan, happened[:count])
-        done.append(progress.done)
-        answers = sum(event.kind == "answer" for event in happened[:count])
-        assert progress.done == answers
-        assert (progress.next_trial is None) == (answers == len(session.plan.trials))
-    assert done == sorted(done)
+def test_two_values_are_chosen_of_which_one_is_preferred(tmp_path):
+    story = Story(tmp_path, f"{WIDTHS}repeats = 5\n{PREFERRED}")
+    while (trial := story.progress.next_trial) is not None:
+        assert trial == story.again.next_trial
+        story.show(trial)
+        nearest = min(trial.values, key=lambda value: abs(value - 1.25))
+        story.tell("answer", trial, answer=str(trial.values.index(nearest) + 1))
+    assert story.progress.found[0].split()[1].startswith("1.2")
+    first = story.progress.plan.trials[0]
+    told = [e.data["value"] for e in story.events if e.key == first.key and e.kind == "cue"]
+    assert story.again.shown(first).values == told

@@ -1,1 +1,1 @@
-"""Protocols and plans: what will be shown to whom, in which order, before a session begins."""
+"""What is planned before a session: protocols, designs, questions, and the plan of its trials."""

@@ -1,594 +1,297 @@
-"""Designs: what is shown and practised, how often, in which order, and by which rules."""
+"""Designs: which items a study has, and what each shows.
+
+An item is a text: cells in Unicode braille, a text in print, a picture's name, or the values that
+are compared.
+"""
 
 from __future__ import annotations
 
-from collections import Counter
-from itertools import permutations, product
-from typing import TYPE_CHECKING, Literal
+import itertools
+from collections.abc import Callable
+from random import Random
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
-from msgspec import structs
+from msgspec import Meta
 
-from vbraille.braille.spelling import name_dots, to_braille
-from vbraille.errors import check_range
-from vbraille.sessions.planning.pace import check_file_name
-from vbraille.sessions.planning.spellings import Mask, Masks, WrittenText
-from vbraille.sessions.planning.stimuli import KNOBS, KnobName, StimulusKnob
-from vbraille.tomlfile import Table
+from vbraille.braille.cells import UNICODE_BLANK
+from vbraille.braille.spelling import spell, spell_string, to_braille
+from vbraille.sessions.planning.spellings import cells_of
+from vbraille.sessions.planning.trial import Stimulus
+from vbraille.sessions.planning.values import Count, Look, Number, Parameter
+from vbraille.toml import Table, WrongValue
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+MOST_INTERVALS = 5
+BLANK = chr(UNICODE_BLANK)
 
 
-class Catch(Table, frozen=True, kw_only=True):
-    """Trials that keep watch over the participant; they belong to no item.
+class Setting(NamedTuple):
+    """What an item is shown by.
 
     Parameters
     ----------
-    every
-        Number of trials among which there is one catch trial, at a random place; None if the
-        share is given.
-    share
-        Share of catch trials among all, above 0 and at most 0.5; None if ``every`` is given.
-    show
-        What a catch trial shows: "blank" for cells without dots, "repeat" for what the trial
-        before it has shown.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range, or both or neither of the two is given.
+    keys
+        Dot masks of the keys of the protocol.
+    room
+        Returns how many cells a line of a look has room for.
+    random
+        Generator that reordered cells are drawn from.
     """
 
-    every: int | None = None
-    share: float | None = None
+    keys: dict[str, int]
+    room: Callable[[Look], int]
+    random: Random
+
+
+class Catch(Table, kw_only=True):
+    """Trials that only keep watch: one of so many, or a share of all; and what they show."""
+
+    every: Annotated[int, Meta(ge=2, le=10_000)] | None = None
+    share: Annotated[float, Meta(gt=0, le=0.5)] | None = None
     show: Literal["blank", "repeat"] = "blank"
 
     def __post_init__(self) -> None:
-        check_range("every", self.every, 2, 1000)
-        check_range("share", self.share, 0.001, 0.5)
         if (self.every is None) == (self.share is None):
-            raise ValueError("every and share say the same; give one of the two")
-
-    def number(self, trials: int) -> int:
-        """Number of catch trials beside so many others."""
-        if self.every is not None:
-            # One of every n trials is a catch trial, and so there are n - 1 others for each.
-            return trials // (self.every - 1)
-        assert self.share is not None
-        return max(1, round(trials * self.share / (1 - self.share)))
-
-    def stretches(self, trials: int) -> list[int]:
-        """Ends of the stretches of so many other trials, each of which has one catch trial."""
-        number = self.number(trials)
-        if self.every is not None:
-            return [(self.every - 1) * part for part in range(1, number + 1)]
-        return [part * trials // number for part in range(1, number + 1)]
-
-
-class BlockOrder(Table, frozen=True, kw_only=True):
-    """The table ``[order]``: in which order participants have the blocks of the conditions.
-
-    Parameters
-    ----------
-    kind
-        "williams" or "balanced" for Williams squares over participants, "listed" for the order of
-        the file, "random" for an order of each participant's own, "table" for the order that a
-        file gives each participant.
-    file
-        Name of the file of orders, which stands beside the protocol.
-
-    Raises
-    ------
-    ValueError
-        If a table has no file, or something else has one.
-    """
-
-    kind: Literal["williams", "balanced", "listed", "random", "table"]
-    file: str | None = None
-
-    def __post_init__(self) -> None:
-        if self.kind == "table" and self.file is None:
-            raise ValueError('file is missing; give the file of orders, such as "orders.csv"')
-        if self.kind != "table" and self.file is not None:
-            raise ValueError("file is of kind = 'table'; leave it out")
+            raise WrongValue("every", "or share says how many there are; give one of the two")
 
     @property
-    def of_blocks(self) -> Literal["balanced", "listed", "shuffled"]:
-        """Name that ``[design] order`` has for this order; that of a table counts as listed."""
-        if self.kind == "random":
-            return "shuffled"
-        return "balanced" if self.kind in ("williams", "balanced") else "listed"
-
-    def check(self, design: Design, conditions: int) -> None:
-        """Check that so many conditions of a design can be ordered so.
-
-        Raises
-        ------
-        ValueError
-            If they cannot.
-        """
-        if design.order is not None:
-            raise ValueError("kind stands beside order of [design]; leave one of the two out")
-        if design.blocks != "conditions" and self.kind != "random":
-            raise ValueError(
-                f"kind is {self.kind!r}, which orders blocks of a condition each; give 'random', "
-                f"or [design] blocks = 'conditions'"
-            )
-        if self.kind != "listed" and conditions < 2:
-            raise ValueError(
-                f"kind is {self.kind!r}, and there is one condition, so that nothing can be "
-                f"ordered; leave it out, or give more conditions"
-            )
+    def stretch(self) -> int:
+        """How many trials stand between one catch trial and the next."""
+        return (self.every or round(1 / (self.share or 1))) - 1
 
 
-MOST_TRIALS = 10_000
-MOST_INTERVALS = 5
-UNFELT = ("row_spacing_mm", "line_pitch_mm")  # lengths that change nothing in a single line
-
-# Dot masks of the cells asked for, or the values compared, or a `WrittenText`.
-Item = tuple[float, ...]
-
-_LEFT_DOTS, _RIGHT_DOTS = 0b01000111, 0b10111000
-
-
-class _Design(Table, frozen=True, kw_only=True, tag_field="kind"):
-    """Common part of the designs of every kind.
+class Repeated(Table, kw_only=True, tag_field="kind"):
+    """What all designs have.
 
     Parameters
     ----------
     repeats
         How often each item is shown in each condition.
     blocks
-        Number of blocks, over which the mixed conditions are spread; or "conditions" if each
-        condition has a block of its own.
+        How many blocks the trials are spread over, or "conditions" for a block of each.
     order
-        Order of the blocks of conditions: "balanced" over participants, "listed" or "shuffled";
-        None if the file does not say it.
+        Order of the blocks of conditions: balanced over participants, as listed, or shuffled.
     catch
-        Trials that keep watch over the participant; None for none.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range, or an order is given though conditions have no blocks.
+        Catch trials; None for none.
+    counterbalanced
+        Whether each item is shown in one condition only, and participants differ in which.
     """
 
-    repeats: int = 1
-    blocks: int | Literal["conditions"] = "conditions"
+    repeats: Count = 1
+    blocks: Annotated[int, Meta(ge=1, le=1000)] | Literal["conditions"] = "conditions"
     order: Literal["balanced", "listed", "shuffled"] | None = None
     catch: Catch | None = None
+    counterbalanced: bool = False
 
-    def __post_init__(self) -> None:
-        check_range("repeats", self.repeats, 1, MOST_TRIALS)
-        if self.order is not None and self.blocks != "conditions":
-            raise ValueError(
-                "order is of a block each condition; leave it out, or give blocks = 'conditions'"
-            )
+    passage: ClassVar[bool] = False
+    parameter: ClassVar[str] = ""
+    form: ClassVar[str] = ""  # how stimuli are compared, if they are
 
-    @property
-    def around(self) -> tuple[Masks, Masks]:
-        """Dot masks of the delimiters before and after the cells asked for."""
-        return Masks(), Masks()
+    def spellings(self) -> dict[str, tuple[str, ...]]:
+        """Return the spellings of cells in the table, by the path of their key."""
+        raise NotImplementedError
 
-    def content(self, item: Item) -> Item:
-        """Content of an item; equal for two items that count as showing the same."""
-        return item
+    def items(self, keys: dict[str, int]) -> list[str]:
+        """Return the items, each once."""
+        raise NotImplementedError
 
-
-class Combinations(_Design, frozen=True, tag="combinations"):
-    """A design that shows every combination of some cells.
-
-    Parameters
-    ----------
-    characters
-        Dot masks of the cells.
-    length
-        Number of cells in a combination.
-    before, after
-        Dot masks of the delimiters, which are shown but not asked for.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range, a cell is given twice, or a combination would have no dots.
-    """
-
-    characters: tuple[Mask, ...]
-    length: int
-    before: Masks = Masks()
-    after: Masks = Masks()
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_range("length", self.length, 1, 100)
-        if not self.characters:
-            raise ValueError("characters are none; give one or more")
-        _check_distinct("characters have", map(name_dots, self.characters))
-        if 0 in self.characters and not any(self.before + self.after):
-            raise ValueError(
-                "characters have a blank, and nothing can be felt of a combination of blanks; "
-                "give before and after"
-            )
-
-    @property
-    def around(self) -> tuple[Masks, Masks]:
-        """Dot masks of the delimiters before and after the cells asked for."""
-        return self.before, self.after
-
-    @property
-    def trials(self) -> int:
-        """Number of trials in each condition."""
-        return len(self.characters) ** self.length * self.repeats
-
-    @property
-    def cells(self) -> int:
-        """Number of cells in the longest line."""
-        return len(self.before) + self.length + len(self.after)
-
-    @property
-    def masks(self) -> frozenset[int]:
-        """Dot masks of all cells that are shown."""
-        return frozenset(self.before + self.characters + self.after)
-
-    def items(self) -> Sequence[Item]:
-        """Cells asked for in the trials of a condition, in the order of the design."""
-        return list(product(self.characters, repeat=self.length)) * self.repeats
+    def stimuli(self, item: str, look: Look, setting: Setting) -> tuple[Stimulus, ...]:
+        """Return what a trial with an item shows."""
+        raise NotImplementedError
 
 
-class StringList(_Design, frozen=True, tag="list"):
-    """A design that shows the strings of a list.
+class StringList(Repeated, kw_only=True, tag="list"):
+    """The strings of a list, which are cells, texts or names of pictures.
 
     Parameters
     ----------
     strings
-        Dot masks of the strings.
+        The strings.
     reorder
-        Whether the cells of a string are shown in another order each time.
+        Whether the cells of a string are shuffled in each trial.
     passage
-        Whether each string is a passage: a text that is broken into lines, which are read one
-        after the other in one trial.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range, or a string has no dots.
+        Whether each string is a text that is broken into lines, which are read one after the other.
     """
 
-    strings: tuple[Masks, ...]
+    strings: Annotated[tuple[str, ...], Meta(min_length=1)]
     reorder: bool = False
     passage: bool = False
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not self.strings:
-            raise ValueError("strings are none; give one or more")
-        for number, masks in enumerate(self.strings, 1):
-            if not any(masks):
-                raise ValueError(
-                    f"strings, number {number}, has no dots, and nothing can be felt of it; "
-                    f"give it a cell with some"
-                )
+    def spellings(self) -> dict[str, tuple[str, ...]]:
+        """Return the strings."""
+        return {"design.strings": self.strings}
 
-    @property
-    def trials(self) -> int:
-        """Number of trials in each condition."""
-        return len(self.strings) * self.repeats
+    def items(self, keys: dict[str, int] | None) -> list[str]:
+        """Return the strings as cells; as they are without keys, for texts and pictures."""
+        if keys is None:
+            return list(self.strings)
+        return [to_braille(spell_string(text, keys)) for text in self.strings]
 
-    @property
-    def cells(self) -> int:
-        """Number of cells in the longest line."""
-        return max(map(len, self.strings))
-
-    @property
-    def masks(self) -> frozenset[int]:
-        """Dot masks of all cells that are shown."""
-        return frozenset(mask for masks in self.strings for mask in masks)
-
-    def items(self) -> Sequence[tuple[int, ...]]:
-        """Cells asked for in the trials of a condition, in the order of the design."""
-        return list(self.strings) * self.repeats
-
-    def content(self, item: Item) -> Item:
-        """Cells of an item, sorted if their order changes from showing to showing."""
-        return tuple(sorted(item)) if self.reorder else item
-
-    def listed(self, masks: tuple[int, ...]) -> tuple[int, ...] | None:
-        """String of the list that these cells are an order of.
-
-        None if there is no such string, or strings are always shown in their own order.
-        """
-        if not self.reorder:
-            return None
-        cells = self.content(masks)
-        return next((string for string in self.strings if self.content(string) == cells), None)
+    def stimuli(self, item: str, look: Look, setting: Setting) -> tuple[Stimulus, ...]:
+        """Return the string, in another order if the design says so; or its lines."""
+        if look.scene is not None:
+            return (Stimulus("", look, picture=item),)
+        if look.table is None:
+            cells = "".join(setting.random.sample(item, len(item))) if self.reorder else item
+            return (Stimulus(cells, look),)
+        cells = cells_of(item, look.table)
+        if not self.passage:
+            return (Stimulus(cells, look, text=item),)
+        return tuple(Stimulus(line, look, text=item) for line in broken(cells, setting.room(look)))
 
 
-class Choice(_Design, frozen=True, tag="choice"):
-    """A design that compares one string at values of a parameter.
+class ItemList(Repeated, kw_only=True, tag="items"):
+    """The strings of the table [items], which `listed` puts in."""
+
+    reorder: bool = False
+    passage: bool = False
+
+    def listed(self, strings: list[str]) -> StringList:
+        """Return the design that shows some strings as this one shows its items."""
+        fields = {name: getattr(self, name) for name in self.__struct_fields__}
+        return StringList(strings=tuple(strings), **fields)
+
+
+class Combinations(Repeated, kw_only=True, tag="combinations"):
+    """Every combination of some characters.
 
     Parameters
     ----------
-    parameter
-        What is compared; ``dot_gap_mm`` is the gap between the two dots of a cell,
-        from edge to edge.
-    values
-        Values of the parameter, in mm if it is a length.
+    characters, length
+        The characters, and how many of them a combination has.
+    before, after
+        Delimiters, which are shown and not asked for.
+    """
+
+    characters: Annotated[tuple[str, ...], Meta(min_length=1, max_length=256)]
+    length: Annotated[int, Meta(ge=1, le=6)]
+    before: str = ""
+    after: str = ""
+
+    def spellings(self) -> dict[str, tuple[str, ...]]:
+        """Return the characters and the delimiters."""
+        return {
+            "design.characters": self.characters,
+            "design.before": (self.before,),
+            "design.after": (self.after,),
+        }
+
+    def items(self, keys: dict[str, int]) -> list[str]:
+        """Return the combinations as cells."""
+        cells = [to_braille(spell(text, keys)) for text in self.characters]
+        return ["".join(chosen) for chosen in itertools.product(cells, repeat=self.length)]
+
+    def stimuli(self, item: str, look: Look, setting: Setting) -> tuple[Stimulus, ...]:
+        """Return the combination between the delimiters."""
+        around = (self.before, self.after)
+        before, after = (to_braille(spell_string(text, setting.keys)) for text in around)
+        return (Stimulus(item, look, before, after),)
+
+
+class Compared(Repeated, kw_only=True, tag="choice"):
+    """One string at several values of a parameter.
+
+    Parameters
+    ----------
+    parameter, values
+        What is compared, and its values.
     string
-        Dot masks of the string that is shown at all of them.
+        What is shown at all of them.
     reference
-        The standard, which each of the values is compared with; None if there is none.
+        The standard, which each value is compared with; None for none.
     form
-        Stimuli of a trial, whose places are balanced. "pairs": each value and each other one, or
-        the standard if there is one, in both orders. "single": each value alone. "standard": the
-        standard, and then a value. "one": a value at each place among as many standards as
-        ``intervals`` has room for. "triangle": three, one of which differs: a value among
-        standards, or the standard among values. "abx": the standard and a value in either order,
-        and one of the two again.
+        Stimuli of a trial. "pairs": each value and each other one, or the standard if there is one,
+        in both orders. "single": each value alone. "standard": the standard, and then a value.
+        "one": a value at each place among standards. "triangle": three, one of which differs.
+        "abx": the standard and a value in either order, and one of the two again.
     intervals
-        Number of stimuli in a trial of the form "one".
+        Stimuli in a trial of the form "one".
     same
         How often each value is compared with itself, in each of the repeats.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range, there are too few values, a value is given twice, or the
-        parameter cannot be felt in the string.
     """
 
-    parameter: KnobName
-    values: tuple[float, ...]
-    string: Masks
-    reference: float | None = None
+    parameter: Parameter
+    values: Annotated[tuple[Number, ...], Meta(min_length=1)]
+    string: str
+    reference: Number | None = None
     form: Literal["pairs", "single", "standard", "one", "triangle", "abx"] = "pairs"
-    intervals: int = 2
-    same: int = 0
+    intervals: Annotated[int, Meta(ge=2, le=MOST_INTERVALS)] = 2
+    same: Annotated[int, Meta(ge=0, le=10_000)] = 0
 
     def __post_init__(self) -> None:
-        super().__post_init__()
-        check_range("same", self.same, 0, MOST_TRIALS)
-        check_range("intervals", self.intervals, 2, MOST_INTERVALS)
-        if self.intervals != 2 and self.form != "one":
-            raise ValueError("intervals are of form = 'one'; leave them out")
-        alone = self.form == "single"
-        if alone and self.reference is not None:
-            raise ValueError("reference is compared, and form is 'single'; leave one of them out")
-        if self.form not in ("pairs", "single") and self.reference is None:
-            raise ValueError(f"reference is missing, and form is {self.form!r}; add it")
-        if self.same and self.form != "pairs":
-            raise ValueError("same is of form = 'pairs'; leave it out")
-        if len(self.values) < 2 and self.reference is None:
-            raise ValueError(f"values are {len(self.values)}; give two or more to compare")
-        if not self.values:
-            raise ValueError("values are none; give one or more to compare with the reference")
-        _check_distinct("values have", (f"{value:.15g}" for value in self.values))
-        knob = KNOBS[self.parameter]
-        for value in self.values:
-            check_range("values: one", value, *_bounds(knob), knob.unit)
-        check_range("reference", self.reference, *_bounds(knob), knob.unit)
+        if len(set(self.values)) < len(self.values):
+            raise WrongValue("values", "one is there twice")
+        if self.reference is None and self.form not in ("pairs", "single"):
+            raise WrongValue("form", f"is {self.form!r}, which needs a reference")
+        if self.reference is not None and self.form == "single":
+            raise WrongValue("reference", "is compared, and form is 'single'; leave one out")
+        if self.reference is None and self.form == "pairs" and len(self.values) < 2:
+            raise WrongValue("values", "are fewer than two, of which none can be compared")
         if self.reference in self.values and self.form != "standard":
-            raise ValueError(
-                f"reference is {self.reference:g}, which is one of values; leave it out there"
-            )
-        if not any(self.string):
-            raise ValueError("string has no dots; give one with some")
-        both = any(mask & _LEFT_DOTS and mask & _RIGHT_DOTS for mask in self.string)
-        if self.parameter in ("dot_gap_mm", "dot_spacing_mm") and not both:
-            raise ValueError("string has no cell with a gap; give one with a left and a right dot")
-        if self.parameter == "cell_gap_mm" and sum(map(bool, self.string)) < 2:
-            raise ValueError("string has no gap between cells; give two cells with dots or more")
+            raise WrongValue("reference", "is one of values; leave it out there")
+        if self.form != "pairs" and self.same:
+            raise WrongValue("same", "is of form = 'pairs'; leave it out")
+        if self.form != "one" and self.intervals != 2:
+            raise WrongValue("intervals", "are of form = 'one'; leave them out")
 
-    @property
-    def trials(self) -> int:
-        """Number of trials in each condition."""
-        return len(self.items())
+    def spellings(self) -> dict[str, tuple[str, ...]]:
+        """Return the string."""
+        return {"design.string": (self.string,)}
 
-    @property
-    def alternatives(self) -> int:
-        """Number of answers that there are to a trial, of which one is right."""
-        return 2 if self.form == "abx" else self.stimuli
-
-    @property
-    def differences(self) -> tuple[float, ...]:
-        """Differences of the values from the standard, increasing, for a procedure to choose from.
-
-        Raises
-        ------
-        ValueError
-            If the values do not lie on one side of a standard, which a trial shows at any place.
-        """
-        if self.reference is None:
-            raise ValueError("there is no reference that values differ from; add it")
-        if self.form == "standard":
-            raise ValueError(
-                "form is 'standard', whose second stimulus would always be the right one; give "
-                "'pairs', 'one', 'triangle' or 'abx'"
-            )
-        if min(self.values) < self.reference < max(self.values):
-            raise ValueError(
-                f"[design] values lie on both sides of reference {self.reference:g}, and a "
-                f"procedure goes to one side of it; give those of one side"
-            )
-        if len(self.values) < 2:
-            raise ValueError(
-                "[design] values is one; give the one nearest to reference, and the furthest one"
-            )
-        return tuple(sorted(round(abs(value - self.reference), 9) for value in self.values))
-
-    def apart(self, difference: float) -> float:
-        """Value that differs by so much from the standard, on the side of the design's values."""
-        assert self.reference is not None
-        away = difference if self.values[0] > self.reference else -difference
-        return round(self.reference + away, 9)
-
-    @property
-    def cells(self) -> int:
-        """Number of cells in the line."""
-        return len(self.string)
-
-    @property
-    def masks(self) -> frozenset[int]:
-        """Dot masks of all cells that are shown."""
-        return frozenset(self.string)
-
-    def items(self) -> Sequence[Item]:
-        """Values of the stimuli in the trials of a condition."""
+    def items(self, keys: dict[str, int]) -> list[str]:
+        """Return the values of the stimuli of each trial, with blanks between them."""
         alike = [(value, value) for value in self.values] * self.same
-        return [*self.of_values(self.values), *alike] * self.repeats
+        return [" ".join(f"{v:.9g}" for v in each) for each in [*self.of(self.values), *alike]]
 
-    @property
-    def stimuli(self) -> int:
-        """Number of stimuli in a trial."""
-        return len(self.items()[0])
-
-    def of_values(self, values: tuple[float, ...]) -> list[Item]:
-        """Values of the stimuli of each trial in which some values are shown."""
+    def of(self, values: tuple[float, ...]) -> list[tuple[float, ...]]:
+        """Return the values of the stimuli of each trial in which some values are shown."""
         standard = self.reference
         if standard is None:
-            return [(v,) for v in values] if self.form == "single" else [*permutations(values, 2)]
-        first = [(standard, value) for value in values]
+            alone = self.form == "single"
+            return [(v,) for v in values] if alone else list(itertools.permutations(values, 2))
+        pairs = [(standard, value) for value in values]
+        both = [*pairs, *((value, standard) for value in values)]
         match self.form:
             case "standard":
-                return first
+                return pairs
             case "one":
-                places = range(self.intervals)
-                return [
-                    tuple(value if place == at else standard for place in places)
-                    for at in places
-                    for value in values
-                ]
+                return _placed(pairs, self.intervals)
             case "triangle":
-                odd = [pair for one, other in first for pair in ((one, other), (other, one))]
-                return [
-                    tuple(other if place == at else one for place in range(3))
-                    for at in range(3)
-                    for one, other in odd
-                ]
+                return _placed(both, 3)
             case "abx":
-                pairs = [*first, *(pair[::-1] for pair in first)]
-                return [(*pair, again) for pair in pairs for again in pair]
-            case _:
-                return [*first, *(pair[::-1] for pair in first)]
+                return [(*pair, again) for pair in both for again in pair]
+        return both
+
+    def stimuli(self, item: str, look: Look, setting: Setting) -> tuple[Stimulus, ...]:
+        """Return the string at each value of an item."""
+        cells = to_braille(spell_string(self.string, setting.keys))
+        return tuple(
+            Stimulus(cells, look.changed(self.parameter, value), value=value)
+            for value in map(float, item.split())
+        )
 
 
-class ItemList(_Design, frozen=True, tag="items"):
-    """A design that shows the items of the table ``[items]``, which `strings_of` puts in.
+def _placed(pairs: list[tuple[float, float]], count: int) -> list[tuple[float, ...]]:
+    """Return the second of each pair at each place among so many of the first."""
+    return [
+        tuple(odd if place == at else one for place in range(count))
+        for at in range(count)
+        for one, odd in pairs
+    ]
 
-    Parameters
-    ----------
-    reorder
-        Whether the cells of an item are shown in another order each time.
-    passage
-        Whether each item is a passage: a text that is broken into lines, which are read one after
-        the other in one trial.
+
+def broken(cells: str, room: int) -> list[str]:
+    """Return the lines of a text, broken at blank cells; words that are too long are cut.
+
+    >>> broken("⠁⠀⠃⠃⠀⠉⠉⠉⠉⠉", 4)
+    ['⠁⠀⠃⠃', '⠉⠉⠉⠉', '⠉']
     """
-
-    reorder: bool = False
-    passage: bool = False
-
-    def strings_of(self, strings: tuple[Masks, ...]) -> StringList:
-        """Design that shows some strings as this one shows its items."""
-        return StringList(strings=strings, **structs.asdict(self))
-
-
-Design = Combinations | StringList | Choice
+    lines = [""]
+    for word in filter(None, cells.split(BLANK)):
+        if lines[-1] and len(lines[-1]) + 1 + len(word) <= room:
+            lines[-1] += BLANK + word
+        else:
+            lines += [word[at : at + room] for at in range(0, len(word), room)]
+    return lines[1:]
 
 
-def _check_distinct(what: str, names: Iterable[str]) -> None:
-    for name, times in Counter(names).items():
-        if times > 1:
-            raise ValueError(f"{what} {name} twice; leave one out")
-
-
-def _bounds(knob: StimulusKnob) -> tuple[float, float]:
-    """Bounds of the values compared; geometry itself says which lengths go together."""
-    return (0, max(50, knob.high)) if knob.unit else (knob.low, knob.high)
-
-
-class Practice(Table, frozen=True):
-    """The table ``[practice]`` of a protocol: what is practised, and how often.
-
-    Parameters
-    ----------
-    trials
-        Number of practice trials.
-    strings, values
-        Items that practice shows: dot masks of the cells asked for, or values that are compared.
-        Both are empty if there is no practice.
-    file
-        Name of a file beside the protocol that has the strings, as for ``[items]``; None if they
-        are given here.
-    feedback
-        Whether it is said after each trial of practice whether the answer was right.
-
-    Raises
-    ------
-    ValueError
-        If the number of trials is out of range.
-    """
-
-    trials: int = 0
-    strings: tuple[Masks, ...] = ()
-    values: tuple[float, ...] = ()
-    file: str | None = None
-    feedback: bool = True
-
-    def __post_init__(self) -> None:
-        if self.file is not None:
-            check_file_name(self.file, "file")
-            if self.strings or self.values:
-                raise ValueError("file has the strings; leave strings and values out")
-        check_range("trials", self.trials, 0, MOST_TRIALS)
-
-    def items(self, design: Design) -> tuple[Item, ...]:
-        """Items of practice: the strings, or the values as the design arranges its own."""
-        if isinstance(design, Choice):
-            return tuple(design.of_values(self.values)) if self.values else ()
-        return self.strings
-
-    def lines(self, design: Design) -> list[tuple[int, ...]]:
-        """Cells of all strings practised, with delimiters; empty if values are compared."""
-        before, after = design.around
-        return [(*before, *string, *after) for string in self.strings]
-
-    def check(self, design: Design, *, pictures: bool = False) -> None:
-        """Check that this practice goes with a test of a design, and gives nothing of it away.
-
-        Pictures are learnt before they are asked for, and may be those of the test.
-
-        Raises
-        ------
-        ValueError
-            If it does not.
-        """
-        compares = isinstance(design, Choice)
-        if self.strings if compares else self.values:
-            given, wanted = ("strings", "values") if compares else ("values", "strings")
-            raise ValueError(f"{given} are not of this kind of design; give {wanted} instead")
-        if compares:
-            if shared := set(self.values) & {*design.values, design.reference}:
-                unit = KNOBS[design.parameter].unit
-                raise ValueError(
-                    f"values have {min(shared):g}{unit}, which the test compares; give another"
-                )
-            return
-        for string, line in zip(self.strings, self.lines(design), strict=True):
-            if not any(line):
-                raise ValueError("strings have one without dots, and nothing can be felt of it")
-            if not pictures and _is_shown(design, string):
-                raise ValueError(
-                    f"strings have {name_item(string)}, which the test shows; give another"
-                )
-
-
-def name_item(item: Item) -> str:
-    """Words for an item: its text in quotation marks, or its cells in Unicode braille."""
-    if isinstance(item, WrittenText):
-        return repr(str(item))
-    return to_braille(map(int, item))
-
-
-def _is_shown(design: Design, item: Item) -> bool:
-    if isinstance(design, Combinations):
-        return len(item) == design.length and set(item) <= set(design.characters)
-    return design.content(item) in map(design.content, design.items())
+AnyDesign = StringList | ItemList | Combinations | Compared

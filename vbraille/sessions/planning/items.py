@@ -1,353 +1,177 @@
-"""Items: strings from a file, or drawn by a rule; and other files that stand beside a protocol."""
+"""Items: strings from a file, or drawn by a rule; and files of orders."""
 
 from __future__ import annotations
 
-import csv
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from random import Random
+from typing import Annotated, Literal, NamedTuple
+from unicodedata import normalize
 
-from vbraille.braille.spelling import spell_string
-from vbraille.errors import InputError, check_range
-from vbraille.sessions.planning.design import MOST_TRIALS
-from vbraille.sessions.planning.pace import NAME, check_file_name
-from vbraille.sessions.planning.sequencing import Chance
-from vbraille.sessions.planning.spellings import Mask, Masks, SpellingKeys, read_written
-from vbraille.sessions.planning.stimuli import check_seed
-from vbraille.tomlfile import Table, which
-from vbraille.wording import nearest
+from msgspec import Meta
 
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping, Sequence
+from vbraille.csvfiles import Sheet, parse_csv
+from vbraille.errors import InputError
+from vbraille.sessions.planning.values import Count, FileName, Seed
+from vbraille.toml import Table, WrongValue, which
+
+TRIES = 2000  # for each string that is drawn
+STRING, PARTICIPANT, GROUP = "string", "participant", "group"
 
 
-_TRIES = 2000  # for each string that a rule draws
-
-
-class Items(Table, frozen=True, kw_only=True):
-    """Source of the strings of ``kind = "items"``.
+class Items(Table, kw_only=True):
+    """Where the strings of a design of items come from.
 
     Parameters
     ----------
     file
-        Name of a file beside the protocol: a CSV with the column ``string``, or for the rule
-        "words" a text with a word on each line.
+        CSV file with the column "string" and any others; for the rule "words" a text with a word on
+        each line.
     rule
-        "strings" for random strings, "words" for words drawn from the file; None for all rows of
-        the file.
+        "strings" for random strings, "words" for words drawn from the file; None for all rows.
     length
-        Number of cells of each string that a rule draws; of characters, if strings are texts.
+        Cells of each string that is drawn; of characters, if strings are texts.
     count
-        Number of strings that a rule draws; None for all words that have the length.
+        How many are drawn; None for all words of the length.
     characters
         Cells that drawn strings may have; empty, for words, for all.
     distinct
-        Whether no cell may be twice in a string that is drawn.
+        Whether no cell may be twice in a string.
     differ_by
-        Least number of places in which any two strings drawn must differ.
+        In how many places any two strings must differ.
     seed
         Number that the draw follows from, so that all participants have the same strings.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range, or keys do not go together.
     """
 
-    file: str | None = None
+    file: FileName | None = None
     rule: Literal["strings", "words"] | None = None
-    length: int | None = None
-    count: int | None = None
-    characters: tuple[Mask, ...] = ()
+    length: Annotated[int, Meta(ge=1, le=100)] | None = None
+    count: Count | None = None
+    characters: tuple[str, ...] = ()
     distinct: bool = False
-    differ_by: int = 1
-    seed: int = 1
+    differ_by: Annotated[int, Meta(ge=1, le=100)] = 1
+    seed: Seed = 1
 
     def __post_init__(self) -> None:
-        check_range("length", self.length, 1, 100)
-        check_range("count", self.count, 1, MOST_TRIALS)
-        check_seed(self.seed)
-        if self.file is not None:
-            check_file_name(self.file, "file")
-        if self.rule is None:
-            self._check_listed()
-            return
-        if self.length is None:
-            raise ValueError("length is missing; give the number of cells of each string")
-        check_range("differ_by", self.differ_by, 1, self.length)
-        if self.rule == "words" and self.file is None:
-            raise ValueError('file is missing; give the list of words, such as "words.txt"')
-        if self.rule == "strings":
-            self._check_drawn(self.length)
+        if (self.file is None) != (self.rule == "strings"):
+            raise WrongValue("file", "is needed, but for rule = 'strings'")
+        if self.rule is None and (self.length or self.count or self.characters):
+            raise WrongValue("rule", "is missing, and length, count and characters are of a rule")
+        if self.rule is not None and self.length is None:
+            raise WrongValue("length", "is missing; give the number of cells of each string")
+        if self.rule == "strings" and not (self.count and self.characters):
+            raise WrongValue("count", "and characters are needed for rule = 'strings'")
 
-    def _check_listed(self) -> None:
-        if self.file is None:
-            raise ValueError('rule and file are missing; give a file, such as "items.csv"')
-        for name in ("length", "count", "characters"):
-            if getattr(self, name):
-                raise ValueError(f"{name} is of a rule; leave it out, or give rule")
-
-    def _check_drawn(self, length: int) -> None:
-        if self.file is not None:
-            raise ValueError("file is of rule = 'words'; leave it out")
-        for name in ("count", "characters"):
-            if not getattr(self, name):
-                raise ValueError(f"{name} is missing; add it")
-        if len(set(self.characters)) < len(self.characters):
-            raise ValueError("characters have a cell twice; leave one out")
-        if self.distinct and length > len(self.characters):
-            raise ValueError(
-                f"length is {length}, and distinct cells are only {len(self.characters)}; make "
-                f"it shorter"
-            )
-
-    def draw(self, words: Sequence[Masks] = ()) -> tuple[Masks, ...]:
-        """Strings that the rule draws.
+    def draw(self, strings: list[str], cells: list[str]) -> list[str]:
+        """Return the strings that the rule draws.
 
         Parameters
         ----------
-        words
-            Cells of the words of the file, for the rule "words".
-
-        Raises
-        ------
-        ValueError
-            If there are too few such strings; none were found in a bounded number of tries.
+        strings
+            Words of the file, as cells or texts.
+        cells
+            The characters, as cells.
         """
-        chance = Chance(f"items {self.rule} {self.seed}")
+        random = Random(f"items {self.rule} {self.seed}")
+        wanted = self.count or len(strings)
         if self.rule == "words":
-            fitting = [word for word in dict.fromkeys(words) if self._fits(word)]
-            found = self._apart(iter(chance.shuffled(fitting)), self.count or len(fitting))
-            wanted = self.count or 1
+            tried = iter(random.sample(strings, len(strings)))
         else:
-            wanted = self.count or 1
-            most = wanted * _TRIES
-            tried = (self._string(chance) for _ in range(most))
-            found = self._apart((string for string in tried if any(string)), wanted)
-        if len(found) < wanted:
-            raise ValueError(
-                f"count is {wanted}, and only {len(found)} strings of length {self.length} were "
-                f"found that keep the rule; make it smaller, or the rule weaker"
-            )
-        return tuple(found)
-
-    def _fits(self, word: Masks) -> bool:
-        allowed = not self.characters or set(word) <= set(self.characters)
-        return len(word) == self.length and allowed and not (self.distinct and _repeats(word))
-
-    def _string(self, chance: Chance) -> Masks:
-        assert self.length is not None
-        if self.distinct:
-            return Masks(chance.shuffled(self.characters)[: self.length])
-        drawn = (self.characters[chance.below(len(self.characters))] for _ in range(self.length))
-        return Masks(drawn)
-
-    def _apart(self, strings: Iterator[Masks], wanted: int) -> list[Masks]:
-        """First strings each of which differs enough from all before it."""
-        found: list[Masks] = []
-        for string in strings:
+            tried = (self._drawn(cells, random) for _ in range(wanted * TRIES))
+        found: list[str] = []
+        for string in tried:
             if len(found) == wanted:
                 break
-            if all(_places(string, other) >= self.differ_by for other in found):
+            if self._fits(string, cells) and all(
+                _apart(string, o) >= self.differ_by for o in found
+            ):
                 found.append(string)
+        if not found or (self.count and len(found) < self.count):
+            raise WrongValue("count", f"only {len(found)} strings keep the rule; make it weaker")
         return found
 
+    def _drawn(self, cells: list[str], random: Random) -> str:
+        length = self.length or 1
+        if self.distinct:
+            return "".join(random.sample(cells, min(length, len(cells))))
+        return "".join(random.choices(cells, k=length))
 
-def _repeats(word: Masks) -> bool:
-    return len(set(word)) < len(word)
+    def _fits(self, string: str, cells: list[str]) -> bool:
+        allowed = not cells or set(string) <= set(cells)
+        repeats = self.distinct and len(set(string)) < len(string)
+        return len(string) == self.length and allowed and not repeats and string.strip("⠀ ") != ""
 
 
-def _places(one: Masks, other: Masks) -> int:
-    """Number of places in which two strings of one length differ."""
+def _apart(one: str, other: str) -> int:
     return sum(a != b for a, b in zip(one, other, strict=True))
 
 
-STRING, PARTICIPANT, GROUP = "string", "participant", "group"
-_MOST_ROWS = 100_000
+class OrderRow(NamedTuple):
+    """Order of conditions, and the group, that a file gives a participant."""
 
-
-@dataclass(frozen=True, slots=True)
-class ItemRow:
-    """An item of a file.
-
-    Parameters
-    ----------
-    masks
-        Dot masks of its cells, or its text.
-    columns
-        Cells of the file's other columns, by column.
-    """
-
-    masks: Masks
-    columns: Mapping[str, str]
-
-
-@dataclass(frozen=True, slots=True)
-class OrderRow:
-    """Order of the conditions of a participant, as a file gives it.
-
-    Parameters
-    ----------
-    participant
-        Pseudonym.
-    conditions
-        Names of all conditions, in order.
-    group
-        Name of the group; empty if the file gives none.
-    """
-
-    participant: str
     conditions: tuple[str, ...]
-    group: str = ""
+    group: str
 
 
-def read_items(
-    text: str, where: str, keys: SpellingKeys, *, written: bool = False
-) -> tuple[ItemRow, ...]:
-    """Read a file of items: a CSV with the column ``string``, and any others.
-
-    Parameters
-    ----------
-    text, where
-        Text of the file, and its name for messages.
-    keys
-        Dot masks of the characters that may spell a cell beside a to z.
-    written
-        Whether the strings are texts, whose cells braille tables make.
+def read_items(content: bytes, name: str) -> dict[str, dict[str, str]]:
+    """Return the other columns of each string of a file of items.
 
     Raises
     ------
     InputError
-        If the column is missing, or a row is empty, is spelled badly or is there twice; the
-        message names the line.
+        If the column "string" is missing, or a string is empty or there twice.
     """
-    found: dict[Masks, ItemRow] = {}
-    for line, row in _rows(text, where, (STRING,)):
-        masks = _spelled(row.pop(STRING), f"{where} line {line}: {STRING}", keys, written)
-        if masks in found:
-            raise InputError(
-                f"{where} line {line}: {STRING} is there before; leave one out, and give repeats "
-                f"to show items more often"
+    sheet = _sheet(content, name, STRING)
+    found: dict[str, dict[str, str]] = {}
+    for line, row in zip(sheet.lines, sheet.records(), strict=True):
+        string = normalize("NFC", row.pop(STRING))
+        if not string or string in found:
+            why = (
+                f"{string!r} is there twice; repeats shows items more often"
+                if string
+                else "is empty"
             )
-        found[masks] = ItemRow(masks, row)
-    if not found:
-        raise InputError(f"{where} has no items; give a row for each")
-    return tuple(found.values())
+            raise InputError(f"{name} line {line}: {STRING} {why}")
+        found[string] = row
+    return found
 
 
-def read_words(
-    text: str, where: str, keys: SpellingKeys, *, written: bool = False
-) -> tuple[Masks, ...]:
-    """Read a list of words, one on each line; empty lines and lines with # are left out.
-
-    The parameters are described at `read_items`.
-
-    Raises
-    ------
-    InputError
-        If a word is spelled badly; the message names the line.
-    """
-    lines = [(n, line.strip()) for n, line in enumerate(text.splitlines(), 1)]
-    return tuple(
-        _spelled(word, f"{where} line {n}: word", keys, written)
-        for n, word in lines
-        if word and not word.startswith("#")
-    )
+def read_words(content: bytes) -> list[str]:
+    """Return the words of a text, one on each line; lines that begin with # are left out."""
+    text = normalize("NFC", content.decode("utf-8-sig", "replace"))
+    lines = (line.strip() for line in text.splitlines())
+    return list(dict.fromkeys(line for line in lines if line and not line.startswith("#")))
 
 
 def read_orders(
-    text: str, where: str, conditions: Collection[str], groups: Collection[str]
-) -> tuple[OrderRow, ...]:
-    """Read a file of orders: a row a participant, with all conditions in the other columns.
-
-    Parameters
-    ----------
-    text, where
-        Text of the file, and its name for messages.
-    conditions, groups
-        Names of the protocol's conditions, and of its groups.
+    content: bytes, name: str, conditions: list[str], groups: tuple[str, ...]
+) -> dict[str, OrderRow]:
+    """Return the order of each participant of a file.
 
     Raises
     ------
     InputError
-        If a column is missing, a name is not known, or a row has not each condition once.
+        If a column is missing, or a row has not each condition once, or an unknown group.
     """
-    needed = (PARTICIPANT, GROUP) if groups else (PARTICIPANT,)
+    sheet = _sheet(content, name, *((PARTICIPANT, GROUP) if groups else (PARTICIPANT,)))
     found: dict[str, OrderRow] = {}
-    for line, row in _rows(text, where, needed):
-        who, at = row.pop(PARTICIPANT), f"{where} line {line}"
-        group = row.pop(GROUP, "")
+    for line, row in zip(sheet.lines, sheet.records(), strict=True):
+        who, group = row.pop(PARTICIPANT), row.pop(GROUP, "")
+        names = tuple(filter(None, row.values()))
         if groups and group not in groups:
-            raise InputError(f"{at}: {GROUP} is {group!r}{which(group, groups)}")
-        names = tuple(row.values())
-        for name in names:
-            if name not in conditions:
-                raise InputError(f"{at}: condition is {name!r}{which(name, conditions)}")
-        if sorted(names) != sorted(conditions):
+            raise InputError(f"{name} line {line}: group is {group!r}{which(group, groups)}")
+        if sorted(names) != sorted(conditions) or who in found or not who:
+            each = ", ".join(conditions)
             raise InputError(
-                f"{at}: it has {', '.join(names) or 'no condition'}; give each of "
-                f"{', '.join(conditions)} once"
+                f"{name} line {line}: give each participant once, with each of {each} once"
             )
-        if who in found:
-            raise InputError(f"{at}: {PARTICIPANT} {who} is there before; leave one out")
-        found[who] = OrderRow(who, names, group)
-    if not found:
-        raise InputError(f"{where} has no orders; give a row for each participant")
-    return tuple(found.values())
+        found[who] = OrderRow(names, group)
+    return found
 
 
-def _rows(text: str, where: str, needed: tuple[str, ...]) -> Iterator[tuple[int, dict[str, str]]]:
-    """Rows of a CSV with a head, each with its line; columns that are needed come checked."""
-    reader = csv.reader(text.splitlines(), strict=True)
-    head: list[str] = []
-    try:
-        for cells in reader:
-            line = reader.line_num
-            if line > _MOST_ROWS:
-                raise InputError(f"{where} has more than {_MOST_ROWS} lines; make it shorter")
-            values = [cell.strip() for cell in cells]
-            if not head:
-                head = values
-                _check_head(head, f"{where} line {line}", needed)
-                continue
-            if not any(values):
-                raise InputError(f"{where} line {line} is empty; leave it out")
-            if len(values) != len(head):
-                raise InputError(
-                    f"{where} line {line} has {len(values)} values, and the head has "
-                    f"{len(head)}; give one for each column"
-                )
-            row = dict(zip(head, values, strict=True))
-            for name in needed:
-                if not row[name]:
-                    raise InputError(f"{where} line {line}: {name} is empty; add it")
-            yield line, row
-    except csv.Error as error:
-        raise InputError(f"{where} line {reader.line_num} is no CSV: {error}; mend it") from None
-    if not head:
-        raise InputError(f"{where} is empty; begin it with the names of its columns")
-
-
-def _check_head(head: list[str], at: str, needed: tuple[str, ...]) -> None:
-    for name in head:
-        if not NAME.fullmatch(name):
-            raise InputError(
-                f"{at}: a column is named {name[:40]!r}; it must be 1 to 40 letters a to z, "
-                f"digits, hyphens or underscores"
-            )
-        if head.count(name) > 1:
-            raise InputError(f"{at}: two columns are named {name}; rename one")
-    for name in needed:
-        if name not in head:
-            raise InputError(
-                f"{at}: there is no column {name}{nearest(name, head)}; rename one, or add it"
-            )
-
-
-def _spelled(text: str, what: str, keys: SpellingKeys, written: bool) -> Masks:
-    try:
-        masks = read_written(text) if written else Masks(spell_string(text, keys))
-    except ValueError as error:
-        raise InputError(f"{what}: {error}") from None
-    if not any(masks):
-        raise InputError(f"{what} has no dots, and nothing can be felt of it; give it some")
-    return masks
+def _sheet(content: bytes, name: str, *needed: str) -> Sheet:
+    sheet = parse_csv(content, name)
+    for column in needed:
+        if column not in sheet.columns:
+            raise InputError(f"{name} has no column {column!r}{which(column, sheet.columns)}")
+    if not sheet.rows:
+        raise InputError(f"{name} has no rows; give one for each item or participant")
+    return sheet

@@ -6,9 +6,8 @@ belong to every picture of their scene.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from msgspec import structs
 
@@ -16,80 +15,67 @@ from vbraille.errors import InputError
 from vbraille.feeling.composing import compose
 from vbraille.feeling.loading import check_fits, shown_at
 from vbraille.render.labels import Assets
+from vbraille.render.program import Program
+from vbraille.scene.locations import OpenedScene
 from vbraille.scene.patterns import Image, ImageDots, Label
 from vbraille.scene.reading import open_text
 from vbraille.scene.traversal import each
-from vbraille.tomlfile import which
-
-if TYPE_CHECKING:
-    from vbraille.display import Display
-    from vbraille.render.program import Program
-    from vbraille.scene.locations import OpenedScene
-    from vbraille.scene.scene import Canvas
+from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.planning.trial import Stimulus
+from vbraille.toml import which
 
 
-@dataclass(frozen=True, slots=True)
-class PictureScene:
-    """A scene whose elements are pictures; `picture_scene` opens one."""
-
-    _opened: OpenedScene
-
-    @property
-    def canvas(self) -> Canvas:
-        """Canvas that the pictures stand on."""
-        return self._opened.resolved.canvas
-
-    def check(self, picture: str, display: Display) -> None:
-        """Check that there is a picture of a name, and that a display has room for it.
-
-        Raises
-        ------
-        ValueError
-            If there is none.
-        InputError
-            If the canvas is too large.
-        """
-        check_fits(self._only(picture).resolved, display)
-
-    def compile(self, picture: str, display: Display, contrast: float) -> Program:
-        """Compile a picture for a display, with a factor of all deflections.
-
-        Raises
-        ------
-        InputError
-            If the display cannot show it.
-        """
-        loaded = shown_at(self._only(picture), Assets())
-        return compose(loaded, display, rate_hz=display.rate_hz, contrast=contrast)
-
-    def _only(self, picture: str) -> OpenedScene:
-        """Scene with the elements of a picture alone."""
-        names, opened = picture.split(), self._opened
-        known = [element.id for element in opened.written.elements]
-        for name in names:
-            if name not in known:
-                raise ValueError(f"{opened.path} has no element {name!r}{which(name, known)}")
-        elements = tuple(
-            element
-            for element, name in zip(opened.resolved.elements, known, strict=True)
-            if not name or name in names
-        )
-        return replace(opened, resolved=structs.replace(opened.resolved, elements=elements))
-
-
-@lru_cache(16)
-def picture_scene(text: str, name: str) -> PictureScene:
-    """Open the scene of a file's text.
+def check_picture(protocol: Protocol, stimulus: Stimulus) -> None:
+    """Check that there is a picture, and that the display has room for it.
 
     Raises
     ------
+    ValueError
+        If there is none.
     InputError
-        If it is no scene, or has what other files or braille tables make.
+        If the scene or its canvas cannot be used.
     """
-    opened = open_text(text, name)
+    if not protocol.display_model.display.height_mm:
+        raise ValueError("the model's carriage goes along one line only; give 'pantograph'")
+    check_fits(_picture(protocol, stimulus).resolved, protocol.display_model.display)
+
+
+def compile_picture(protocol: Protocol, stimulus: Stimulus) -> Program:
+    """Compile a picture for the protocol's display."""
+    display = protocol.display_model.display
+    loaded = shown_at(_picture(protocol, stimulus), Assets())
+    contrast = protocol.style(stimulus.look).tuning.contrast
+    return compose(loaded, display, rate_hz=display.rate_hz, contrast=contrast)
+
+
+def canvas_mm(protocol: Protocol, stimulus: Stimulus) -> tuple[float, float]:
+    """Return the width and the height of a picture's canvas."""
+    canvas = _picture(protocol, stimulus).resolved.canvas
+    return canvas.width_mm, canvas.height_mm
+
+
+def _picture(protocol: Protocol, stimulus: Stimulus) -> OpenedScene:
+    """Return the scene with the elements of a picture alone."""
+    name = stimulus.look.scene
+    assert name is not None, "a picture is of a scene"
+    opened, names = _scene(protocol.files[name], name), stimulus.picture.split()
+    known = [element.id for element in opened.written.elements]
+    for wanted in names:
+        if wanted not in known:
+            raise ValueError(
+                f"{name} has no element {wanted!r}{which(wanted, filter(None, known))}"
+            )
+    elements = tuple(
+        element
+        for element, own in zip(opened.resolved.elements, known, strict=True)
+        if not own or own in names
+    )
+    return replace(opened, resolved=structs.replace(opened.resolved, elements=elements))
+
+
+@lru_cache(maxsize=16)
+def _scene(content: bytes, name: str) -> OpenedScene:
+    opened = open_text(content.decode("utf-8"), name)
     if any(isinstance(one, Image | ImageDots | Label) for one in each(*opened.written.elements)):
-        raise InputError(
-            f"{name} has images or labels, and pictures of a protocol are shapes, dots and "
-            f"textures alone, so that a session needs no other file; leave them out"
-        )
-    return PictureScene(opened)
+        raise InputError(f"{name} has images or labels; pictures of a protocol are shapes and dots")
+    return opened

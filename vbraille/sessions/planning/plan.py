@@ -1,171 +1,301 @@
-"""The plan of a session: all that will be shown, in order, fixed before the first trial."""
+"""The plan of a session: the same for the same protocol, participant, seed and session."""
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, fields
-from typing import Any
+import re
+from collections.abc import Iterator
+from functools import partial
+from itertools import cycle
+from random import Random
 
-import msgspec
-from msgspec import Struct, field
+from msgspec import Struct, structs
 
-from vbraille.braille.geometry import Geometry
-from vbraille.braille.spelling import spell, to_braille
+from vbraille.braille.cells import dots_of
 from vbraille.errors import InputError
-from vbraille.render import Tuning
-from vbraille.sessions.planning.analysis import PlannedAnalysis
-from vbraille.sessions.planning.stimuli import (
-    Stimuli,
-    Stimulus,
-    Trial,
-    check_participant,
-    check_seed,
-)
-from vbraille.sessions.planning.style import mapping_named
+from vbraille.sessions.planning.design import BLANK, Catch, Setting
+from vbraille.sessions.planning.order import Limit, balanced_orders, ordered
+from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.planning.trial import Trial
+from vbraille.sessions.planning.values import Look
+from vbraille.toml import which
 
-VERSION = 2  # of the making of plans; what a seed makes may change with a higher one alone
-_OF_STIMULUS = {"cells", "value_mm", *(f.name for f in (*fields(Tuning), *fields(Geometry)))}
-# Left out where the display's mapping is used, where a protocol gives cells, on the device, and
-# where no picture is shown.
-_OPTIONAL = ("mapping", "text", "table", "on", "scene", "picture", "answer")
+Placed = tuple[str, str]  # an item, and the condition in which it is shown
+
+# How long people take, as in the source: 17 s for a string of five letters and its answer.
+READING_S, ANSWERING_S, BREAK_S = 2.2, 4.0, 120.0
 
 
-class _Version(msgspec.Struct):
-    """The one key that plans of every version have."""
-
-    format: int
-
-
-def stimulus_to_json(stimulus: Stimulus) -> dict[str, Any]:
-    """Describe a stimulus completely by strings, numbers and None, as in plan.json."""
-    written = {
-        "cells": to_braille(stimulus.masks),
-        "value_mm": stimulus.value,
-        **asdict(stimulus.tuning),
-        **asdict(stimulus.geometry),
-    }
-    given = {name: getattr(stimulus, name) for name in _OPTIONAL}
-    return written | {name: value for name, value in given.items() if value is not None}
-
-
-def stimulus_from_json(written: dict[str, Any]) -> Stimulus:
-    """Make a stimulus from the description that `stimulus_to_json` gives.
-
-    Raises
-    ------
-    ValueError
-        If a value is missing, has the wrong type or is out of range.
-    """
-    if set(written) - set(_OPTIONAL) != _OF_STIMULUS:
-        raise ValueError(f"a stimulus must have {', '.join(sorted(_OF_STIMULUS))}, nothing else")
-    optional = {name: msgspec.convert(written.get(name), str | None) for name in _OPTIONAL}
-    mapping = optional["mapping"]
-    if mapping is not None:
-        mapping_named(mapping)
-    return Stimulus(
-        spell(msgspec.convert(written["cells"], str), {}),
-        msgspec.convert(written, Tuning),
-        msgspec.convert(written, Geometry),
-        msgspec.convert(written["value_mm"], float | None),
-        **optional,
-    )
-
-
-def _trial(trial: Trial) -> str:
-    stimuli = list(map(stimulus_to_json, trial.stimuli))
-    written = msgspec.structs.asdict(trial) | {"stimuli": stimuli}
-    if not trial.catch:
-        del written["catch"]
-    return _json(written)
-
-
-def _read_stimuli(_kind: type, written: list[dict[str, Any]]) -> Stimuli:
-    return Stimuli(map(stimulus_from_json, msgspec.convert(written, list[dict[str, Any]])))
-
-
-def _json(value: object) -> str:
-    # The standard library writes 1e-05, which the sums of plans are of; msgspec writes 0.00001.
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
-
-
-class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """All trials of a session, in order. The plan's file has the fields in the order given here.
+class Plan(Struct, frozen=True):
+    """All trials of a session.
 
     Parameters
     ----------
-    version
-        Version of the rules that the plan was made by.
-    protocol
-        Name of the protocol.
-    participant
-        Pseudonym of the participant.
-    seed
-        Number that all random choices followed from.
+    participant, seed
+        Pseudonym, and the number that all chance follows from.
     order
-        Number of the balanced order of conditions, or the row of the table of orders, from 1; 0 if
-        there is only one order.
+        Which of the balanced orders of conditions it has, from 1; 0 if there are none.
     group
-        Name of the participant's group; empty if there are no groups.
-    analysis
-        Analysis that answers what the session is for.
-    practice, trials
-        Practice trials and trials of the test, each in the order in which they are shown.
-
-    Raises
-    ------
-    ValueError
-        If the participant, the seed or the order cannot be used.
+        Group of the participant; empty if there are none.
+    trials
+        Practice, and then the trials of the blocks.
+    session
+        Which session of the participant it is, from 1.
     """
 
-    version: int = field(name="format", default=VERSION)
-    protocol: str
     participant: str
     seed: int
     order: int
-    group: str = ""
-    analysis: PlannedAnalysis
-    practice: tuple[Trial, ...]
+    group: str
     trials: tuple[Trial, ...]
+    session: int = 1
 
-    def __post_init__(self) -> None:
-        check_participant(self.participant)
-        check_seed(self.seed)
-        if self.order < 0:
-            raise ValueError(f"order is {self.order}; it must be 0 or more")
 
-    def stimuli(self) -> list[Stimulus]:
-        """All stimuli of all trials, practice included."""
-        return [stimulus for trial in (*self.practice, *self.trials) for stimulus in trial.stimuli]
+def make_plan(
+    protocol: Protocol,
+    participant: str,
+    seed: int,
+    order: int | None = None,
+    *,
+    session: int = 1,
+    group: str | None = None,
+    look: Look | None = None,
+) -> Plan:
+    """Plan a session.
 
-    def to_json(self) -> str:
-        """Plan as JSON with one trial on each line; the bytes are the same on every machine."""
-        head = {n: getattr(self, n) for n in ("protocol", "participant", "seed", "order")}
-        head |= {"group": self.group} if self.group else {}
-        head |= {"analysis": msgspec.structs.asdict(self.analysis)}
-        lines = [f"{_json(n)}: {_json(v)}" for n, v in {"format": self.version, **head}.items()]
-        for name in ("practice", "trials"):
-            written = ",\n".join(map(_trial, getattr(self, name)))
-            lines.append(f"{_json(name)}: " + (f"[\n{written}\n]" if written else "[]"))
-        return "{\n" + ",\n".join(lines) + "\n}\n"
+    Parameters
+    ----------
+    order
+        Which of the balanced orders it has, from 1; None goes by the number in the pseudonym.
+    session
+        Which session of the participant it is, so that a second one has another order.
+    group
+        Name of the group; None goes by the number in the pseudonym, or by the table of orders.
+    look
+        Values that take the place of the display's own.
 
-    @classmethod
-    def from_json(cls, text: str) -> Plan:
-        """Read a plan that `to_json` wrote.
+    Raises
+    ------
+    InputError
+        If no order keeps the rules, or nothing says which balanced order is wanted.
+    """
+    if look is not None:
+        display = structs.replace(protocol.display, **look.given)
+        protocol = structs.replace(protocol, display=display)
+    drawn = f"{protocol.name} {participant} {seed}" + (f" {session}" if session > 1 else "")
+    group = _choose_group(protocol, participant, group)
+    if group:
+        protocol = protocol.of_group(group)
+    order = _choose_order(protocol, participant, order, session)
+    random = Random(drawn)
+    blocks = _deal(protocol, participant, order, random)
+    try:
+        blocks = ordered(blocks, *_rules(protocol), random)
+        places = [(placed, block) for block, own in enumerate(blocks, 1) for placed in own]
+        trials = _trials(protocol, places, random)
+        if protocol.design.catch is not None:
+            trials = _with_catch(trials, protocol.design.catch, random)
+        # Practice has chance of its own, so that the number of its trials changes nothing else.
+        practice = _practice(protocol, Random(f"{drawn} practice"))
+    except ValueError as error:
+        raise InputError(f"{protocol.name}: {error}") from None
+    numbered = tuple(_numbered(practice) + _numbered(trials))
+    return Plan(participant, seed, order, group, numbered, session)
 
-        Raises
-        ------
-        InputError
-            If the text is damaged, or the plan is of another version.
-        """
-        try:
-            version = msgspec.json.decode(text, type=_Version).format
-            if version == VERSION:
-                return msgspec.json.decode(text, type=cls, dec_hook=_read_stimuli)
-        except RecursionError:
-            raise InputError("the plan is damaged: its brackets nest too deep") from None
-        except ValueError as error:
-            raise InputError(f"the plan is damaged: {error}; put it back as it was") from None
-        raise InputError(
-            f"the plan is of version {version}, and this vbraille knows version {VERSION}; use the "
-            f"vbraille that made it"
-        )
+
+def _choose_group(protocol: Protocol, participant: str, group: str | None) -> str:
+    """Return the name of the group; empty if there are none."""
+    groups = protocol.groups
+    if group and group not in groups:
+        raise InputError(f"there is no group {group!r}{which(group, groups)}")
+    if group or not groups:
+        return group or ""
+    if participant in protocol.orders:
+        return protocol.orders[participant].group
+    return groups[(_number(participant) - 1) % len(groups)]
+
+
+def _number(participant: str) -> int:
+    """Return the last number in a pseudonym, which chooses the group and the order."""
+    numbers = re.findall(r"\d+", participant)
+    if not numbers:
+        raise InputError(f"{participant} has no number to choose the order by; give --order")
+    return int(numbers[-1])
+
+
+def _choose_order(protocol: Protocol, participant: str, order: int | None, session: int) -> int:
+    """Return the number of the balanced order, from 1; 0 if there are none."""
+    if protocol.design.blocks != "conditions" or protocol.block_order != "balanced":
+        return 0
+    if order is None:  # groups take turns, so that each of them has all orders
+        order = (_number(participant) - 1) // max(1, len(protocol.groups)) + session
+    return (order - 1) % len(balanced_orders(len(protocol.conditions))) + 1
+
+
+def _deal(protocol: Protocol, participant: str, order: int, random: Random) -> list[list[Placed]]:
+    """Return the items and conditions of each block, not in order yet."""
+    design, names = protocol.design, [condition.name for condition in protocol.conditions]
+    items = dict.fromkeys(names, protocol.items_shown * design.repeats)
+    if design.counterbalanced:
+        # Each item is in one condition, which is the next one for the next participant.
+        shift = _number(participant)
+        for n, name in enumerate(names):
+            items[name] = (
+                protocol.items_shown[(n + shift) % len(names) :: len(names)] * design.repeats
+            )
+    if design.blocks == "conditions":
+        if protocol.block_order == "table":
+            if participant not in protocol.orders:
+                raise InputError(f"{protocol.order.file} has no row for {participant}; add one")
+            names = list(protocol.orders[participant].conditions)
+        elif order:
+            names = [names[n] for n in balanced_orders(len(names))[order - 1]]
+        elif protocol.block_order == "shuffled":
+            random.shuffle(names)
+        return [[(item, name) for item in items[name]] for name in names]
+    blocks: list[list[Placed]] = [[] for _ in range(design.blocks)]
+    # Dealt like cards, so that two blocks differ by one trial at most, of a condition and in all.
+    into = cycle(blocks)
+    for name in names:
+        for item in random.sample(items[name], len(items[name])):
+            next(into).append((item, name))
+    return blocks
+
+
+def _rules(protocol: Protocol) -> tuple[list[Limit], object]:
+    """Return the limits of the rules, and the level that quarters share evenly, if any."""
+    rules, limits = protocol.rules, []
+    if rules.never_twice_running:
+        reorder = getattr(protocol.design, "reorder", False)
+        limits.append(Limit(lambda shown: "".join(sorted(shown[0])) if reorder else shown[0], 1))
+    levels = {each.name: protocol.levels(each.name, "") for each in protocol.conditions}
+    for name, most in rules.at_most_running.items():
+        limits.append(Limit(partial(_level, protocol.columns, levels, name), most))
+    return limits, (lambda shown: shown[1]) if rules.balanced_quarters else None
+
+
+def _level(
+    columns: dict[str, dict[str, str]], levels: dict[str, dict[str, str]], name: str, shown: Placed
+) -> str:
+    """Return the condition of a trial, its level of a factor, or its cell of a column."""
+    item, condition = shown
+    if name == "condition":
+        return condition
+    return levels[condition].get(name) or columns.get(item, {}).get(name, "")
+
+
+def _practice(protocol: Protocol, random: Random) -> list[Trial]:
+    """Return the trials of practice; all that there may be, if a criterion ends it."""
+    practice = protocol.practice
+    if not practice.most:
+        return []
+    items, names = cycle(protocol.practised), [each.name for each in protocol.conditions]
+    shown = [(next(items), name) for name, _ in zip(cycle(names), range(practice.most))]
+    if practice.order == "shuffled":
+        limits, _ = _rules(protocol)
+        (shown,) = ordered([shown], limits, None, random)
+    return _trials(protocol, [(placed, 0) for placed in shown], random)
+
+
+def _trials(protocol: Protocol, places: list[tuple[Placed, int]], random: Random) -> list[Trial]:
+    """Return trials of items in conditions and blocks; they get their numbers later."""
+    setting = Setting(protocol.masks, protocol.room, random)
+    looks = {each.name: each.over(protocol.display) for each in protocol.conditions}
+    gap_s, columns, found = protocol.trial.gap_s, protocol.columns, []
+    for (item, condition), block in places:
+        stimuli = protocol.design.stimuli(item, looks[condition], setting)
+        gap = round(random.uniform(*gap_s), 3) if isinstance(gap_s, tuple) else gap_s
+        own = columns.get(item, {})
+        found.append(Trial(block == 0, 0, block, condition, item, stimuli, gap, columns=own))
+    return found
+
+
+def _with_catch(trials: list[Trial], catch: Catch, random: Random) -> list[Trial]:
+    """Put a catch trial after a random trial of each stretch; so none is the first."""
+    found: list[Trial] = []
+    for first in range(0, len(trials), catch.stretch):
+        part = trials[first : first + catch.stretch]
+        if len(part) < catch.stretch:
+            return found + part
+        after = random.randrange(len(part)) + 1
+        found += [*part[:after], _caught(part[after - 1], catch), *part[after:]]
+    return found
+
+
+def _caught(trial: Trial, catch: Catch) -> Trial:
+    """Return the catch trial that comes after a trial."""
+    if catch.show == "repeat":
+        return structs.replace(trial, catch=catch.show)
+    stimuli = tuple(
+        structs.replace(each, cells=BLANK * len(each.cells), text="") for each in trial.stimuli
+    )
+    return structs.replace(trial, stimuli=stimuli, catch=catch.show, columns={})
+
+
+def _numbered(trials: list[Trial]) -> list[Trial]:
+    return [structs.replace(trial, number=number) for number, trial in enumerate(trials, 1)]
+
+
+def length_s(protocol: Protocol, plan: Plan) -> float:
+    """Estimate how long a session takes, with people who read as in the source.
+
+    What is felt for a time that the protocol sets is counted at its whole length.
+    """
+    pace, every = protocol.trial, protocol.session.break_every
+    seconds = 0.0
+    for trial in plan.trials:
+        cells = sum(len(each.before + each.cells + each.after) for each in trial.stimuli)
+        felt_s = pace.exposure_s or READING_S * cells or BREAK_S
+        if pace.exposure_s and trial.values:
+            felt_s *= len(trial.stimuli)
+        seconds += trial.gap_s + felt_s + min(ANSWERING_S, pace.answer_s or ANSWERING_S)
+    tested = sum(not trial.practice for trial in plan.trials)
+    blocks = max((trial.block for trial in plan.trials), default=1)
+    breaks = max((tested - 1) // every if every else 0, blocks - 1)
+    seconds += breaks * (protocol.session.break_s or BREAK_S)
+    return min(seconds, protocol.session.limit_s or seconds)
+
+
+def plan_lines(protocol: Protocol, plan: Plan) -> Iterator[str]:
+    """Say a plan, a trial in each line."""
+    tested = [trial for trial in plan.trials if not trial.practice]
+    who = f"participant {plan.participant}, seed {plan.seed}"
+    yield f"protocol: {protocol.name}, {len(tested)} trials, {who}"
+    if plan.group:
+        yield f"group: {plan.group}"
+    yield f"analysis: {protocol.analysis.said()}"
+    minutes = max(1, round(length_s(protocol, plan) / 60))
+    felt = protocol.trial.exposure_s
+    up_to = (
+        f", with trials of up to {felt:g} s" if felt else ", if people read as those of the source"
+    )
+    yield f"length: about {minutes} min{up_to}"
+    if protocol.procedure is not None:
+        yield "values: chosen by the answers; those of the plan are not shown"
+    block = 0
+    for trial in plan.trials:
+        if trial.block != block:
+            block = trial.block
+            yield f"block: {block}"
+        yield f"{trial.name}: {', '.join(_described(trial))}"
+
+
+def _described(trial: Trial) -> Iterator[str]:
+    """Say what a trial shows."""
+    yield trial.condition
+    if trial.catch:
+        yield f"catch {trial.catch}"
+    first = trial.stimuli[0]
+    if first.text:
+        yield first.text
+    if trial.values:
+        yield " and ".join(f"{value:g}" for value in trial.values)
+    elif first.picture:
+        yield first.picture
+    else:
+        lines = (each.before + each.cells + each.after for each in trial.stimuli)
+        yield " / ".join(lines)
+        yield "dots " + " / ".join(_dots(each.masks(0)) for each in trial.stimuli)
+
+
+def _dots(masks: list[int]) -> str:
+    return " ".join("-".join(map(str, dots_of(mask))) or "0" for mask in masks)

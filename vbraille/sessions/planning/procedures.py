@@ -1,442 +1,287 @@
-"""The table ``[procedure]`` of a protocol: which values come next, and when enough was asked.
+"""Procedures that choose by the answers what is shown.
 
-A class for each kind chooses by what was asked in one condition so far, and by nothing else.
+The plan has all trials that there may be. A procedure gives each one a level when it comes, and the
+event of its cue keeps the values. The same answers give the same levels, so that a session that is
+resumed goes on as it would have.
+
+A *level* is a value of the procedure's parameter for strings; the difference from the standard
+where a design has one; or the two values, the lower first, of which one is preferred.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal
+from typing import Annotated, Literal, NamedTuple
 
-from vbraille.adaptive.questplus import (
-    GridAxis,
-    GridQuest,
-    detection_quest,
-    nearer_quest,
-    ordered_pairs,
-    steps,
-)
-from vbraille.adaptive.staircase import Asked, StaircaseRule, Staircases, StopRule
-from vbraille.errors import VbrailleError, check_range
-from vbraille.sessions.planning.design import MOST_TRIALS, Choice, Design
-from vbraille.sessions.planning.stimuli import KNOBS, KnobName
-from vbraille.tomlfile import Table
+from msgspec import Meta
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from vbraille.adaptive.observer import Estimate, Grid, Quest, nearer, psychometric, steps
+from vbraille.adaptive.staircase import Asked, Rule, Staircases
+from vbraille.sessions.planning.design import AnyDesign, Compared
+from vbraille.sessions.planning.questions import Question
+from vbraille.sessions.planning.trial import Trial
+from vbraille.sessions.planning.values import Count, Number, Parameter, Positive, Seconds, Share
+from vbraille.toml import Table, WrongValue
 
-THRESHOLD, PREFERRED = "threshold", "preferred"
-_MOST_VALUES = 1000
+THRESHOLD, CENTRE = "threshold", "centre"
+PLACES = 9
+
+Level = tuple[float, ...]
+Chances = Annotated[tuple[Share, ...], Meta(min_length=1)]
 
 
-class FixedProcedure(Table, frozen=True, tag="fixed", tag_field="kind"):
-    """A procedure that follows the plan, whatever is answered."""
+class Outcome(NamedTuple):
+    """A level that was shown, whether the answer was positive, and when it was given.
 
-    def check(self, _design: Design) -> None:
-        """Accept any design."""
+    An answer is positive if it is right or yes; of two that are preferred, if it is the lower.
+    """
 
-    def values(self, _design: Design) -> tuple[float, ...]:
-        """Values that the procedure adds to those of the design: none."""
-        return ()
+    level: Level
+    positive: bool
+    t_s: float
 
 
-class _ByAnswersTable(Table, frozen=True, kw_only=True, tag_field="kind"):
-    """Common part of the procedures that go by the answers.
+class Procedure(Table, kw_only=True, tag_field="kind"):
+    """What all procedures have.
 
     Parameters
     ----------
     parameter
-        What a procedure with strings varies; None if two are compared.
+        Number of the look of strings that is varied; None if the design compares one.
     least, most
-        Bounds of its values; None if two are compared, whose values are in the design.
+        Bounds of its values; None if the design has them.
     harder
         Whether strings are harder to read with less or with more of it.
     trials
-        Most trials of each condition; None for as many as the design has.
+        Most trials of a condition; None for as many as the design has.
     seconds
-        Seconds of the session after which no further trial is chosen; None for no limit.
+        Time of the session after which no further trial is chosen.
     """
 
-    parameter: KnobName | None = None
-    least: float | None = None
-    most: float | None = None
+    parameter: Parameter | None = None
+    least: Number | None = None
+    most: Number | None = None
     harder: Literal["less", "more"] = "less"
-    trials: int | None = None
-    seconds: float | None = None
+    trials: Count | None = None
+    seconds: Seconds | None = None
 
-    def __post_init__(self) -> None:
-        check_range("trials", self.trials, 1, MOST_TRIALS)
-        check_range("seconds", self.seconds, 1, 86_400, " s")
-        knob = KNOBS.get(self.parameter or "contrast")
-        assert knob is not None, "the names are those of the knobs"
-        check_range("least", self.least, knob.low, knob.high, knob.unit)
-        check_range("most", self.most, knob.low, knob.high, knob.unit)
+    def bounds(self, design: AnyDesign) -> tuple[float, float]:
+        """Return the lowest and the highest level, or value of which one is preferred."""
+        if not isinstance(design, Compared):
+            return self.least or 0.0, self.most or 0.0
+        values = [abs(value - (design.reference or 0.0)) for value in design.values]
+        return round(min(values), PLACES), round(max(values), PLACES)
 
-    @property
-    def bounds(self) -> tuple[float, float]:
-        """Least and largest value of the parameter that is varied with strings.
-
-        Raises
-        ------
-        ValueError
-            If one of them is not given.
-        """
-        if self.least is None or self.most is None:
-            raise ValueError("least or most is missing; add it")
-        return self.least, self.most
-
-    def ends(self, design: Design) -> tuple[float, float]:
-        """Least and largest of what is chosen: of a value, or of a difference from a standard.
-
-        Raises
-        ------
-        ValueError
-            If there is none.
-        """
-        if not isinstance(design, Choice):
-            return self.bounds
-        chosen = design.values if design.reference is None else design.differences
-        return min(chosen), max(chosen)
-
-    def _check_varied(self, design: Design) -> None:
-        """Check that there is something to vary, in one table.
-
-        Raises
-        ------
-        ValueError
-            If there is nothing, or a choice has it twice.
-        """
-        if not isinstance(design, Choice):
-            self._check_bounds()
-            return
-        if (self.parameter, self.least, self.most) != (None, None, None):
-            raise ValueError("parameter, least and most are those of [design]; leave them out")
-        if design.reference is not None:
-            if self.harder != "less":
-                raise ValueError("harder is of strings; the less two differ, the harder it is")
-            _ = design.differences
-
-    def _check_bounds(self) -> None:
-        """Check that a procedure with strings has something to vary."""
-        for name in ("parameter", "least", "most"):
-            if getattr(self, name) is None:
-                raise ValueError(f"lacks {name}; add it")
-        least, most = self.bounds
-        if least >= most:
-            raise ValueError(
-                f"least is {least:g} and most is {most:g}, and nothing can move between them; "
-                f"make most larger"
-            )
-
-
-class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
-    """QUEST+: the value, or the pair of values, that is expected to tell most.
-
-    Parameters
-    ----------
-    step
-        Step from one value that may be asked to the next; None for the values of the design alone,
-        where two are compared.
-    furthest
-        Largest difference between two values that are compared; None for any.
-    scale
-        Scale on which distances between compared values are judged.
-    shape
-        Shape of the psychometric function of strings.
-    spread, guess, lapse
-        Possible values of these parameters; one value fixes the parameter. Without ``guess``,
-        strings are not guessed, and of several stimuli each is guessed as often.
-    sd, width
-        Standard deviation, and width of the interval of 95 %, that are precise enough; None for
-        no end by precision.
-    at_least
-        Number of trials of a condition before precision counts.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range.
-    """
-
-    step: float | None = None
-    furthest: float | None = None
-    scale: Literal["linear", "log"] = "linear"
-    shape: Literal["normal", "logistic", "weibull"] = "normal"
-    spread: tuple[float, ...]
-    guess: tuple[float, ...] | None = None
-    lapse: tuple[float, ...] = (0.03,)
-    sd: float | None = None
-    width: float | None = None
-    at_least: int = 10
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_range("step", self.step, 1e-4, 50)
-        check_range("furthest", self.furthest, 1e-4, 50)
-        for value in self.spread:
-            check_range("spread: one", value, 1e-4, 100)
-        for name in ("guess", "lapse"):
-            for value in getattr(self, name) or ():
-                check_range(f"{name}: one", value, 0, 0.9)
-        for name in ("spread", "guess", "lapse"):
-            if (given := getattr(self, name)) is not None:
-                GridAxis(name, given)
-        self.stop  # noqa: B018
-
-    @property
-    def stop(self) -> StopRule:
-        """Rule that ends the questions of a condition."""
-        return StopRule(self.trials, self.sd, self.width, self.at_least, self.seconds)
-
-    def check(self, design: Design) -> None:
-        """Check that this procedure goes with a design.
-
-        Raises
-        ------
-        ValueError
-            If it does not.
-        """
-        self._check_varied(design)
-        compares = isinstance(design, Choice)
-        if compares and design.reference is None and design.form != "pairs":
-            raise ValueError("chooses both values of a pair; leave form out of [design]")
-        if compares and design.reference is not None and self.scale != "linear":
-            raise ValueError("scale is of two values that are compared freely; leave it out")
-        if compares and self.guess is not None:
-            raise ValueError("guess follows from the number of stimuli; leave it out")
-        if not compares and self.step is None:
-            raise ValueError("lacks step; add it")
-        if self.furthest is not None and not (compares and design.reference is None):
-            raise ValueError("furthest is of kind = 'choice' without a reference; leave it out")
-        self.quest(design)
-
-    def next(
-        self, asked: Sequence[Asked], design: Design, _seed: str = ""
-    ) -> tuple[float, ...] | None:
-        """Value or pair of values that is asked next in a condition; None if enough was asked."""
-        if self.stop.out_of_limits(asked):
+    def next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
+        """Return the next level after the answers of a condition; None if enough was asked."""
+        out_of_time = self.seconds and history and history[-1].t_s >= self.seconds
+        if out_of_time or len(history) >= (self.trials or len(history) + 1):
             return None
-        quest, history = self.quest(design), self._history(asked, design)
-        if self.stop.by_precision:
-            known = quest.estimate(history, quest.axes[0].name)
-            if self.stop.precise(len(history), known):
-                return None
-        return quest.next(history)
+        return self._next(design, history, seed)
 
-    def found(
-        self, asked: Sequence[Asked], design: Design, what: str, unit: str, _seed: str = ""
-    ) -> tuple[str, ...]:
-        """Sentences on the threshold, or on the preferred value."""
-        quest = self.quest(design)
-        name = quest.axes[0].name
-        known = quest.estimate(self._history(asked, design), name)
-        return (
-            f"{name} {_of(design, what)}: {known.mean:.3g}{unit}",
-            f"95 % interval: {known.low:.3g} to {known.high:.3g}{unit}",
-        )
+    def _next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
+        raise NotImplementedError
 
-    def _history(
-        self, asked: Sequence[Asked], design: Design
-    ) -> list[tuple[tuple[float, ...], int]]:
-        quest = self.quest(design)
-        for each in asked:
-            if each.stimulus not in quest:
-                values = " and ".join(f"{value:g}" for value in each.stimulus)
-                raise VbrailleError(
-                    f"the journal is damaged: it has shown {values}, which the protocol's "
-                    f"procedure never asks; nothing was changed"
-                )
-        return [(each.stimulus, each.outcome) for each in asked]
-
-    def values(self, design: Design) -> tuple[float, ...]:
-        """Values that may be shown, increasing; see `chosen`."""
-        return _shown(design, self.chosen(design))
-
-    def chosen(self, design: Design) -> tuple[float, ...]:
-        """Values, or differences from the standard, that may be asked, increasing.
-
-        Raises
-        ------
-        ValueError
-            If the step does not lead from one end to the other, or there are too many values.
-        """
-        low, high = self.ends(design)
-        if self.step is None:
-            assert isinstance(design, Choice), "check() has seen to that"
-            return tuple(sorted(design.values if design.reference is None else design.differences))
-        if (high - low) / self.step > _MOST_VALUES:
-            raise ValueError(f"step makes more than {_MOST_VALUES} values; make it larger")
-        return steps(low, high, self.step)
-
-    @lru_cache(maxsize=8)  # noqa: B019 - tables are values, and few
-    def quest(self, design: Design) -> GridQuest:
-        """Grid of this procedure for a design.
-
-        Raises
-        ------
-        ValueError
-            If there is no such grid.
-        """
-        values = self.chosen(design)
-        spread, lapse = GridAxis("spread", self.spread), GridAxis("lapse", self.lapse)
-        if not isinstance(design, Choice) or design.reference is not None:
-            alike = (1 / design.alternatives,) if isinstance(design, Choice) else (0.0,)
-            threshold, guess = GridAxis(THRESHOLD, values), GridAxis("guess", self.guess or alike)
-            falls = self.harder == "more"
-            return detection_quest(
-                self.shape, values, threshold, spread, guess, lapse, falls=falls, about=THRESHOLD
-            )
-        most = float("inf") if self.furthest is None else self.furthest * (1 + 1e-9)
-        pairs = [pair for pair in ordered_pairs(values) if pair[1] - pair[0] <= most]
-        if not pairs:
-            raise ValueError(
-                f"furthest is {self.furthest:g}, and no two values are so near; make it larger"
-            )
-        if self.scale == "log" and values[0] <= 0:
-            raise ValueError("scale is 'log', which is for values above 0; leave 0 mm out")
-        centre = GridAxis(PREFERRED, self._centres(values))
-        return nearer_quest(pairs, centre, spread, lapse, log=self.scale == "log", about=PREFERRED)
-
-    def _centres(self, values: tuple[float, ...]) -> tuple[float, ...]:
-        """Values that may be the preferred one: those asked, or 51 from end to end if few are."""
-        if self.step is not None:
-            return values
-        return steps(values[0], values[-1], (values[-1] - values[0]) / 50)
+    def found(self, design: AnyDesign, history: list[Outcome], seed: str) -> str:
+        """Say what is known after the answers of a condition; empty if nothing is."""
+        raise NotImplementedError
 
 
-class StaircaseProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="staircase"):
+class Staircase(Procedure, kw_only=True, tag="staircase"):
     """Staircases: harder after right answers, easier after wrong ones.
 
     Parameters
     ----------
     start
-        Values that the staircases begin with: as many staircases as values, interleaved.
+        Where each staircase begins; several are interleaved.
     steps
         Sizes of the step before the first reversal, before the second, and so on.
     right, wrong
-        Number of right answers running that make it harder, and of wrong ones that make it easier.
+        How many right answers running make it harder, and how many wrong ones easier.
     target
-        Share of right answers that a weighted staircase converges to; None if steps are as large
-        one way as the other.
+        Share of right answers that steps of two sizes converge to, with right = wrong = 1.
     reversals
-        Number of reversals after which a staircase is over; None for no such end.
+        After how many reversals a staircase is over.
+    """
+
+    start: Annotated[tuple[Number, ...], Meta(min_length=1, max_length=20)]
+    steps: Annotated[tuple[Positive, ...], Meta(min_length=1)]
+    right: Count = 2
+    wrong: Count = 1
+    target: Annotated[float, Meta(ge=0.05, le=0.95)] | None = None
+    reversals: Count | None = None
+
+    def __post_init__(self) -> None:
+        if self.target is not None and (self.right, self.wrong) != (1, 1):
+            raise WrongValue("target", "is of steps up and down; give right = 1 and wrong = 1")
+
+    def _staircases(self, design: AnyDesign, seed: str) -> Staircases:
+        least, most = self.bounds(design)
+        easier = 1.0 if self.target is None else self.target / (1 - self.target)
+        less = self.harder == "less" or isinstance(design, Compared)
+        rules = [
+            Rule(
+                start, least, most, self.steps, self.right, self.wrong, easier, less, self.reversals
+            )
+            for start in self.start
+        ]
+        return Staircases(rules, seed)
+
+    def _next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
+        level = self._staircases(design, seed).next(_asked(history))
+        return None if level is None else (level,)
+
+    def found(self, design: AnyDesign, history: list[Outcome], seed: str) -> str:
+        """Say the mean of the reversals."""
+        found = self._staircases(design, seed).estimate(_asked(history))
+        return "" if found is None else f"{found[0]:.3g}, the mean of {found[1]} reversals"
+
+
+def _asked(history: list[Outcome]) -> list[Asked]:
+    return [Asked(outcome.level[0], outcome.positive) for outcome in history]
+
+
+class QuestPlus(Procedure, kw_only=True, tag="quest"):
+    """QUEST+: what is expected to tell most about the threshold, or the preferred value.
+
+    Parameters
+    ----------
+    step
+        From one value to the next; None for those of the design alone.
+    furthest
+        Largest difference of two values of which one is preferred.
+    scale
+        Scale on which their distances are judged.
+    shape
+        Shape of the psychometric function.
+    spread, guess, lapse
+        Possible values of its other parameters. Without guess, strings are not guessed, and of
+        several stimuli each is guessed as often.
+    sd, width
+        Standard deviation, and width of the interval of 95 %, that are precise enough.
+    at_least
+        Trials of a condition before precision counts.
+    """
+
+    step: Positive | None = None
+    furthest: Positive | None = None
+    scale: Literal["linear", "log"] = "linear"
+    shape: Literal["normal", "logistic", "weibull"] = "normal"
+    spread: Annotated[tuple[Positive, ...], Meta(min_length=1)]
+    guess: Chances | None = None
+    lapse: Chances = (0.03,)
+    sd: Positive | None = None
+    width: Positive | None = None
+    at_least: Count = 10
+
+    def _next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
+        quest = quest_of(self, design)
+        found = self._estimate(design, history)
+        precise = (self.sd is not None and found.sd <= self.sd) or (
+            self.width is not None and found.high - found.low <= self.width
+        )
+        if precise and len(history) >= self.at_least:
+            return None
+        return quest.next(_levels(history))
+
+    def _estimate(self, design: AnyDesign, history: list[Outcome]) -> Estimate:
+        quest = quest_of(self, design)
+        return quest.estimate(next(iter(quest.grid.axes)), _levels(history))
+
+    def found(self, design: AnyDesign, history: list[Outcome], seed: str) -> str:
+        """Say the estimate and its interval."""
+        if not history:
+            return ""
+        found = self._estimate(design, history)
+        return f"{found.mean:.3g}, 95 % between {found.low:.3g} and {found.high:.3g}"
+
+
+def _levels(history: list[Outcome]) -> list[tuple[Level, bool]]:
+    return [(outcome.level, outcome.positive) for outcome in history]
+
+
+@lru_cache(maxsize=8)
+def quest_of(table: QuestPlus, design: AnyDesign) -> Quest:
+    """Return the QUEST+ of a table, which takes a while to make.
 
     Raises
     ------
-    ValueError
-        If a number is out of range.
+    WrongValue
+        If the values do not make a grid.
     """
-
-    start: tuple[float, ...]
-    steps: tuple[float, ...]
-    right: int = 2
-    wrong: int = 1
-    target: float | None = None
-    reversals: int | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_range("target", self.target, 0.05, 0.95)
-        if self.target is not None and (self.right, self.wrong) != (1, 1):
-            raise ValueError("target is of staircases with right = 1 and wrong = 1; give these")
-        if not self.start:
-            raise ValueError("start has no value; give one for each staircase")
-
-    @property
-    def stop(self) -> StopRule:
-        """Rule that ends the questions of a condition."""
-        return StopRule(self.trials, seconds=self.seconds)
-
-    def check(self, design: Design) -> None:
-        """Check that this procedure goes with a design, and that its staircases can move.
-
-        Raises
-        ------
-        ValueError
-            If one cannot.
-        """
-        if isinstance(design, Choice) and design.reference is None:
-            raise ValueError(
-                "kind is 'staircase', which needs right answers; add reference to [design], or "
-                "give 'quest'"
-            )
-        self._check_varied(design)
-        trials = min(self.trials or MOST_TRIALS, design.trials)
-        if trials < min(self.right, self.wrong):
-            raise ValueError(
-                f"right is {self.right} and wrong is {self.wrong}, and a condition has {trials} "
-                f"trials: the staircase cannot move; give it more trials"
-            )
-        self.staircases(design, "")
-        if trials < min(self.right, self.wrong) * len(self.start):
-            raise ValueError(
-                f"start is of {len(self.start)} staircases, and a condition has {trials} trials: "
-                f"one of them cannot move; give it more trials"
-            )
-
-    def next(
-        self, asked: Sequence[Asked], design: Design, seed: str = ""
-    ) -> tuple[float, ...] | None:
-        """Value that is shown next in a condition; None if enough was asked."""
-        if self.stop.out_of_limits(asked):
-            return None
-        level = self.staircases(design, seed).next(asked)
-        return None if level is None else (level,)
-
-    def found(
-        self, asked: Sequence[Asked], design: Design, what: str, unit: str, seed: str = ""
-    ) -> tuple[str, ...]:
-        """Sentences on the level that the staircases came to."""
-        known, what = self.staircases(design, seed).estimate(asked), _of(design, what)
-        if known is None:
-            return (f"{THRESHOLD} {what}: not known, no staircase turned round with its last step",)
-        return (
-            f"{THRESHOLD} {what}: {known.mean:.3g}{unit}",
-            f"reversals: {known.reversals}, standard deviation {known.sd:.2g}{unit}",
+    least, most = table.bounds(design)
+    try:
+        values = steps(least, most, table.step) if table.step else _of_design(design)
+        if isinstance(design, Compared) and design.reference is None:
+            furthest = table.furthest or most
+            pairs = [(a, b) for a in values for b in values if a < b and b - a <= furthest + 1e-9]
+            axes = {CENTRE: values, "spread": table.spread, "lapse": table.lapse}
+            return Quest(Grid(nearer(log=table.scale == "log"), axes), pairs, CENTRE)
+        guess = table.guess
+        if guess is None:
+            guess = (1 / alternatives(design),) if isinstance(design, Compared) else (0.0,)
+        axes = {THRESHOLD: values, "spread": table.spread, "guess": guess, "lapse": table.lapse}
+        falls = table.harder == "more" and not isinstance(design, Compared)
+        return Quest(
+            Grid(psychometric(table.shape, falls=falls), axes), [(v,) for v in values], THRESHOLD
         )
-
-    def values(self, design: Design) -> tuple[float, ...]:
-        """Ends of the values that may be shown."""
-        return _shown(design, self.ends(design))
-
-    def staircases(self, design: Design, seed: str) -> Staircases:
-        """The staircases of a condition.
-
-        Raises
-        ------
-        ValueError
-            If one could not move.
-        """
-        least, most = self.ends(design)
-        easier = 1.0 if self.target is None else self.target / (1 - self.target)
-        rules = tuple(
-            StaircaseRule(
-                start,
-                least,
-                most,
-                self.steps,
-                self.right,
-                self.wrong,
-                easier,
-                self.harder == "less",
-                self.reversals,
-            )
-            for start in self.start
-        )
-        return Staircases(rules, seed)
+    except ValueError as error:
+        if isinstance(error, WrongValue):
+            raise
+        raise WrongValue("procedure.step", str(error)) from None
 
 
-def _shown(design: Design, chosen: tuple[float, ...]) -> tuple[float, ...]:
-    """Values that stimuli have, increasing, for what a procedure chooses."""
-    if not isinstance(design, Choice) or design.reference is None:
-        return chosen
-    return tuple(sorted(map(design.apart, chosen)))
+def _of_design(design: AnyDesign) -> tuple[float, ...]:
+    """Return the levels that the design's own values are."""
+    if not isinstance(design, Compared):
+        raise WrongValue("procedure.step", "is missing; give the step from value to value")
+    reference = design.reference or 0.0
+    return tuple(sorted(round(abs(value - reference), PLACES) for value in design.values))
 
 
-def _of(design: Design, what: str) -> str:
-    """Words for what a threshold is of: a value, or a difference from the standard."""
-    compared = isinstance(design, Choice) and design.reference is not None
-    return f"difference of {what}" if compared else what
+def alternatives(design: Compared) -> int:
+    """Return how many answers there are to a trial, of which one is right."""
+    return 2 if design.form == "abx" else len(design.items({})[0].split())
 
 
-ProcedureTable = FixedProcedure | QuestProcedure | StaircaseProcedure
+def put(table: Procedure, design: AnyDesign, trial: Trial, level: Level) -> Trial:
+    """Return a trial of the plan at a level."""
+    if not isinstance(design, Compared):
+        assert table.parameter is not None, "it is checked"
+        return trial.at(table.parameter, level[0])
+    if design.reference is None:
+        low, high = level
+        values = (low, high) if trial.values[0] < trial.values[1] else (high, low)
+        return trial.with_values(design.parameter, values)
+    away = level[0] if design.values[0] > design.reference else -level[0]
+    other = round(design.reference + away, PLACES)
+    standard = design.reference
+    values = tuple(standard if value == standard else other for value in trial.values)
+    return trial.with_values(design.parameter, values)
+
+
+def outcome_of(
+    design: AnyDesign, question: Question, trial: Trial, level: float, answer: str, t_s: float
+) -> Outcome:
+    """Return what an answer tells a procedure.
+
+    Parameters
+    ----------
+    trial
+        The trial as it was shown.
+    level
+        Value that a string was shown at.
+    answer, t_s
+        The answer, and when it was given.
+    """
+    positive = question.positive(trial, answer)
+    if not isinstance(design, Compared):
+        return Outcome((level,), positive, t_s)
+    if design.reference is None:
+        chosen = trial.values[int(answer) - 1]
+        return Outcome(tuple(sorted(trial.values)), chosen == min(trial.values), t_s)
+    apart = max(abs(value - design.reference) for value in trial.values)
+    return Outcome((round(apart, PLACES),), positive, t_s)
+
+
+AnyProcedure = Staircase | QuestPlus

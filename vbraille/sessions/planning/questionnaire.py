@@ -1,278 +1,157 @@
-"""The tables ``[[questionnaire]]`` of a protocol: what people are asked beside the trials.
-
-A class for each kind reads the answers. Questions are asked at the beginning, beside the answer to
-each trial, after each block, or at the end.
-"""
+"""Questions beside the trials: before the first, after each, after each block, and at the end."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+import math
+import re
+from collections.abc import Iterator
+from typing import Literal
 
-from vbraille.errors import check_range
-from vbraille.sessions.planning.pace import LONGEST_LINE, check_line, check_name
-from vbraille.sessions.planning.scales import (
-    LARGEST,
-    check_labels,
-    check_scale,
-    labels_of,
-    quoted,
-    read_label,
-    read_number,
-    say_scale,
-)
-from vbraille.tomlfile import Table
+from vbraille.sessions.planning.questions import Scale
+from vbraille.sessions.planning.trial import Trial
+from vbraille.sessions.planning.values import Label, Number, Sentence
+from vbraille.toml import Table, WrongValue
 
-if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
-
-    import numpy as np
+COLUMN = re.compile(r"\{(\w[\w-]*)\}")
 
 
-class _Item(Table, frozen=True, kw_only=True, tag_field="kind"):
-    """Common part of the questions of every kind.
+class Item(Table, kw_only=True):
+    """A question of the questionnaire.
 
     Parameters
     ----------
+    kind
+        Whether the answer is one of the choices, a number, a step of a scale, or any words.
     name
-        Name of the question; its answers are in the column ``asked_NAME`` of tables.
+        Name of its column.
     when
-        Time at which it is asked: at the "begin" of the session, after the answer to each "trial"
-        of the test that is no catch trial, after each "block", or at the "end".
+        When it is asked: at the "begin", after each "trial" or "block", or at the "end".
     ask
-        The question in words. A name in braces, of a question beside a trial, stands for that
-        column of the trial's item, as in ``"{question}"``.
+        The question in words. In it, in choices and in right, {NAME} stands for that column of the
+        file of items, if it is asked after a trial.
+    choices
+        Answers to choose from.
+    least, most
+        Bounds of a number, or ends of a scale.
+    labels
+        Words for the steps of a scale, or for its two ends.
     right
-        Right answer, which may be such a column too; the column ``asked_NAME_correct`` says if it
-        was given. Empty if no answer is right or wrong.
-
-    Raises
-    ------
-    ValueError
-        If the name or the words cannot be used.
+        The right answer; empty if none is.
     """
 
-    words_only: ClassVar[bool] = False  # whether an answer may hold anything
-
-    name: str
+    kind: Literal["choice", "number", "rating", "text"]
+    name: Label
     when: Literal["begin", "trial", "block", "end"]
-    ask: str
+    ask: Sentence
+    choices: tuple[Sentence, ...] = ()
+    least: Number | None = None
+    most: Number | None = None
+    labels: tuple[Sentence, ...] = ()
     right: str = ""
 
     def __post_init__(self) -> None:
-        check_name("name", self.name)
-        check_line("ask", self.ask)
+        if (self.kind == "choice") != (len(self.choices) > 1):
+            raise WrongValue("choices", "two or more are for kind = 'choice', which needs them")
+        if self.kind == "rating":
+            if self.least is None or self.most is None:
+                raise WrongValue("kind", "is 'rating'; give the ends of the scale, least and most")
+            self._scale  # noqa: B018  (it checks itself)
+        elif self.labels:
+            raise WrongValue("labels", "are for kind = 'rating'; leave them out")
+        fixed = not any(COLUMN.search(each) for each in (self.right, *self.choices))
+        if self.right and fixed and self.choices and self.right not in self.choices:
+            raise WrongValue("right", f"{self.right!r} is not one of choices")
 
     @property
-    def texts(self) -> tuple[str, ...]:
-        """Texts in which a column of an item may stand."""
-        return self.ask, self.right
+    def _scale(self) -> Scale:
+        return Scale(least=int(self.least or 0), most=int(self.most or 0), labels=self.labels)
 
-    def check(self, columns: Collection[str]) -> None:
-        """Check that the columns which it names are there.
+    @property
+    def columns(self) -> set[str]:
+        """Columns of the file of items that it names."""
+        return {
+            name for each in (self.ask, self.right, *self.choices) for name in COLUMN.findall(each)
+        }
 
-        Raises
-        ------
-        ValueError
-            If one is not, or the right answer is none.
-        """
-        given = {} if self.when != "trial" else dict.fromkeys(columns, "x")
-        try:
-            for text in self.texts:
-                text.format(**given)
-        except (KeyError, IndexError, ValueError, AttributeError) as error:
-            why = f"; there is {', '.join(given)}" if given else ", and it has no items here"
-            raise ValueError(f"ask names {error} in braces, which is no column{why}") from None
-        if self.right and not any("{" in text for text in self.texts):
-            self.parse(self.right, {})
+    def of(self, columns: dict[str, str]) -> Item:
+        """Return the question about an item, with its columns filled in."""
 
-    def asked(self, columns: Mapping[str, str]) -> str:
-        """Words of the question, with what may be typed; ``columns`` are those of the item."""
-        return f"{self.ask.format(**columns)} ({self.prompt(columns)})"
+        def filled(text: str) -> str:
+            return COLUMN.sub(lambda found: columns.get(found[1], ""), text)
 
-    def prompt(self, _columns: Mapping[str, str], /) -> str:
-        """Say what may be typed as an answer."""
-        raise NotImplementedError
+        choices = tuple(map(filled, self.choices))
+        fields = {name: getattr(self, name) for name in self.__struct_fields__}
+        fields |= {"ask": filled(self.ask), "choices": choices, "right": filled(self.right)}
+        return Item(**fields)
 
-    def parse(self, text: str, _columns: Mapping[str, str], /) -> str:
-        """Read an answer, and bring it into the form in which it is kept.
+    @property
+    def typed(self) -> str:
+        """What may be typed."""
+        match self.kind:
+            case "choice":
+                return " or ".join(self.choices)
+            case "rating":
+                return self._scale.typed
+            case "number":
+                least = "" if self.least is None else f" from {self.least:g}"
+                return f"a number{least}" + ("" if self.most is None else f" to {self.most:g}")
+        return "an answer"
 
-        Raises
-        ------
-        ValueError
-            If the text is no answer to the question.
-        """
-        raise NotImplementedError
-
-    def good(self, answer: str, columns: Mapping[str, str]) -> bool | None:
-        """True if an answer is right; None if no answer is right or wrong."""
-        right = self.right.format(**columns)
-        if not right:
-            return None
-        return answer.casefold() == self.parse(right, columns).casefold()
-
-    def simulate(
-        self, columns: Mapping[str, str], noise: float, random: np.random.Generator
-    ) -> str:
-        """Answer for the simulated reader, who knows what is right unless noise is in the way."""
-        right = self.right.format(**columns)
-        if right and float(random.random()) >= min(noise, 1.0) / 2:
-            return right
-        return self.guess(columns, random)
-
-    def guess(self, _columns: Mapping[str, str], _random: np.random.Generator, /) -> str:
-        """Answer at random."""
-        raise NotImplementedError
-
-
-class ChoiceItem(_Item, frozen=True, kw_only=True, tag="choice"):
-    """A question with a few answers, of which one is typed: its number or its words.
-
-    Parameters
-    ----------
-    choices
-        The answers; a column of the trial's item may stand in one, as in the question.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two, or one is given twice.
-    """
-
-    choices: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if len(set(self.choices)) < max(2, len(self.choices)):
-            raise ValueError("choices must be two or more, each another; add one")
+    def parse(self, text: str) -> str:
+        """Read a reply; ValueError if the text is none."""
+        word = text.strip()
+        if self.kind == "rating":
+            return str(self._scale.parse(word))
+        if self.kind == "number":
+            return self._number(word)
         for choice in self.choices:
-            check_line("choices: one", choice)
-
-    @property
-    def texts(self) -> tuple[str, ...]:
-        """Texts in which a column of an item may stand."""
-        return self.ask, self.right, *self.choices
-
-    def prompt(self, columns: Mapping[str, str], /) -> str:
-        """Name the answers with their numbers."""
-        choices = enumerate(self.choices, 1)
-        return ", ".join(f"{number} {choice.format(**columns)}" for number, choice in choices)
-
-    def parse(self, text: str, columns: Mapping[str, str], /) -> str:
-        """Read one of the answers, by its words or its number."""
-        choices, word = [choice.format(**columns) for choice in self.choices], text.strip()
-        for number, choice in enumerate(choices, 1):
             if word.casefold() == choice.casefold():
                 return choice
-            if word == f"{number}" and word not in choices:
-                return choice
-        raise ValueError(f"{quoted(text)}type a number, {self.prompt(columns)}")
+        if self.choices or not word:
+            raise ValueError(f"{word!r} is not an answer; type {self.typed}")
+        return word
 
-    def guess(self, columns: Mapping[str, str], random: np.random.Generator, /) -> str:
-        """Choose any."""
-        return self.choices[int(random.integers(len(self.choices)))].format(**columns)
+    def _number(self, word: str) -> str:
+        try:
+            number = float(word.replace(",", "."))
+        except ValueError:
+            number = math.nan
+        least = -math.inf if self.least is None else self.least
+        most = math.inf if self.most is None else self.most
+        if not (least <= number <= most and math.isfinite(number)):
+            raise ValueError(f"{word!r} is not an answer; type {self.typed}")
+        return f"{number:.15g}"
 
-
-class NumberItem(_Item, frozen=True, kw_only=True, tag="number"):
-    """A question that is answered by a number.
-
-    Parameters
-    ----------
-    least, most
-        Bounds of the answer; None for none.
-
-    Raises
-    ------
-    ValueError
-        If no number is between the bounds.
-    """
-
-    least: float | None = None
-    most: float | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        for name in ("least", "most"):
-            check_range(name, getattr(self, name), -LARGEST, LARGEST)
-        if self.least is not None and self.most is not None and self.least >= self.most:
-            raise ValueError("least is not below most, so that nothing can be answered; change one")
-
-    def prompt(self, _columns: Mapping[str, str], /) -> str:
-        """Say which numbers may be typed."""
-        bounds = ((self.least, "from"), (self.most, "to"))
-        return " ".join(["a number", *(f"{w} {n:g}" for n, w in bounds if n is not None)])
-
-    def parse(self, text: str, _columns: Mapping[str, str], /) -> str:
-        """Read a number, with a point or a comma in it."""
-        low = -LARGEST if self.least is None else self.least
-        high = LARGEST if self.most is None else self.most
-        return f"{read_number(text, low, high, self.prompt({})):.15g}"
-
-    def guess(self, _columns: Mapping[str, str], random: np.random.Generator, /) -> str:
-        """Give any number between the bounds."""
-        low = 0.0 if self.least is None else self.least
-        high = low + 100 if self.most is None else self.most
-        return f"{low + (high - low) * float(random.random()):.3g}"
+    def simulate(self) -> str:
+        """Give the right answer, or the first that there may be."""
+        if self.right:
+            return self.right
+        if self.kind in ("number", "rating"):
+            return f"{self.least if self.least is not None else self.most or 0:g}"
+        return self.choices[0] if self.choices else "nothing"
 
 
-class TextItem(_Item, frozen=True, kw_only=True, tag="text"):
-    """A question that is answered by a line of words."""
-
-    words_only: ClassVar[bool] = True
-
-    def prompt(self, _columns: Mapping[str, str], /) -> str:
-        """Ask for words."""
-        return "a line of words; - for none"
-
-    def parse(self, text: str, _columns: Mapping[str, str], /) -> str:
-        """Read any line of text that is not empty."""
-        answer = text.strip()
-        if not answer or not answer.isprintable() or len(answer) > 10 * LONGEST_LINE:
-            raise ValueError(f"type a line of 1 to {10 * LONGEST_LINE} characters")
-        return answer
-
-    def guess(self, _columns: Mapping[str, str], _random: np.random.Generator, /) -> str:
-        """Say nothing."""
-        return "-"
-
-
-class RatingItem(_Item, frozen=True, kw_only=True, tag="rating"):
-    """A question that is answered on a scale of whole numbers.
+def due(
+    items: tuple[Item, ...], last: Trial | None, coming: Trial | None
+) -> Iterator[tuple[Item, int]]:
+    """Go through what is asked now, each with the number of its trial or block.
 
     Parameters
     ----------
-    least, most
-        Ends of the scale.
-    labels
-        Words for all steps of the scale, or for its two ends; none for numbers alone. They may be
-        typed instead of the numbers.
-
-    Raises
-    ------
-    ValueError
-        If the scale is read backwards or is too long, or the labels are not one for each.
+    items
+        The questionnaire.
+    last, coming
+        The last trial that is over, practice left out, and the next one; None if there is none.
     """
-
-    least: int
-    most: int
-    labels: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_scale(self.least, self.most)
-        check_labels(self.labels, self.least, self.most)
-
-    def prompt(self, _columns: Mapping[str, str], /) -> str:
-        """Name the numbers of the scale, with the labels of its ends."""
-        return say_scale(self.least, self.most, labels_of(self.labels, self.least, self.most))
-
-    def parse(self, text: str, _columns: Mapping[str, str], /) -> str:
-        """Read a step of the scale: its number, or its label."""
-        named = labels_of(self.labels, self.least, self.most)
-        return str(read_label(text, self.least, self.most, named))
-
-    def guess(self, _columns: Mapping[str, str], random: np.random.Generator, /) -> str:
-        """Give any step."""
-        return str(int(random.integers(self.least, self.most + 1)))
-
-
-AnyItem = ChoiceItem | NumberItem | TextItem | RatingItem
+    whens = {"begin": 0}
+    if last is not None:
+        if not last.catch:
+            whens["trial"] = last.number
+        if coming is None or coming.block != last.block:
+            whens["block"] = last.block
+    if coming is None:
+        whens["end"] = 0
+    for item in items:
+        if item.when in whens:
+            of_trial = item.when == "trial" and last is not None
+            yield (item.of(last.columns) if of_trial else item), whens[item.when]

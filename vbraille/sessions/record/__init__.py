@@ -1,1 +1,1 @@
-"""The files of a session on the disk, and the tables that are made from them."""
+"""The file of a session, and the tables that are made from it."""

@@ -1,476 +1,252 @@
-"""Progress of a session, trial by trial, according to its events."""
+"""How far a session has come: which answers stand, and which trial comes next.
+
+The runner hands over each event once it is written. A session that is resumed hands over all events
+of its record, and so is where it was.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from collections import defaultdict
+from collections.abc import Iterable
 
-from msgspec import structs
+from vbraille.sessions.planning.plan import Plan
+from vbraille.sessions.planning.procedures import Outcome, outcome_of, put
+from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.planning.questionnaire import Item, due
+from vbraille.sessions.planning.trial import Trial
+from vbraille.sessions.record.record import Event
 
-from vbraille.errors import VbrailleError
-from vbraille.sessions.planning.nexttrial import Answered, FixedOrder, Procedure
-from vbraille.sessions.planning.plan import Plan, stimulus_from_json
-from vbraille.sessions.planning.stimuli import Stimuli, Stimulus, Trial
-from vbraille.sessions.record import events
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from vbraille.sessions.planning.questionnaire import AnyItem
-    from vbraille.sessions.record.events import JournalEvent
-
-
-@dataclass(slots=True)
-class TrialRecord:
-    """Record of a trial.
-
-    Parameters
-    ----------
-    trial
-        The trial as it was planned.
-    attempts
-        Number of times that the trial was begun.
-    answer
-        Answer that counts, None before there is one; `vbraille.braille.spelling` says how it is
-        written.
-    first_answer
-        First answer, if it was taken back; else None.
-    showings
-        Events of all showings of the trial's stimuli, in order.
-    trace
-        Name of the trace of the last attempt; None on paper and on a conventional display.
-    faults
-        What went wrong with the device during the trial, a sentence for each fault.
-    t_s
-        Seconds of the session at which events of each kind happened last, by the name of the kind,
-        such as cue or answer. An answer after an undo is under corrected.
-    wall
-        Times of the same events by the wall clock.
-    paused_s
-        Seconds that the trial was paused after its start signal.
-    unread_s
-        Seconds of these before it was read to its end by key on the conventional display; 0 on
-        paper, which no pause takes away.
-    early
-        Whether the answer came before the hand had been at the end of the string.
-    source
-        Source of the answer: typed, simulated:0.2, or a file's name.
-    moved_by
-        What moved the carriage: "person", "simulated", or "simulated:pointer" if a person at the
-        live view was the hand for a part of the trial, in any attempt; empty on paper.
-    lost
-        Numbers of the lost events of a salvaged journal that may belong to the trial.
-    confidence
-        How sure the answer that counts is, on the protocol's scale; None if that was not asked.
-    ended_by
-        What ended reading: the participant's key, "exposure", or "answer" if the answer came before
-        these; empty if the protocol has no such key and no limit of the exposure.
-    late
-        Whether the answer came after the time for it, or not at all.
-    missed
-        Whether the trial ended without an answer, since the time for one was over.
-    """
-
-    trial: Trial
-    attempts: int = 0
-    answer: str | None = None
-    first_answer: str | None = None
-    showings: list[events.Presented] = field(default_factory=list)
-    trace: str | None = None
-    faults: list[str] = field(default_factory=list)
-    t_s: dict[str, float] = field(default_factory=dict)
-    wall: dict[str, str] = field(default_factory=dict)
-    paused_s: float = 0.0
-    unread_s: float = 0.0
-    early: bool = False
-    source: str = ""
-    moved_by: str = ""
-    lost: list[int] = field(default_factory=list)
-    confidence: int | None = None
-    ended_by: str = ""
-    late: bool = False
-    missed: bool = False
-
-    @property
-    def over(self) -> bool:
-        """True if the trial is over, with an answer or without one."""
-        return self.answer is not None or self.missed
-
-    @property
-    def response_s(self) -> float | None:
-        """Seconds from the start signal to the participant's key, or else to the answer.
-
-        Pauses are left out. None if there is no answer.
-        """
-        by_key = self.ended_by.startswith(("button:", "key:")) and "ended" in self.t_s
-        end = "ended" if by_key else "answer"
-        if "cue" not in self.t_s or end not in self.t_s or "answer" not in self.t_s:
-            return None
-        return self.t_s[end] - self.t_s["cue"] - self.paused_s
-
-    @property
-    def last_attempt(self) -> list[events.Presented]:
-        """Showings of the last attempt."""
-        return [showing for showing in self.showings if showing.attempt == self.attempts]
-
-    @property
-    def tuning(self) -> dict[str, float]:
-        """Contrast or texture that the experimenter had set at the last showing."""
-        return self.showings[-1].tuning if self.showings else {}
-
-    @property
-    def shown(self) -> Trial:
-        """The trial as it was shown in its last attempt, with what the experimenter had set."""
-        stimuli = list(self.trial.stimuli)
-        for showing in self.last_attempt:
-            shown = stimulus_of(showing)
-            tuning = replace(shown.tuning, **showing.tuning)
-            stimuli[showing.stimulus] = replace(shown, tuning=tuning)
-        return structs.replace(self.trial, stimuli=Stimuli(stimuli))
-
-
-# Mover of the carriage if a page of the live view was the hand.
-POINTED = "simulated:pointer"
+Key = tuple[bool, int]
+DECIDING = ("answer", "undo", "missed")
 
 
 class Progress:
-    """The state of a session after some events.
-
-    Parameters
-    ----------
-    plan
-        Plan of the session.
-    events
-        Events of the session's journal.
-    procedure
-        Rule that chooses the next trial; None for the order of the plan.
+    """Progress of a session.
 
     Attributes
     ----------
-    history : list[Answered]
-        Trials that were answered, in order, practice left out.
-    trials : dict[int, TrialRecord]
-        What is known about each trial, by its number: about all that are planned, or about all
-        that were chosen so far if the procedure goes by the answers.
-    practice : dict[int, TrialRecord]
-        What is known about each practice trial, by its number.
-    begun : bool
-        Whether practice is over.
-    correcting : Trial or None
-        Trial whose answer was taken back, and was not given anew so far.
-    broken : int
-        Number of trials that were answered before the last break.
-    tuning : dict[str, float]
-        Contrast or texture that the experimenter has set.
-    runs : list[events.Run]
-        Events with which the runs of the session began.
+    events : dict
+        Events of each trial, by its key.
+    answers, confidences : dict
+        Events of the answers that stand, and of their confidences, by the trials' keys.
+    missed : set
+        Keys of the trials that are over without an answer.
+    replies : dict
+        Events of the replies that stand, by the name and the number of the trial or block.
+    last : Event or None
+        The newest event.
+    runs : int
+        How often the session was begun or resumed.
     line : int
-        Largest line number used so far.
-    script_lines : dict[str, int]
-        Number of the last line used so far of each answers file, by the file's name.
-    t_s : float
-        Seconds that the session has run for.
+        Number of the last showing.
+    script_line : int
+        Line of the file of answers that was used last.
     ended : bool
-        Whether the session has ended for good.
-    pointed : bool
-        Whether a page of the live view is the hand.
-    torn_bytes : int
-        Length of all torn lines that were moved out of the journal.
-    replies : dict[tuple[str, int], str]
-        Answers to the questionnaire, by the question's name and the number of the trial or block
-        that it was asked after; 0 at the beginning and the end.
-    why : str
-        Reason for which the participant stopped for good; empty if that is not so.
+        Whether the session is over.
     """
 
-    def __init__(
-        self, plan: Plan, events: Iterable[JournalEvent] = (), procedure: Procedure | None = None
-    ) -> None:
+    def __init__(self, protocol: Protocol, plan: Plan, events: Iterable[Event] = ()) -> None:
+        self.protocol = protocol
         self.plan = plan
-        self.procedure = FixedOrder(plan.trials) if procedure is None else procedure
-        self.history: list[Answered] = []
-        self.trials = {trial.number: TrialRecord(trial) for trial in self.procedure.trials or ()}
-        self.practice = {trial.number: TrialRecord(trial) for trial in plan.practice}
-        self.begun = not plan.practice
-        self.correcting: Trial | None = None
-        self.broken = 0
-        self.tuning: dict[str, float] = {}
-        self.runs: list[events.Run] = []
-        self.line = 0
-        self.script_lines: dict[str, int] = {}
-        self.t_s = 0.0
-        self.ended = False
-        self.pointed = False
-        self.torn_bytes = 0
-        self.replies: dict[tuple[str, int], str] = {}
-        self.why = ""
-        self._moved_by = ""
-        self._answers = ""
-        self._trial = 0
-        self._lost: list[int] = []
-        self._unasked = False  # an answer may be lost that the trials after it were chosen by
-        self._paused_s: float | None = None
-        self._next = self._ask()
+        self.events: defaultdict[Key, list[Event]] = defaultdict(list)
+        self.answers: dict[Key, Event] = {}
+        self.confidences: dict[Key, Event] = {}
+        self.missed: set[Key] = set()
+        self.replies: dict[tuple[str, int], Event] = {}
+        self.last: Event | None = None
+        self.runs = self.line = self.script_line = 0
+        self.ended = self._broken = self._practised = False
+        self._trials = [trial for trial in plan.trials if not trial.practice]
+        self._in_conditions: defaultdict[str, list[Trial]] = defaultdict(list)
+        for trial in self._trials:
+            self._in_conditions[trial.condition].append(trial)
+        self._first = 0  # no trial before that place of the plan is open
+        self._outcomes: dict[str, list[Outcome]] = {}
         for event in events:
             self.take(event)
 
-    def __repr__(self) -> str:
-        ended = ", ended" if self.ended else ""
-        return f"<Progress: {self.of_all(self.done)} trials have answers{ended}>"
+    def take(self, event: Event) -> None:
+        """Take another event."""
+        self.last = event
+        data = event.data
+        self.line = data.get("line", self.line)
+        self.script_line = data.get("script_line", self.script_line)
+        self.runs += event.kind == "run"
+        self.ended |= event.kind == "end"
+        self._practised |= event.kind == "begin"
+        if event.kind == "reply":
+            self.replies[data["name"], data["number"]] = event
+        elif event.kind == "undo" and "name" in data:
+            self.replies.pop((data["name"], data["number"]), None)
+        elif event.kind == "break":
+            self._broken = True
+        key = event.key
+        if key is None:
+            return
+        self._practised |= not key[0]
+        self.events[key].append(event)
+        if event.kind in DECIDING:
+            self._decide(event, key)
+        elif event.kind == "confidence":
+            self.confidences[key] = event
+
+    def _decide(self, event: Event, key: Key) -> None:
+        """Take an event after which a trial has an answer, or has none any more."""
+        self.answers.pop(key, None)
+        self.confidences.pop(key, None)
+        self.missed.discard(key)
+        self._outcomes.clear()
+        if event.kind == "answer":
+            self.answers[key] = event
+            self._broken = False
+        elif event.kind == "missed":
+            self.missed.add(key)
+            self._broken = False
+        else:
+            self._first = 0
+
+    @property
+    def t_s(self) -> float:
+        """Time that the session has run for, up to the newest event."""
+        return 0.0 if self.last is None else self.last.t_s
+
+    def _is_over(self, trial: Trial) -> bool:
+        if trial.key in self.missed:
+            return True
+        return trial.key in self.answers and not self.lacks_confidence(trial)
 
     @property
     def next_trial(self) -> Trial | None:
-        """The trial that comes next, or is open; None after the last."""
-        if not self.begun:
-            for record in self.practice.values():
-                if not record.over:
-                    return record.trial
-        return self._next
+        """The first trial that is not over, as it is shown; None after the last."""
+        for place in range(self._first, len(self.plan.trials)):
+            trial = self.plan.trials[place]
+            if self._is_over(trial):
+                self._first += place == self._first
+            elif trial.practice and self.practice_is_over:
+                continue
+            elif (shown := self.shown(trial)) is not None:
+                return shown
+        return None
+
+    @property
+    def next_item(self) -> tuple[Item, int] | None:
+        """What the questionnaire asks now, and of which trial or block; None for nothing."""
+        if not self.protocol.questionnaire:
+            return None
+        last = next((trial for trial in reversed(self._trials) if self._is_over(trial)), None)
+        asked = due(self.protocol.questionnaire, last, self.next_trial)
+        return next((each for each in asked if (each[0].name, each[1]) not in self.replies), None)
+
+    def shown(self, trial: Trial) -> Trial | None:
+        """Return a trial of the plan as it is shown; None if a procedure leaves it out."""
+        procedure, design = self.protocol.procedure, self.protocol.design
+        if self._was_decided(trial):
+            cues = self._cues(trial)
+            if trial.values and cues:
+                return trial.with_values(design.parameter, tuple(self._values(trial, cues)))
+            if procedure is not None and cues and cues[-1].data.get("value") is not None:
+                return trial.at(procedure.parameter, cues[-1].data["value"])
+            return trial
+        if procedure is None or trial.practice or trial.catch:
+            return trial
+        history = self._history(trial.condition)
+        level = procedure.next(design, history, self._seed(trial.condition))
+        return None if level is None else put(procedure, design, trial, level)
+
+    def _was_decided(self, trial: Trial) -> bool:
+        return any(event.kind in DECIDING for event in self.events.get(trial.key, ()))
+
+    def _cues(self, trial: Trial) -> list[Event]:
+        """Return the cues of the newest attempt at a trial."""
+        events = self.events.get(trial.key, ())
+        newest = max((event.attempt or 0 for event in events), default=0)
+        return [event for event in events if event.kind == "cue" and event.attempt == newest]
+
+    def _values(self, trial: Trial, cues: list[Event]) -> list[float]:
+        """Return the values that the stimuli of a trial were shown at last."""
+        values = trial.values
+        for cue in cues:
+            values[cue.data["stimulus"]] = cue.data["value"]
+        return values
+
+    def _seed(self, condition: str) -> str:
+        return f"{self.protocol.name} {self.plan.participant} {self.plan.seed} {condition}"
+
+    def _history(self, condition: str) -> list[Outcome]:
+        """Return what the answers of a condition tell a procedure."""
+        found = self._outcomes.get(condition)
+        if found is None:
+            found = self._outcomes[condition] = []
+            for trial in self._in_conditions[condition]:
+                event = self.answers.get(trial.key)
+                shown = self.shown(trial) if event is not None and not trial.catch else None
+                if event is not None and shown is not None:
+                    level = self._cues(trial)[-1].data["value"]
+                    asks, answer = self.protocol.asks, event.data["answer"]
+                    found.append(
+                        outcome_of(self.protocol.design, asks, shown, level, answer, event.t_s)
+                    )
+        return found
+
+    @property
+    def found(self) -> list[str]:
+        """What a procedure has found in each condition."""
+        procedure = self.protocol.procedure
+        sentences = []
+        for condition in self._in_conditions if procedure is not None else ():
+            history, seed = self._history(condition), self._seed(condition)
+            if said := procedure.found(self.protocol.design, history, seed):
+                sentences.append(f"{condition}: {said}")
+        return sentences
+
+    @property
+    def newest_given(self) -> Event | None:
+        """The newest answer or reply that stands; None if there is none."""
+        given = [*self.answers.values(), *self.replies.values()]
+        return max(given, key=lambda event: event.n, default=None)
 
     @property
     def last_answered(self) -> Trial | None:
-        """Trial answered last, whose answer an undo takes back; practice cannot be undone."""
-        return self.history[-1].trial if self.history else None
+        """The trial that was answered last; None if no answer stands."""
+        if not self.answers:
+            return None
+        newest = max(self.answers.values(), key=lambda event: event.n)
+        return next(trial for trial in self.plan.trials if trial.key == newest.key)
 
     @property
     def done(self) -> int:
-        """Number of trials that have an answer, practice left out."""
-        return len(self.history)
+        """Number of trials that are over, practice left out."""
+        return sum(not practice for practice, _ in (*self.answers, *self.missed))
 
     @property
-    def found(self) -> Sequence[str]:
-        """Sentences on what the answers have shown so far; none for a fixed order."""
-        return self.procedure.found(self.history)
+    def practice_is_over(self) -> bool:
+        """Tell whether a trial of a block was shown, or practice has come to its end."""
+        until = self.protocol.practice.until
+        if self._practised or until is None:
+            return self._practised
+        asks = self.protocol.asks
+        last = [trial for trial in self.plan.trials if trial.practice and trial.key in self.answers]
+        right = [asks.correct(t, self.answers[t.key].data["answer"]) for t in last[-until.of :]]
+        return len(right) == until.of and right.count(True) >= until.right
 
-    @property
-    def planned(self) -> int | None:
-        """Number of trials in all, practice left out; None if it depends on the answers."""
-        trials = self.procedure.trials
-        return None if trials is None else len(trials)
+    def lacks_confidence(self, trial: Trial) -> bool:
+        """Tell whether a trial has an answer, and it is still to be asked how sure that is."""
+        wanted = self.protocol.asks.confidence is not None
+        return wanted and trial.key in self.answers and trial.key not in self.confidences
 
-    def due(self, items: Iterable[AnyItem], *, over: bool = False) -> tuple[AnyItem, int] | None:
-        """Question that is to be asked now, and the number of its trial or block, or 0.
+    def is_taken_back(self, trial: Trial) -> bool:
+        """Tell whether the answer of a trial was taken back, and no other one was given."""
+        kinds = [e.kind for e in self.events.get(trial.key, ()) if e.kind in DECIDING]
+        return kinds[-1:] == ["undo"]
 
-        Parameters
-        ----------
-        items
-            The questionnaire.
-        over
-            Whether no further trial comes.
-        """
-        last, coming = self.last_answered, None if over else self.next_trial
-        times = {"begin": 0}
-        if last is not None:
-            if not last.catch and not self.record_of(last).missed:
-                times["trial"] = last.number
-            if coming is None or coming.block != last.block:
-                times["block"] = last.block
-        if coming is None:
-            times["end"] = 0
-        for time, number in times.items():
-            for item in items:
-                if item.when == time and (item.name, number) not in self.replies:
-                    return item, number
-        return None
+    def attempts(self, trial: Trial) -> int:
+        """Tell how often a trial was shown."""
+        return max((event.attempt or 0 for event in self.events.get(trial.key, ())), default=0)
 
-    def of_all(self, number: int) -> str:
-        """Text for a number of trials, with the number of all trials if that is known."""
-        return f"{number}" if self.planned is None else f"{number} of {self.planned}"
-
-    def record_of(self, trial: Trial) -> TrialRecord:
-        """Record of a trial, practice or not."""
-        return (self.practice if trial.practice else self.trials)[trial.number]
-
-    def take(self, event: JournalEvent) -> None:
-        """Change the state as an event says.
-
-        Raises
-        ------
-        VbrailleError
-            If the event belongs to a trial that does not exist.
-        """
-        self.t_s = max(self.t_s, event.t_s)
-        if event.script_line:
-            self.script_lines[self._answers] = event.script_line
-        record = None
-        if isinstance(event, events.AnyTime) and event.trial:
-            record = self._record_at(event)
-        self._change(event, record)
-        if record is None:
-            return
-        kind = "corrected" if isinstance(event, events.Answer) and event.corrects else event.kind
-        record.t_s[kind] = event.t_s
-        if isinstance(event, events.Answer):
-            record.t_s[kind] -= event.confidence_s
-        record.wall[kind] = event.wall
-        if not record.trial.practice:
-            self._mark_lost(record.trial.number)
-            self._trial = record.trial.number
-
-    def _ask(self) -> Trial | None:
-        """Ask the procedure which trial comes after those that were answered."""
-        if self._unasked:
-            return None
-        trial = self.procedure.next(self.history)
-        if self.procedure.trials is None:
-            self.trials.pop(self.done + 1, None)  # the choice made before an answer was corrected
-            if trial is not None:
-                self.trials[trial.number] = TrialRecord(trial)
-        return trial
-
-    def _record_at(self, event: events.AnyTime) -> TrialRecord:
-        records = self.practice if event.practice else self.trials
-        record = records.get(event.trial)
-        if record is None and self._unasked and not event.practice:
-            # The journal says what was shown; all else is as in the plan's trial of that number.
-            last = next(reversed(records.values())).trial
-            planned = next((t for t in self.plan.trials if t.number == event.trial), last)
-            trial = structs.replace(planned, number=event.trial)
-            record = records[event.trial] = TrialRecord(trial)
-        if record is None:
-            which = "practice trial" if event.practice else "trial"
-            raise VbrailleError(
-                f"the journal is damaged: event {event.n} is of {which} {event.trial}, which there "
-                f"is not; nothing was changed"
-            )
-        return record
-
-    def _mark_lost(self, trial: int) -> None:
-        """Mark all trials that the events lost before an event of this trial may belong to."""
-        first, last = sorted((self._trial or trial, trial))
-        for number in range(first, last + 1) if self._lost else ():
-            record = self.trials.get(number)
-            if record is None:  # all events of a trial that the answers chose are lost
-                continue
-            record.lost = sorted({*record.lost, *self._lost})
-        self._lost = []
-
-    def _change(self, event: JournalEvent, record: TrialRecord | None) -> None:
-        """Change the state by an event, and what is known of its trial if it is of one."""
-        match event:
-            case events.Run():
-                self.runs.append(event)
-                self._answers = event.answers or self._answers
-                self.torn_bytes += event.torn_bytes
-                self._moved_by = _mover_of(event) or self._moved_by
-                self.pointed = False  # the device of the new run tells it again
-                self._paused_s = None
-            case events.Presented() if record:
-                self._take_presented(event, record)
-            case events.Answer() if record:
-                self._take_answer(event, record)
-            case events.Missed() if record:
-                record.missed = record.late = True
-                self._end_pause(record, event)
-                self._go_on(event, Answered(record.trial, "", event.t_s))
-            case events.Undo() if record:
-                self.correcting = self.last_answered
-                record.first_answer = record.first_answer or record.answer
-                record.answer = None
-                record.confidence = None
-            case events.Fault() if record:
-                record.faults.append(event.what)
-            case events.Read() if record and record.showings:
-                if record.trial.stimuli[0].conventional:
-                    record.unread_s = record.paused_s
-            case events.Tuning():
-                self.tuning = event.tuning
-                self.line = max(self.line, event.line)
-                if record and record.showings and event.line:
-                    last = record.showings[-1]
-                    again = structs.replace(last, line=event.line, tuning=event.tuning)
-                    record.showings.append(again)
-            case events.HandTaken():
-                self.pointed = True
-                if record:
-                    record.moved_by = POINTED
-            case events.HandGivenBack():
-                self.pointed = False
-            case events.Pause():
-                self._paused_s = event.t_s
-            case events.Go():
-                self._end_pause(record, event)
-            case events.Break():
-                self.broken = self.done
-            case events.Begin():
-                self.begun = True
-            case events.Reply():
-                self.replies[event.name, event.trial or event.block] = event.answer
-                self._end_pause(record, event)
-            case events.End():
-                self.ended, self.why = True, event.said if event.reason else ""
-            case events.Lost():
-                self._lost.append(event.n)
-                self._unasked = self.procedure.trials is None
-                if self._trial:
-                    self.trials[self._trial].lost.append(event.n)
-
-    def _take_presented(self, event: events.Presented, record: TrialRecord) -> None:
-        if event.stimulus == 0 and event.attempt != record.attempts:
-            record.attempts = event.attempt
-            record.t_s.clear()
-            record.wall.clear()
-            record.paused_s = record.unread_s = 0.0
-        # What stands on a conventional display is in no trace.
-        record.trace = self.runs[-1].trace or None if self.runs and event.line else None
-        if record.moved_by != POINTED:
-            moved_by = self._moved_by if event.line else ""  # no carriage is moved elsewhere
-            record.moved_by = POINTED if self.pointed and moved_by else moved_by
-        record.showings.append(event)
-        self.line = max(self.line, event.line)
-        self.begun |= not event.practice
-
-    def _take_answer(self, event: events.Answer, record: TrialRecord) -> None:
-        record.answer = event.answer
-        record.confidence = event.confidence
-        record.missed = False
-        record.source = self._answers
-        # What goes by the answers goes by what was felt, whatever it would choose today.
-        shown = record.trial if self.procedure.trials is not None else record.shown
-        answered = Answered(shown, event.answer, event.t_s)
-        if self.correcting is not None:
-            self.correcting = None
-            self.history[-1] = answered
-            if self._next is None or not self.record_of(self._next).attempts:
-                self._next = self._ask()  # a trial that was shown already stays
-            return
-        record.early = event.early
-        record.ended_by = event.ended_by
-        record.late = event.late
-        self._end_pause(record, event)  # an answer ends a pause
-        self._go_on(event, answered)
-
-    def _go_on(self, event: events.InTrial, answered: Answered) -> None:
-        """Ask for the trial after one that is over."""
-        if not event.practice:
-            self.history.append(answered)
-            self._next = self._ask()
-
-    def _end_pause(self, record: TrialRecord | None, event: JournalEvent) -> None:
-        if self._paused_s is not None and record and "ended" not in record.t_s:
-            record.paused_s += event.t_s - self._paused_s
-        self._paused_s = None
-
-
-def stimulus_of(showing: events.Presented) -> Stimulus:
-    """Stimulus that was shown.
-
-    Raises
-    ------
-    VbrailleError
-        If the journal's description is not that of a stimulus.
-    """
-    try:
-        return stimulus_from_json(showing.shown)
-    except ValueError as error:
-        raise VbrailleError(
-            f"the journal is damaged: it says of trial {showing.trial} that it has shown what "
-            f"cannot be: {error}"
-        ) from None
-
-
-def _mover_of(run: events.Run) -> str:
-    """Mover of the carriage in a run; empty on paper, and where the run before tells it."""
-    if not run.trace or not run.spec:
-        return ""
-    return "simulated" if run.spec.partition(":")[0] == "sim" else "person"
+    def is_break_due(self, trial: Trial) -> bool:
+        """Tell whether there is a break before a trial."""
+        if trial.practice or self._broken or not self.done:
+            return False
+        every = self.protocol.session.break_every
+        in_block = sum(each.block == trial.block and self._is_over(each) for each in self._trials)
+        return in_block == 0 or (every is not None and in_block % every == 0)

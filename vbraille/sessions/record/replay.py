@@ -1,162 +1,150 @@
-"""Frames that were sent to the actuators, made again from the traces, bit for bit.
+"""The frames of a session, made again from its ticks, bit for bit.
 
-For each tick, a trace tells where the array was, which picture was under it, and how far a change
-had faded in. So each frame follows from the one before.
+A tick tells where the array was, what was under it, and how far a change had faded in. So each
+frame follows from the one before.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from functools import lru_cache
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
+from msgspec import structs
+from numpy.typing import NDArray
 
+from vbraille.display import Display
 from vbraille.engine.record import FLAGS, FLOATS, INTS, LINE, Flag
 from vbraille.engine.ticks import recall, replay
 from vbraille.render import work
-from vbraille.render.program import nothing, scratch_for
-from vbraille.sessions.record.progress import stimulus_of
-from vbraille.sessions.record.traces import TRACE, read_trace
+from vbraille.render.program import Program, nothing, scratch_for
+from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.planning.shown import make_shown
+from vbraille.sessions.planning.trial import Stimulus, Trial
+from vbraille.sessions.record.record import Content, Event, read, reading
+from vbraille.sessions.record.ticks import TICK, read_all
+from vbraille.sessions.record.trials import protocol_of
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+BEFORE, AFTER = 2, 2  # showings around one, whose ticks its own may be written with
 
-    from numpy.typing import NDArray
 
-    from vbraille.display import Display
-    from vbraille.render.program import Program
-    from vbraille.sessions.record.folder import Record
-    from vbraille.sessions.record.progress import Progress
+class Showing(NamedTuple):
+    """A stimulus that was put under the hand: its number in the ticks, and what it was."""
 
-_RESTING = int(Flag.RESTING)
+    line: int
+    trial: Trial
+    attempt: int
+    stimulus: Stimulus
 
 
 class Replay:
-    """Maker of the frames of one trace, from its first tick on.
+    """What a session has shown.
+
+    Attributes
+    ----------
+    content, protocol
+        What the record holds, and the protocol as the participant's group has it.
+    showings : list of Showing
+        What was put under the hand, in order.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.content: Content = read(path)
+        self.protocol: Protocol = protocol_of(self.content)
+        trials = {trial.key: trial for trial in self.content.plan.trials}
+        self._cues = [e for e in self.content.events if e.kind == "cue" and "line" in e.data]
+        self.showings = [self._showing(cue, trials[cue.key]) for cue in self._cues if cue.key]
+        self._places = {showing.line: n for n, showing in enumerate(self.showings)}
+        self._program = lru_cache(maxsize=8)(self._compile)
+
+    def _showing(self, cue: Event, trial: Trial) -> Showing:
+        stimulus = trial.stimuli[cue.data["stimulus"]]
+        value, parameter = cue.data.get("value"), self.protocol.design.parameter
+        if value is not None:
+            if not parameter and self.protocol.procedure is not None:
+                parameter = self.protocol.procedure.parameter
+            stimulus = structs.replace(stimulus, look=stimulus.look.changed(parameter, value))
+            if stimulus.value is not None:
+                stimulus = structs.replace(stimulus, value=value)
+        return Showing(cue.data["line"], trial, cue.attempt or 0, stimulus)
+
+    def frames(self, line: int) -> tuple[NDArray[np.void], NDArray[np.float64]]:
+        """Make the frames of a showing again.
+
+        Returns
+        -------
+        `TICK`[n], float64[n, rows, columns]
+            Ticks, and the deflections of each, 0 to 1. They are NaN in a fade whose beginning is
+            missing.
+        """
+        place = self._places[line]
+        earlier = self._cues[place - BEFORE].n - 1 if place >= BEFORE else 0
+        run = max(e.n for e in self.content.events if e.kind == "run" and e.n < self._cues[place].n)
+        later = self._cues[place + AFTER :][:1]
+        until = later[0].n if later else self.content.events[-1].n + 1
+        with reading(self.content.path) as db:
+            ticks = read_all(db, max(earlier, run - 1), until)
+        frames = _Frames(self._program, self.protocol.display_model.display).of(ticks)
+        own = ticks["line"] == line
+        return ticks[own], frames[own]
+
+    def _compile(self, line: int) -> Program:
+        return make_shown(self.protocol, self.showings[self._places[line]].stimulus).program
+
+
+class _Frames:
+    """Makes frames of ticks that follow each other.
 
     Parameters
     ----------
-    picture_of
-        Function that gives the picture of a line number.
+    program_of
+        Function that gives what was shown by its number.
     display
         Display that the frames are for; it is at rest before the first tick.
     """
 
-    def __init__(self, picture_of: Callable[[int], Program], display: Display) -> None:
-        self._picture_of = picture_of
+    def __init__(self, program_of: Callable[[int], Program], display: Display) -> None:
+        self._program_of = program_of
         self._nothing = nothing(display)
         self._shape = display.shape
-        self._output, self._held, self._target = np.zeros((3, *display.shape))
-        self._scratch = scratch_for(display.shape)
-        self._at, self._remembered = np.zeros((2, work.AT))
-        self._next = 0
 
-    def frames(self, ticks: NDArray[np.void]) -> NDArray[np.float64]:
-        """Frames of the next ticks.
-
-        Parameters
-        ----------
-        ticks : `vbraille.sessions.record.traces.TRACE`[n]
-            Ticks that follow those of the last call.
-
-        Returns
-        -------
-        float64[n, rows, columns]
-            Deflections, 0 … 1. Frames are NaN if they are part of a fade whose beginning is
-            missing from the trace.
-        """
+    def of(self, ticks: NDArray[np.void]) -> NDArray[np.float64]:
+        """Return float64[n, rows, columns] of `TICK`[n]."""
         frames = np.zeros((ticks.size, *self._shape))
+        output, held, target = np.zeros((3, *self._shape))
+        at, remembered = np.zeros((2, work.AT))
+        scratch = scratch_for(self._shape)
         ints = np.zeros((ticks.size, len(INTS)), np.int64)
         floats = np.zeros((ticks.size, len(FLOATS)))
         for table, names in ((ints, INTS), (floats, FLOATS)):
             for column, name in enumerate(names):
-                if name in (TRACE.names or ()):
+                if name in (TICK.names or ()):
                     table[:, column] = ticks[name]
-        missing = np.diff(ticks["tick"], prepend=self._next - 1) != 1
+        missing = np.diff(ticks["tick"], prepend=-1) != 1
         bounds = np.flatnonzero(missing | (np.diff(ticks["line"], prepend=-1) != 0)).tolist()
         for first, end in pairwise((*bounds, ticks.size)):
-            if missing[first]:
-                self._output.fill(np.nan)
-                self._held.fill(np.nan)
-            resting = (ints[first:end, FLAGS] & _RESTING).all()
-            program = self._nothing if resting else self._picture_of(int(ints[first, LINE]))
-            recall(program.numbers, ints[first:end], floats[first:end], self._remembered)
-            replay(
-                program.numbers,
-                program.table,
-                self._scratch,
-                ints[first:end],
-                floats[first:end],
-                self._at,
-                self._output,
-                self._held,
-                self._target,
-                frames[first:end],
-            )
-        if ticks.size:
-            self._next = int(ticks["tick"][-1]) + 1
+            line = int(ints[first, LINE])
+            if missing[first]:  # before its first showing a run is at rest
+                output.fill(np.nan if line else 0.0)
+                held.fill(np.nan if line else 0.0)
+            resting = (ints[first:end, FLAGS] & int(Flag.RESTING)).all()
+            program = self._nothing if resting or not line else self._program_of(line)
+            part = ints[first:end], floats[first:end]
+            recall(program.numbers, *part, remembered)
+            into = frames[first:end]
+            replay(program.numbers, program.table, scratch, *part, at, output, held, target, into)
         return frames
 
 
-def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.float64]]]:
-    """Frames of all ticks of a session, stretch by stretch.
-
-    Yields
-    ------
-    line : int
-        Number of the showing, as the journal has it; 0 before the first of a run.
-    ticks : `vbraille.sessions.record.traces.TRACE`[n]
-        Ticks of a stretch that has that number.
-    deflections : float64[n, rows, columns]
-        Frames of these ticks, 0 … 1.
+def open_replay(path: Path) -> Replay:
+    """Open a session, to make its frames again.
 
     Raises
     ------
-    VbrailleError
-        If a trace cannot be read.
+    RecordError
+        If it cannot be read, or a console runs it.
     """
-    progress = record.progress()
-    pictures = StimulusPrograms(record, progress)
-    for run in progress.runs:
-        if not run.trace:
-            continue
-        ticks = read_trace(record.folder / run.trace).ticks
-        replay = Replay(pictures.of, record.protocol.model.display)
-        ends = np.flatnonzero(np.diff(ticks["line"])) + 1
-        for part in np.split(ticks, ends):
-            if part.size:
-                yield int(part["line"][0]), part, replay.frames(part)
-
-
-class StimulusPrograms:
-    """Programs of the stimuli that a session has shown, by their line numbers.
-
-    Parameters
-    ----------
-    record
-        What the session's directory holds.
-    progress
-        State of the session after all its events.
-
-    Attributes
-    ----------
-    shown : dict[int, tuple[Trial, Presented]]
-        For each line number, the trial and the showing that it belongs to.
-    """
-
-    def __init__(self, record: Record, progress: Progress) -> None:
-        self._protocol = record.protocol
-        self.shown = {
-            showing.line: (told.trial, showing)
-            for told in (*progress.practice.values(), *progress.trials.values())
-            for showing in told.showings
-            if showing.line  # what stood on a conventional display is in no trace
-        }
-
-    def of(self, line: int) -> Program:
-        """Picture of a line number."""
-        _, showing = self.shown[line]
-        stimulus = stimulus_of(showing)
-        tuning = replace(stimulus.tuning, **showing.tuning)
-        return self._protocol.program(stimulus, tuning)
+    return Replay(path)

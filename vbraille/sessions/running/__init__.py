@@ -1,1 +1,1 @@
-"""Running of a session: runner, presenters, responses, console, live view, markers."""
+"""What runs a session: console, presenters, and where answers come from."""

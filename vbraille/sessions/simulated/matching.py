@@ -15,19 +15,16 @@ anybody, and it claims nothing about people; it is for trying protocols out.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+from vbraille.sessions.simulated.skin import FeltFrames
 
-    from numpy.typing import NDArray
-
-    from vbraille.sessions.simulated.skin import FeltFrames
-
-    # Frames, float[n, rows, columns], of a picture at x, y (mm), θ (rad) and times (s), float64[n].
-    PictureFrames = Callable[..., NDArray[np.floating]]
+# Frames, float[n, rows, columns], of a picture at x, y (mm), θ (rad) and times (s), float64[n].
+PictureFrames = Callable[..., NDArray[np.floating]]
 
 MOMENTS = 48
 _WINDOW_S = 0.02
@@ -72,3 +69,22 @@ def name_one(apart: NDArray[np.float64], noise: float, random: np.random.Generat
     if unit == 0 or np.ptp(apart) == 0:
         return int(drawn.argmin())
     return int((apart / unit + noise * drawn).argmin())
+
+
+class FeltPicture(NamedTuple):
+    """A trial with a picture as the simulated person feels it.
+
+    Parameters
+    ----------
+    apart : float64[pictures]
+        How much each known picture differs from what was felt.
+    names
+        Their names.
+    """
+
+    apart: NDArray[np.float64]
+    names: Sequence[str]
+
+    def named(self, noise: float, random: np.random.Generator) -> str:
+        """Return the name of the picture that is felt most like it."""
+        return self.names[name_one(self.apart, noise, random)]

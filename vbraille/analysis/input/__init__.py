@@ -1,1 +1,0 @@
-"""Data that are analysed: sessions and tables of trials, read and checked."""

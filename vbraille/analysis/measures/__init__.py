@@ -1,1 +1,0 @@
-"""Measures of trials: one module for each group of tables."""

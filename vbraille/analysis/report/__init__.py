@@ -1,1 +1,0 @@
-"""Results as a report: a page, a text, their numbers and their figures."""

@@ -1,0 +1,389 @@
+"""A session as a table: a row for each trial, made from the plan, the events and the ticks."""
+
+from __future__ import annotations
+
+import csv
+import io
+import sqlite3
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vbraille.braille.spelling import UNREAD
+from vbraille.files import no_formula
+from vbraille.sessions.planning.loading import parse_protocol
+from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.planning.shown import edges_mm
+from vbraille.sessions.planning.trial import Stimulus, Trial
+from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.record.record import Content, Event, reading
+from vbraille.sessions.record.record import read as read_record
+from vbraille.sessions.record.ticks import read_ticks
+
+STILL_MM_S, STILL_S = 5.0, 0.3  # the hand pauses while it is slower than that, for that long
+
+
+class Column(NamedTuple):
+    """What a column holds: in words, its unit, and its values if they are few."""
+
+    meaning: str
+    unit: str = ""
+    values: str = ""
+
+
+with Path(__file__).with_name("columns.csv").open(encoding="utf-8", newline="") as _file:
+    _COLUMNS = list(csv.reader(_file))[1:]
+COLUMNS = {name: Column(*told) for name, *told, of in _COLUMNS if of == "all"}
+OF_PASSAGES = {name: Column(*told) for name, *told, of in _COLUMNS if of == "passages"}
+LENGTHS = [name for name in COLUMNS if name.endswith("_mm")]
+# What may tell who a person is, or where the session was.
+PRIVATE = ("notes", "cue_time", "answer_time", "answers_from", "faults")
+
+
+def rows(path: Path, *, practice: bool = False, anonymous: bool = False) -> list[dict[str, Any]]:
+    """Return a row for each trial of a session, with `COLUMNS`, levels, items, replies and fields.
+
+    Parameters
+    ----------
+    practice
+        Whether trials of practice have rows, too.
+    anonymous
+        Whether times of day, notes, words of the participant and names of files are left out.
+    """
+    content = read_record(path)
+    protocol = protocol_of(content)
+    progress = Progress(protocol, content.plan, content.events)
+    table = _Table(content, protocol, progress)
+    with reading(path) as db:
+        shown = [progress.shown(trial) for trial in content.plan.trials]
+        found = [
+            table.row(db, trial)
+            for trial in shown
+            if trial is not None and (practice or not trial.practice)
+        ]
+    if anonymous:
+        words = [f"asked_{item.name}" for item in protocol.questionnaire if item.kind == "text"]
+        words += ["answered", "first_answer"] if protocol.asks.kind == "free" else []
+        for row in found:
+            row |= dict.fromkeys((*PRIVATE, *words), "")
+            row["session"] = f"{content.plan.participant}-{protocol.name}"
+    return found
+
+
+def protocol_of(content: Content) -> Protocol:
+    """Return the protocol of a session, as the participant's group has it."""
+    protocol = parse_protocol(content.files, f"protocol of {content.path}", planned=True)
+    return protocol.of_group(content.plan.group)
+
+
+def to_csv(table: Sequence[dict[str, Any]], separator: str = ",", nothing: str = "") -> str:
+    """Return rows as CSV, with all columns that any of them has."""
+    columns = list(dict.fromkeys(name for row in table for name in row)) or list(COLUMNS)
+    text = io.StringIO()
+    writer = csv.writer(text, delimiter=separator, lineterminator="\n")
+    writer.writerow(columns)
+    for row in table:
+        cells = [row.get(name, "") for name in columns]
+        cells = [no_formula(cell) if isinstance(cell, str) else cell for cell in cells]
+        writer.writerow([nothing if cell == "" else cell for cell in cells])
+    return text.getvalue()
+
+
+def codebook(columns: Iterable[str], protocol: Protocol) -> dict[str, Column]:
+    """Return what some columns of a session's table hold."""
+    known = COLUMNS | OF_PASSAGES
+    for factor in protocol.factors:
+        levels = ", ".join(level.name for level in factor.levels)
+        known[f"factor_{factor.name}"] = Column(f"level of the factor {factor.name}", "", levels)
+    for field in protocol.fields:
+        known[f"field_{field.name}"] = Column(field.ask, "", ", ".join(field.choices))
+    for item in protocol.questionnaire:
+        known[f"asked_{item.name}"] = Column(item.ask, "", ", ".join(item.choices))
+        known[f"asked_{item.name}_correct"] = Column(f"whether that is {item.right}", "", "0, 1")
+    for column in protocol.item_columns:
+        known[f"item_{column}"] = Column(f"column {column} of the file of items")
+    return {name: known[name] for name in columns}
+
+
+class _Table:
+    """Makes rows of a session."""
+
+    def __init__(self, content: Content, protocol: Protocol, progress: Progress) -> None:
+        self._content, self._protocol, self._progress = content, protocol, progress
+        self._runs = [event for event in content.events if event.kind == "run"]
+        fields = content.head.get("fields", {})
+        self._fields = {f"field_{name}": value for name, value in fields.items()}
+
+    def row(self, db: sqlite3.Connection, trial: Trial) -> dict[str, Any]:
+        """Return the row of a trial as it was shown."""
+        row = dict.fromkeys((*COLUMNS, *(OF_PASSAGES if self._protocol.design.passage else ())), "")
+        own = [e for e in self._progress.events[trial.key] if e.attempt == self._attempt(trial)]
+        row |= self._planned(trial) | self._happened(trial, own)
+        if trial.key in self._progress.answers:
+            row |= self._answered(trial, own) | self._read(db, trial, own, row["paused_s"])
+        row |= {f"item_{n}": trial.columns.get(n, "") for n in self._protocol.item_columns}
+        return row | self._replies(trial) | self._fields
+
+    def _attempt(self, trial: Trial) -> int:
+        return self._progress.attempts(trial)
+
+    def _planned(self, trial: Trial) -> dict[str, Any]:
+        """Return the cells on what was planned."""
+        protocol, plan, first = self._protocol, self._content.plan, trial.stimuli[0]
+        style = protocol.style(first.look)
+        levels = protocol.levels(trial.condition, plan.group)
+        on = "paper" if protocol.medium == "paper" else first.on
+        right = protocol.asks.right_answer(trial) if first.picture else ""
+        return {
+            "session": self._content.path.stem,
+            "participant": plan.participant,
+            "protocol": protocol.name,
+            "number": plan.session,
+            "group": plan.group,
+            **{f"factor_{name}": level for name, level in levels.items()},
+            "practice": int(trial.practice),
+            "block": trial.block,
+            "trial": trial.number,
+            "condition": trial.condition,
+            "catch": trial.catch,
+            "texture": style.tuning.texture,
+            "contrast": style.tuning.contrast,
+            "texture_cycles": style.tuning.cycles if protocol.model != "vbd" else "",
+            "model": protocol.model,
+            "mapping": "" if first.picture else style.mapping.name,
+            "on": on,
+            "scene": first.look.scene or "",
+            **{name: f"{getattr(style.geometry, name):g}" for name in LENGTHS},
+            "parameter": protocol.design.parameter,
+            "presented": right or trial.presented,
+            "string_set": "" if trial.values else trial.item,
+            "table": first.look.table or "",
+            "text": first.text,
+            "question": protocol.asks.kind,
+            "gap_s": trial.gap_s,
+        }
+
+    def _happened(self, trial: Trial, own: list[Event]) -> dict[str, Any]:
+        """Return the cells on what happened in the attempt that counts."""
+        events = self._progress.events[trial.key]
+        cue = _first(own, "cue")
+        contact = _first(own, "contact")
+        row: dict[str, Any] = {
+            "attempt": self._attempt(trial),
+            "paused_s": round(_paused_s(own), 6),
+            "warned": int(_first(own, "warning") is not None),
+            "faults": "; ".join(event.data["what"] for event in own if event.kind == "fault"),
+            "notes": "; ".join(event.data["text"] for event in events if event.kind == "note"),
+            "early": 0,
+            "late": int(trial.key in self._progress.missed),
+            "analysed": 0,
+        }
+        if cue is not None:
+            row["cue_time"] = cue.wall
+        if cue is not None and contact is not None:
+            row["contact_s"] = round(contact.t_s - cue.t_s, 6)
+        return row
+
+    def _answered(self, trial: Trial, own: list[Event]) -> dict[str, Any]:
+        """Return the cells on the answer that counts."""
+        progress, asks = self._progress, self._protocol.asks
+        answer = progress.answers[trial.key]
+        given, data = answer.data["answer"], answer.data
+        events = progress.events[trial.key]
+        first = next(event.data["answer"] for event in events if event.kind == "answer")
+        confidence = progress.confidences.get(trial.key)
+        correct = asks.correct(trial, given)
+        run = next(run for run in reversed(self._runs) if run.n < answer.n)
+        row = {
+            "answered": asks.cell(trial, given),
+            "correct": "" if correct is None else int(correct),
+            "outcome": asks.outcome(trial, given),
+            "confidence": "" if confidence is None else confidence.data["confidence"],
+            "first_answer": "" if first == given else asks.cell(trial, first),
+            "answers_from": run.data["answers"],
+            "moved_by": _moved_by(run, self._content.events, own, answer),
+            "ended_by": data.get("ended_by", ""),
+            "answer_time": answer.wall,
+            "early": int(data.get("early", False)),
+            "late": int(data.get("late", False)),
+            "analysed": int(not trial.catch or asks.counts_catch),
+        }
+        cue, ended = _first(own, "cue"), _last(own, "ended")
+        if cue is not None:
+            by_key = ended is not None and ended.data.get("by") != "exposure"
+            until_s = ended.t_s if by_key else answer.t_s
+            row["response_s"] = round(until_s - cue.t_s - _paused_s(own), 6)
+        return row
+
+    def _replies(self, trial: Trial) -> dict[str, Any]:
+        """Return the replies to the questionnaire that go with a trial."""
+        row: dict[str, Any] = {}
+        for item in self._protocol.questionnaire:
+            number = {"trial": trial.number, "block": trial.block}.get(item.when, 0)
+            event = self._progress.replies.get((item.name, number))
+            reply = "" if event is None or trial.practice else event.data["reply"]
+            row[f"asked_{item.name}"] = reply
+            if item.right:
+                right = item.of(trial.columns).right
+                row[f"asked_{item.name}_correct"] = int(reply == right) if reply else ""
+        return row
+
+    def _read(
+        self, db: sqlite3.Connection, trial: Trial, own: list[Event], paused_s: float
+    ) -> dict[str, Any]:
+        """Return the cells on how strings were read, which the ticks tell."""
+        protocol = self._protocol
+        cues = [event for event in own if event.kind == "cue" and not event.data.get("turned")]
+        if protocol.design.passage:
+            return self._read_passage(db, trial, own, paused_s)
+        if len(trial.stimuli) > 1 or not cues or trial.stimuli[0].picture:
+            return {}
+        if "line" not in cues[-1].data:
+            read = _last(own, "read")
+            return {} if read is None else {"duration_s": round(read.t_s - cues[-1].t_s, 6)}
+        edges = self._edges_mm(trial.stimuli[0])
+        if not edges:
+            return {}
+        line = cues[-1].data["line"]
+        ticks = read_ticks(db, line, line, ("line", "time_ns", "x_mm"))
+        found = duration(ticks, edges[0], protocol.wanted.span_mm)
+        if found is None:
+            return {}
+        seconds, returned = found
+        early = _last(own, "answer")
+        is_early = early is not None and early.data.get("early")
+        return {"returned": int(returned)} | ({} if is_early else {"duration_s": round(seconds, 6)})
+
+    def _edges_mm(self, stimulus: Stimulus) -> tuple[float, ...]:
+        masks = stimulus.masks(self._protocol.display.lead_cells)
+        return edges_mm(masks, self._protocol.style(stimulus.look))
+
+    def _read_passage(
+        self, db: sqlite3.Connection, trial: Trial, own: list[Event], paused_s: float
+    ) -> dict[str, Any]:
+        """Return the cells on a passage: its speed, the pauses of the hand, and its regressions."""
+        words = len(trial.item.split())
+        row: dict[str, Any] = {"lines": len(trial.stimuli), "words": words}
+        cues = {event.data["stimulus"]: event.data["line"] for event in own if event.kind == "cue"}
+        contact, read = _first(own, "contact"), _last(own, "read", "ended")
+        if contact is None or read is None or len(cues) < len(trial.stimuli):
+            return row
+        seconds = read.t_s - contact.t_s - paused_s
+        if seconds > 0:
+            row["words_per_minute"] = round(60 * words / seconds, 3)
+        counts: Counter[str] = Counter()
+        for number, stimulus in enumerate(trial.stimuli):
+            ticks = read_ticks(db, cues[number], cues[number])
+            pitch_mm = self._protocol.style(stimulus.look).geometry.cell_pitch_mm
+            edges = self._edges_mm(stimulus)
+            within = ticks[_within(ticks["x_mm"] + self._protocol.wanted.span_mm / 2, edges[0])]
+            still = stretches(np.abs(within["vx_mm_s"]) < STILL_MM_S, within["time_ns"])
+            counts["hand_pauses"] += int((still >= STILL_S).sum())
+            counts["hand_paused_s"] += float(still[still >= STILL_S].sum())
+            counts["regressions"] += went_back(within["x_mm"], pitch_mm / 2)
+        return row | counts | {"hand_paused_s": round(counts["hand_paused_s"], 3)}
+
+
+def _first(events: list[Event], *kinds: str) -> Event | None:
+    return next((event for event in events if event.kind in kinds), None)
+
+
+def _last(events: list[Event], *kinds: str) -> Event | None:
+    return _first(events[::-1], *kinds)
+
+
+def _moved_by(run: Event, events: tuple[Event, ...], own: list[Event], answer: Event) -> str:
+    """Return the hand that moved a simulated array in a trial; empty if a person moved it."""
+    hand = run.data.get("conditions", {}).get("hand", "") if run.data.get("simulated") else ""
+    start = own[0].n if own else answer.n
+    taken = [event for event in events if event.kind == "hand" and event.n < answer.n]
+    held = any(event.data.get("held") for event in taken if event.n > start)
+    if held or (taken and taken[-1].data.get("held")):
+        return "simulated:pointer"
+    return f"simulated:{hand}" if hand else ""
+
+
+def _paused_s(events: list[Event]) -> float:
+    """Return how long a trial was paused."""
+    paused_s, began_s = 0.0, None
+    for event in events:
+        if event.kind == "pause":
+            began_s = event.t_s
+        elif event.kind in ("go", "answer") and began_s is not None:
+            paused_s, began_s = paused_s + event.t_s - began_s, None
+    return paused_s
+
+
+def duration(ticks: NDArray[np.void], edge_mm: float, span_mm: float) -> tuple[float, bool] | None:
+    """Return how long a line was read, and whether the hand came back; None if it never came.
+
+    Reading begins when the rightmost actuator comes to the left edge of the first dot, and ends
+    when it crosses that edge to the left for the last time (Lévesque 2009, 3.4).
+    """
+    on = ticks["x_mm"] + span_mm / 2 >= edge_mm
+    if not on.any():
+        return None
+    start = int(np.argmax(on))
+    left = start + 1 + np.flatnonzero(on[start:-1] & ~on[start + 1 :])
+    end = int(left[-1]) if left.size else len(ticks) - 1
+    return float(ticks["time_ns"][end] - ticks["time_ns"][start]) / 1e9, bool(left.size)
+
+
+def _within(right_mm: NDArray[np.float64], edge_mm: float) -> slice:
+    """Return the ticks from the first touch of a line to its furthest place."""
+    on = np.flatnonzero(right_mm >= edge_mm)
+    if not on.size:
+        return slice(0, 0)
+    return slice(int(on[0]), int(on[0]) + int(np.nanargmax(right_mm[on[0] :])) + 1)
+
+
+def stretches(marked: NDArray[np.bool_], time_ns: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return the lengths in s of the stretches of ticks that are marked.
+
+    >>> stretches(np.array([0, 1, 1, 0, 1], bool), np.arange(5) * 10**9)
+    array([1., 0.])
+    """
+    edges = np.diff(np.concatenate(([False], marked, [False])).astype(np.int8))
+    starts, stops = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
+    return (time_ns[stops] - time_ns[starts]) / 1e9
+
+
+def went_back(x_mm: NDArray[np.float64], least_mm: float) -> int:
+    """Return how often the hand went to the left by a distance before it went on to the right.
+
+    >>> went_back(np.array([0.0, 9.0, 5.0, 6.0, 4.0, 12.0, 11.5]), 3.0)
+    1
+    """
+    number, turn, back = 0, -np.inf, False
+    for x in x_mm.tolist():
+        # Going right the turn is the furthest place so far; going back it is the lowest.
+        turn = min(turn, x) if back else max(turn, x)
+        if abs(x - turn) >= least_mm:
+            back, turn = not back, x
+            number += back
+    return number
+
+
+def best_level(path: Path, parameter: str) -> float:
+    """Return the value of a parameter at which most characters of a session were read right.
+
+    Raises
+    ------
+    ValueError
+        If the session has no answers that tell.
+    """
+    right: Counter[float] = Counter()
+    total: Counter[float] = Counter()
+    for row in rows(path):
+        if row["analysed"] and row["question"] == "identify":
+            presented, answered = row["presented"], row["answered"]
+            pairs = zip(presented, answered.ljust(len(presented), UNREAD), strict=False)
+            right[row[parameter]] += sum(one == other for one, other in pairs)
+            total[row[parameter]] += len(presented)
+    if not total:
+        raise ValueError(f"{path} has no answers that tell which {parameter} is read best")
+    return max(sorted(total), key=lambda value: right[value] / total[value])

@@ -1,0 +1,251 @@
+"""Where answers come from: an experimenter who types, a file, or a program."""
+
+from __future__ import annotations
+
+import os
+import select
+import sys
+import time
+from collections.abc import Callable, Iterable
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, Literal, NamedTuple, Protocol
+
+from vbraille.errors import InputError
+from vbraille.sessions.planning.questionnaire import Item
+from vbraille.sessions.planning.trial import Trial
+from vbraille.sessions.simulated.skin import FeltFrames
+
+
+class Asked(NamedTuple):
+    """What is asked now.
+
+    Parameters
+    ----------
+    what
+        The answer of a trial, how sure it is, a reply to the questionnaire, or whether to go on
+        after a break.
+    trial, attempt
+        The trial, and how often it was shown.
+    felt
+        Function that returns what was felt of each stimulus.
+    answer
+        The answer, where it is asked how sure it is.
+    item
+        What is asked of the questionnaire.
+    """
+
+    what: Literal["answer", "confidence", "reply", "go"]
+    trial: Trial | None = None
+    attempt: int = 0
+    felt: Callable[[], list[FeltFrames]] = list
+    answer: str = ""
+    item: Item | None = None
+
+
+class Line(NamedTuple):
+    """A line that was given, and its number in a file; 0 if it is in none."""
+
+    text: str
+    number: int = 0
+
+
+class Press(NamedTuple):
+    """The participant's key, where a line might have come."""
+
+
+class NoMoreAnswers(Exception):
+    """There will be no more answers; the session stops, and can be resumed."""
+
+
+class Answers(Protocol):
+    """A source of answers.
+
+    Attributes
+    ----------
+    name : str
+        Name in the record.
+    typed : bool
+        Whether a person types, who is waited for at breaks and gives commands at any time.
+    felt : bool
+        Whether it needs what was felt.
+    """
+
+    name: str
+    typed: bool
+    felt: bool
+
+    def line(self, asked: Asked | None, wait_s: float) -> Line | Press | None:
+        """Return a line, or None if there is none within some time.
+
+        A person's line may come at any time, others only if something is asked.
+
+        Raises
+        ------
+        NoMoreAnswers
+            If there will be none.
+        """
+        ...
+
+
+class Typed:
+    """Lines from standard input.
+
+    Attributes
+    ----------
+    awaits_key : bool
+        Whether the participant's key would end reading now.
+    """
+
+    name = "typed"
+    typed = True
+    felt = False
+    awaits_key = False
+
+    def __init__(self) -> None:
+        self._descriptor = sys.stdin.fileno() if sys.stdin else -1
+        self._partial = b""
+        self._given: list[Line | Press] = []
+        self._over = self._descriptor < 0
+
+    def watch(self, key: str) -> bool:
+        """Look out for the participant's key; return whether that is possible."""
+        return False
+
+    def line(self, asked: Asked | None, wait_s: float) -> Line | Press | None:
+        """Return a line that was typed."""
+        if not self._given and not self._over:
+            self._read(wait_s)
+        if self._given:
+            return self._given.pop(0)
+        if self._over:
+            raise NoMoreAnswers
+        return None
+
+    def _read(self, wait_s: float) -> None:
+        """Take what was typed within some time."""
+        if not select.select([self._descriptor], [], [], wait_s)[0]:
+            return
+        try:
+            said = os.read(self._descriptor, 1 << 16)
+        except OSError:  # the terminal was closed
+            said = b""
+        self._over = not said
+        *lines, self._partial = (self._partial + said).split(b"\n")
+        if self._over and self._partial:
+            lines.append(self._partial)
+        self._given += [Line(line.decode("utf-8", "replace")) for line in lines]
+
+    def release(self) -> None:
+        """Leave the terminal to another program."""
+
+    def take(self) -> None:
+        """Take the terminal again."""
+
+
+class InTurn:
+    """A source that is asked for each answer in turn."""
+
+    name = "program"
+    typed = False
+    felt = False
+
+    def line(self, asked: Asked | None, wait_s: float) -> Line | None:
+        """Return the line for what is asked; wait if nothing is."""
+        if asked is None:
+            time.sleep(wait_s)
+            return None
+        return Line("") if asked.what == "go" else self.give(asked)
+
+    def give(self, asked: Asked) -> Line:
+        """Return the line for what is asked."""
+        raise NotImplementedError
+
+
+class Scripted(InTurn):
+    """Lines of a file. Empty lines, and lines that begin with #, are left out.
+
+    Parameters
+    ----------
+    path
+        The file.
+    after
+        Number of the last line that was used in earlier runs.
+    """
+
+    def __init__(self, path: Path, after: int) -> None:
+        try:
+            text = path.read_text("utf-8-sig")
+        except OSError as error:
+            raise InputError(f"{path} cannot be read: {error.strerror}") from None
+        except UnicodeDecodeError:
+            raise InputError(f"{path} is not UTF-8; save it as UTF-8") from None
+        self.name = str(path)
+        self._left = [
+            Line(line.strip(), number)
+            for number, line in enumerate(text.splitlines(), 1)
+            if number > after and line.strip() and not line.lstrip().startswith("#")
+        ]
+
+    def give(self, asked: Asked) -> Line:
+        """Return the next line."""
+        if not self._left:
+            raise NoMoreAnswers
+        return self._left.pop(0)
+
+
+class Programmed(InTurn):
+    """Answers of a program.
+
+    Parameters
+    ----------
+    given
+        The lines, or a function that returns the line for a `Trial` or for an `Item` of the
+        questionnaire. The session stops if the lines end, or the function returns None.
+    """
+
+    def __init__(self, given: Iterable[str] | Callable[[Any], str | None]) -> None:
+        if callable(given):
+            self._give = given
+        else:
+            lines = iter(given)
+            self._give = lambda _asked: next(lines, None)
+
+    def give(self, asked: Asked) -> Line:
+        """Return what the program says to a trial or a question."""
+        line = self._give(asked.item or asked.trial)
+        if line is None:
+            raise NoMoreAnswers
+        if not isinstance(line, str):
+            raise InputError(f"an answer is {line!r}; give a line of text, or None to stop")
+        return Line(line)
+
+
+def answers_of(spec: Any, after: int) -> Answers:
+    """Return the source of a spec.
+
+    Parameters
+    ----------
+    spec
+        "typed", the name of a file, lines, a function, or a source itself.
+    after
+        Number of the last line of the file that was used in earlier runs.
+
+    Raises
+    ------
+    InputError
+        If there is no such source.
+    """
+    if hasattr(spec, "line"):
+        return spec
+    if not isinstance(spec, str):
+        return Programmed(spec)
+    if spec == "typed":
+        return Typed()
+    if spec == "program":
+        raise InputError("the answers came from a program; give --answers typed")
+    if not Path(spec).exists():
+        near = get_close_matches(spec.partition(":")[0], ("typed", "simulated"), 1)
+        hint = f"did you mean {near[0]}?" if near else "give typed, simulated:NOISE or a file"
+        raise InputError(f"there is no file {spec}; {hint}")
+    return Scripted(Path(spec), after)

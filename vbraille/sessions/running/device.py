@@ -1,0 +1,375 @@
+"""The device of a session: stimuli are put under the hand, and what the hand does is told.
+
+All that a session calls of engines and devices stands here.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vbraille.devices import events
+from vbraille.devices.events import Button, Knob, Placing
+from vbraille.devices.registry import TRAVEL_TOLERANCE_MM, find_driver, open_device
+from vbraille.display import Display
+from vbraille.engine.batch import BatchEngine
+from vbraille.engine.engine import Engine, placing_of
+from vbraille.engine.host import Host
+from vbraille.engine.record import Flag, RingReader
+from vbraille.errors import InputError
+from vbraille.live.messages import LetGo, Point
+from vbraille.sessions.planning.plan import Plan
+from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.planning.shown import Shown, make_shown
+from vbraille.sessions.simulated.skin import FeltFrames
+from vbraille.simulation import steering
+from vbraille.simulation.specs import device_spec
+
+# Makes the engine that drives a device, from the device's spec and the display that is wanted.
+MakeEngine = Callable[[str, Display], Engine]
+
+# A plain number: numpy, when it reads an enumeration, can swallow an exception of a signal.
+_PAUSED = int(Flag.PAUSED)
+_AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD | Flag.TURNED)
+_TOLD_S = 1.0  # from one fault that is told of a trial to the next
+_SCAN_MM = 10.0  # between the lines that a simulated hand goes along over a picture
+
+
+class Happening(NamedTuple):
+    """Something that the hand or the device did.
+
+    Parameters
+    ----------
+    kind, time_s, data
+        Kind of the event, when it was by the session's clock, and what else the record has.
+    said
+        Sentence for the experimenter; empty for none.
+    """
+
+    kind: str
+    time_s: float
+    data: dict[str, Any]
+    said: str = ""
+
+
+class SessionDevice:
+    """A device that a session runs on.
+
+    Parameters
+    ----------
+    protocol, plan
+        What is shown.
+    spec, hand
+        Spec of the device, and of the hand that moves a simulated one.
+    seed
+        Seed of the simulated hand.
+    fast
+        Whether a simulated device runs as fast as the machine can, and not in real time.
+    rate_hz
+        Frames per second.
+    line
+        Number of the last showing in earlier runs.
+    keeps
+        Whether frames are kept for a simulated reader.
+    by_hand
+        Whether the hand's way to the end and back ends reading, and not a key alone.
+    make_engine
+        Function that makes another engine than the usual one.
+    watched
+        Function that is given a reader of the ticks at each start, for a live view, whose pages may
+        be the hand of a simulated device; None without one.
+
+    Attributes
+    ----------
+    ready : bool
+        Whether a trial may begin: the device works, and the array is at the left.
+    read, ended, reached : bool
+        Whether the stimulus was read; whether a key or the time ended that; whether the hand has
+        been at its end.
+    newest : record or None
+        The newest tick.
+    """
+
+    by_key = False
+    why = ""
+
+    def __init__(
+        self,
+        protocol: Protocol,
+        plan: Plan,
+        spec: str,
+        hand: str,
+        *,
+        seed: int,
+        fast: bool,
+        rate_hz: float,
+        line: int,
+        keeps: bool,
+        by_hand: bool,
+        make_engine: MakeEngine | None = None,
+        watched: Callable[[RingReader], None] | None = None,
+    ) -> None:
+        self.wanted = replace(protocol.wanted, rate_hz=rate_hz)
+        self.span_mm = self.wanted.span_mm
+        self.line = line
+        self.ready = self.read = self.ended = False
+        self.newest: np.void | None = None
+        self._real = not fast
+        self._keeps, self._by_hand = keeps, by_hand
+        self._button = protocol.trial.button
+        self._watched = watched
+        self.engine: Engine
+        spec = device_spec(spec, hand, seed)
+        if make_engine is not None:
+            self.engine = make_engine(spec, self.wanted)
+        elif fast:
+            self.engine = BatchEngine(open_device(spec, self.wanted), self.wanted.rate_hz)
+        else:
+            find_driver(spec)
+            self.engine = Host(spec, self.wanted)
+        self._felt: list[list[NDArray[np.void]]] = []
+        self._shown: Shown | None = None
+        self._first_line = line + 1
+        self._shown_s = self._told_s = 0.0
+        self._touched = self._at_end = self._is_away = False
+        self._placing = Placing.DONE
+        self._controls: list[Button | Knob] = []
+
+    def start(self) -> None:
+        """Open the device; again after the engine died."""
+        self.engine.start()
+        self.engine.paused = True
+        self.newest = self._shown = None
+        if self._watched is not None and isinstance(self.engine, Host):
+            self._watched(self.engine.reader())
+
+    def close(self) -> None:
+        """Bring the array to rest, and close the device."""
+        self.engine.close()
+
+    @property
+    def display(self) -> Display:
+        """Display that the device turned out to be."""
+        return self.engine.display
+
+    @property
+    def steered(self) -> bool:
+        """Tell whether a page of the live view may be the hand."""
+        return self.engine.steered
+
+    def lead(self, asked: Point | LetGo) -> None:
+        """Hold the simulated hand at a place, or let it go."""
+        if isinstance(asked, Point):
+            self.engine.give(steering.Hold(asked.x_mm, asked.y_mm, asked.theta_rad))
+        else:
+            self.engine.give(steering.LetGo())
+
+    @property
+    def now_s(self) -> float:
+        """Time of the session's clock: the machine's, or that of a device that runs fast."""
+        if self._real:
+            return time.monotonic()
+        return 0.0 if self.newest is None else int(self.newest["time_ns"]) / 1e9
+
+    @property
+    def reached(self) -> bool:
+        """True if the hand has been at the end of the stimulus; a picture has none."""
+        no_end = self._shown is None or self._shown.end_mm is None
+        return self.read or no_end or self._at_end
+
+    def show(self, shown: Shown, *, first: bool = True, turned: bool = False) -> None:
+        """Put a stimulus under the hand as the next showing.
+
+        Parameters
+        ----------
+        shown
+            The stimulus.
+        first
+            Whether it is the first of a trial.
+        turned
+            Whether it takes the place of the last one, at another value.
+        """
+        if first:
+            self._felt = []
+            self._told_s = -_TOLD_S
+        self._felt.append([])
+        self.line += 1
+        if not turned:
+            self._first_line = self.line
+        self._shown, self._shown_s = shown, self.now_s
+        self._touched = self._at_end = self._is_away = self.read = self.ended = False
+        self.engine.show(shown.program, self.line, shown.end_mm)
+        self.engine.paused = False
+        if shown.canvas_mm is not None:
+            width_mm, height_mm = shown.canvas_mm
+            lines = max(1, round(height_mm / _SCAN_MM))
+            self.engine.give(steering.ReadPage(lines, height_mm / lines, width_mm))
+        elif shown.end_mm is not None:
+            self.engine.give(steering.ReadLine(shown.end_mm))
+
+    def rest(self) -> None:
+        """Bring the array to rest."""
+        self.engine.paused = True
+
+    def go(self) -> None:
+        """Let the stimulus be felt again after a rest, unless its reading was ended."""
+        self.engine.paused = self._shown is None or self.ended
+
+    def end_reading(self) -> None:
+        """Bring the array to rest, since a key or the time has ended reading."""
+        self.read = self.ended = True
+        self.rest()
+
+    def withdraw(self) -> None:
+        """Take the stimulus away."""
+        self.rest()
+        self._shown = None
+
+    def confirm(self) -> bool:
+        """Take Enter as the sign that the carriage is at its left stop; False if it is not that."""
+        if self._placing is not Placing.STOP:
+            return False
+        self.engine.set_zero()
+        return True
+
+    def explorations(self) -> list[FeltFrames]:
+        """Return frames, places and times of each stimulus of the open trial."""
+        together = (np.concatenate(parts) for parts in self._felt)
+        return [
+            FeltFrames(t["frame"], t["x_mm"], t["time_ns"] / 1e9, t["y_mm"], t["theta_rad"])
+            for t in together
+        ]
+
+    def take_controls(self) -> list[Button | Knob]:
+        """Return presses and turns since the last call, while a stimulus was shown."""
+        controls, self._controls = self._controls, []
+        return controls
+
+    def poll(self) -> tuple[NDArray[np.void], list[Happening]]:
+        """Return the ticks since the last call, and what happened in them.
+
+        Raises
+        ------
+        HostDiedError
+            If the engine has ended; `start` begins it again.
+        DeviceError
+            If the device has failed.
+        """
+        ticks, given = self.engine.poll(), self.engine.take_events()
+        found = [
+            Happening("device", self.now_s, {"what": sentence}, sentence)
+            for sentence in (*events.told(given), *self._say_place(ticks))
+        ]
+        if ticks.size:
+            self.newest = ticks[-1]
+            anywhere = self._shown is not None and self._shown.canvas_mm is not None
+            works = not int(ticks["flags"][-1]) & _AWAY
+            self.ready = works if anywhere else self.engine.ready
+            if self._shown is not None:
+                found += self._follow(ticks, self._shown)
+        for event in given:
+            found += self._heard(event)
+        return ticks, sorted(found, key=lambda each: each.time_s)
+
+    def _say_place(self, ticks: NDArray[np.void]) -> Iterable[str]:
+        """Say what is to be done before the device knows its place."""
+        placing = placing_of(ticks[-1]) if ticks.size else self._placing
+        if placing is not self._placing:
+            self._placing = placing
+            yield events.placing_sentence(placing, self.display, press="press Enter")
+
+    def _follow(self, ticks: NDArray[np.void], shown: Shown) -> list[Happening]:
+        """Keep what was felt, and return the first touch if it is in these ticks."""
+        ticks = ticks[(ticks["flags"] & _PAUSED == 0) & (ticks["line"] >= self._first_line)]
+        if not ticks.size:
+            return []
+        if self._keeps:
+            self._felt[-1].append(ticks)
+        if shown.end_mm is not None:
+            self._at_end = self._at_end or bool((ticks["x_mm"] >= shown.end_mm).any())
+        if self._touched or not shown.edges_mm:
+            return []
+        on = np.flatnonzero(ticks["x_mm"] + self.span_mm / 2 >= shown.edges_mm[0])
+        self._touched = bool(on.size)
+        return [_at("contact", ticks[on[0]]["tick"], ticks[on[0]]["time_ns"])] if on.size else []
+
+    def _heard(self, event: events.Event) -> list[Happening]:
+        """Return what an event of the device or the engine is to the session."""
+        if isinstance(event, events.HandHeld):
+            return [Happening("hand", self.now_s, {"held": event.held})]
+        if self._shown is None:
+            return []
+        match event:
+            case events.LineRead() if event.line == self.line and self._may_read:
+                self.read = True
+                return [_at("read", event.tick, event.time_ns)]
+            case events.HandDone() if event.at_ns / 1e9 > self._shown_s and self._may_read:
+                self.read = True
+                return [Happening("read", event.at_ns / 1e9, {})]
+            case events.Unfelt() if not self._is_away:
+                fault = _at("fault", event.tick, event.time_ns, what=event.why)
+                if fault.time_s - self._told_s >= _TOLD_S:
+                    self._is_away, self._told_s = True, fault.time_s
+                    return [fault]
+            case events.FeltAgain() if self._is_away:
+                self._is_away = False
+                return [_at("well", event.tick, event.time_ns)]
+            case Knob():
+                self._controls.append(event)
+            case Button(pressed=True) if event.number != self._button:
+                self._controls.append(event)
+            case Button(pressed=True) if not self.ended:
+                at_s = self.now_s if event.at_ns is None else event.at_ns / 1e9
+                # A press from before the stimulus came is told now, and counts from now on.
+                at_s = at_s if at_s > self._shown_s else self.now_s
+                return [Happening("ended", at_s, {"by": f"button:{event.number}"})]
+        return []
+
+    @property
+    def _may_read(self) -> bool:
+        """Tell whether the hand's way to the end and back ends reading now."""
+        return self._by_hand and not self.read
+
+
+def check_room(protocol: Protocol, plan: Plan, display: Display) -> None:
+    """Check that the carriage is long enough for all that a plan shows.
+
+    Raises
+    ------
+    InputError
+        If it is too short, or goes along a line where pictures are shown.
+    """
+    for shown in _all_shown(protocol, plan):
+        if shown.canvas_mm is not None and not display.height_mm:
+            raise InputError(
+                f"{protocol.name} shows pictures, and the carriage of {display.name} goes along x "
+                f"only; choose another --device"
+            )
+        if shown.canvas_mm is not None:
+            needed_mm = shown.canvas_mm[0]
+        else:
+            needed_mm = (shown.end_mm or 0.0) + display.span_mm
+        if needed_mm > display.travel_mm + TRAVEL_TOLERANCE_MM:
+            raise InputError(
+                f"the carriage of {display.name} travels {display.travel_mm:g} mm, and "
+                f"{protocol.name} needs {needed_mm:.1f} mm; choose another --device"
+            )
+
+
+def _all_shown(protocol: Protocol, plan: Plan) -> Iterable[Shown]:
+    """Return the longest line and each picture of a plan, compiled."""
+    stimuli = [s for trial in plan.trials for s in trial.stimuli if s.on == "device"]
+    pictures = {(s.look.scene, s.picture): s for s in stimuli if s.picture}
+    lead = protocol.display.lead_cells
+    lines = [s for s in stimuli if not s.picture]
+    longest = {repr(s.look): s for s in sorted(lines, key=lambda s: len(s.masks(lead)))}
+    return [make_shown(protocol, s) for s in (*pictures.values(), *longest.values())]
+
+
+def _at(kind: str, tick: int, time_ns: int, **data: Any) -> Happening:
+    return Happening(kind, int(time_ns) / 1e9, {"tick": int(tick), **data})
