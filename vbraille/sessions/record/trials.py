@@ -22,6 +22,7 @@ from vbraille.sessions.planning.trial import Stimulus, Trial
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Content, Event, reading
 from vbraille.sessions.record.record import read as read_record
+from vbraille.sessions.record.strokes import describe
 from vbraille.sessions.record.ticks import read_ticks
 
 STILL_MM_S, STILL_S = 5.0, 0.3  # the hand pauses while it is slower than that, for that long
@@ -256,7 +257,15 @@ class _Table:
         seconds, returned = found
         early = _last(own, "answer")
         is_early = early is not None and early.data.get("early")
-        return {"returned": int(returned)} | ({} if is_early else {"duration_s": round(seconds, 6)})
+        if is_early:
+            return {"returned": int(returned)}
+        row = {"returned": int(returned), "duration_s": round(seconds, 6)}
+        if paused_s:
+            return row
+        on = np.flatnonzero(ticks["x_mm"] + protocol.wanted.span_mm / 2 >= edges[0])
+        ticks = ticks[on[0] : on[-1] + 2]
+        last_mm = edges[-1] + protocol.style(trial.stimuli[0].look).geometry.dot_width_mm
+        return row | describe(ticks["x_mm"], ticks["time_ns"], edges[0], last_mm)
 
     def _edges_mm(self, stimulus: Stimulus) -> tuple[float, ...]:
         masks = stimulus.masks(self._protocol.display.lead_cells)
