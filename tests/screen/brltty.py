@@ -93,7 +93,10 @@ class Shown:
 
     def written_by(self, brltty):
         """A program that can write what is shown, once BRLTTY knows the size."""
-        self.until(lambda: self.port.connected)
+        # BRLTTY 6.5 ends with a segmentation fault if a program writes while its first message
+        # is being shown.
+        self.until(lambda: "no screen" in self.screen.talk.text)
+        self.rest(0.5)
         client = brltty.client()
         rows, cells = self.screen.talk.masks.shape
         self.until(lambda: client.displaySize == (cells, rows))
@@ -134,7 +137,7 @@ class Shown:
 
 
 @contextmanager
-def shown(folder, model, hand="sweep:120"):
+def shown(folder, model, hand="sweep:80"):
     """A screen on a simulated device of a model."""
     place = Path(folder) / "socket"
     port = Port(str(place))
@@ -169,7 +172,7 @@ def decoded(ticks, model, count, row=None):
             middle = cell * geometry.cell_pitch_mm + geometry.dot_width_mm / 2
             middle += column * geometry.dot_spacing_mm
             actuators = (style.mapping.left, style.mapping.right)[column].index(dot_row)
-            felt = ticks["frame"][:, actuators][np.abs(places - middle) < 0.4]
+            felt = ticks["frame"][:, actuators][np.abs(places - middle) < 0.7]
             assert felt.size, "the hand was not there"
             mask |= (felt.mean() > 0.2) << dot
         masks.append(int(mask))
