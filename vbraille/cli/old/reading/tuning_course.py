@@ -14,14 +14,14 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from vbraille.adaptive.questplus import GridAxis, geometric, nearer_quest, ordered_pairs
+from vbraille.cli.old.reading.questplus import GridAxis, geometric, nearer_quest, ordered_pairs
 from vbraille.config.settings import KNOBS, kept_values, obstacle, with_values
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.adaptive.questplus import GridQuest
+    from vbraille.cli.old.reading.questplus import GridQuest
     from vbraille.config.options import StyleKnob
     from vbraille.render import Model
     from vbraille.render.braille.style import BrailleStyle

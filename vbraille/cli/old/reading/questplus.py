@@ -388,7 +388,7 @@ def detection_quest(
     Parameters
     ----------
     shape
-        Name of a shape of `vbraille.adaptive.questplus.SHAPES`.
+        Name of a shape of `vbraille.cli.old.reading.questplus.SHAPES`.
     values
         Values that may be asked.
     threshold, spread, guess, lapse
@@ -430,7 +430,7 @@ def nearer_quest(
     pairs
         Pairs that may be asked.
     centre, spread, lapse
-        Possible values of the parameters of `vbraille.adaptive.questplus.nearer`.
+        Possible values of the parameters of `vbraille.cli.old.reading.questplus.nearer`.
     log
         Whether distances are judged on a log scale.
     about
