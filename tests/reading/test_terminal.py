@@ -11,6 +11,7 @@ import pytest
 from tests.reading.terminal import PROGRAM, Terminal
 from tests.tiers import heavy
 from vbraille.reading.commands import Where, bindings
+from vbraille.testing import simulated_controller
 
 BOOK = "tests/translate/documents/files/pandoc-3.epub"
 TEXT = "texts/english.txt"
@@ -144,6 +145,18 @@ def test_standard_input_is_read_with_keys_from_the_terminal():
         assert terminal.press("n") == "line 2"
         terminal.press("q")
         assert terminal.end() == 0
+
+
+def test_a_text_is_read_on_a_controller_at_a_port():
+    with simulated_controller(hand="sweep:200") as spec:
+        done = run(
+            "read", TEXT, "--device", spec, "--lines", "1-2", "--echo", "text", "--no-places"
+        )
+        assert done.returncode == 0, done.stderr
+        assert [line for line in done.stdout.splitlines() if line.startswith("line: ")] == [
+            "line: 1", "line: 2",
+        ]  # fmt: skip
+        assert "late ticks" in done.stdout.splitlines()[-1]
 
 
 REFUSED = [

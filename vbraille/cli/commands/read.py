@@ -58,6 +58,7 @@ def read(ctx: click.Context, number: int = 1) -> None:
     from vbraille.reading.places import Places, places_path
     from vbraille.reading.reader import Reader
     from vbraille.render import MODELS
+    from vbraille.wording import count
 
     chosen, asked = ctx.params, given(ctx)
     places = Places(
@@ -92,6 +93,8 @@ def read(ctx: click.Context, number: int = 1) -> None:
 
             equipment.add_pins(chosen["also"], book.table or choose_table())
         width = chosen["cells"] or cells_per_line(model.style.geometry, model.display)
+        written = "braille as it is" if book.table is None else book.table.said
+        say(f"line width: {count(width, 'cell')}, {written}", aside=True)
         device.start(model)
 
         def save(style):
