@@ -118,6 +118,20 @@ def test_a_book_goes_on_where_it_was_closed_and_a_changed_one_near_it(tmp_path):
     assert "no books yet" in run("books").stdout
 
 
+def test_options_of_a_book_are_kept_and_a_language_that_was_chosen(call, tmp_path):
+    book = tmp_path / "book.txt"
+    book.write_text("un deux")
+    read = ("read", str(book), "--hand", "sweep:900", "--echo", "none")
+    assert "French" in call(*read, "--language", "fr").err
+    assert "French" in call(*read).err
+    assert "English" in call(*read, "--language", "en").err
+    with Terminal("read", str(book), *STILL) as terminal:
+        terminal.press("y", "d", "e", "enter")
+        terminal.press("q")
+        terminal.end()
+    assert "German" in call("books", "1").err
+
+
 def test_a_file_that_changes_while_it_is_read_is_read_anew(tmp_path):
     book = tmp_path / "book.txt"
     shutil.copy(TEXT, book)
@@ -149,9 +163,7 @@ def test_standard_input_is_read_with_keys_from_the_terminal():
 
 def test_a_text_is_read_on_a_controller_at_a_port():
     with simulated_controller(hand="sweep:200") as spec:
-        done = run(
-            "read", TEXT, "--device", spec, "--lines", "1-2", "--echo", "text", "--no-places"
-        )
+        done = run("read", TEXT, "--device", spec, "--lines", "1-2", "--echo", "text")
         assert done.returncode == 0, done.stderr
         assert [line for line in done.stdout.splitlines() if line.startswith("line: ")] == [
             "line: 1", "line: 2",
