@@ -129,8 +129,11 @@ def _kept(places: Places, file: str) -> KeptBook:
     path = Path(file)
     if file == "-" or not path.is_file():
         return places.book("", Path(), "")
-    with path.open("rb") as opened:
-        digest = hashlib.file_digest(opened, "sha256").hexdigest()
+    try:
+        with path.open("rb") as opened:
+            digest = hashlib.file_digest(opened, "sha256").hexdigest()
+    except OSError:  # which opening the book says in a sentence
+        return places.book("", Path(), "")
     return places.book(digest, path.absolute(), path.stem)
 
 
