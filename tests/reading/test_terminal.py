@@ -1,5 +1,6 @@
 """Reading at a terminal, as a reader has it: keys are typed, sentences are read."""
 
+import os
 import shutil
 import signal
 import sqlite3
@@ -169,6 +170,21 @@ def test_a_text_is_read_on_a_controller_at_a_port():
             "line: 1", "line: 2",
         ]  # fmt: skip
         assert "late ticks" in done.stdout.splitlines()[-1]
+
+
+def test_a_host_that_dies_is_said_and_is_begun_again_by_a_key():
+    with Terminal("read", TEXT, *STILL, "--no-places") as terminal:
+        found = subprocess.run(
+            ["pgrep", "-P", str(terminal.pid)], capture_output=True, text=True, check=True
+        )
+        for pid in found.stdout.split():
+            os.kill(int(pid), signal.SIGKILL)
+        terminal.wait("space begins again")
+        assert "space begins again" in terminal.press("n")
+        assert "reading" in terminal.press("space", wait_s=1.0)
+        assert "line 2" in terminal.press("n")
+        terminal.press("q")
+        assert terminal.end() == 0
 
 
 REFUSED = [
