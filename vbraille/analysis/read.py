@@ -58,6 +58,8 @@ class Trials:
         in their order.
     notes, warnings
         Sentences on what was left out or changed, and what a reader must know first.
+    people
+        Everyone of whom there is a row.
     left_out
         People who are left out, each with the reason.
     sources
@@ -69,6 +71,7 @@ class Trials:
     frame: DataFrame
     notes: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    people: list[str] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
     sources: list[str] = field(default_factory=list)
     contents: list[Content] = field(default_factory=list)
@@ -102,6 +105,7 @@ def read_trials(
     trials.frame = trials.frame.reset_index(drop=True)
     _fill(trials)
     _join_names(trials, ["participant", "condition"])
+    trials.people = sorted(trials.frame["participant"].unique(), key=natural)
     _drop_unanswered(trials)
     _read_answers(trials)
     if protocol is not None:
