@@ -20,8 +20,8 @@ PASS_SHARE, RESCAN_SHARE = 0.9, 0.1
 PASSES = {1: "one pass", 2: "two passes"}
 
 
-def turning_points(x_mm: NDArray[np.float64]) -> list[int]:
-    """Return the ticks at which a way turns back by 2 mm or more, with its two ends."""
+def turning_points(x_mm: NDArray[np.float64], least_mm: float = REVERSAL_MM) -> list[int]:
+    """Return the ticks at which a way turns back by a length or more, with its two ends."""
     steps = np.sign(np.diff(x_mm))
     moves = np.flatnonzero(steps)
     turned = moves[1:][steps[moves[1:]] != steps[moves[:-1]]]
@@ -29,7 +29,7 @@ def turning_points(x_mm: NDArray[np.float64]) -> list[int]:
     furthest = 0
     for tick in [*turned.tolist(), len(x_mm) - 1]:
         if not turns:
-            if abs(x_mm[tick] - x_mm[furthest]) >= REVERSAL_MM:
+            if abs(x_mm[tick] - x_mm[furthest]) >= least_mm:
                 turns.append(furthest)
                 furthest = tick
             continue
@@ -37,7 +37,7 @@ def turning_points(x_mm: NDArray[np.float64]) -> list[int]:
         gone = x_mm[tick] - x_mm[furthest]
         if way * gone > 0:
             furthest = tick
-        elif abs(gone) >= REVERSAL_MM:
+        elif abs(gone) >= least_mm:
             turns.append(furthest)
             furthest = tick
     return [*turns, furthest] if turns else []
