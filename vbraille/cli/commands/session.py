@@ -133,10 +133,12 @@ def run(protocol: str, fields: tuple[tuple[str, str], ...], out: str | None, ano
         rate: float | None, **given: Any) -> None:  # fmt: skip
     """Run a session; type help at its prompt for what can be typed."""
     from vbraille.sessions.planning.loading import load_protocol
+    from vbraille.sessions.planning.plan import check_participant
     from vbraille.sessions.session import Session, check_fields, nearly_same
 
     planned = {name: given.pop(name) for name in _names(_PLAN)}
     participant = planned.pop("participant")
+    check_participant(participant)
     loaded = load_protocol(protocol)
     answered = dict(fields)
     check_fields(loaded, answered)
@@ -271,19 +273,17 @@ def withdraw(participant: str, paths: tuple[str, ...], yes: bool) -> int:
     """Remove all data of a participant from folders."""
     from vbraille.sessions.record.withdraw import withdrawal
 
-    folders = [Path(path) for path in paths or (".",)]
-    for folder in folders:
-        if not folder.is_dir():
-            raise InputError(f"there is no folder {folder}")
-    found = withdrawal(folders, participant)
+    found = withdrawal([Path(path) for path in paths or (".",)], participant)
     for line in found.lines:
         say(line)
-    if not found.paths:
+    for path in found.left:
+        say(f"{path}: names {participant}, and stays", aside=True)
+    if not found.lines:
         raise InputError(f"there is nothing of {participant} to remove")
     if not yes and not click.confirm(f"remove all of {participant} for good?"):
         raise InputError("nothing was removed; answer yes, or give --yes")
-    for line in found.remove():
-        say(line)
+    found.remove()
+    say(f"removed: all of {participant}")
     return 1 if found.left else 0
 
 
