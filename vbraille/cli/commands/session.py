@@ -276,15 +276,21 @@ def withdraw(participant: str, paths: tuple[str, ...], yes: bool) -> int:
         if not folder.is_dir():
             raise InputError(f"there is no folder {folder}")
     found = withdrawal(folders, participant)
-    for line in found.lines:
-        say(line)
-    if not found.paths:
+    left = [f"left: {path} names {participant}; look at it yourself" for path in found.left]
+    if not found.lines:
+        for line in left:
+            say(line)
         raise InputError(f"there is nothing of {participant} to remove")
-    if not yes and not click.confirm(f"remove all of {participant} for good?"):
-        raise InputError("nothing was removed; answer yes, or give --yes")
-    for line in found.remove():
+    if not yes:
+        for line in found.lines:
+            say(f"found: {line}")
+        if not click.confirm(f"remove all of {participant} for good?"):
+            raise InputError("nothing was removed; answer yes, or give --yes")
+    lines = found.lines
+    found.remove()
+    for line in (*(f"removed: {line}" for line in lines), *left):
         say(line)
-    return 1 if found.left else 0
+    return 1 if left else 0
 
 
 class _typing(ExitStack):  # noqa: N801  (used as a function)
