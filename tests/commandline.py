@@ -9,8 +9,6 @@ def commands():
     """All commands and their actions, with the words that call them."""
     context = click.Context(app.app, info_name="vbraille")
     for name in app.HELP:
-        if app._is_old(name):
-            continue
         command = app.app.get_command(context, name)
         yield (name,), command
         if isinstance(command, click.Group):
@@ -20,10 +18,6 @@ def commands():
 
 def parsed(words):
     """The command that words call, without calling it; a refusal is raised."""
-    if app._is_old(words[0]):
-        from vbraille.cli.old.parser import parse
-
-        return parse(words).command
     with app.app.make_context("vbraille", list(words)) as context:
         _follow(context)
     return words[0]
@@ -45,16 +39,4 @@ def helps():
         context = click.Context(command, info_name=" ".join(words))
         context.meta["vbraille.help_all"] = True
         text += command.get_help(context)
-    return text + "".join(_old_help(name) for name in app.HELP if app._is_old(name))
-
-
-def _old_help(name):
-    from vbraille.cli.old.commandtable import ACTIONS, COMMANDS
-    from vbraille.cli.old.parser import CommandParser
-
-    text = ""
-    for row in (COMMANDS[name], *ACTIONS.get(name, {}).values()):
-        parser = CommandParser(prog=f"vbraille {name}x", command=row)
-        parser.complete()
-        text += parser.format_help()
     return text

@@ -15,7 +15,7 @@ ALIKE = ("PPid", "NSsid", "SigIgn", "SigBlk", "Umask", "NoNewPrivs")
 def seen(monkeypatch, used, folder, **options):
     """State of a waiting program as the system tells it, and the way it ends when told to."""
     monkeypatch.setattr(forking.nursery, "used", used)
-    process = program.start("simulate", cwd=folder, **options)
+    process = program.start("simulate", "serial", cwd=folder, **options)
     process.stdout.readline()
     own = Path(f"/proc/{process.pid}")
     status = dict(line.split(":\t", 1) for line in (own / "status").read_text().splitlines())
@@ -47,7 +47,7 @@ def test_the_system_sees_no_difference(tmp_path, monkeypatch, leads):
 def test_what_ends_a_program_is_what_its_parent_sees(tmp_path):
     assert program.run("--version").returncode == 0
     assert program.run("page", tmp_path / "none").returncode == 2
-    process = program.start("simulate")
+    process = program.start("simulate", "serial")
     process.stdout.readline()
     process.kill()
     process.communicate(timeout=program.PATIENCE_S)

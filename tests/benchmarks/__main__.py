@@ -6,20 +6,16 @@ from importlib import import_module
 PARTS = (
     "render",
     "text",
-    "seek",
     "engine",
     "tick",
     "sessions",
     "analysis",
     "coverage",
     "reader",
-    "turning",
-    "conventional",
+    "reading",
     "straying",
     "figure",
     "scene",
-    "feel",
-    "key",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

@@ -62,7 +62,9 @@ def found(p) -> float:
 
 def any_pair(values) -> tuple[float, float]:
     """Percent of studies in which any pair is found, and in which p and interval are at odds."""
-    pairs = [pair.test for pair in designs.pairs_of(values, [values.shape[-1]])]
+    levels = list("abc"[: values.shape[-1]])
+    design = designs.Design(["condition"], [levels])
+    pairs = [test for *_, test in designs.pairs_of(values, design)]
     p, k = stats.holm(np.stack([pair.p for pair in pairs], axis=-1))
     odds = np.zeros(len(values), bool)
     for n, pair in enumerate(pairs):

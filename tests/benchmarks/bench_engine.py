@@ -145,7 +145,9 @@ def simulator(*options: str) -> Iterator[tuple[str, subprocess.Popen]]:
     """Run `vbraille simulate`; the link to its port, and the process."""
     with tempfile.TemporaryDirectory() as folder:
         link = Path(folder) / "vb0"
-        command = vbraille("simulate", "--model", "stress2", "--link", str(link), *options)
+        command = vbraille(
+            "simulate", "serial", "--model", "stress2", "--link", str(link), *options
+        )
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
             assert process.stdout is not None
             process.stdout.readline(), process.stdout.readline()  # port and link

@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tests.benchmarks.timing import Result
+from vbraille.devices.events import HandDone
 from vbraille.engine.batch import BatchEngine
 from vbraille.render import STRESS2, STRESS2_8X8, Straying, Tuning
 from vbraille.simulation.hand import Drift, Sweep, read_lines
 from vbraille.simulation.simulated import SimulatedDevice
-from vbraille.simulation.steering import ReadPage, Steering
+from vbraille.simulation.steering import ReadPage
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -61,15 +62,15 @@ def plane(model: Model, straying: Straying) -> Model:
 
 def read(model: Model, masks: NDArray[np.uint8], stray: float, seed: int) -> NDArray[np.void]:
     """Ticks of a hand that reads a page, on the model's display."""
-    steering, style = Steering(), model.style
+    style = model.style
     hand = Drifting(stray, seed)
     pitch_mm = style.geometry.line_pitch_mm
-    with SimulatedDevice(model.display, hand=hand, steering=steering) as device:
+    with SimulatedDevice(model.display, hand=hand) as device:
         engine = BatchEngine(device, poll_ticks=20_000)
         engine.show(style.render_page(list(masks), model.display), 1)
-        steering.give(ReadPage(LINES, pitch_mm, style.geometry.extent_mm(CELLS)))
+        engine.give(ReadPage(LINES, pitch_mm, style.geometry.extent_mm(CELLS)))
         parts = [engine.poll()]
-        while not steering.done_at(int(parts[-1]["device_ns"][-1])):
+        while not any(isinstance(event, HandDone) for event in engine.take_events()):
             parts.append(engine.poll())
     return np.concatenate(parts)
 

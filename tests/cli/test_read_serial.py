@@ -23,7 +23,9 @@ _PR_CAPBSET_DROP, _CAP_SYS_NICE = 24, 23
 def simulated(tmp_path, *options):
     """A simulated device; the spec by which it is read on, and its process."""
     link = tmp_path / "vb0"
-    process = program.start("simulate", "--link", link, "--hand", "sweep:1000", *options, text=True)
+    process = program.start(
+        "simulate", "serial", "--link", link, "--hand", "sweep:1000", *options, text=True
+    )
     try:
         while not process.stdout.readline().startswith("link: "):
             assert process.poll() is None

@@ -10,7 +10,6 @@ from vbraille.reading.exploration import Exploration
 from vbraille.reading.places import Places
 from vbraille.reading.reader import Reader
 from vbraille.render import STRESS2, STRESS2_8X8
-from vbraille.simulation.steering import Pointer
 from vbraille.testing import ManualClock, simulated_device
 from vbraille.translate import Book, BrailleTable, text_source
 
@@ -46,8 +45,16 @@ class NoKeyboard:
 
     attached, must_stop = True, False
 
+    def catch_interrupts(self, *, caught):
+        pass
+
     def pressed(self, _wait_s):
         return []
+
+
+def book_of(text, width):
+    """A text laid out in lines of so many cells."""
+    return Layout(Book(text_source(text), BrailleTable("en-ueb-g1.ctb")), width)
 
 
 class Reading:
@@ -57,7 +64,6 @@ class Reading:
         self.heard = Heard()
         clock = ManualClock()
         given = simulated_device(model, hand=hand, clock=clock)
-        given.pointer = Pointer()
         self.device = ReadingDevice(given, model.display, clock=clock)
         self.device.start(replace(model, display=given.display))
         table = BrailleTable("en-ueb-g1.ctb")

@@ -89,6 +89,9 @@ class SsipServer:
         elif command == "CANCEL SELF":
             self._note("hush", "")
             yield "210 OK CANCELED"
+        elif command == "HISTORY GET CLIENT_ID":
+            yield "245-1"
+            yield "245 OK CLIENT ID SENT"
         else:
             self._note(command, "")
             yield "201 OK"

@@ -19,9 +19,10 @@ KEYS = {
     "up": "\x1b[A", "down": "\x1b[B", "right": "\x1b[C", "left": "\x1b[D", "home": "\x1b[H",
     "end": "\x1b[F", "delete": "\x1b[3~", "pageup": "\x1b[5~", "pagedown": "\x1b[6~",
     "ctrl-pageup": "\x1b[5;5~", "ctrl-pagedown": "\x1b[6;5~", "ctrl-up": "\x1b[1;5A",
-    "ctrl-down": "\x1b[1;5B", "alt-left": "\x1b[1;3D", "shift-tab": "\x1b[Z",
-    "f1": "\x1bOP", "f2": "\x1bOQ", "f3": "\x1bOR", "f4": "\x1bOS", "f5": "\x1b[15~",
-    "f7": "\x1b[18~", "ctrl-right": "\x1b[1;5C", "ctrl-left": "\x1b[1;5D", "f6": "\x1b[17~",
+    "ctrl-down": "\x1b[1;5B", "alt-left": "\x1b[1;3D", "shift-tab": "\x1b[Z", "f1": "\x1bOP",
+    "f2": "\x1bOQ", "f3": "\x1bOR", "f4": "\x1bOS", "f5": "\x1b[15~", "f7": "\x1b[18~",
+    "f8": "\x1b[19~", "ctrl-home": "\x1b[1;5H", "ctrl-end": "\x1b[1;5F",
+    "ctrl-right": "\x1b[1;5C", "ctrl-left": "\x1b[1;5D", "f6": "\x1b[17~",
 }  # fmt: skip
 
 

@@ -13,7 +13,6 @@ from vbraille.reading.figures import BookFigures
 from vbraille.reading.game import DECK, DOWN, GONE, Game, load_deck
 from vbraille.reading.picture import Picture
 from vbraille.reading.tuning import Course, Tuning, practice_text
-from vbraille.simulation.steering import Pointer
 from vbraille.testing import ManualClock, simulated_device
 from vbraille.translate import open_source
 
@@ -26,7 +25,6 @@ class Felt:
     def __init__(self, make, model=TWO):
         clock = ManualClock()
         given = simulated_device(model, hand="sweep:1000", clock=clock)
-        given.pointer = Pointer()
         self.device = ReadingDevice(given, model.display, clock=clock)
         self.device.start(replace(model, display=given.display))
         self.heard = Heard()

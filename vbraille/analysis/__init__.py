@@ -80,7 +80,7 @@ def analyse_scores(path: str | Path) -> Analysis:
     """
     with needing_extras():
         from vbraille.analysis import primary, report
-        from vbraille.analysis.methods import of_tests
+        from vbraille.analysis.methods import methods
 
     result = primary.compare_scores(path)
     return report.Analysis(
@@ -88,7 +88,7 @@ def analyse_scores(path: str | Path) -> Analysis:
         result,
         report.tables_of(result),
         left_out=result.left_out,
-        methods=of_tests(result),
+        methods=methods(None, result),
         sources=[str(path)],
     )
 
@@ -110,7 +110,7 @@ def methods_of(paths: str | Path | Sequence[str | Path]) -> list[str]:
         If one cannot be read.
     """
     with needing_extras():
-        from vbraille.analysis.methods import of_sessions
+        from vbraille.analysis.methods import methods
         from vbraille.analysis.read import read_trials
 
-    return of_sessions(read_trials(_listed(paths)))
+    return methods(read_trials(_listed(paths)), None)

@@ -17,69 +17,69 @@ from vbraille.analysis import stats
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import NDArray
 
     from vbraille.analysis.stats import Floats, FTest, TTest
 
-GROUP = -1  # place of the factor between people
+
+class Design(NamedTuple):
+    """Factors of a study.
+
+    Parameters
+    ----------
+    factors, levels
+        Names of the factors, and of the levels of each; the one between people is the last.
+    member : int[people]
+        Group of each person, from 0; None if there is no factor between people.
+    """
+
+    factors: list[str]
+    levels: list[list[str]]
+    member: NDArray[np.int64] | None = None
+
+    @property
+    def within(self) -> list[int]:
+        """Number of levels of each factor within people."""
+        counts = [len(each) for each in self.levels]
+        return counts if self.member is None else counts[:-1]
 
 
-class Effect(NamedTuple):
-    """A tested effect: places of its factors, `GROUP` first if it is one, and its test."""
-
-    factors: tuple[int, ...]
-    test: FTest
-
-
-class Pair(NamedTuple):
-    """Two compared levels of a factor, by their places, and their test."""
-
-    factor: int
-    first: int
-    second: int
-    test: TTest
-
-
-def effects_of(
-    cube: Floats, levels: list[int], member: ArrayLike | None = None
-) -> Iterator[Effect]:
-    """Test each effect of a design.
+def effects_of(cube: Floats, design: Design) -> Iterator[tuple[str, FTest]]:
+    """Test each effect of a design; yield its name and its test.
 
     Parameters
     ----------
     cube : float64[..., people, cells]
         Values, without holes; cells are in the order of the last factor first.
-    levels
-        Number of levels of each factor within people; none for groups alone.
-    member : int[people]
-        Group of each person, from 0; None if there are no groups.
     """
-    for tested in stats.effect_names(len(levels)):
-        values = cube @ stats.contrasts(levels, tested)
+    for tested in stats.effect_names(len(design.within)):
+        values = cube @ stats.contrasts(design.within, tested)
+        names = [design.factors[place] for place in tested]
         if tested:
-            yield Effect(tested, stats.effect_within(values, member))
-        if member is not None:
-            yield Effect((GROUP, *tested), stats.effect_with_groups(values, member))
+            yield " × ".join(names), stats.effect_within(values, design.member)
+        if design.member is not None:
+            name = " × ".join([design.factors[-1], *names])
+            yield name, stats.effect_with_groups(values, design.member)
 
 
-def pairs_of(cube: Floats, levels: list[int], member: ArrayLike | None = None) -> Iterator[Pair]:
-    """Compare the levels of each factor in pairs; `effects_of` describes the arguments.
+def pairs_of(cube: Floats, design: Design) -> Iterator[tuple[str, str, str, TTest]]:
+    """Compare the levels of each factor in pairs; yield the factor, both levels, and the test.
 
-    Other factors are averaged over within each person.
+    Other factors are averaged over within each person; `effects_of` describes the arguments.
     """
-    for factor, count in enumerate(levels):
-        parts = cube.reshape(*cube.shape[:-1], *levels)
-        others = [place - len(levels) for place in range(len(levels)) if place != factor]
-        means = parts.mean(axis=tuple(others))
-        for first, second in combinations(range(count), 2):
-            test = stats.paired(means[..., first] - means[..., second])
-            yield Pair(factor, first, second, test)
-    if member is not None:
-        means = cube.mean(axis=-1)
-        groups = [means[..., np.equal(member, each)] for each in range(np.max(member) + 1)]
-        for first, second in combinations(range(len(groups)), 2):
-            test = stats.welch(groups[first], groups[second])
-            yield Pair(GROUP, first, second, test)
+    counts = design.within
+    parts = cube.reshape(*cube.shape[:-1], *counts)
+    for place, (name, levels) in enumerate(zip(design.factors, design.levels, strict=True)):
+        grouped = place == len(counts)
+        others = tuple(n - len(counts) for n in range(len(counts)) if n != place)
+        means = parts.mean(axis=others) if others else parts
+        for first, second in combinations(range(len(levels)), 2):
+            if grouped:
+                groups = (means[..., np.equal(design.member, each)] for each in (first, second))
+                test = stats.welch(*groups)
+            else:
+                test = stats.paired(means[..., first] - means[..., second])
+            yield name, levels[first], levels[second], test
 
 
 def levels_of(cells: DataFrame) -> list[list[str]]:
@@ -108,33 +108,29 @@ def compare(cells: DataFrame, groups: Series | None = None) -> tuple[DataFrame, 
     """
     whole = cells.dropna()
     levels = levels_of(whole)
-    names = [str(name) for name in whole.columns.names] if levels else []
+    factors = [str(name) for name in whole.columns.names] if levels else []
     member = None
-    named: list[str] = []
+    sizes = Series(dtype=int)
     if groups is not None:
         member, found = pd.factorize(groups.loc[whole.index], sort=True)
-        named = [str(name) for name in found]
-        names.append(str(groups.name))  # at the place GROUP, which is the last
-    counts = [len(each) for each in levels]
+        sizes = groups.loc[whole.index].value_counts()
+        factors, levels = [*factors, str(groups.name)], [*levels, list(found)]
+    design = Design(factors, levels, member)
     cube = whole.to_numpy(float)
-    enough = len(whole) >= stats.FEWEST if member is None else len(named) > 1
-    if not enough or (member is not None and np.bincount(member).min() < stats.FEWEST):
-        note = {"effect": "all", "participants": len(whole), "note": stats.TOO_FEW}
-        effects = [note] if len(counts) > 1 or (counts and named) else []
+    people = {"participants": len(whole)}
+    least = len(whole) if member is None else sizes.min() if len(sizes) > 1 else 0
+    if least >= stats.FEWEST:
+        effects = [
+            {"effect": name} | people | _floats(test) for name, test in effects_of(cube, design)
+        ]
     else:
-        effects = []
-        for factors, test in effects_of(cube, counts, member):
-            own = {"effect": " × ".join(names[n] for n in factors), "participants": len(whole)}
-            effects.append(own | _floats(test))
+        effects = [{"effect": "all"} | people | {"note": stats.TOO_FEW}] if len(factors) > 1 else []
     pairs = []
-    for factor, first, second, test in pairs_of(cube, counts, member):
-        own = named if factor == GROUP else levels[factor]
-        people = len(whole) if factor != GROUP else int(np.isin(member, [first, second]).sum())
-        pairs.append(
-            {"factor": names[factor], "first": own[first], "second": own[second]}
-            | {"participants": people}
-            | _floats(test)
-        )
+    for factor, first, second, test in pairs_of(cube, design):
+        if factor == factors[-1] and member is not None:
+            people = {"participants": int(sizes[first] + sizes[second])}
+        row = {"factor": factor, "first": first, "second": second}
+        pairs.append(row | people | _floats(test))
     return _corrected(effects), _corrected(pairs)
 
 

@@ -129,17 +129,14 @@ def study_of(
         for group in groups
         for name in names
     ]
-    values = dict(effect)
-    if len(groups) > 1 and set(values) == set(names):
-        values = {f"{group}:{name}": values[name] for group in groups for name in names}
-    if set(values) != set(known):
+    if set(effect) != set(known):
         raise InputError(f"--effect needs a value of each of {', '.join(known)}")
-    if scale == SHARES and not all(0 < value < 1 for value in values.values()):
+    if scale == SHARES and not all(0 < value < 1 for value in effect.values()):
         raise InputError("--effect has shares of right answers; each must be above 0 and below 1")
-    if scale == LOGS and min(values.values()) <= 0:
+    if scale == LOGS and min(effect.values()) <= 0:
         raise InputError(f"--effect has a {MEASURES[plan.measure].name} of 0; each must be above 0")
     spread = np.hypot(between, differing)
-    middles = np.array([_middle(scale, values[name], spread) for name in known])
+    middles = np.array([_middle(scale, effect[name], spread) for name in known])
     factors = [factor for factor in protocol.factors if not factor.between]
     levels = [[level.name for level in factor.levels] for factor in factors]
     factors = [factor.name for factor in factors]
@@ -228,17 +225,12 @@ def _tested(study: Study, values: Floats) -> Iterator[tuple[str, Floats]]:
     """Return the name of each test, and its corrected p in each study."""
     groups = len(study.middles)
     member = np.arange(values.shape[1]) % groups if groups > 1 else None
-    counts = [len(names) for names in study.levels][: len(study.levels) - (groups > 1)]
-    effects = list(designs.effects_of(values, counts, member))
-    pairs = list(designs.pairs_of(values, counts, member))
-    if len(effects) > 1 or len(pairs) > 1:
-        corrected, _ = stats.holm(np.stack([effect.test.p for effect in effects], axis=-1))
-        for n, effect in enumerate(effects):
-            yield " × ".join(study.factors[place] for place in effect.factors), corrected[..., n]
-    corrected, _ = stats.holm(np.stack([pair.test.p for pair in pairs], axis=-1))
-    for n, pair in enumerate(pairs):
-        own = study.levels[pair.factor]
-        yield f"{own[pair.first]} and {own[pair.second]}", corrected[..., n]
+    design = designs.Design(study.factors, study.levels, member)
+    effects = dict(designs.effects_of(values, design))
+    pairs = {f"{one} and {two}": test for _, one, two, test in designs.pairs_of(values, design)}
+    for tests in (effects, pairs) if len(effects) > 1 or len(pairs) > 1 else (pairs,):
+        corrected, _ = stats.holm(np.stack([test.p for test in tests.values()], axis=-1))
+        yield from zip(tests, np.moveaxis(corrected, -1, 0), strict=True)
 
 
 def enough(rows: Sequence[PowerRow]) -> dict[str, int | None]:

@@ -297,6 +297,8 @@ def _read_answers(trials: Trials) -> None:
     _name_answers(frame, frame["question"] == "name")
     frame["right"] = frame["presented"] == frame["answered"]
     said = frame["correct"]
+    # A blank string is read rightly if no dot is felt.
+    frame["right"] = frame["right"].where(frame["catch"].isna() | said.isna(), said == 1)
     odds = int((strings & said.notna() & (said != frame["right"])).sum())
     if odds:
         trials.notes.append(f"correct disagrees with the answer in {odds} rows: answers count")

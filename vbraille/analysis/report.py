@@ -20,6 +20,7 @@ from vbraille.analysis.measures import (
 )
 from vbraille.analysis.primary import Result, people, plain
 from vbraille.analysis.read import SIGNALS, STRINGS, Trials
+from vbraille.analysis.templates import render
 from vbraille.files import write_folder
 from vbraille.version import __version__
 
@@ -95,18 +96,11 @@ class Analysis:
 
     def to_json(self) -> dict[str, Any]:
         """Return the analysis in the terms of JSON; a missing value is null."""
-        shown = {name: table for name, table in self.tables.items() if name != "trials"}
-        return {
-            "vbraille": __version__,
-            "title": self.title,
-            "warnings": self.warnings,
-            "sentences": self.sentences,
-            "left_out": self.left_out,
-            "notes": self.notes,
-            "methods": self.methods,
-            "sources": self.sources,
-            "tables": {name: _records(_with_index(name, shown[name])) for name in shown},
-        }
+        texts = ("title", "warnings", "sentences", "left_out", "notes", "methods", "sources")
+        told = {name: getattr(self, name) for name in texts}
+        shown = [name for name in self.tables if name != "trials"]
+        tables = {name: _records(_with_index(name, self.tables[name])) for name in shown}
+        return {"vbraille": __version__, **told, "tables": tables}
 
     def write(self, folder: str | Path) -> None:
         """Write the page, the tables and the figures to a new directory, whole or not at all.
@@ -130,19 +124,11 @@ class Analysis:
         write_folder(Path(folder), files)
 
     def _page(self, drawn: list[str]) -> str:
-        from jinja2 import Environment, PackageLoader, StrictUndefined
-
         from vbraille.analysis.figures import alt_of_means
 
         shown = [(SHOWN[name], self.tables[name]) for name in SHOWN if name in self.tables]
-        environment = Environment(
-            loader=PackageLoader("vbraille.analysis"),
-            autoescape=True,
-            undefined=StrictUndefined,
-            trim_blocks=True,
-            lstrip_blocks=True,
-        )
-        return environment.get_template("report.html").render(
+        return render(
+            "report.html",
             analysis=self,
             alt=alt_of_means(self.result) if self.result else "",
             shown=[_shown(caption, table) for caption, table in shown if len(table)],

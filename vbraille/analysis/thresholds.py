@@ -36,16 +36,11 @@ LEVELS_AT_ONCE = 64  # so that the grid's table stays small
 
 
 class Threshold(NamedTuple):
-    """A threshold with its 95 % credible interval, or the reason why it has no value.
-
-    ``guesses`` and ``lapses`` are those of the most likely function.
-    """
+    """A threshold with its 95 % credible interval, or the reason why it has no value."""
 
     value: float = np.nan
     low: float = np.nan
     high: float = np.nan
-    guesses: float = np.nan
-    lapses: float = np.nan
     why: str = ""
 
 
@@ -124,9 +119,9 @@ def find_threshold(
     found = log_posterior(axes)
     best = np.unravel_index(np.argmax(found), found.shape)
     start = [values[n] for values, n in zip(axes.values(), best, strict=True)]
-    value, _, guesses, lapses = optimize.minimize(lost, start, method="L-BFGS-B", bounds=bounds).x
+    value = optimize.minimize(lost, start, method="L-BFGS-B", bounds=bounds).x[0]
     ends = Grid(observer, axes).estimate("threshold", found)
-    threshold = Threshold(value, min(ends.low, value), max(ends.high, value), guesses, lapses)
+    threshold = Threshold(value, min(ends.low, value), max(ends.high, value))
     if value <= at[0]:
         return threshold._replace(value=np.nan, why=below)
     if value >= at[-1]:

@@ -79,8 +79,6 @@ class Program(Group):
         """Load a command."""
         if cmd_name not in HELP:
             return None
-        if _is_old(cmd_name):
-            return click.Command(cmd_name, help=HELP[cmd_name])
         command = import_module(f"vbraille.cli.commands.{cmd_name}").command
         command.name, more = cmd_name, cleandoc(command.help or "")
         if not more.startswith(HELP[cmd_name]):
@@ -127,12 +125,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return _flush() or code
 
 
-def _is_old(name: str) -> bool:
-    """Tell if a command still has its former module only."""
-    folder = os.path.join(os.path.dirname(__file__), "commands")  # noqa: PTH118, PTH120
-    return not os.path.exists(os.path.join(folder, f"{name}.py"))  # noqa: PTH110, PTH118
-
-
 def _listen(arguments: list[str]) -> tuple[str, int]:
     """Run a command until it ends or a signal stops it; a sentence and the exit code."""
     try:
@@ -149,12 +141,7 @@ def _run(arguments: list[str]) -> tuple[str, int]:
     """Run a command; a sentence on what went wrong, and the exit code."""
     try:
         with needing_extras():
-            if arguments and arguments[0] in HELP and _is_old(arguments[0]):
-                from vbraille.cli.old.main import call
-
-                code = call(arguments)
-            else:
-                code = app.main(arguments, prog_name="vbraille", standalone_mode=False)
+            code = app.main(arguments, prog_name="vbraille", standalone_mode=False)
         sys.stdout.flush()
         return "", code if isinstance(code, int) else 0
     except SystemExit as end:  # of completion

@@ -18,7 +18,7 @@ from vbraille.reading.keys import Keyboard
 from vbraille.reading.outputs import Behind, Console, Signals, Speech
 from vbraille.render import MODELS, model_of
 from vbraille.signals import EAR
-from vbraille.simulation.specs import has_hand, is_simulated, refuse_hand
+from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -115,18 +115,15 @@ def equipped(
         refuse_hand(chosen["device"], **{n: chosen[n] for n in ("hand", "seed") if n in asked})
     with ExitStack() as stack:
         keyboard = Keyboard(beside=beside)
-        pointer = None
-        if (chosen["monitor"] or hand == "still") and has_hand(chosen["device"]):
-            from vbraille.simulation.steering import Pointer
-
-            pointer = Pointer()
+        if is_simulated(chosen["device"]):  # refused before a process is begun
+            moved = bool(chosen["monitor"]) or ctx.info_name == "feel"
+            parse_hand(hand, chosen["seed"], pointed=moved)
         device = ReadingDevice(
             chosen["device"],
             replace(wanted, rate_hz=chosen["rate"]),
             often="rate" in asked,
             hand=hand,
             seed=chosen["seed"],
-            pointer=pointer,
         )
         outputs: list[Any] = [Console(echo)]
         cues = chosen["cues"] or _cues(keyboard)

@@ -45,32 +45,32 @@ class Event(msgspec.Struct, frozen=True, tag=True):
         return self.says.format_map({n: getattr(self, n) for n in self.__struct_fields__})
 
 
-class Unplugged(Event):
+class Unplugged(Event, frozen=True):
     """The port is gone; reading goes on when the device is plugged in again."""
 
     says = "device: unplugged; plug it in again and reading goes on"
 
 
-class Silent(Event):
+class Silent(Event, frozen=True):
     """The device sends nothing any more, and is told to rest."""
 
     says = "device: silent, and sent to rest; reading goes on once it speaks"
 
 
-class Stalled(Event):
+class Stalled(Event, frozen=True):
     """No tick was done for a while, since the driver does not return from a call."""
 
     seconds: float
     says = "device: its driver has not answered for {seconds:.0f} s; reading goes on once it does"
 
 
-class Back(Event):
+class Back(Event, frozen=True):
     """A device that was away can be read on again."""
 
     says = "device: back"
 
 
-class Stranger(Event):
+class Stranger(Event, frozen=True):
     """What came back cannot take the place of the device that reading began on."""
 
     was: str
@@ -78,21 +78,21 @@ class Stranger(Event):
     says = "device: {why}; reading goes on once {was} is back"
 
 
-class WatchdogTripped(Event):
+class WatchdogTripped(Event, frozen=True):
     """The device went to rest because no frame reached it in time."""
 
     trips: int
     says = "device: no frame reached it in time, so it went to rest; reading goes on"
 
 
-class SlowActuators(Event):
+class SlowActuators(Event, frozen=True):
     """The actuators cannot follow the usual texture at all speeds of a hand."""
 
     speed_mm_s: int
     says = "device: its actuators cannot follow the usual texture above {speed_mm_s} mm/s"
 
 
-class Notice(Event):
+class Notice(Event, frozen=True):
     """The device says something in words of its own, and goes on."""
 
     code: int
@@ -109,7 +109,7 @@ class Notice(Event):
         return f"device: {self.text or f'notice {self.code}'}"
 
 
-class Button(Event):
+class Button(Event, frozen=True):
     """A button of the device was pressed or let go.
 
     Parameters
@@ -128,7 +128,7 @@ class Button(Event):
     at_ns: int | None = None
 
 
-class Knob(Event):
+class Knob(Event, frozen=True):
     """A knob of the device was turned to a position from 0 to 1; knobs are counted from 1."""
 
     number: int
@@ -140,7 +140,7 @@ class Knob(Event):
         return Knob, self.number
 
 
-class HandHeld(Event):
+class HandHeld(Event, frozen=True):
     """A person has taken the hand of a simulated device in the live view, or has let it go."""
 
     every = True
@@ -151,14 +151,14 @@ class HandHeld(Event):
         return "hand: moved in the live view" if self.held else "hand: simulated again"
 
 
-class HandDone(Event):
+class HandDone(Event, frozen=True):
     """The simulated hand has followed its last order, at a time of the device's clock."""
 
     every = True
     at_ns: int
 
 
-class NotInTime(Event):
+class NotInTime(Event, frozen=True):
     """The system refuses what the engine needs to do ticks in time: "priority", "memory"."""
 
     refused: tuple[str, ...]
@@ -173,7 +173,7 @@ class NotInTime(Event):
         return self.says.format(what=" and no locked ".join(self.refused))
 
 
-class Exposed(Event):
+class Exposed(Event, frozen=True):
     """A picture has moved by itself for as long as it may, and was faded to rest."""
 
     limit_s: float
@@ -183,14 +183,14 @@ class Exposed(Event):
     )
 
 
-class Placed(Event):
+class Placed(Event, frozen=True):
     """The device waits for another act before it knows its place, or knows it now."""
 
     every = True
     placing: Placing
 
 
-class LineRead(Event):
+class LineRead(Event, frozen=True):
     """The hand was at the end of the line that is shown, and is back at the left."""
 
     every = True
@@ -199,7 +199,7 @@ class LineRead(Event):
     time_ns: int
 
 
-class AtStart(Event):
+class AtStart(Event, frozen=True):
     """The array is at the left, and what is shown can be felt: a trial may begin."""
 
     every = True
@@ -207,7 +207,7 @@ class AtStart(Event):
     time_ns: int
 
 
-class Unfelt(Event):
+class Unfelt(Event, frozen=True):
     """What is shown cannot be felt from a tick on."""
 
     every = True
@@ -216,7 +216,7 @@ class Unfelt(Event):
     time_ns: int
 
 
-class FeltAgain(Event):
+class FeltAgain(Event, frozen=True):
     """What is shown can be felt again from a tick on."""
 
     every = True
@@ -224,7 +224,7 @@ class FeltAgain(Event):
     time_ns: int
 
 
-class Turned(Event):
+class Turned(Event, frozen=True):
     """The array is turned too far for what is shown, by some degrees; 0 if it is no more."""
 
     every = True

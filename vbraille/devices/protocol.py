@@ -248,7 +248,7 @@ def read_state(body: bytes) -> State | None:
     if not (29 <= len(body) <= 45 and len(body) % 2):
         return None
     _, *fields = _STATE.unpack_from(body)
-    return State(*fields, body[22:])
+    return State(*fields, body[22:])  # pyright: ignore[reportCallIssue]
 
 
 def state_body(state: State) -> bytes:

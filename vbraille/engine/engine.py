@@ -259,8 +259,8 @@ class Watcher:
         lost = np.diff(ticks["tick"], prepend=before) != 1
         unfelt = (ticks["flags"] & _UNFELT != 0) | lost
         changes = np.flatnonzero(np.diff(unfelt, prepend=self._unfelt))
-        for at in changes[:1].tolist() + changes[-1:].tolist() * (changes.size > 1):
-            tick = ticks[at]
+        for at in sorted({*changes[:1].tolist(), *changes[-1:].tolist()}):
+            tick = ticks[int(at)]
             if unfelt[at]:
                 self._events.append(Unfelt(_why(tick, bool(lost[at])), *_when(tick)))
             else:
@@ -281,11 +281,3 @@ def _why(tick: np.void, lost: bool) -> str:
     flags = int(tick["flags"])
     said = (why for flag, why in _WHY.items() if flags & int(flag))
     return "ticks were lost" if lost else next(said, "the array is at rest")
-
-
-class Upright:
-    """Which way the array is turned, as readings and sessions watched it; `Turned` tells it."""
-
-    def watch(self, _tick: np.void) -> list[str]:
-        """Give nothing."""
-        return []

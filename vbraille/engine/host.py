@@ -17,7 +17,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final, Self
 from urllib.parse import parse_qs
 
-from vbraille.devices.events import Back, HandDone, Stalled, from_json
+from vbraille.devices.events import Back, Stalled, from_json
 from vbraille.devices.registry import find_driver
 from vbraille.display import Display
 from vbraille.engine.engine import Watcher
@@ -88,21 +88,12 @@ class Host:
         self,
         spec: str,
         wanted: Display,
-        room: int | None = None,
         *,
         hand: str | None = None,
         seed: int = 1,
-        fits: bool | None = None,
+        fits: bool = True,
         often: bool = True,
-        pass_fds: Sequence[Any] | None = None,
-        spawned: object = None,  # noqa: ARG002
     ) -> None:
-        # Until readings and sessions call this as it is described: `room`, and steering by memory.
-        for each in pass_fds or ():
-            each.bind(self)
-        fits = (room is not None or pass_fds is None) if fits is None else fits
-        self.on_share: Any = None
-        self.hand_done_ns: int | None = None
         self.counts: dict[str, int] = {}
         self.lost = 0
         self.calibration: dict[str, Any] | None = None
@@ -125,7 +116,6 @@ class Host:
         self._before, self._lost_before = Tally(), 0  # of earlier starts
         self._paused = False
         self._switches = 0
-        self._opened = False
         self._started = self._at_driver = self._ended = self._stalled = False
         self._ticked_s = 0.0  # when a poll last found a tick
 
@@ -177,10 +167,10 @@ class Host:
             If the device cannot be opened, or not in time, or is another than at the first start.
         """
         first = self._display
-        if self._opened and self._started and not self._ended:  # `open` has started it
-            self._opened = False
+        running = self._process is not None and self._process.poll() is None
+        if running and self._started and not self._ended:
             return self.display
-        if self._process is None or self._started or self._ended:
+        if not running or self._started or self._ended:
             self.launch()
         until_s = None
         while not self._started:
@@ -297,15 +287,6 @@ class Host:
         if self.steered:
             self._order = order
             self._tell(hand=to_json(order).decode())
-
-    def open(self) -> Display:
-        """Start the host, as readings do that fit a page to the device."""
-        display = self.start()
-        self._opened = True
-        return display
-
-    def fit(self, *_: object) -> None:
-        """Do nothing: a picture of any size goes to the host."""
 
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""
@@ -446,13 +427,8 @@ class Host:
             self._ring = RingReader(*self._ring_of)
             self._watcher = Watcher(display)
             self._started = True
-            if self.on_share is not None:
-                self.on_share(self.reader())
         if told.get("event"):
-            event = from_json(json.dumps(told["event"]))
-            if isinstance(event, HandDone):
-                self.hand_done_ns = event.at_ns
-            self._events.append(event)
+            self._events.append(from_json(json.dumps(told["event"])))
         if "fault" in told:
             kind = InputError if told["code"] == InputError.exit_code else DeviceError
             self._fault = kind(told["fault"])

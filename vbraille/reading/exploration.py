@@ -81,12 +81,7 @@ class Exploration:
         """
         attended = self._keyboard.attached
         while not self._outer.done and self._keyboard.attached is attended:
-            try:
-                self.step()
-            except KeyboardInterrupt:
-                if self.what.prompt is None:
-                    raise
-                self.press("escape")
+            self.step()
 
     @property
     def what(self) -> Explored:
@@ -97,6 +92,7 @@ class Exploration:
         """Do what keys ask for, then take what the device has to tell."""
         for key in self._keyboard.pressed(POLL_S):
             self.press(key)
+        self._keyboard.catch_interrupts(caught=self.what.prompt is not None)
         for source in self._sources:
             for key in source.pressed(self.what):
                 self.press(key)

@@ -48,6 +48,8 @@ class RenderedLine:
         Place of the array's centre in each frame; 0 is where the line begins.
     frames : float64[n, rows, columns]
         Deflections, 0 (rest) to 1 (full swing).
+    number : int
+        Number of the line in its text, from 1.
     """
 
     line: Line
@@ -55,6 +57,7 @@ class RenderedLine:
     style: BrailleStyle
     positions_mm: NDArray[np.float64]
     frames: NDArray[np.float64]
+    number: int = 1
 
     @property
     def cells(self) -> Cells:
@@ -94,7 +97,12 @@ class RenderedLine:
         lines = np.zeros(len(self), np.int64)
         middle_mm = np.full(len(self), self.style.geometry.line_pitch_mm / 2)
         return _recorded(
-            model, [self.line], self.frames, (self.positions_mm, middle_mm, 0.0 * middle_mm), lines
+            model,
+            [self.line],
+            self.number,
+            self.frames,
+            (self.positions_mm, middle_mm, 0.0 * middle_mm),
+            lines,
         )
 
     def plot(self, axes: Any = None) -> Any:
@@ -131,12 +139,15 @@ class RenderedPage:
         Display and style that the page is rendered for.
     program
         The page as the engine takes it.
+    first : int
+        Number of the first line in its text, from 1.
     """
 
     lines: tuple[Line, ...]
     display: Display
     style: BrailleStyle
     program: Program
+    first: int = 1
 
     def frames(
         self,
@@ -194,7 +205,7 @@ class RenderedPage:
         part, frames = self.program.poses(*path)
         line = part.clip(0, len(self.lines) - 1)
         model = _shown(self.display, self.style, rate_hz)
-        return _recorded(model, self.lines, frames, path, line, part)
+        return _recorded(model, self.lines, self.first, frames, path, line, part)
 
 
 def render_text(
@@ -265,7 +276,7 @@ def render_text(
     except ValueError as error:
         raise InputError(str(error)) from None
     frames = program.path(positions_mm).astype(np.float64)
-    return RenderedLine(found, model.display, style, positions_mm, frames)
+    return RenderedLine(found, model.display, style, positions_mm, frames, line or 1)
 
 
 def render_page(
@@ -313,7 +324,7 @@ def render_page(
         program = style.render_page([line.masks for line in lines], model.display)
     except ValueError as error:
         raise InputError(str(error)) from None
-    return RenderedPage(lines, model.display, style, program)
+    return RenderedPage(lines, model.display, style, program, first)
 
 
 def _path(
@@ -340,6 +351,7 @@ def _shown(display: Display, style: BrailleStyle, rate_hz: float) -> Model:
 def _recorded(
     model: Model,
     lines: Sequence[Line],
+    first: int,
     frames: NDArray[np.floating],
     path: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
     line: NDArray[np.int64],
@@ -355,7 +367,7 @@ def _recorded(
         [each.masks for each in lines],
         line.astype(np.int64),
         np.zeros(len(frames), np.int64) if part is None else part.astype(np.int64),
-        first_line=lines[0].number,
+        first_line=first,
         prints=[print_of(each) for each in lines],
     )
 

@@ -139,6 +139,7 @@ class Keyboard:
         self.attached = self._descriptor >= 0
         self._decoder = KeyDecoder()
         self._before: list | None = None
+        self._catches = False
         self._suspension = Suspension()
 
     @property
@@ -169,6 +170,15 @@ class Keyboard:
             except termios.error as error:
                 if error.args[0] != errno.EINTR:  # by what brought us to the foreground
                     self.attached = False
+
+    def catch_interrupts(self, *, caught: bool) -> None:
+        """Have Ctrl-C come as a key, as while a line is typed, or end the program again."""
+        if self.attached and caught is not self._catches:
+            self._catches = caught
+            with suppress(termios.error):
+                how = termios.tcgetattr(self._descriptor)
+                how[6][termios.VINTR] = b"\0" if caught else b"\x03"
+                termios.tcsetattr(self._descriptor, termios.TCSANOW, how)
 
     def give_back(self) -> None:
         """Leave the terminal as it was."""

@@ -108,7 +108,7 @@ def render_reading(
                 recorder.describe(
                     model=model,
                     rate_hz=rate_hz,
-                    first_line=stretch.lines[0].number,
+                    first_line=layout.number(stretch.lines[0]),
                     source=source.name,
                     sha256=source.sha256(),
                 )

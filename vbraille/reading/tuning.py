@@ -12,7 +12,7 @@ import json
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 
-from vbraille.adaptive.questplus import GridAxis, geometric, nearer_quest, ordered_pairs
+from vbraille.adaptive.observer import Grid, Quest, nearer
 from vbraille.errors import InputError
 from vbraille.files import write_file
 from vbraille.knobs import KNOBS
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.adaptive.questplus import GridQuest
     from vbraille.display import Display
     from vbraille.knobs import Knob
     from vbraille.reading.reader import Reader
@@ -38,7 +37,7 @@ _SHARES = {"dot_width": (0.5, 2.0), "dot_spacing": (0.6, 1.8), "cell_gap": (0.6,
 _LEAST_CONTRAST = 0.2
 # Ours: the model's grid. Values stand so many steps apart; how sure a reader is, as the standard
 # deviation of what is felt, is so many parts of the interval; and one choice in so many is a slip.
-_STEPS, _UNSURE, _SLIPS = 24, geometric(0.03, 0.4, 6), 0.03
+_STEPS, _UNSURE, _SLIPS = 24, tuple(0.03 * (0.4 / 0.03) ** (n / 5) for n in range(6)), 0.03
 _FARTHEST = 0.5  # between two values, as a part of the interval: no two are a world apart
 _LIKED = "liked"
 _command = partial(command, where=Where.TUNING)
@@ -46,12 +45,12 @@ Asked = tuple[tuple[tuple[float, float], int], ...]
 
 
 @lru_cache(maxsize=1)
-def _quest() -> GridQuest:
+def _quest() -> Quest:
     """Model of a reader who compares shares of an interval, 0 to 1."""
     shares = tuple(n / _STEPS for n in range(_STEPS + 1))
-    pairs = [(low, high) for low, high in ordered_pairs(shares) if high - low <= _FARTHEST]
-    axes = GridAxis(_LIKED, shares), GridAxis("unsure", _UNSURE), GridAxis("slips", (_SLIPS,))
-    return nearer_quest(pairs, *axes, about=_LIKED)
+    pairs = [(a, b) for a in shares for b in shares if 0 < b - a <= _FARTHEST]
+    axes = {_LIKED: shares, "unsure": _UNSURE, "slips": (_SLIPS,)}
+    return Quest(Grid(nearer(), axes), pairs, _LIKED)
 
 
 @lru_cache(maxsize=256)
@@ -125,7 +124,7 @@ def _lower_first(number: int) -> bool:
 
 def _liked(asked: Asked, low: float, high: float) -> tuple[float, tuple[float, float]]:
     """Value that is liked best and its interval; an end that every choice led to is it."""
-    estimate = _quest().estimate(asked, _LIKED)
+    estimate = _quest().estimate(_LIKED, asked)
     mean, least, most = (
         round(low + share * (high - low), 2)
         for share in (estimate.mean, estimate.low, estimate.high)

@@ -17,7 +17,7 @@ from vbraille.simulation.hand import STILL_S, Area, Still
 from vbraille.simulation.motion import Course
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
-from vbraille.simulation.steering import BeAt, GlideTo, Hold, LetGo, ReadLine, ReadPage, Steering
+from vbraille.simulation.steering import BeAt, GlideTo, Hold, LetGo, ReadLine, ReadPage
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -62,8 +62,6 @@ class SimulatedDevice(Device):
     ----------
     hand : Hand or Recorded or None
         As it was given.
-    hand_done_ns : int or None
-        When the hand had followed its last order; None while it follows one.
     levels : int64[rows, columns]
         Levels that were last sent to the actuators, 0 … info.levels - 1.
     frames : int
@@ -88,21 +86,11 @@ class SimulatedDevice(Device):
         self._has_set_out = False  # whether a recorded hand has set out
         self._is_free = True  # whether no order came yet: it reads over the whole travel
         self._now_ns = now_ns
-        self.hand_done_ns: int | None = None
         self.levels = np.zeros(info.shape, np.int64)
         self.frames = 0
         self._course = Course(
             -info.span_mm, free_y=info.height_mm > 0, turns=info.turns, now_ns=now_ns()
         )
-
-    @property
-    def steering(self) -> Steering:
-        """Orders as readings give them, until they call `Engine.give`."""
-        steering = Steering()
-        steering.bind(self)
-        return steering
-
-    pointer = None
 
     def go_by(self, now_ns: Callable[[], int]) -> None:
         """Use another clock from now on; a motion goes on from where it has come to."""
@@ -131,7 +119,6 @@ class SimulatedDevice(Device):
         controls, before, now_ns = self._controls, self._controls.buttons, self._now_ns()
         if self._ordered and self._course.is_over(now_ns):
             self._ordered = False
-            self.hand_done_ns = now_ns
             self._pressed.append(HandDone(now_ns))
         told, self._pressed = self._pressed, []
         controls.advance((now_ns - self._opened_ns) / NS_PER_S)
@@ -160,7 +147,7 @@ class SimulatedDevice(Device):
                 if self._left is not None:
                     self.move(self._left)
         elif self._held_ns is None:
-            self._ordered, self._is_free, self.hand_done_ns = True, False, None
+            self._ordered, self._is_free = True, False
             self._do(order)
 
     def _be_held(self, at: Hold, now_ns: int) -> None:

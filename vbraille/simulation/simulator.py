@@ -234,10 +234,11 @@ class Simulator:
     def _listen_until(self, due_ns: int) -> None:
         """Take what the host sends until a time."""
         while (left_ns := due_ns - time.monotonic_ns()) > 0:
-            if self._stalled or not self._port.is_open:
+            port = self._port.descriptor
+            if self._stalled or port is None or not self._port.is_open:
                 time.sleep(left_ns / _NS_PER_S)
                 return
-            if not select.select((self._port.descriptor,), (), (), left_ns / _NS_PER_S)[0]:
+            if not select.select((port,), (), (), left_ns / _NS_PER_S)[0]:
                 return
             self._in.put(self._port.read(), time.monotonic_ns())
             self._hear()

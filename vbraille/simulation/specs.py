@@ -8,7 +8,6 @@ from urllib.parse import urlencode
 from vbraille.errors import InputError
 from vbraille.simulation.hand import DEVICE, FLUENT, HumanHand, Still, Sweep
 from vbraille.simulation.motion import SPEED_BOUNDS_MM_S
-from vbraille.simulation.steering import Steering
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -98,12 +97,7 @@ def refuse_hand(device: str, **given: object) -> None:
             )
 
 
-def steering_of(device: str) -> Steering | None:
-    """Steering for the hand of a simulated device; None for a device that a person moves."""
-    return Steering() if has_hand(device) else None
-
-
-def device_spec(device: str, hand: str | None, seed: int, *_: object) -> str:
+def device_spec(device: str, hand: str | None, seed: int) -> str:
     """Spec of a device; that of the simulated one has its hand added."""
     if not is_simulated(device) or hand is None:
         return device

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Final
+from typing import Annotated, Final
 
 import msgspec
 
@@ -96,41 +96,3 @@ def to_json(order: HandOrder) -> bytes:
 def from_json(told: bytes) -> HandOrder:
     """Order of which `to_json` made this."""
     return _decoder.decode(told)
-
-
-class Steering:
-    """Orders as readings and sessions gave them, until both call `Engine.give`."""
-
-    def __init__(self) -> None:
-        self.descriptor = self
-        self._engine: Any = None
-
-    def bind(self, engine: Any) -> None:
-        """Give orders to this engine, or device, from now on."""
-        self._engine = engine
-
-    def give(self, order: HandOrder) -> None:
-        """Give the hand another order."""
-        self._engine.hand_done_ns = None
-        (getattr(self._engine, "give", None) or self._engine.obey)(order)
-
-    def done_at(self, time_ns: int) -> bool:
-        """Tell whether the hand had followed its last order by a time of the device's clock."""
-        done_ns = self._engine.hand_done_ns
-        return done_ns is not None and done_ns <= time_ns
-
-
-class Pointer(Steering):
-    """A hand that a person holds, as readings and sessions held it."""
-
-    held = False
-
-    def hold(self, at: BeAt) -> None:
-        """Hold the hand at a pose."""
-        self.held = True
-        self.give(Hold(at.x_mm, at.y_mm, at.theta_rad))
-
-    def let_go(self) -> None:
-        """Let the hand go."""
-        self.held = False
-        self.give(LetGo())

@@ -13,7 +13,7 @@ from vbraille.braille.cells import Cells
 from vbraille.errors import InputError
 from vbraille.translate.blocks import Mark, MarkKind
 from vbraille.translate.languages import find_table
-from vbraille.translate.spellings import Kind
+from vbraille.translate.spellings import Kind, Undefined
 from vbraille.translate.tables import BrailleTable, six_dot_table, to_cells
 from vbraille.translate.undefined import Written
 from vbraille.wording import count, setting
@@ -209,6 +209,14 @@ class Book:
             )
 
 
+_WAYS = {
+    Undefined.MARK: "marked in the text",
+    Undefined.NAME: "named in brackets",
+    Undefined.CODE: "numbered in brackets",
+    Undefined.DROP: "left out",
+}
+
+
 class Remarks:
     """Counts what cannot be shown on lines, and what the table cannot write.
 
@@ -243,7 +251,7 @@ class Remarks:
         unknown = self._named(Kind.MARKED, Kind.NAME)
         if unknown and table is not None:
             said.append(
-                f"the table {table.name} does not know {unknown}, marked in the text; "
+                f"the table {table.name} does not know {unknown}, {_WAYS[table.undefined]}; "
                 f"{setting('undefined')} chooses mark, name, code or drop"
             )
         plain = self._named(Kind.PLAIN, Kind.BARE)

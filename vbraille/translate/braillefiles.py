@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 # White space of files, and the no-break space that some programs write for a blank cell.
 _BLANKS = str.maketrans("\t\u00a0", "  ")
+_PATTERN = re.compile(b"\xe2[\xa0-\xa3][\x80-\xbf]")  # of dots, in UTF-8
 _BRAILLE = re.compile("[!-~⠁-⣿]")
 _ASCII = "".join(map(chr, range(0x20, 0x7F)))
 PEF_NAMESPACE = "http://www.daisy.org/ns/2008/pef"
@@ -59,7 +60,7 @@ def read_brf(
 ) -> Iterator[Block]:
     """Read ASCII braille or Unicode braille, with its lines and its pages by form feed."""
     content = source.stream.read()
-    is_text = encoding or content[:3] in (b"\xef\xbb\xbf",) or b"\xe2\xa0" in content[:65_536]
+    is_text = encoding or content[:3] == b"\xef\xbb\xbf" or _PATTERN.search(content)
     wide = content[:2] in (b"\xff\xfe", b"\xfe\xff")
     text = decode(content, encoding)[0] if is_text or wide else content.decode("latin-1")
     dialect = {} if brf_table is None else _dialect(brf_table)

@@ -8,6 +8,7 @@ from vbraille.translate.archive import Archive
 from vbraille.translate.formulas import omml_text
 from vbraille.translate.numbering import whole
 from vbraille.translate.office import (
+    FONTS,
     HIDDEN,
     Draft,
     Flow,
@@ -41,7 +42,6 @@ _FORMS = {
 }
 _TAGS = {"b": "b", "i": "i", "strike": "s", "dstrike": "s", "vanish": HIDDEN}
 _SMALL = {"superscript": "sup", "subscript": "sub"}
-_FONTS = ("symbol", "wingdings")
 _OFF = frozenset(("0", "false", "none", "off"))
 # What is not read: deleted text, what is kept for other programs, properties.
 _SKIPPED = frozenset(
@@ -389,7 +389,7 @@ def _look_of(holder: Element) -> Look:
                 language = tag_of(value)
             case "rFonts":
                 named = element.get("ascii").lower().split(" ")[0]
-                font = named if named in _FONTS else ""
+                font = named if named in FONTS else ""
     return Look(language, frozenset(on), frozenset(off - on), font)
 
 

@@ -7,6 +7,7 @@ import re
 import unicodedata
 
 from vbraille.errors import InputError
+from vbraille.wording import setting
 
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8"),
@@ -94,7 +95,11 @@ def decode(content: bytes, encoding: str | None = None) -> tuple[str, str, str]:
 
         found = charset_normalizer.from_bytes(sample).best()
         name = found.encoding if found else name
-    return _by_bytes(content, name), name, f"is not UTF-8 at byte {wrong}, and is read as {name}"
+    return (
+        _by_bytes(content, name),
+        name,
+        f"is not UTF-8 at byte {wrong}, and is read as {name}; {setting('encoding')} names another",
+    )
 
 
 def _by_bytes(content: bytes, name: str) -> str:

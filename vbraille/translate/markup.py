@@ -577,10 +577,12 @@ class Walker:
             self._unshown("picture")
 
     def _picture(self, said: str) -> None:
-        last = self._marks[-1:]
-        if last and last[0].kind is MarkKind.IMAGE and last[0].end == self._length:
-            self._blank = True  # two pictures beside each other
-        self._add_marked(" ".join(said.split()), MarkKind.IMAGE)
+        """Words for a picture, apart from the text beside; a letter may be the first of a word."""
+        words = " ".join(said.split())
+        apart = len(words) > 1
+        self._blank = self._blank or apart
+        self._add_marked(words, MarkKind.IMAGE)
+        self._blank = apart
 
     def _do_svg(self, element: Element, _words: set[str]) -> None:
         title = _label(element) or next((each.text for each in element.iter("title")), "")

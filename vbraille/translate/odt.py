@@ -10,6 +10,7 @@ from vbraille.errors import InputError
 from vbraille.translate.archive import Archive
 from vbraille.translate.numbering import whole
 from vbraille.translate.office import (
+    FONTS,
     HIDDEN,
     Draft,
     Flow,
@@ -355,8 +356,9 @@ def _look_of(style: Element) -> Look:
         on.add("sub")
     elif raised == "super" or (raised.rstrip("%").isdigit() and raised != "0%"):
         on.add("sup")
+    font = properties.get("font-name").lower().split(" ")[0]
     display = properties.get("display")
     if display:
         (on if display == "none" else off).add(HIDDEN)
     tag = tag_of(properties.get("language"), properties.get("country"))
-    return Look(tag, frozenset(on), frozenset(off))
+    return Look(tag, frozenset(on), frozenset(off), font if font in FONTS else "")

@@ -41,7 +41,7 @@ _SYMBOL = dict(enumerate(_GREEK, 0x41)) | dict(
 _WINGDINGS = {0x6F: "☐", 0x71: "☐", 0xA8: "☐", 0xFE: "☑", 0xFD: "☒", 0xFC: "✔", 0xFB: "✘"}
 _WINGDINGS |= {0x4A: "☺", 0x4C: "☹", 0x6C: "●", 0x6E: "■", 0x9F: "•", 0xA7: "▪", 0xDF: "←"}
 _WINGDINGS |= {0xE0: "→", 0xE8: "→", 0x28: "☎", 0x2A: "✉", 0xD8: "➢"}
-_FONTS = {"symbol": _SYMBOL, "wingdings": _WINGDINGS}
+FONTS = {"symbol": _SYMBOL, "wingdings": _WINGDINGS}
 
 
 @dataclass(frozen=True, slots=True)
@@ -334,8 +334,8 @@ def symbol(code: int, font: str) -> str:
     """Character of a code of a font of signs; empty if it is not known here."""
     plain = code & 0xFF if 0xF000 <= code < 0xF100 else code
     name = font.lower().split(" ")[0]
-    if name in _FONTS and plain in _FONTS[name]:
-        return _FONTS[name][plain]
+    if name in FONTS and plain in FONTS[name]:
+        return FONTS[name][plain]
     if name == "symbol" and 0x20 <= plain < 0x7F:
         return chr(plain)
-    return chr(code) if 0x20 < code < 0xD800 and name not in _FONTS else ""
+    return chr(code) if 0x20 < code < 0xD800 and name not in FONTS else ""

@@ -127,8 +127,8 @@ _FLAG_LETTERS = 0x1F1E6
 # Zeros of the scripts whose digits tables have, where they do not have all.
 _ZEROS = "0٠۰०০੦૦୦௦౦೦൦๐໐༠၀០"
 _SKIN_TONES = range(0x1F3FB, 0x1F400)
-# Excluded from composition by Unicode, but letters of tables.
-_COMPOSED = (range(0x0900, 0x1000), range(0xFB1D, 0xFB50))
+# What normal forms replace, but tables have: Greek ; and ·, letters of India, Hebrew ones.
+_COMPOSED = (range(0x037E, 0x0388), range(0x0900, 0x1000), range(0xFB1D, 0xFB50))
 # Small signs above and below the line, by those on the line.
 _ON_LINE = "0123456789+-=()ni"
 _RAISED = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻⁼⁽⁾ⁿⁱ", _ON_LINE, strict=True))
@@ -331,7 +331,17 @@ def _plain_spellings(part: str) -> Iterator[str]:
     yield plain
     for which in (0, -1):
         yield "".join(SIGNS.get(sign, sign)[which] for sign in plain)
+    if any(map(str.isdecimal, plain)):
+        for zero in _ZEROS:
+            yield "".join(_digit(zero, sign) for sign in plain)
     yield part.lower()
+
+
+def _digit(zero: str, sign: str) -> str:
+    """A digit in the script of a zero; of other signs the last spelling."""
+    if sign.isdecimal():
+        return chr(ord(zero) + unicodedata.decimal(sign))
+    return SIGNS.get(sign, sign)[-1]
 
 
 def _bare_letters(part: str, undefined: set[str]) -> Iterator[str]:

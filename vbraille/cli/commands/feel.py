@@ -46,7 +46,7 @@ def command(ctx: click.Context, **chosen: Any) -> None:
             )
         model = find_model(ctx, device, asked)
         _check(loaded, model.display, chosen["y"], check_fits)
-        device.start(model, room=_ROOM)
+        device.start(model)
         if chosen["speech"]:
             equipment.speak(loaded.scene.language or "en")
         if chosen["also"]:
@@ -71,9 +71,6 @@ def command(ctx: click.Context, **chosen: Any) -> None:
             say(f"note: {note}", aside=True)
         equipment.explore(ctx, picture)
     say_summary(device)
-
-
-_ROOM = 1 << 24  # bytes of a picture, which may grow while its author works on it
 
 
 def _check(loaded: Any, display: Any, y_mm: float | None, check_fits: Any) -> None:

@@ -128,17 +128,34 @@ def _kept(places: Places, file: str) -> KeptBook:
     path = Path(file)
     if file == "-" or not path.is_file():
         return places.book("", Path(), "")
-    with path.open("rb") as opened:
-        digest = hashlib.file_digest(opened, "sha256").hexdigest()
+    try:
+        with path.open("rb") as opened:
+            digest = hashlib.file_digest(opened, "sha256").hexdigest()
+    except OSError:  # which opening the book says in a sentence
+        return places.book("", Path(), "")
     return places.book(digest, path.absolute(), path.stem)
 
 
 def _changes(file: str, open_book: Callable[[], Any]) -> Callable[[], Any]:
-    """Function that gives a book anew if its file has changed."""
-    from vbraille.feeling.loading import FileWatch
+    """Function that gives a book anew once its file has changed, and is whole again."""
+    path = Path(file)
+    known = seen = _stamp(path)
 
-    watch = None if file == "-" else FileWatch(Path(file))
-    return lambda: open_book() if watch is not None and watch.changed() else None
+    def changed() -> Any:
+        nonlocal known, seen
+        before, seen = seen, _stamp(path)
+        if seen in (None, known) or seen != before:
+            return None
+        known = seen
+        return open_book()
+
+    return changed
+
+
+def _stamp(path: Path) -> tuple[int, int] | None:
+    """What tells states of a file apart; None without one, or while it is empty."""
+    found = path.stat() if path.is_file() else None
+    return None if found is None or not found.st_size else (found.st_mtime_ns, found.st_size)
 
 
 def _spoken(asked: str | None, book: Any) -> str:

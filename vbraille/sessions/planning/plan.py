@@ -90,11 +90,8 @@ def make_plan(
     blocks = _deal(protocol, participant, order, random)
     try:
         blocks = ordered(blocks, *_rules(protocol), random)
-        trials = [
-            _trial(protocol, placed, block, random)
-            for block, places in enumerate(blocks, 1)
-            for placed in places
-        ]
+        places = [(placed, block) for block, own in enumerate(blocks, 1) for placed in own]
+        trials = _trials(protocol, places, random)
         if protocol.design.catch is not None:
             trials = _with_catch(trials, protocol.design.catch, random)
         # Practice has chance of its own, so that the number of its trials changes nothing else.
@@ -196,19 +193,20 @@ def _practice(protocol: Protocol, random: Random) -> list[Trial]:
     if practice.order == "shuffled":
         limits, _ = _rules(protocol)
         (shown,) = ordered([shown], limits, None, random)
-    return [_trial(protocol, placed, 0, random) for placed in shown]
+    return _trials(protocol, [(placed, 0) for placed in shown], random)
 
 
-def _trial(protocol: Protocol, placed: Placed, block: int, random: Random) -> Trial:
-    """Return a trial, which gets its number later."""
-    item, condition = placed
+def _trials(protocol: Protocol, places: list[tuple[Placed, int]], random: Random) -> list[Trial]:
+    """Return trials of items in conditions and blocks; they get their numbers later."""
     setting = Setting(protocol.masks, protocol.room, random)
-    stimuli = protocol.design.stimuli(item, protocol.look(condition), setting)
-    gap_s = protocol.trial.gap_s
-    if isinstance(gap_s, tuple):
-        gap_s = round(random.uniform(*gap_s), 3)
-    columns = protocol.columns.get(item, {})
-    return Trial(block == 0, 0, block, condition, item, stimuli, gap_s, columns=columns)
+    looks = {each.name: each.over(protocol.display) for each in protocol.conditions}
+    gap_s, columns, found = protocol.trial.gap_s, protocol.columns, []
+    for (item, condition), block in places:
+        stimuli = protocol.design.stimuli(item, looks[condition], setting)
+        gap = round(random.uniform(*gap_s), 3) if isinstance(gap_s, tuple) else gap_s
+        own = columns.get(item, {})
+        found.append(Trial(block == 0, 0, block, condition, item, stimuli, gap, columns=own))
+    return found
 
 
 def _with_catch(trials: list[Trial], catch: Catch, random: Random) -> list[Trial]:
@@ -270,7 +268,7 @@ def plan_lines(protocol: Protocol, plan: Plan) -> Iterator[str]:
     up_to = (
         f", with trials of up to {felt:g} s" if felt else ", if people read as those of the source"
     )
-    yield f"length: some {minutes} minutes{up_to}"
+    yield f"length: about {minutes} min{up_to}"
     if protocol.procedure is not None:
         yield "values: chosen by the answers; those of the plan are not shown"
     block = 0

@@ -42,7 +42,7 @@ FIRST_CODE, LEAST_CODE, MOST_CODE = 101, 40, 254  # bytes of markers; lower ones
 KEYS = {"enter": "\n", "space": " ", "tab": "\t"}
 
 
-class Shown(Look, kw_only=True):
+class DisplayLook(Look, kw_only=True):
     """How strings are shown where no condition says it: the table [display].
 
     Parameters
@@ -276,7 +276,7 @@ class ProtocolFile(Table, kw_only=True):
     source: Sentence = "ours"
     model: Literal[tuple(MODELS)]
     medium: Literal["device", "paper"] = "device"
-    display: Shown = Shown()
+    display: DisplayLook = DisplayLook()
     keys: dict[str, str] = {}
     cross: Cross = "all"
     question: AnyQuestion | None = None

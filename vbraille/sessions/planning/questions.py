@@ -328,20 +328,28 @@ def _drawn(felt: FeltTrial, noise: float, random: np.random.Generator) -> np.nda
 
 
 class OneOfTwo(Question, kw_only=True):
-    """Asks for one of two words; the first is right where there is a signal."""
+    """Asks for one of two words, which may be typed by their first letters."""
 
     words: ClassVar[tuple[str, str]]
 
-    def has_signal(self, trial: Trial) -> bool:
-        """Tell whether a trial has a signal."""
-        raise NotImplementedError
-
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
-        """Read one of the words, or its first letter."""
+        """Read one of the words."""
         for word in self.words:
             if text.strip().casefold() in (word, word[0]):
                 return word
         raise ValueError(f"{text.strip()!r} is not an answer; type {self.typed}")
+
+    def guess(self, trial: Trial, random: np.random.Generator) -> str:
+        """Say either word."""
+        return self.words[random.integers(2)]
+
+
+class Signal(OneOfTwo, kw_only=True):
+    """Asks for one of two words, of which the first is right where there is a signal."""
+
+    def has_signal(self, trial: Trial) -> bool:
+        """Tell whether a trial has a signal."""
+        raise NotImplementedError
 
     def right_answer(self, trial: Trial) -> str:
         """Return the word that is right."""
@@ -353,12 +361,8 @@ class OneOfTwo(Question, kw_only=True):
             return HIT if answer == self.words[0] else MISS
         return FALSE_ALARM if answer == self.words[0] else REJECTION
 
-    def guess(self, trial: Trial, random: np.random.Generator) -> str:
-        """Say either word."""
-        return self.words[random.integers(2)]
 
-
-class Same(OneOfTwo, kw_only=True, tag="same-different"):
+class Same(Signal, kw_only=True, tag="same-different"):
     """Asks whether two stimuli were the same or different."""
 
     asks_of = ("pairs",)
@@ -379,7 +383,7 @@ class Same(OneOfTwo, kw_only=True, tag="same-different"):
         return "different" if abs(apart) > max(noise * math.sqrt(2), TIE) else "same"
 
 
-class Detect(OneOfTwo, kw_only=True, tag="detect"):
+class Detect(Signal, kw_only=True, tag="detect"):
     """Asks whether there was anything."""
 
     asks_of = ("strings",)
@@ -601,26 +605,16 @@ class Pick(Question, kw_only=True, tag="name"):
         return " ".join(names[random.integers(len(names))] for names in named)
 
 
-class Read(Question, kw_only=True, tag="read"):
+class Read(OneOfTwo, kw_only=True, tag="read"):
     """Says whether a passage was read to its end."""
 
     typed = "read, or broken off"
     asks_of = ("passages",)
-
-    def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
-        """Read one of the two, or its first letter."""
-        for word in ("read", "broken off"):
-            if text.strip().casefold() in (word, word[0]):
-                return word
-        raise ValueError(f"{text.strip()!r} is not an answer; type {self.typed}")
+    words = ("read", "broken off")
 
     def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
         """Say that it was read."""
         return "read"
-
-    def guess(self, trial: Trial, random: np.random.Generator) -> str:
-        """Say that it was broken off."""
-        return "broken off"
 
 
 class Adjust(Question, kw_only=True, tag="adjust"):

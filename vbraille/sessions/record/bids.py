@@ -26,7 +26,7 @@ from vbraille.names import likeness
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.record.record import Content, Event, read, reading
 from vbraille.sessions.record.ticks import read_all
-from vbraille.sessions.record.trials import codebook, protocol_of, rows, to_csv
+from vbraille.sessions.record.trials import Column, codebook, protocol_of, rows, to_csv
 
 DATASET, README = "dataset_description.json", "README"
 PEOPLE, PSEUDONYM = "participants.tsv", "pseudonym"
@@ -40,21 +40,21 @@ session that was stopped and gone on with has several runs. *_beh.tsv has a row 
 each moment. The file of the same name that ends in .json says what each column holds.
 """
 EVENTS = {
-    "onset": {"Description": "from the first row of the run's recording", "Units": "s"},
-    "duration": {"Description": "no event has one that is known", "Units": "s"},
-    "trial_type": {"Description": "what happened, by the kinds of docs/session-format.md"},
-    "practice": {"Description": "1 in a trial of practice, else 0"},
-    "trial": {"Description": "number of the trial that it happened in"},
-    "value": {"Description": "answer, reply, note, or what else the event says"},
+    "onset": Column("from the first row of the run's recording", "s"),
+    "duration": Column("no event has one that is known", "s"),
+    "trial_type": Column("what happened, by the kinds of docs/session-format.md"),
+    "practice": Column("1 in a trial of practice, else 0"),
+    "trial": Column("number of the trial that it happened in"),
+    "value": Column("answer, reply, note, or what else the event says"),
 }
-# Columns of a recording: field of the ticks, format, unit and description.
+# Columns of a recording: field of the ticks, its format, and what it holds.
 RECORDED = {
-    "x_mm": ("x_mm", "%.6g", "mm", "place of the array's centre along the line"),
-    "y_mm": ("y_mm", "%.6g", "mm", "place across the lines, to the reader; 0 if not measured"),
-    "speed_mm_s": ("vx_mm_s", "%.6g", "mm/s", "of the hand, to the right"),
-    "frame": ("tick", "%d", "", "number of the frame, from 0"),
-    "line": ("line", "%d", "", "number of what was shown last; 0 before the first"),
-    "flags": ("flags", "%d", "", "bits, as docs/session-format.md has them"),
+    "x_mm": ("x_mm", "%.6g", Column("place of the array's centre along the line", "mm")),
+    "y_mm": ("y_mm", "%.6g", Column("place across the lines; 0 if not measured", "mm")),
+    "speed_mm_s": ("vx_mm_s", "%.6g", Column("of the hand, to the right", "mm/s")),
+    "frame": ("tick", "%d", Column("number of the frame, from 0")),
+    "line": ("line", "%d", Column("number of what was shown last; 0 before the first")),
+    "flags": ("flags", "%d", Column("bits, as docs/session-format.md has them")),
 }
 SAID = ("answer", "confidence", "reply", "text", "what", "why", "by")
 WORDS = ("reply", "text", "why", "what")  # what anonymous datasets leave out
@@ -162,12 +162,15 @@ def _files(path: Path, content: Content, stem: str, anonymous: bool) -> dict[str
             name = f"{stem}_run-{number:02}"
             ticks = read_all(db, first - 1, end)
             made[f"{name}_events.tsv"] = _events(events, ticks, anonymous)
-            made[f"{name}_events.json"] = _json(EVENTS)
+            made[f"{name}_events.json"] = _json({n: c.to_bids() for n, c in EVENTS.items()})
             if ticks.size:
                 conditions = events[0].data.get("conditions", {})
                 name += "_recording-carriage_physio"
                 made[f"{name}.tsv.gz"] = _recording(ticks)
-                made[f"{name}.json"] = _json(_recording_described(conditions))
+                told = {name: column.to_bids() for name, (_, _, column) in RECORDED.items()}
+                rate_hz = conditions.get("rate_hz", 1000.0)
+                sampled = {"SamplingFrequency": rate_hz, "StartTime": 0.0}
+                made[f"{name}.json"] = _json(sampled | {"Columns": list(RECORDED)} | told)
     return made
 
 
@@ -181,23 +184,8 @@ def _described(content: Content, protocol: Protocol, table: list[dict[str, Any]]
         "TaskName": protocol.name,
         "TaskDescription": f"{protocol.title} ({protocol.source})",
     }
-    for name, column in codebook(table[0], protocol).items():
-        found[name] = {"Description": column.meaning or name}
-        if column.unit:
-            found[name]["Units"] = column.unit
-        if column.values:
-            found[name]["Levels"] = {value: value for value in column.values.split(", ")}
-    return found
-
-
-def _recording_described(conditions: dict[str, Any]) -> dict[str, Any]:
-    columns = {}
-    for name, (_, _, unit, what) in RECORDED.items():
-        columns[name] = {"Description": what} | ({"Units": unit} if unit else {})
-    rate_hz = conditions.get("rate_hz", 1000.0)
-    return {
-        "SamplingFrequency": rate_hz, "StartTime": 0.0, "Columns": list(RECORDED), **columns
-    }  # fmt: skip
+    told = codebook(table[0], protocol)
+    return found | {name: column.to_bids() for name, column in told.items()}
 
 
 def _events(events: list[Event], ticks: NDArray[np.void], anonymous: bool) -> bytes:
@@ -230,12 +218,12 @@ def _events(events: list[Event], ticks: NDArray[np.void], anonymous: bool) -> by
 def _recording(ticks: NDArray[np.void]) -> bytes:
     """Return ticks as a table with a row for each deadline; n/a where one was missed."""
     due = ticks["tick"] + ticks["late"]
-    form = "\t".join(form for _, form, _, _ in RECORDED.values()) + "\n"
+    form = "\t".join(form for _, form, _ in RECORDED.values()) + "\n"
     missing = "\t".join(["n/a"] * len(RECORDED)) + "\n"
     packed = io.BytesIO()
     with gzip.GzipFile(fileobj=packed, mode="wb", compresslevel=3, mtime=0) as file:
         after = int(due[0])
-        columns = [ticks[field].tolist() for field, _, _, _ in RECORDED.values()]
+        columns = [ticks[field].tolist() for field, _, _ in RECORDED.values()]
         for number, values in enumerate(zip(*columns, strict=True)):
             file.write((missing * max(int(due[number]) - after, 0)).encode())
             file.write((form % values).replace("nan", "n/a").encode())

@@ -10,21 +10,18 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from vbraille.braille.spelling import UNREAD
 from vbraille.files import no_formula
 from vbraille.sessions.planning.loading import parse_protocol
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import edges_mm
 from vbraille.sessions.planning.trial import Stimulus, Trial
+from vbraille.sessions.record.movement import duration, pauses
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Content, Event, reading
 from vbraille.sessions.record.record import read as read_record
+from vbraille.sessions.record.strokes import describe
 from vbraille.sessions.record.ticks import read_ticks
-
-STILL_MM_S, STILL_S = 5.0, 0.3  # the hand pauses while it is slower than that, for that long
 
 
 class Column(NamedTuple):
@@ -33,6 +30,15 @@ class Column(NamedTuple):
     meaning: str
     unit: str = ""
     values: str = ""
+
+    def to_bids(self) -> dict[str, Any]:
+        """Return it as BIDS has it in the JSON beside a table."""
+        told: dict[str, Any] = {"Description": self.meaning}
+        if self.unit:
+            told["Units"] = self.unit
+        if self.values:
+            told["Levels"] = {value: value for value in self.values.split(", ")}
+        return told
 
 
 with Path(__file__).with_name("columns.csv").open(encoding="utf-8", newline="") as _file:
@@ -236,27 +242,32 @@ class _Table:
         self, db: sqlite3.Connection, trial: Trial, own: list[Event], paused_s: float
     ) -> dict[str, Any]:
         """Return the cells on how strings were read, which the ticks tell."""
-        protocol = self._protocol
         cues = [event for event in own if event.kind == "cue" and not event.data.get("turned")]
-        if protocol.design.passage:
+        if self._protocol.design.passage:
             return self._read_passage(db, trial, own, paused_s)
-        if len(trial.stimuli) > 1 or not cues or trial.stimuli[0].picture:
+        first = trial.stimuli[0]
+        if len(trial.stimuli) > 1 or not cues or first.picture:
             return {}
         if "line" not in cues[-1].data:
             read = _last(own, "read")
             return {} if read is None else {"duration_s": round(read.t_s - cues[-1].t_s, 6)}
-        edges = self._edges_mm(trial.stimuli[0])
+        edges = self._edges_mm(first)
         if not edges:
             return {}
         line = cues[-1].data["line"]
         ticks = read_ticks(db, line, line, ("line", "time_ns", "x_mm"))
-        found = duration(ticks, edges[0], protocol.wanted.span_mm)
+        found = duration(ticks, edges[0], self._protocol.wanted.span_mm)
         if found is None:
             return {}
-        seconds, returned = found
-        early = _last(own, "answer")
-        is_early = early is not None and early.data.get("early")
-        return {"returned": int(returned)} | ({} if is_early else {"duration_s": round(seconds, 6)})
+        row: dict[str, Any] = {"returned": int(found.returned)}
+        if self._progress.answers[trial.key].data.get("early"):
+            return row
+        row["duration_s"] = round(found.seconds, 6)
+        if paused_s:
+            return row
+        own = ticks[found.ticks]
+        last_mm = edges[-1] + self._protocol.style(first.look).geometry.dot_width_mm
+        return row | describe(own["x_mm"], own["time_ns"], edges[0], last_mm)
 
     def _edges_mm(self, stimulus: Stimulus) -> tuple[float, ...]:
         masks = stimulus.masks(self._protocol.display.lead_cells)
@@ -275,17 +286,16 @@ class _Table:
         seconds = read.t_s - contact.t_s - paused_s
         if seconds > 0:
             row["words_per_minute"] = round(60 * words / seconds, 3)
-        counts: Counter[str] = Counter()
+        span_mm = self._protocol.wanted.span_mm
+        lines = []
         for number, stimulus in enumerate(trial.stimuli):
             ticks = read_ticks(db, cues[number], cues[number])
-            pitch_mm = self._protocol.style(stimulus.look).geometry.cell_pitch_mm
-            edges = self._edges_mm(stimulus)
-            within = ticks[_within(ticks["x_mm"] + self._protocol.wanted.span_mm / 2, edges[0])]
-            still = stretches(np.abs(within["vx_mm_s"]) < STILL_MM_S, within["time_ns"])
-            counts["hand_pauses"] += int((still >= STILL_S).sum())
-            counts["hand_paused_s"] += float(still[still >= STILL_S].sum())
-            counts["regressions"] += went_back(within["x_mm"], pitch_mm / 2)
-        return row | counts | {"hand_paused_s": round(counts["hand_paused_s"], 3)}
+            half_mm = self._protocol.style(stimulus.look).geometry.cell_pitch_mm / 2
+            lines.append(pauses(ticks, self._edges_mm(stimulus)[0], span_mm, half_mm))
+        number, seconds, back = map(sum, zip(*lines, strict=True))
+        return row | {
+            "hand_pauses": number, "hand_paused_s": round(seconds, 3), "regressions": back
+        }  # fmt: skip
 
 
 def _first(events: list[Event], *kinds: str) -> Event | None:
@@ -316,56 +326,6 @@ def _paused_s(events: list[Event]) -> float:
         elif event.kind in ("go", "answer") and began_s is not None:
             paused_s, began_s = paused_s + event.t_s - began_s, None
     return paused_s
-
-
-def duration(ticks: NDArray[np.void], edge_mm: float, span_mm: float) -> tuple[float, bool] | None:
-    """Return how long a line was read, and whether the hand came back; None if it never came.
-
-    Reading begins when the rightmost actuator comes to the left edge of the first dot, and ends
-    when it crosses that edge to the left for the last time (Lévesque 2009, 3.4).
-    """
-    on = ticks["x_mm"] + span_mm / 2 >= edge_mm
-    if not on.any():
-        return None
-    start = int(np.argmax(on))
-    left = start + 1 + np.flatnonzero(on[start:-1] & ~on[start + 1 :])
-    end = int(left[-1]) if left.size else len(ticks) - 1
-    return float(ticks["time_ns"][end] - ticks["time_ns"][start]) / 1e9, bool(left.size)
-
-
-def _within(right_mm: NDArray[np.float64], edge_mm: float) -> slice:
-    """Return the ticks from the first touch of a line to its furthest place."""
-    on = np.flatnonzero(right_mm >= edge_mm)
-    if not on.size:
-        return slice(0, 0)
-    return slice(int(on[0]), int(on[0]) + int(np.nanargmax(right_mm[on[0] :])) + 1)
-
-
-def stretches(marked: NDArray[np.bool_], time_ns: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return the lengths in s of the stretches of ticks that are marked.
-
-    >>> stretches(np.array([0, 1, 1, 0, 1], bool), np.arange(5) * 10**9)
-    array([1., 0.])
-    """
-    edges = np.diff(np.concatenate(([False], marked, [False])).astype(np.int8))
-    starts, stops = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
-    return (time_ns[stops] - time_ns[starts]) / 1e9
-
-
-def went_back(x_mm: NDArray[np.float64], least_mm: float) -> int:
-    """Return how often the hand went to the left by a distance before it went on to the right.
-
-    >>> went_back(np.array([0.0, 9.0, 5.0, 6.0, 4.0, 12.0, 11.5]), 3.0)
-    1
-    """
-    number, turn, back = 0, -np.inf, False
-    for x in x_mm.tolist():
-        # Going right the turn is the furthest place so far; going back it is the lowest.
-        turn = min(turn, x) if back else max(turn, x)
-        if abs(x - turn) >= least_mm:
-            back, turn = not back, x
-            number += back
-    return number
 
 
 def best_level(path: Path, parameter: str) -> float:

@@ -1,0 +1,187 @@
+"""``vbraille simulate``."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from vbraille.cli import options
+from vbraille.cli.printing import say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+_HEIGHT_MM = 200.0  # of a carriage of two axes whose display has none of its own
+_PRIORITY = 41  # above the engine: a real controller has a processor of its own
+_FAULTS: Any = {"group": "Faults"}
+_share = options.Number(0, 1)
+
+
+def _defects() -> Iterable[str]:
+    from vbraille.simulation.simulator import Defect
+
+    return (each.value for each in Defect)
+
+
+_script = options.option("--script", type=click.Path(), metavar="FILE",
+                         help="Events of buttons and knobs, such as 2.5s press 1.")  # fmt: skip
+_press = options.option("--press", metavar="N@TIME", default="", help="Buttons to press, such as "
+                        "1@2.5s,2@4s.")  # fmt: skip
+_drop = options.option("--drop", type=_share, default=0.0, help="Share of messages that are lost.",
+                       **_FAULTS)  # fmt: skip
+
+
+@click.group(cls=options.Group)
+def command() -> None:
+    """It runs until Ctrl-C."""
+
+
+@command.command(epilog="Example: vbraille simulate serial --link ./vb0 --hand slow")
+@options.takes(
+    options.model(group=options.FIRST, default="stress2", show_default=True),
+    options.hand, options.seed,
+    options.option("--link", type=click.Path(), metavar="PATH", help="Link to make to the port."),
+    options.option("--axes", type=click.Choice(["x", "xy", "xyθ"]), default="x", show_default=True,
+                   help="Axes that are measured."),
+    options.option("--unplaced", is_flag=True, help="Do not know the place before it is told."),
+    _script, _press,
+    options.travel, options.height,
+    options.rate(type=options.whole(50, 1000)),
+    _drop,
+    options.option("--corrupt", type=_share, default=0.0, help="Share of messages with a wrong "
+                   "bit.", **_FAULTS),
+    options.option("--stall", type=options.Duration(), default=0.0, metavar="TIME",
+                   help="Pause each second, such as 200ms.", **_FAULTS),
+    options.option("--unplug-every", type=options.Duration(), default=0.0, metavar="TIME",
+                   help="Time between unpluggings, such as 5s; needs --link.", **_FAULTS),
+    options.option("--defect", type=options.Known("defect", _defects), metavar="NAME",
+                   help="Way in which it is built wrong.", **_FAULTS),
+)  # fmt: skip
+def serial(**chosen: Any) -> None:
+    """Simulate a device at a serial port."""
+    from dataclasses import replace
+
+    from vbraille.errors import InputError
+    from vbraille.render import MODELS
+    from vbraille.simulation.carriage import area_of
+    from vbraille.simulation.controls import Controls
+    from vbraille.simulation.pty import Link, Port
+    from vbraille.simulation.simulator import Defect, Faults, Simulator
+    from vbraille.simulation.specs import parse_hand
+
+    if chosen["unplug_every"] and not chosen["link"]:
+        raise click.UsageError("--unplug-every needs --link: the port has a new name each time")
+    model = MODELS[chosen["model"]]
+    geometry = model.style.geometry
+    height_mm = 0.0
+    if "y" in chosen["axes"]:
+        height_mm = chosen["height"] or model.display.height_mm or _HEIGHT_MM
+    try:
+        if chosen["travel"]:
+            geometry = replace(geometry, travel_mm=chosen["travel"])
+        display = model.on(geometry, chosen["rate"])
+        display = replace(display, height_mm=height_mm, turns="θ" in chosen["axes"])
+        faults = Faults(
+            drop=chosen["drop"],
+            corrupt=chosen["corrupt"],
+            stall_s=chosen["stall"],
+            unplug_every_s=chosen["unplug_every"],
+            defect=Defect(chosen["defect"]) if chosen["defect"] else None,
+            seed=chosen["seed"],
+        )
+        hand = parse_hand(chosen["hand"], chosen["seed"])
+        controls = Controls(_events(chosen))
+        with _running() as (stopped, keys):
+            port = Port(Link(chosen["link"]) if chosen["link"] else None)
+            try:
+                simulator = Simulator(
+                    display, hand, port, say=say, faults=faults, placed=not chosen["unplaced"],
+                    area=area_of(display, geometry.line_pitch_mm), controls=controls, keys=keys,
+                )  # fmt: skip
+                say(f"port: {port.path}")
+                if chosen["link"]:
+                    say(f"link: {chosen['link']}")
+                say("keys: 1 to 8 press a button; a to d turn a knob up, A to D down")
+                simulator.run(stopped)
+            finally:
+                port.unplug()
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    controller = simulator.controller
+    say(f"summary: seconds {simulator.now_us / 1e6:.1f}, frames {controller.frames}, "
+        f"dropped {controller.dropped}, trips {controller.trips}")  # fmt: skip
+
+
+@command.command(epilog="Example: vbraille simulate latero --hand slow")
+@options.takes(
+    options.hand, options.seed,
+    options.option("--udp-port", type=options.whole(0, 65_535), help="UDP port; 0 for any."),
+    options.option("--page-lines", type=options.whole(1, 15), metavar="N", default=1,
+                   help="Lines of the page that the hand reads."),
+    options.option("--wait", type=options.Duration(), default=1.0, metavar="TIME",
+                   help="Time for which the hand waits at the lower left."),
+    _script, _press, _drop,
+    options.option("--late", type=_share, default=0.0, help="Share of answers that are 20 ms late.",
+                   **_FAULTS),
+    options.option("--double", type=_share, default=0.0, help="Share of datagrams that come twice.",
+                   **_FAULTS),
+    options.option("--stray", type=_share, default=0.0, help="Share of answers with a stranger's "
+                   "datagram.", **_FAULTS),
+)  # fmt: skip
+def latero(**chosen: Any) -> None:
+    """Simulate a Latero on the network."""
+    from vbraille.devices.latero.device import DISPLAY
+    from vbraille.devices.latero.wire import BUTTONS, PORT
+    from vbraille.errors import InputError
+    from vbraille.render.braille.models import LATERO
+    from vbraille.simulation.laterosim import LateroCarriage, LateroFaults, LateroSimulator
+    from vbraille.simulation.specs import parse_hand
+
+    events = _events(chosen)
+    if any(event.knob or event.number > len(BUTTONS) for event in events):
+        raise InputError("a Latero has two buttons, 1 and 2, and no knobs")
+    hand = parse_hand(chosen["hand"], chosen["seed"])
+    pitch_mm = LATERO.style.geometry.line_pitch_mm
+    faults = LateroFaults(
+        drop=chosen["drop"], late=chosen["late"], double=chosen["double"], foreign=chosen["stray"],
+        seed=chosen["seed"],
+    )  # fmt: skip
+    port = PORT if chosen["udp_port"] is None else chosen["udp_port"]
+    with _running() as (stopped, keys):
+        simulator = LateroSimulator(
+            LateroCarriage(hand, DISPLAY.span_mm, chosen["page_lines"], pitch_mm),
+            say=say, port=port, faults=faults, script=events, keys=keys, wait_s=chosen["wait"],
+        )  # fmt: skip
+        try:
+            say(f"device: {simulator.spec}")
+            say("keys: 1 and 2 press the left and the right button")
+            simulator.run(stopped)
+        finally:
+            simulator.close()
+    board, tally = simulator.board, simulator.network.tally
+    say(f"summary: seconds {simulator.now_us / 1e6:.1f}, frames {board.fulls}, "
+        f"requests lost {tally.requests_lost}, answers lost {tally.answers_lost}, "
+        f"late {tally.answers_late}, foreign {tally.foreign}, "
+        f"blades {'at rest' if board.at_rest else 'not at rest'}")  # fmt: skip
+
+
+def _events(chosen: dict[str, Any]) -> tuple[Any, ...]:
+    """Events of the script and the presses."""
+    from vbraille.simulation.controls import load_script, parse_presses
+
+    script = load_script(chosen["script"]) if chosen["script"] else ()
+    return (*script, *parse_presses(chosen["press"]))
+
+
+@contextmanager
+def _running() -> Iterator[tuple[Callable[[], bool], Callable[[], Iterable[str]]]]:
+    """Run until a signal; a function that tells so, and one that returns the keys typed."""
+    from vbraille.engine.realtime import come_first
+    from vbraille.reading.keys import Keyboard
+    from vbraille.signals import EAR
+
+    with EAR.deferred(), Keyboard() as keyboard:
+        come_first(_PRIORITY)
+        yield lambda: EAR.heard, lambda: keyboard.pressed(0.0)

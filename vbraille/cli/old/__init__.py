@@ -1,1 +1,0 @@
-"""The command ``vbraille``: parse, build, call, print."""

@@ -1,1 +1,0 @@
-"""Commands of a reader: a table, and a function for each."""

@@ -1,1 +1,0 @@
-"""Search in a whole book, by a process of its own."""
