@@ -133,15 +133,17 @@ def run(protocol: str, fields: tuple[tuple[str, str], ...], out: str | None, ano
         rate: float | None, **given: Any) -> None:  # fmt: skip
     """Run a session; type help at its prompt for what can be typed."""
     from vbraille.sessions.planning.loading import load_protocol
+    from vbraille.sessions.planning.plan import check_participant
     from vbraille.sessions.session import Session, check_fields, nearly_same
 
     planned = {name: given.pop(name) for name in _names(_PLAN)}
     participant = planned.pop("participant")
     loaded = load_protocol(protocol)
     answered = dict(fields)
+    check_participant(participant)
     check_fields(loaded, answered)
     with _typing(given.get("answers"), given.pop("speech")) as (typed, tell):
-        near = None if another else nearly_same(Path(out or ".").absolute().parent, participant)
+        near = None if another else nearly_same(Path(out or "new").absolute().parent, participant)
         if near is not None:
             _ask_who(participant, near, typed, tell)
         if typed is not None:
