@@ -84,6 +84,8 @@ def test_blocks_are_balanced_over_participants_and_differ_in_a_second_session(tm
     assert first("P01", session=2) == first("P01", order=2) == "rough"
     with pytest.raises(InputError, match="order"):
         first("Anna")
+    with pytest.raises(InputError, match="pseudonym"):
+        first("../P 1")
     one, two = (make_plan(load(tmp_path, MINI), "P01", 1, session=n) for n in (1, 2))
     assert [t.item for t in one.trials] != [
         t.item for t in two.trials

@@ -2,6 +2,9 @@
 
 import csv
 import io
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -152,3 +155,15 @@ def test_the_best_texture_of_a_session_is_known(tmp_path):
     trials = sat.session.content.plan.trials
     sat.sit(answers=["??" if trial.condition == "T0" else trial.cells for trial in trials])
     assert best_level(sat.session.path, "texture") == 1.0
+
+
+def test_the_command_withdraws_after_it_has_asked(sessions, tmp_path):
+    mine = tmp_path / "P01-mini.session"
+    mine.write_bytes(sessions["identify"].read_bytes())
+    for lines, code, left in (("no\n", 2, True), ("yes\n", 0, False)):
+        done = subprocess.run(
+            [Path(sys.executable).with_name("vbraille"), "session", "withdraw", "P01", tmp_path],
+            input=lines, check=False, capture_output=True, text=True,
+        )  # fmt: skip
+        assert (done.returncode, mine.exists()) == (code, left), done.stderr
+        assert "Traceback" not in done.stderr

@@ -138,9 +138,9 @@ def run(protocol: str, fields: tuple[tuple[str, str], ...], out: str | None, ano
 
     planned = {name: given.pop(name) for name in _names(_PLAN)}
     participant = planned.pop("participant")
+    check_participant(participant)
     loaded = load_protocol(protocol)
     answered = dict(fields)
-    check_participant(participant)
     check_fields(loaded, answered)
     with _typing(given.get("answers"), given.pop("speech")) as (typed, tell):
         near = None if another else nearly_same(Path(out or "new").absolute().parent, participant)

@@ -19,6 +19,7 @@ from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.planning.values import Look
 from vbraille.toml import which
 
+PSEUDONYM = "[A-Za-z0-9][A-Za-z0-9_-]{0,31}"
 Placed = tuple[str, str]  # an item, and the condition in which it is shown
 
 # How long people take, as in the source: 17 s for a string of five letters and its answer.
@@ -78,6 +79,7 @@ def make_plan(
     InputError
         If no order keeps the rules, or nothing says which balanced order is wanted.
     """
+    check_participant(participant)
     if look is not None:
         display = structs.replace(protocol.display, **look.given)
         protocol = structs.replace(protocol, display=display)
@@ -100,6 +102,18 @@ def make_plan(
         raise InputError(f"{protocol.name}: {error}") from None
     numbered = tuple(_numbered(practice) + _numbered(trials))
     return Plan(participant, seed, order, group, numbered, session)
+
+
+def check_participant(participant: str) -> None:
+    """Refuse a pseudonym that files and tables cannot have.
+
+    Raises
+    ------
+    InputError
+        If it has other characters than letters, digits, hyphens and underscores.
+    """
+    if not re.fullmatch(PSEUDONYM, participant):
+        raise InputError(f"participant is {participant!r}; give a pseudonym such as P07")
 
 
 def _choose_group(protocol: Protocol, participant: str, group: str | None) -> str:

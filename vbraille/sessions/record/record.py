@@ -21,7 +21,7 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from vbraille.errors import VbrailleError
+from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.record.ticks import pack
@@ -110,6 +110,10 @@ class RecordError(VbrailleError):
     """The record cannot be read or written; the message says what to do."""
 
 
+class NoRecordError(RecordError, InputError):
+    """There is no such record, or there is one already where a new one should be."""
+
+
 class Event(Struct, frozen=True):
     """Something that happened.
 
@@ -177,7 +181,7 @@ def create(path: Path, head: dict[str, Any], files: dict[str, bytes], plan: Plan
         os.fsync(folder)
         os.close(folder)
     except FileExistsError:
-        raise RecordError(f"{path} is there already; choose another name") from None
+        raise NoRecordError(f"{path} is there already; choose another name") from None
     except OSError as error:
         raise RecordError(f"{path}: {error.strerror}") from None
     finally:
@@ -377,7 +381,8 @@ def told(path: Path) -> Iterator[None]:
             name = "SQLITE_NOTADB"
         what = next((words for begin, words in SAID.items() if name.startswith(begin)), None)
         what = what or f"{error}; session check says what is whole"
-        raise RecordError(f"{path}: {what}") from error
+        kind = NoRecordError if name in ("SQLITE_NOTADB", "SQLITE_CANTOPEN") else RecordError
+        raise kind(f"{path}: {what}") from error
 
 
 # What is said of errors, by the beginnings of their names.
