@@ -11,7 +11,7 @@ import click
 
 from vbraille.cli import options
 from vbraille.cli.printing import print_json, say
-from vbraille.errors import InputError, VbrailleError
+from vbraille.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -154,7 +154,7 @@ def run(protocol: str, fields: tuple[tuple[str, str], ...], out: str | None, ano
         tell(f"session: {session.path}")
         try:
             _conduct(session, typed, tell, rate_hz=rate, **given)
-        except VbrailleError:
+        except BaseException:
             if not any(event.kind == "run" for event in session.content.events):
                 session.path.unlink()  # the device did not open: nothing has begun
             raise
