@@ -154,10 +154,10 @@ PYCS    := $(BIN)/python -m compileall -q -j 0 -x '/(tests?|pip|setuptools|pkg_r
 	  $(SUDO) apt-get update -qq; $(SUDO) apt-get install -y -qq --no-install-recommends chromium; }
 	@# A BRLTTY that starts by itself would take serial devices for displays.
 	@command -v brltty >/dev/null || { \
-	  echo 'Installing from Debian: brltty, libbrlapi0.8 (against which conventional displays are tried; its service stays off)'; \
+	  echo 'Installing from Debian: brltty, python3-brlapi (against which conventional displays are tried; its service stays off)'; \
 	  [ ! -d /run/systemd/system ] || $(SUDO) systemctl mask --quiet brltty.service; \
 	  $(SUDO) apt-get update -qq; \
-	  $(SUDO) apt-get install -y -qq --no-install-recommends brltty libbrlapi0.8 \
+	  $(SUDO) apt-get install -y -qq --no-install-recommends brltty python3-brlapi \
 	  || echo 'brltty is not installed: the tests of conventional displays are left out'; }
 	@grep -qs '"version": "$(TYPESCRIPT)"' .venv/typescript/node_modules/typescript/package.json || { set -e; \
 	  mkdir -p .venv/typescript; \

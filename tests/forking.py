@@ -37,7 +37,7 @@ from pkgutil import walk_packages
 from typing import Any, NoReturn
 
 # Rooms of statistics and drawing would make each fork slower; what needs them loads them itself.
-_LOADED_LATER = ("vbraille.analysis", "vbraille.forecast", "vbraille.pictures", "vbraille.testing")
+_LOADED_LATER = ("vbraille.analysis", "vbraille.pictures", "vbraille.testing")
 # What Python, its compiler and its libraries take from the environment when they begin.
 _FROM_THE_BEGINNING = ("PYTHON", "LD_", "LC_", "LANG", "NUMBA_")
 _SUBREAPER, _NAME = 36, 15  # of prctl

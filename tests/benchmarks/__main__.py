@@ -16,6 +16,8 @@ PARTS = (
     "straying",
     "figure",
     "scene",
+    "live",
+    "screen",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

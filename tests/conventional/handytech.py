@@ -3,7 +3,6 @@
 Both are real parts but for the display's pins: BRLTTY's own driver speaks to this end of the port.
 """
 
-import ctypes
 import os
 import shutil
 import socket
@@ -13,7 +12,8 @@ import time
 import pytest
 
 from tests.conventional.plugged import PluggedDisplay
-from vbraille.conventional.brlapi import LIBRARY
+from vbraille.conventional.display import load_brlapi
+from vbraille.errors import InputError
 
 PATIENCE_S = 30.0
 STATUS = 4  # cells that stand before the text
@@ -30,9 +30,9 @@ def missing():
     if shutil.which("brltty") is None:
         return "brltty is not installed; `make test` installs it"
     try:
-        ctypes.CDLL(LIBRARY)
-    except OSError:
-        return f"{LIBRARY} is not installed; `make test` installs it"
+        load_brlapi()
+    except InputError as error:
+        return str(error)
     return ""
 
 

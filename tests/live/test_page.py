@@ -132,7 +132,7 @@ def test_axe_finds_nothing_in_a_reading(opens, reading, scheme):
     assert axe(page) == []
     page.locator(".card").first.press("ArrowRight")
     page.keyboard.press("Enter")
-    comes(page, lambda: PagePress("POINT", 1) in reading.asked)
+    comes(page, lambda: PagePress("point", 1) in reading.asked)
     assert "0.00" in text(page, "#signal-rows")
 
 

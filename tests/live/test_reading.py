@@ -28,8 +28,8 @@ def test_a_page_is_the_hand_of_a_reading_and_turns_its_knobs(text):
             with Client(found[1]) as page:
                 page.until(lambda header, state: header["line"] and state["title"] == "text.txt")
                 page.ask(ask="turn", knob="texture", value=0.5)
-                page.until(lambda _, state: "texture: 0.5" in state["said"])
-                page.ask(ask="press", command="UNDO")
+                page.until(lambda _, state: state["knobs"][0]["value"] == 0.5)
+                page.ask(ask="press", command="undo")
                 page.until(lambda _, state: state["knobs"][0]["value"] == 1.0)
                 for line in (1, 2):
                     page.until(lambda header, _, line=line: header["line"] == line)

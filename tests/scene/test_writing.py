@@ -15,7 +15,7 @@ from vbraille.scene.reading import open_scene
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke, VertexMarkers, Vibration
 from vbraille.scene.textures import LinearGrating, Peak, Uniform
-from vbraille.tomlfile import TomlFile
+from vbraille.toml import TomlFile
 
 CANVAS = Canvas(width_mm=100, height_mm=80)
 

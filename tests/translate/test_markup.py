@@ -18,7 +18,7 @@ def marks(block):
     [
         ("<h2>One</h2><p>two\n  three", ["heading One", "paragraph two three"]),
         ("<p>one<br>two", ["paragraph one", "line two"]),
-        ("<pre>\na  b\n c</pre>", ["line a  b", "line  c"]),
+        ("<pre>\na  b\n c\fd</pre>", ["line a  b", "line  c d"]),
         ("<blockquote>one<p>two</blockquote>", ["quote one", "quote two"]),
         ("<ul><li>a<ol><li>b<li>c</ol><li>d</ul>", ["item • a", "item 1. b", "item 2. c", "item • d"]),
         ("<ol reversed><li>a<li>b</ol>", ["item 2. a", "item 1. b"]),

@@ -40,6 +40,7 @@ SECTIONS = {
     },
     "Pictures": {
         "feel": "Feel a tactile picture on a device.",
+        "screen": "Feel what a screen reader shows, by BRLTTY.",
         "play": "Play memory with tactile cards.",
         "map": "Draw a tactile picture for the eye or for paper.",
         "scene": "Check or convert tactile pictures.",

@@ -68,7 +68,7 @@ def open_text(
     InputError
         If it cannot be read.
     """
-    file = file or chosen["file"]
+    file = file or str(chosen["file"])
     names = ("encoding", "keep_lines", "brf_table", "form")
     how = {name: chosen[name] for name in names}
     if file != "-":

@@ -112,7 +112,7 @@ class LineShown(msgspec.Struct, frozen=True):
     Parameters
     ----------
     number
-        Number of the line in frames.
+        Number of the line, which is another for each.
     text
         Print of the line; empty where the source is braille.
     start_mm
@@ -336,7 +336,7 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
     commands
         Commands that a page with the right to steer offers.
     cards
-        Rows of the table of a memory game; "POINT" and a place turn a card.
+        Rows of the table of a memory game; a `PagePress` with a place turns a card.
     """
 
     number: int = 0

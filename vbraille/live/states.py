@@ -160,15 +160,3 @@ def _sources(line: Line) -> NDArray[np.int64]:
     following = np.append(starts, line.cells.end)[after]
     there = np.stack((starts, following), axis=1) - line.block.start - line.first
     return np.clip(there, 0, line.after - line.first)
-
-
-def knobs_shown(style: BrailleStyle) -> list:
-    """Knobs of a style, until readings make them."""
-    from vbraille.config.settings import KNOBS, fixed
-    from vbraille.live.messages import KnobShown
-
-    return [
-        KnobShown(knob.key, knob.label, knob.unit, float(knob.value(style)), float(knob.step),
-                  float(knob.low), float(knob.high), fixed(knob, style))
-        for knob in KNOBS.values()
-    ]  # fmt: skip

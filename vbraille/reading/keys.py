@@ -126,6 +126,8 @@ class Keyboard:
     ----------
     attached : bool
         Whether there is a terminal to type at.
+    also : list[int]
+        Descriptors that end the wait for keys when they have something to read.
     """
 
     def __init__(self, *, beside: bool = False) -> None:
@@ -137,6 +139,7 @@ class Keyboard:
                 self._own = os.open("/dev/tty", os.O_RDWR | os.O_NOCTTY | os.O_CLOEXEC)
             self._descriptor = self._own
         self.attached = self._descriptor >= 0
+        self.also: list[int] = []
         self._decoder = KeyDecoder()
         self._before: list | None = None
         self._catches = False
@@ -206,8 +209,11 @@ class Keyboard:
         if self._decoder.waits:
             wait_s = _ESCAPE_S
         watched = [self._descriptor] if self.attached else []
-        if not select.select(watched, [], [], wait_s)[0]:
+        ready = select.select([*watched, *self.also], [], [], wait_s)[0]
+        if not ready:
             return self._decoder.settle()
+        if self._descriptor not in ready:
+            return []
         try:
             data = os.read(self._descriptor, 4096)
         except OSError:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
@@ -17,6 +18,7 @@ from vbraille.live.messages import (
     CommandShown,
     KnobShown,
     LetGo,
+    LineShown,
     Point,
     SceneShown,
     SignalShown,
@@ -31,7 +33,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from vbraille.feeling.loading import LoadedScene
-    from vbraille.live.messages import LineShown
     from vbraille.live.view import LiveView
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.explored import Explored
@@ -123,7 +124,10 @@ class LiveOutput:
 
     def _state(self, what: Explored) -> ViewState:
         device = self._device
-        parts = {Where.BOOK: self._book, Where.TUNING: self._tuning, Where.GAME: self._game}
+        parts = {
+            Where.BOOK: self._book, Where.TUNING: self._tuning, Where.GAME: self._game,
+            Where.SCREEN: self._screen,
+        }  # fmt: skip
         made = parts.get(what.where, self._picture)(what)
         return ViewState(
             array=array_shown(device.display),
@@ -153,7 +157,7 @@ class LiveOutput:
             words = mapping_said(other.mapping)
             beside = beside_shown(other, self._device.display, masks, start_mm, words)
         return {
-            "title": source.title or source.name,
+            "title": source.title or Path(source.name).name,
             "geometry": geometry_shown(geometry),
             "rows_shown": rows_shown(style, self._device.display),
             "lines": list(self._lines(reader)),
@@ -235,6 +239,24 @@ class LiveOutput:
             "blind": True,
             "cards": [cards[at : at + COLUMNS] for at in range(0, len(cards), COLUMNS)],
         }
+
+    def _screen(self, screen: Any) -> dict[str, Any]:
+        style, cells = screen.style, screen.line_masks.size
+        pitch_mm, texts = style.geometry.line_pitch_mm, screen.talk.text
+        places = [(cell, cell + 1) for cell in range(cells)]
+        return {
+            "title": "the screen",
+            "geometry": geometry_shown(style.geometry),
+            "rows_shown": rows_shown(style, self._device.display),
+            "lines": [
+                LineShown(
+                    row + 1, texts[row * cells : (row + 1) * cells], 0.0, row * pitch_mm,
+                    masks.tolist(), places, row == screen.row,
+                )
+                for row, masks in enumerate(screen.talk.masks)
+            ],
+            "place": screen.doing,
+        }  # fmt: skip
 
     def _drawing(self, loaded: LoadedScene, switches: int) -> SceneShown:
         """Picture from above, as its switches stand; without an image until it is drawn."""

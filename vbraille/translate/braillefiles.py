@@ -122,7 +122,8 @@ def read_pef(source: Source) -> Iterator[Block]:
     try:
         root = etree.fromstring(source.stream.read(), parser)
     except (etree.XMLSyntaxError, ValueError) as error:
-        raise InputError(f"{source.name} is a damaged PEF file ({error}); get it again") from None
+        said = " ".join(str(error).split())
+        raise InputError(f"{source.name} is a damaged PEF file ({said}); get it again") from None
     if root.getroottree().docinfo.internalDTD is not None:
         raise InputError(f"{source.name} declares entities, which a PEF file must not; get another")
     for name in ("title", "language"):

@@ -258,7 +258,7 @@ class Walker:
 
     def _add(self, text: str) -> None:
         """Add text as it is, after a blank if one is due."""
-        text = tidy(text)
+        text = tidy(text).replace(_NEW_PAGE, " ")
         if self._blank and self._length and self._parts[-1][-1:] not in (_NEW_LINE, " "):
             text = f" {text}"
         self._blank = False

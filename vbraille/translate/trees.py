@@ -139,8 +139,9 @@ def parse_xml(content: bytes, name: str) -> Element:
 
     if b"<!ENTITY" in content[:65_536]:
         raise InputError(f"{name} declares entities, which no book needs; get another copy")
+    builder: Any = _Builder(keep_case=True)
     parser: Any = etree.XMLParser(
-        target=_Builder(keep_case=True), resolve_entities=False, no_network=True, load_dtd=False
+        target=builder, resolve_entities=False, no_network=True, load_dtd=False
     )
     try:
         parser.feed(content)
@@ -152,7 +153,8 @@ def parse_xml(content: bytes, name: str) -> Element:
         AssertionError,
         IndexError,
     ) as error:
-        raise InputError(f"{name} is damaged ({error}); get the book again") from None
+        said = " ".join(str(error).split())
+        raise InputError(f"{name} is damaged ({said}); get the book again") from None
 
 
 def read_tree(
@@ -181,14 +183,15 @@ def read_tree(
     text, note = _decoded(content, encoding)
     notes = [f"{name} {note}"] if note else []
     text = _XML_HEAD.sub("", text[:4096]) + text[4096:]
+    target: Any = _Builder
     options: dict[str, Any] = {"huge_tree": True, "no_network": True, "encoding": "utf-8"}
     built = None
     if xml:
         options_xml = {**options, "resolve_entities": False, "load_dtd": False, "huge_tree": False}
         whole = _ENTITY.sub(lambda found: html.unescape(found[0]), text)
-        built = _parse(etree.XMLParser(target=_Builder(), **options_xml), whole, name)
+        built = _parse(etree.XMLParser(target=target(), **options_xml), whole, name)
     if built is None:
-        parser = etree.HTMLParser(target=_Builder(), **options)
+        parser = etree.HTMLParser(target=target(), **options)
         built = _parse(parser, text, name) or _Builder()
     if built.flattened:
         notes.append(

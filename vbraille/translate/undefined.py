@@ -102,8 +102,9 @@ def _write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Wr
                 dots[cell] = ord(written[place]) & 0xFF
             else:
                 left.add(origins[place])
-        left.update(origins[place] for place in _swallowed(table, written, answer))
         left |= parts.blank(answer.places, dots, origins)
+        if not left:
+            left = {origins[place] for place in _swallowed(table, written, answer)}
         if not left:
             break
         parts.take_next(left)

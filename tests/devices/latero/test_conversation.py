@@ -95,7 +95,7 @@ def test_silence_brings_the_blades_to_rest_and_then_all_comes_back():
     talk.run(150)
     conversation = talk.conversation
     assert conversation.stage is LateroStage.SILENT
-    assert [event.silent_ms for event in talk.of(Silent)] == [pytest.approx(100, abs=2)]
+    assert talk.of(Silent) == [Silent()]
     assert conversation.blades.rests
     talk.cut = False
     talk.run(1)
@@ -223,7 +223,7 @@ def test_a_stall_goes_to_rest_from_where_the_watchdog_left_the_blades():
     ramp = np.array(talk.levels[begun : begun + 8]).astype(int)
     assert ramp[0].min() >= 100
     assert np.diff(ramp, axis=0).max() <= 9
-    assert talk.of(WatchdogTripped) == [WatchdogTripped(1, "host")]
+    assert talk.of(WatchdogTripped) == [WatchdogTripped(1)]
     assert talk.board.powered
     assert talk.conversation.taking
     assert talk.conversation.rested == 2
@@ -278,10 +278,11 @@ def test_the_buttons():
     talk.run(2)
     talk.board.buttons = 0b01  # it bounces
     talk.run(20)
-    assert talk.of(Button) == [Button(2, True), Button(1, True), Button(2, False)]
+    pressed = [(event.number, event.pressed) for event in talk.of(Button)]
+    assert pressed == [(2, True), (1, True), (2, False)]
     talk.cut = True
     talk.run(150)
-    assert talk.of(Button)[-1] == Button(1, False)
+    assert (talk.of(Button)[-1].number, talk.of(Button)[-1].pressed) == (1, False)
 
 
 def test_an_interface_that_is_unplugged_and_back_is_shown_its_place_again():

@@ -13,7 +13,7 @@ from vbraille.scene.openlatero import read_gen
 from vbraille.scene.openlatero.reading import PATTERNS, TEXTURES
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Scene
-from vbraille.tomlfile import TomlFile
+from vbraille.toml import TomlFile
 
 TEXTS = (
     "", "0", "-1", "0.01", "1", "2.5", "8", "30", "400", "1e9", "nan", "inf", "12,5", "1,5,2,5",

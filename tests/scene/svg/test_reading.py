@@ -19,7 +19,7 @@ from vbraille.scene.svg.drawing import read_svg
 from vbraille.scene.svg.looks import BY_HUE, hue_of
 from vbraille.scene.svg.values import color_of
 from vbraille.scene.traversal import each
-from vbraille.tomlfile import TomlFile
+from vbraille.toml import TomlFile
 
 FILES = Path(__file__).parent / "files"
 

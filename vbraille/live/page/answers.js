@@ -56,7 +56,7 @@ export class Cards {
     if (made !== this.#made) {
       this.#made = made;
       this.#cards = state.cards.flat().map((_, place) =>
-        (steers ? button("", () => this.ask({ ask: "press", command: "POINT", place }), { class: "card" }) : html("span", { class: "card" })));
+        (steers ? button("", () => this.ask({ ask: "press", command: "point", place }), { class: "card" }) : html("span", { class: "card" })));
       const left = [...this.#cards];
       byId("cards").replaceChildren(...state.cards.map((row) => html("div", { class: "row" }, ...left.splice(0, row.length))));
     }

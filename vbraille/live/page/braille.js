@@ -82,7 +82,7 @@ export function sayWhere(state, frame) {
   if (state.array?.turns) words.push(`turned ${degrees(frame.theta_rad)}°`);
   const here = state.blind ? null : under(state, frame);
   if (!here) return words.join(", ");
-  words.push(`line ${here.line.number}`);
+  if (state.place) words.push(state.place);
   if (here.cell < 0) return [...words, "beside the cells"].join(", ");
   words.push(`cell ${here.cell + 1}`, here.dots.length ? `dots ${here.dots.join(" ")}` : "no dots");
   if (here.character.trim()) words.push(`'${here.character}'`);

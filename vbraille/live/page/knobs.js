@@ -132,7 +132,7 @@ export class Knobs {
       byId("commands").replaceChildren(...this.#buttons.values());
     }
     for (const { name, words } of commands) {
-      const shown = name.toLowerCase() === "pause" ? (state.paused ? "go on" : "rest the array") : words;
+      const shown = name === "pause" ? (state.paused ? "go on" : "rest the array") : words;
       write(this.#buttons.get(name), shown.charAt(0).toUpperCase() + shown.slice(1));
     }
   }

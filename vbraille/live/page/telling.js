@@ -75,7 +75,6 @@ export class Telling {
       ...(state.array?.turns ? [["turned", `${degrees(frame.theta_rad)}°`]] : []),
       ...(two ? [["speed along", speed], ["speed down", `${fixed(this.#falling(frame), 0)} mm/s`]] : [["speed", speed]]),
       ...(state.blind || state.scene ? [] : [
-        ["line", here && String(here.line.number)],
         ["cell", on && String(here.cell + 1)],
         ["dots", on && (here.dots.join(" ") || "none")],
         ["character", here?.character.replace(" ", "blank")],
@@ -145,8 +144,8 @@ export function tables(state, frame) {
       grid("Deflection of each actuator, 0 (rest) to 1 (full swing)", columns.map((n) => `column ${n}`), frame.deflections, 2),
       grid("Strain between neighbours in %, above 0 where the skin is stretched", columns.slice(1).map((n) => `${n - 1} to ${n}`), strain, 1),
     ] : []),
-    table("Lines of the page", ["line", "print", "braille", "from x (mm)", "top (mm)"], state.lines.map((line) => [
-      `${line.number}${line.under ? ", under the hand" : ""}`, line.text || "–", unicode(line.cells), fixed(line.start_mm), fixed(line.top_mm)])),
+    table("Lines of the page", ["line", "print", "braille", "from x (mm)", "top (mm)"], state.lines.map((line, n) => [
+      `${n + 1}${line.under ? ", under the hand" : ""}`, line.text || "–", unicode(line.cells), fixed(line.start_mm), fixed(line.top_mm)])),
   ];
 }
 

@@ -9,8 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vbraille.braille.spelling import to_braille
-from vbraille.conventional.brlapi import CellsTaken, DisplayAway, DisplayStands
-from vbraille.conventional.display import ConventionalDisplay
+from vbraille.conventional.display import (
+    CellsTaken,
+    ConventionalDisplay,
+    DisplayAway,
+    DisplayStands,
+)
 from vbraille.errors import DeviceError, InputError
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocol import Protocol

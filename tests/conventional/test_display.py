@@ -17,18 +17,13 @@ from tests.conventional.handytech import (
     until,
 )
 from tests.tiers import heavy
-from vbraille.conventional.brlapi import (
-    BrlapiDisplay,
+from vbraille.conventional.display import (
     CellsTaken,
+    ConventionalDisplay,
     DisplayAway,
-    DisplayGoneError,
     DisplayStands,
     KeyPressed,
-    host_of,
-    load_library,
-    typed,
 )
-from vbraille.conventional.display import ConventionalDisplay
 from vbraille.errors import InputError
 
 SHOWN = bytes((0x11, 0xFF, 0x00, 0x80))
@@ -87,9 +82,7 @@ def test_it_is_there_again_after_brltty_the_display_and_its_own_process_were_gon
 
     brltty.process.kill()
     brltty.stop()
-    assert heard(display, DisplayAway).why == (
-        f"no BRLTTY answers at {brltty.host}; start it, or give its address"
-    )
+    assert f"no BRLTTY answers at {brltty.host}" in heard(display, DisplayAway).why
     display.show(b"\1")
     brltty.start()
     heard(display, DisplayStands)
@@ -122,42 +115,18 @@ def test_what_does_not_answer_is_said_and_found_again(brltty, display):
     assert heard(display, DisplayAway).why.startswith("what drives the display does not answer")
     brltty.process.send_signal(signal.SIGCONT)
     heard(display, DisplayStands)
-    display._worker.process.kill()
-    heard(display, DisplayAway)
-    heard(display, DisplayStands)
 
 
 @needs_brltty
-def test_who_may_not_is_told_so(tmp_path):
+@pytest.mark.parametrize(
+    ("how", "why"), [({"auth": "keyfile:"}, "let you in"), ({"driver": "no"}, "no display")]
+)
+def test_why_there_is_none_is_said(tmp_path, how, why):
     key = tmp_path / "key"
     key.write_text("secret\n")
-    with Brltty(tmp_path, auth=f"keyfile:{key}") as brltty:
-
-        def refused():
-            try:
-                BrlapiDisplay(brltty.host).close()
-            except DisplayGoneError as error:
-                return "" if "no BRLTTY answers" in str(error) else str(error)
-            return ""
-
-        assert until(refused) == (
-            f"BRLTTY at {brltty.host} does not let you in; join the group that may read "
-            f"/etc/brlapi.key"
-        )
-
-
-@needs_brltty
-def test_a_brltty_without_a_display_is_none(tmp_path):
-    with Brltty(tmp_path, driver="no") as brltty:
-
-        def refused():
-            try:
-                BrlapiDisplay(brltty.host).close()
-            except DisplayGoneError as error:
-                return "" if "no BRLTTY answers" in str(error) else str(error)
-            return ""
-
-        assert until(refused) == f"BRLTTY at {brltty.host} drives no display; plug one in"
+    how = {name: value + str(key) * value.endswith(":") for name, value in how.items()}
+    with Brltty(tmp_path, **how) as brltty, ConventionalDisplay(f"brlapi:{brltty.host}") as display:
+        until(lambda: why in getattr(heard(display, DisplayAway), "why", ""))
 
 
 @needs_brltty
@@ -175,21 +144,8 @@ def test_another_service_at_the_port_is_no_brltty():
 
 
 @pytest.mark.parametrize(
-    ("symbol", "key"),
-    [(0x41, "A"), (0xE9, "é"), (0xFF51, "left"), (0xFFBE, "f1"), (0x100263A, "☺"), (0xFE03, "")],
-)
-def test_what_its_keyboard_types(symbol, key):
-    assert typed(symbol) == key
-
-
-@pytest.mark.parametrize(
     "spec", ["", "brltty", "brlapi:localhost", "brlapi:a b:1", "brlapi:host:x", "hid", "dotpad:/d"]
 )
 def test_what_is_no_display_of_brltty_is_refused(spec):
     with pytest.raises(InputError, match="brlapi:HOST:N"):
-        host_of(spec)
-
-
-def test_without_the_library_it_is_said_what_to_install():
-    with pytest.raises(InputError, match="packages brltty and lib"):
-        load_library("libbrlapi-of-nobody.so")
+        ConventionalDisplay(spec)

@@ -1,0 +1,60 @@
+"""``vbraille screen``."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import click
+
+from vbraille.cli import options
+
+
+@click.command(cls=options.Command, epilog="Example: vbraille screen --device serial:/dev/ttyACM0")
+@options.takes(
+    options.device, options.hand, options.model(group=options.FIRST),
+    options.option("--listen", metavar="PLACE", help="Socket for BRLTTY: a path, or HOST:PORT."),
+    options.option("--connect", metavar="PLACE", help="Socket at which BRLTTY listens."),
+    options.echo, options.speech, options.monitor, options.profile, *options.FEEL, options.straying,
+    options.band, options.travel, options.height, options.rate, options.seed, options.cues,
+    options.also, options.host, options.port, options.settings,
+)  # fmt: skip
+@click.pass_context
+def command(ctx: click.Context, **chosen: Any) -> None:
+    """The line that BRLTTY shows is under the hand. At a terminal, h says the keys."""
+    from vbraille.cli.build import build_model
+    from vbraille.cli.exploring import equipped, find_model, say_summary
+    from vbraille.reading.brltty import Port
+    from vbraille.reading.screen import Screen
+    from vbraille.render import MODELS
+    from vbraille.translate import choose_table
+
+    usual = MODELS[chosen["model"] or "stress2"]
+    wanted = build_model(ctx, usual, usual.style.geometry.travel_mm)
+    wanted_display = wanted.on(wanted.style.geometry, chosen["rate"])
+    place = chosen["connect"] or chosen["listen"] or _usual_place()
+    echo = chosen["echo"] or "none"
+    with equipped(ctx, wanted_display, hand=chosen["hand"], echo=echo) as equipment:
+        port = Port(place, connects=bool(chosen["connect"]))
+        equipment.stack.callback(port.close)
+        device = equipment.device
+        model = find_model(ctx, device, wanted)
+        if model.display is not wanted_display:
+            model = build_model(ctx, model, model.display.travel_mm)
+        device.start(model)
+        if chosen["speech"]:
+            equipment.speak("en")
+        if chosen["also"]:
+            equipment.add_pins(chosen["also"], choose_table())
+        mode = "server" if chosen["connect"] else "client"
+        equipment.say(f"start BRLTTY: brltty -b vr -d {mode}:{place}")
+        if not port.local:
+            equipment.say(f"{place}: any user of this machine may show text there and hear keys")
+        screen = Screen(port, device, equipment.outputs, model.style, equipment.keyboard)
+        equipment.explore(ctx, screen)
+    say_summary(device)
+
+
+def _usual_place() -> str:
+    return f"{os.environ.get('XDG_RUNTIME_DIR') or Path.home()}/vbraille-screen"
