@@ -35,8 +35,9 @@ def test_different_people_may_have_similar_names(one, other):
 
 def test_signs_count_in_conditions():
     names.check_alike(["-1", "1"], "condition")
-    with pytest.raises(InputError, match="condition"):
-        names.check_alike(["T0.50", "t0,5"], "condition")
+    for one, other in (("T0.50", "t0,5"), (".5", "0.5"), ("5 %", "5%"), ("T–25", "T-25")):
+        with pytest.raises(InputError, match="condition"):
+            names.check_alike([one, other], "condition")
 
 
 def test_what_is_not_seen_goes():

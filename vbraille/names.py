@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 _NUMBER = re.compile(r"\d+(?:[.,]\d+)?")
+_PLAIN_NUMBER = re.compile(r"\d+(?:[.,]\d+)?|[.,]\d+")
+_DASHES = dict.fromkeys(map(ord, "‐‑‒–—−"), "-")
 _INVISIBLE = ("Cf", "Cc")
 _VARIATIONS = dict.fromkeys(range(0xFE00, 0xFE10))
 
@@ -25,18 +27,20 @@ def visible(name: str) -> str:
 
 
 def likeness(name: str, *, person: bool = False) -> str:
-    """Return what all spellings of a name share: case, width, leading zeros and 1.0 do not count.
+    """Return what all spellings of a name share.
+
+    Case, width, blanks, the kind of a dash, leading zeros and 1.0 do not count.
 
     Parameters
     ----------
     person
         Whether the name is a pseudonym, in which blanks, hyphens and the like do not count either.
 
-    >>> likeness("Ｐ001"), likeness("p1"), likeness("T0.50"), likeness("T0,5")
-    ('p1', 'p1', 't0.5', 't0.5')
+    >>> likeness("Ｐ001"), likeness("p 1"), likeness("T0.50"), likeness("T0,5"), likeness("t.5")
+    ('p1', 'p1', 't0.5', 't0.5', 't0.5')
     """
-    plain = unicodedata.normalize("NFKC", visible(name)).casefold()
-    plain = _NUMBER.sub(_shortest, plain)
+    plain = unicodedata.normalize("NFKC", visible(name).translate(_DASHES)).casefold()
+    plain = _PLAIN_NUMBER.sub(_shortest, plain).replace(" ", "")
     return re.sub(r"[\W_]+", "", plain) if person else plain
 
 

@@ -171,6 +171,14 @@ def test_a_person_is_in_no_test_for_a_missing_cell(tmp_path):
     assert analysis.left_out == ["P04: no trial in B"]
 
 
+def test_a_person_without_an_answer_is_named(tmp_path):
+    rows = trials_of({"A": [20, 22, 25, 9], "B": [17, 21, 22, 8]})
+    rows = [row | ({"answered": "NA"} if row["participant"] == "P03" else {}) for row in rows]
+    analysis = analysed(rows, tmp_path)
+    assert analysis.left_out == ["P03: no trial that counts"]
+    assert analysis.result.pairs["participants"].to_list() == [3]
+
+
 @pytest.mark.parametrize("people", [1, 2])
 def test_one_and_two_people_have_means_alone(people, tmp_path):
     analysis = analysed(trials_of({"A": [20, 22][:people], "B": [17, 23][:people]}), tmp_path)

@@ -185,6 +185,9 @@ def test_tables_of_one_name_in_two_folders_are_two(tmp_path):
         ({"question": "detect"}, "'ac'"),
         ({"question": "detect", "answered": "yes", "presented": "x"}, "'x'"),
         ({"question": "which", "outcome": "good"}, "'good'"),
+        ({"question": "rating", "answered": "good"}, "'good'"),
+        ({"question": "magnitude", "answered": "0"}, "above 0"),
+        ({"condition": "nan"}, "condition"),
     ],
 )
 def test_cells_that_cannot_be_read_are_named(changed, named, tmp_path):
@@ -221,6 +224,17 @@ def test_practice_and_catch_trials_are_left_out(tmp_path):
 def test_a_simulated_reader_is_told_first(tmp_path):
     rows = [row | {"answers_from": "simulated:0.4"} for row in ROWS]
     assert "no data about people" in analysed(rows, tmp_path).warnings[0]
+
+
+def test_choices_without_an_outcome_are_not_taken_for_wrong(tmp_path):
+    rows = [{"participant": "P1", "question": "odd", "presented": "1 1 2", "answered": "2"}]
+    with pytest.raises(InputError, match="outcome"):
+        analysed(rows, tmp_path)
+
+
+def test_known_columns_may_have_capitals(tmp_path):
+    rows = [{name.capitalize(): value for name, value in row.items()} for row in ROWS]
+    assert values(analysed(rows, tmp_path)) == values(analysed(ROWS, tmp_path))
 
 
 def test_capitals_are_no_other_letters(tmp_path):

@@ -57,6 +57,10 @@ def analyse(
     asked = asked_of(trials, plan)
     result = primary.compare(asked, plan) if plan.measure else None
     tables = {} if result is None else report.tables_of(result)
+    left_out = trials.left_out + (result.left_out if result else [])
+    known = {text.partition(": ")[0] for text in left_out}
+    known |= set(asked["participant"] if result is None else result.cells.index)
+    left_out += [f"{each}: no trial that counts" for each in trials.people if each not in known]
     people = asked["participant"].nunique()
     return report.Analysis(
         report.title_of(result, plan.question, people),
@@ -64,7 +68,7 @@ def analyse(
         tables | report.all_tables(trials, plan, asked),
         trials.warnings + plan.departures + (result.warnings if result else []),
         trials.notes,
-        trials.left_out + (result.left_out if result else []),
+        left_out,
         methods(trials, result),
         trials.sources,
     )

@@ -14,23 +14,18 @@ MEANINGS = dict(read_csv(Path(__file__).with_name("columns.csv")).rows)
 
 def codebook(tables: dict[str, DataFrame]) -> DataFrame:
     """Return a row for each column of each table: its meaning, and its values if they are few."""
-    meanings = MEANINGS | _of_sessions()
+    from vbraille.sessions.record.trials import COLUMNS
+
+    of_trials = MEANINGS | {name: column.meaning for name, column in COLUMNS.items()}
     rows = []
     for name, table in tables.items():
-        own = meanings if name == "trials" else MEANINGS
-        for column in table:
+        own = of_trials if name == "trials" else MEANINGS
+        for column in map(str, table):
             known = table[column].dropna().unique()
             text = table[column].dtype.kind not in "fiub" and len(known) <= MOST_VALUES
             values = "; ".join(sorted(map(str, known))) if text else ""
-            meaning = own.get(str(column)) or _other(name, str(column))
-            rows.append((name, str(column), meaning, values))
+            rows.append((name, column, own.get(column) or _other(name, column), values))
     return DataFrame(rows, columns=["table", "column", "meaning", "values"])
-
-
-def _of_sessions() -> dict[str, str]:
-    from vbraille.sessions.record.trials import COLUMNS
-
-    return {name: column.meaning for name, column in COLUMNS.items()}
 
 
 def _other(table: str, column: str) -> str:

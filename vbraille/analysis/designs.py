@@ -155,19 +155,18 @@ def _corrected(rows: list[dict]) -> DataFrame:
 def simple_effects(cells: DataFrame, groups: Series | None = None) -> DataFrame:
     """Test the other factors at each level of each factor; p is corrected among all rows."""
     whole = cells.dropna()
-    found = []
     factors = list(whole.columns.names) if levels_of(whole) else []
+    parts = []
     for factor in factors if len(factors) > 1 or groups is not None else []:
         for level in whole.columns.unique(factor):
             at = whole[[level]] if len(factors) == 1 else whole.xs(level, axis=1, level=factor)
-            found.append(compare(at, groups)[0].assign(at=f"{factor} {level}"))
+            parts.append((f"{factor} {level}", at, groups))
     if groups is not None and factors:
         for level, people in groups.loc[whole.index].groupby(groups, observed=True):
-            at = whole.loc[people.index]
-            found.append(compare(at)[0].assign(at=f"{groups.name} {level}"))
-    tables = [table for table in found if "p" in table]
-    if not tables:
-        return DataFrame()
-    made = pd.concat(tables, ignore_index=True).drop(columns="p_holm")
-    made.insert(0, "at", made.pop("at"))
-    return _corrected(made.to_dict("records"))
+            parts.append((f"{groups.name} {level}", whole.loc[people.index], None))
+    rows = [
+        {"at": name} | row
+        for name, at, own in parts
+        for row in compare(at, own)[0].drop(columns="p_holm", errors="ignore").to_dict("records")
+    ]
+    return _corrected(rows)

@@ -105,14 +105,9 @@ def detections(trials: DataFrame, keys: list[str]) -> DataFrame:
     d_prime = stats.d_prime_differencing if differ else stats.d_prime
     hit_rate = stats.hautus_rate(table["hits"], table["signals"])
     false_rate = stats.hautus_rate(table["false_alarms"], table["noises"])
-    made = np.where(table["noises"] > 0, d_prime(hit_rate, false_rate), np.nan)
-    return table.assign(d_prime=made)
-
-
-def _d_primes(trials: DataFrame, keys: list[str]) -> DataFrame:
-    made = detections(trials, keys).set_index(keys)["d_prime"]
-    why = "no d′, as no trial had nothing to detect"
-    return DataFrame({"value": made, "why": np.where(made.isna(), why, "")})
+    known = table["noises"] > 0
+    table["d_prime"] = np.where(known, d_prime(hit_rate, false_rate), np.nan)
+    return table.assign(why=np.where(known, "", "no d′, as no trial had nothing to detect"))
 
 
 def level_of(trials: DataFrame) -> str:
@@ -207,7 +202,7 @@ MEASURES = {
     ),
     "threshold": Measure("threshold", PLAIN, ("detect", *CHOICES, STRINGS),
                          _with_why("threshold", thresholds)),
-    "d_prime": Measure("d′", PLAIN, ("detect", "same-different"), _d_primes),
+    "d_prime": Measure("d′", PLAIN, ("detect", "same-different"), _with_why("d_prime", detections)),
     "preferred": Measure("preferred value", PLAIN, ("which",),
                          _with_why("preferred", preferences)),
     "rating": Measure("rating", PLAIN, ("rating",), _means(_answered, "no number")),

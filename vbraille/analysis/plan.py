@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.analysis.measures import MEASURES, Measure, level_of, usual_measure
+from vbraille.analysis.measures import CHOICES, MEASURES, Measure, level_of, usual_measure
 from vbraille.analysis.read import Trials, caught, in_order
 from vbraille.analysis.tables import taken_s
 from vbraille.errors import InputError
@@ -138,6 +138,12 @@ def _check(plan: Plan, asked: DataFrame) -> None:
                 f"measure {plan.measure!r} is not of the question {plan.question}; known: "
                 f"{', '.join(known) or 'none'}"
             )
+    untold = asked["outcome"].isna() & (plan.question in CHOICES)
+    if untold.any() and plan.measure in ("right", "threshold", "duration"):
+        raise InputError(
+            f"{untold.sum()} answers to {plan.question} have neither outcome nor correct, so that "
+            f"it is not known whether they are right"
+        )
     for name in plan.factors:
         if name not in asked:
             raise InputError(f"there is no column {name!r} to compare by")
@@ -176,11 +182,6 @@ def leave_out(trials: Trials, plan: Plan) -> None:
             trials.left_out.append(f"{person}: {100 * share:.0f} % of catch trials right")
             frame = frame[frame["participant"] != person]
     frame = frame[~caught(frame)]
-    if "analysed" in frame:
-        kept = ~frame["analysed"].eq(0)
-        if not kept.all():
-            trials.notes.append(f"{(~kept).sum()} trials are marked as not analysed, and left out")
-        frame = frame[kept]
     taken = taken_s(frame)
     fast = taken < plan.too_fast_s
     slow = taken > plan.too_slow_s

@@ -277,7 +277,7 @@ def _say_pairs(result: Result) -> list[str]:
     """Say each difference: it is shown where Holm's p is at most 0.05."""
     made = []
     sign = "divided by" if result.measure.scale == LOGS else "less"
-    for row in result.pairs.to_dict("records"):
+    for row in result.pairs.to_dict("records") if len(result.cells) else []:
         text = f"{row['first']} {sign} {row['second']}: "
         text += _difference(result.measure, row["value"])
         if row["note"]:

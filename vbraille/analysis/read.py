@@ -38,6 +38,8 @@ USUAL = {
     "condition": "all", "protocol": "", "block": np.nan, "trial": np.nan, "question": None,
     "string_set": None, "outcome": None, "correct": np.nan, "practice": 0, "catch": None,
 }  # fmt: skip
+KNOWN = {*NEEDED, *NUMBERS, *USUAL}  # columns, in capitals or not
+NUMERIC = ("rating", "magnitude", "adjust")
 SIGNALS = {"detect": ("yes", "no"), "same-different": ("different", "same")}
 GOOD = ("right", "hit", "correct rejection")
 OUTCOMES = (*GOOD, "wrong", "miss", "false alarm")
@@ -58,6 +60,8 @@ class Trials:
         in their order.
     notes, warnings
         Sentences on what was left out or changed, and what a reader must know first.
+    people
+        Everyone of whom there is a row.
     left_out
         People who are left out, each with the reason.
     sources
@@ -69,6 +73,7 @@ class Trials:
     frame: DataFrame
     notes: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    people: list[str] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
     sources: list[str] = field(default_factory=list)
     contents: list[Content] = field(default_factory=list)
@@ -102,6 +107,7 @@ def read_trials(
     trials.frame = trials.frame.reset_index(drop=True)
     _fill(trials)
     _join_names(trials, ["participant", "condition"])
+    trials.people = sorted(trials.frame["participant"].unique(), key=natural)
     _drop_unanswered(trials)
     _read_answers(trials)
     if protocol is not None:
@@ -138,7 +144,8 @@ def _load(path: Path, name: str, trials: Trials) -> DataFrame:
         cells = [{key: str(cell) for key, cell in row.items()} for row in rows(path)]
         return DataFrame(cells, dtype=object).assign(session=name)
     sheet = parse_csv(data, name)
-    table = DataFrame(sheet.rows, sheet.lines, list(sheet.columns), dtype=object)
+    columns = [each.lower() if each.lower() in KNOWN else each for each in sheet.columns]
+    table = DataFrame(sheet.rows, sheet.lines, columns, dtype=object)
     for column in NEEDED:
         if column not in table:
             raise InputError(f"{name} has no column {column}; it has {', '.join(table)}")
@@ -250,11 +257,13 @@ def _fill(trials: Trials) -> None:
     if unknown:
         raise InputError(f"unknown question {unknown[0]!r}; known: {', '.join(QUESTIONS)}")
     for name in ("participant", "condition", "session", "presented"):
-        holes = int(frame[name].isna().sum())
-        if holes:
+        missing = frame[name].isna()
+        if name in ("participant", "condition"):  # letters that are presented may spell nan
+            missing |= frame[name].str.casefold().isin(map(str.casefold, MISSING))
+        if missing.any():
             raise InputError(
-                f"{name} is missing in {holes} rows; {', '.join(sorted(MISSING)[1:])} and an empty "
-                f"cell name nothing"
+                f"{name} is missing in {missing.sum()} rows; an empty cell and "
+                f"{', '.join(sorted(MISSING)[1:])} name nothing"
             )
 
 
@@ -303,7 +312,13 @@ def _read_answers(trials: Trials) -> None:
     if odds:
         trials.notes.append(f"correct disagrees with the answer in {odds} rows: answers count")
     for question, rows in frame[~strings].groupby("question"):
-        if question in SIGNALS:
+        if question in NUMERIC:
+            numbers = to_number(rows["answered"])
+            wrong = rows["answered"][numbers.isna() | ((numbers <= 0) & (question == "magnitude"))]
+            if len(wrong):
+                above = " above 0" if question == "magnitude" else ""
+                raise InputError(f"answered is {wrong.iloc[0]!r}; a {question} is a number{above}")
+        elif question in SIGNALS:
             frame.loc[rows.index, "outcome"] = _detected(rows, *SIGNALS[str(question)])
         else:
             scored = rows["correct"].map({1: "right", 0: "wrong"})

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import special
+from scipy import optimize, special
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -134,22 +134,21 @@ def d_prime(hit_rate: ArrayLike, false_rate: ArrayLike) -> Floats:
     return special.ndtri(hit_rate) - special.ndtri(false_rate)
 
 
-def d_prime_differencing(hit_rate: ArrayLike, false_rate: ArrayLike) -> Floats:
+@np.vectorize(otypes=[float])
+def d_prime_differencing(hit_rate: float, false_rate: float) -> float:
     """Return d′ of same and different, judged by the difference (Macmillan and Creelman 2005).
 
     It is 0 where no more hits were given than false alarms.
     """
-    hit_rate, false_rate = np.broadcast_arrays(hit_rate, false_rate)
+    if hit_rate <= false_rate:
+        return 0.0
     criterion = -np.sqrt(2) * special.ndtri(false_rate / 2)
-    low = np.zeros(hit_rate.shape)
-    high = np.full(hit_rate.shape, LARGEST_D)
-    for _ in range(60):  # halves the interval: the share of hits grows with d′
-        middle = (low + high) / 2
-        hits = special.ndtr((middle - criterion) / np.sqrt(2))
-        hits += special.ndtr((-middle - criterion) / np.sqrt(2))
-        low = np.where(hits < hit_rate, middle, low)
-        high = np.where(hits < hit_rate, high, middle)
-    return np.where(hit_rate > false_rate, (low + high) / 2, 0.0)
+
+    def excess(d: float) -> float:
+        beyond = np.array([d - criterion, -d - criterion])
+        return float(special.ndtr(beyond / np.sqrt(2)).sum() - hit_rate)
+
+    return float(optimize.brentq(excess, 0, LARGEST_D))
 
 
 @QUIET

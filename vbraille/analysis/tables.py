@@ -189,7 +189,6 @@ def information(counts: DataFrame) -> dict[str, float]:
         "presented": counts.to_numpy().sum(),
         "accuracy": accuracy,
         "kappa": (accuracy - chance) / (1 - chance) if chance < 1 else np.nan,
-        "presented_bits": -(shown * np.log2(shown)).sum(),
         "transmitted_bits": (shares[known] * surprise).sum(),
     }
 
