@@ -499,7 +499,7 @@ class Runner:
         self._free_s = self.now_s
         if sure is not None:
             self.log("confidence", confidence=sure, **_numbered(line))
-            self.say(f"confidence: {self.name}, {sure}")
+            self.say(f"rated: {self.name}, confidence {sure}")
         elif self.progress.lacks_confidence(trial):
             self._ask_confidence(trial)
 
@@ -519,7 +519,7 @@ class Runner:
             except ValueError as error:
                 self._refuse(error, line)
         self.log("confidence", confidence=sure, **_numbered(line))
-        self.say(f"confidence: {self.name}, {sure}")
+        self.say(f"rated: {self.name}, confidence {sure}")
         self._free_s = self.now_s
 
     def _asked(self, what: Any) -> Asked:
