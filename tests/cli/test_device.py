@@ -111,7 +111,7 @@ def test_a_device_is_described_in_lines_and_as_json(spec, call):
     assert all(re.fullmatch(r"[a-z ]+: .+", line) for line in lines)
     told = json.loads(call("device", "info", spec, "--json").out)
     assert (told["display"]["rows"], told["display"]["columns"]) == (1, 3)
-    kinds = json.loads(call("device", "list", "--json").out)["kinds"]
+    kinds = json.loads(call("device", "list", "--json").out)["drivers"]
     assert {"sim", "serial", "latero"} <= {kind["kind"] for kind in kinds}
 
 

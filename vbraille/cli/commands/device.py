@@ -29,7 +29,7 @@ def command() -> None:
 @command.command("list", epilog="Example: vbraille device list")
 @options.json
 def list_ports(json: bool) -> None:
-    """List the serial ports, and the kinds of devices."""
+    """List the serial ports, and the kinds of devices that drivers are installed for."""
     from serial.tools import list_ports as ports
 
     from vbraille.devices.registry import drivers
@@ -45,7 +45,7 @@ def list_ports(json: bool) -> None:
     ]
     kinds = [{"kind": kind, "module": module} for kind, module in drivers()]
     if json:
-        print_json({"ports": rows, "kinds": kinds})
+        print_json({"ports": rows, "drivers": kinds})
         return
     for row in rows:
         named = [row["name"] or "no name", row["id"] and f"id {row['id']}"]
@@ -54,7 +54,7 @@ def list_ports(json: bool) -> None:
     if not rows:
         say("port: none; plug the device in")
     for kind in kinds:
-        say(f"kind: {kind['kind']}, {kind['module']}")
+        say(f"driver: {kind['kind']}, of {kind['module']}")
 
 
 @command.command(epilog="Example: vbraille device info serial:/dev/ttyACM0")
