@@ -19,7 +19,6 @@ from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.planning.values import Look
 from vbraille.toml import which
-from vbraille.wording import setting
 
 PSEUDONYM = "[A-Za-z0-9][A-Za-z0-9_-]{0,31}"
 Placed = tuple[str, str]  # an item, and the condition in which it is shown
@@ -134,9 +133,7 @@ def _number(participant: str) -> int:
     """Return the last number in a pseudonym, which chooses the group and the order."""
     numbers = re.findall(r"\d+", participant)
     if not numbers:
-        raise InputError(
-            f"{participant} has no number to choose the order by; give {setting('order')}"
-        )
+        raise InputError(f"{participant} has no number to choose the order by; give an order")
     return int(numbers[-1])
 
 
