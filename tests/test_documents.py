@@ -24,7 +24,7 @@ _OPTION = re.compile(r"--[a-z][a-z-]*")
 _FILE = re.compile(r"(?:vbraille|tests|texts|docs)/[\w./-]*\w/?")
 _CLASS = re.compile(r"^class ([A-Z]\w*)", re.MULTILINE)
 _ALIAS = re.compile(r"^([A-Z]\w*) = ", re.MULTILINE)
-_MODULE = re.compile(r"(?<![-/\w])vbraille(?!\.h\b)(?:\.[A-Za-z_]\w*)+")
+_MODULE = re.compile(r"(?<![/-])vbraille(?:\.[A-Za-z_]\w*)+")
 
 
 def of_each(pages):
