@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import msgspec
 import numpy as np
 
 from vbraille.analysis import tables
@@ -118,8 +118,7 @@ class Analysis:
         files["codebook.csv"] = _csv(codebook(tables))
         figures = draw(self.result, self.tables)
         files |= {f"figures/{name}": content for name, content in figures.items()}
-        results = json.dumps(self.to_json(), ensure_ascii=False, indent=1)
-        files["results.json"] = f"{results}\n".encode()
+        files["results.json"] = msgspec.json.encode(self.to_json())
         files["report.html"] = self._page(list(figures)).encode()
         write_folder(Path(folder), files)
 
@@ -145,7 +144,7 @@ def _with_index(name: str, table: DataFrame) -> DataFrame:
 
 
 def _records(table: DataFrame) -> list[dict[str, Any]]:
-    return json.loads(table.to_json(orient="records", double_precision=15))
+    return msgspec.json.decode(table.to_json(orient="records", double_precision=15))
 
 
 def _shown(caption: str, table: DataFrame) -> dict[str, Any]:

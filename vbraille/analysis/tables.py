@@ -39,9 +39,9 @@ def places(trials: DataFrame, keys: list[str] = CELL) -> DataFrame:
     whole = trials[lengths == trials["answered"].str.len()]
     times = lengths[whole.index].to_numpy()
     each = DataFrame({key: whole[key].repeat(times) for key in keys}).reset_index(drop=True)
-    for column in ("presented", "answered"):
-        each[column] = pd.Categorical(list("".join(whole[column])))
-    return each.assign(right=each["presented"].astype(str) == each["answered"].astype(str))
+    shown, said = (np.array(list("".join(whole[name]))) for name in ("presented", "answered"))
+    each["presented"], each["answered"] = pd.Categorical(shown), pd.Categorical(said)
+    return each.assign(right=shown == said)
 
 
 def durations(trials: DataFrame) -> Series:
