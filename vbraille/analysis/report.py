@@ -18,7 +18,7 @@ from vbraille.analysis.measures import (
     preferences,
     thresholds,
 )
-from vbraille.analysis.primary import Result, people, plain
+from vbraille.analysis.primary import Result, cell_words, people, plain
 from vbraille.analysis.read import SIGNALS, STRINGS, Trials
 from vbraille.analysis.templates import render
 from vbraille.files import write_folder
@@ -150,8 +150,7 @@ def _records(table: DataFrame) -> list[dict[str, Any]]:
 def _shown(caption: str, table: DataFrame) -> dict[str, Any]:
     """Return a table as the page shows it: as text, and its first rows."""
     more = f" (first {MOST_ROWS} of {len(table)} rows)" if len(table) > MOST_ROWS else ""
-    full = table.loc[:, [bool(table[name].astype(str).str.strip().any()) for name in table]]
-    full = full.dropna(axis=1, how="all")
+    full = table.replace("", np.nan).dropna(axis=1, how="all").fillna("")
     return {
         "caption": caption + more,
         "columns": [str(name).replace("_", " ") for name in full],
@@ -225,8 +224,7 @@ def string_tables(trials: DataFrame) -> dict[str, DataFrame]:
 def tables_of(result: Result) -> dict[str, DataFrame]:
     """Return the tables of a comparison, by the names of their files."""
     cells = result.cells.copy()
-    if cells.shape[1] > 1:
-        cells.columns = [", ".join(name) if isinstance(name, tuple) else name for name in cells]
+    cells.columns = [cell_words(name) for name in cells]
     if result.groups is not None:
         cells.insert(0, str(result.groups.name), result.groups)
     made = {
