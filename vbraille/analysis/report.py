@@ -240,6 +240,6 @@ def tables_of(result: Result) -> dict[str, DataFrame]:
 def title_of(result: Result | None, question: str, count: int) -> str:
     """Return the title: what was measured, and of how many people."""
     what = result.measure.name if result else f"answers to {question}"
-    tested = people(len(result.cells)) if result else people(count)
+    tested = people(len(result.cells) if result else count)
     first = what[0].upper() if what[1].isalpha() else what[0]
     return f"{first}{what[1:]}, {tested}"
