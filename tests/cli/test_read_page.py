@@ -45,28 +45,3 @@ def test_without_a_height_one_line_is_shown_wherever_the_array_is(call, letters)
 def test_a_slider_becomes_a_plane(call, letters):
     said = call("read", letters, *FAST, "--height", "60", "--travel", "113", "--straying", "free")
     assert (said.code, "page: line 5" in said.out) == (0, True)
-
-
-@pytest.mark.parametrize(
-    ("options", "says"),
-    [
-        (("--height", "-1"), "--height is -1 mm; it must be 0 to 10000 mm"),
-        (("--band", "1"), "--band is 1; it must be 0 to 0.9"),
-        (("--band", "nan"), "--band is nan; it must be 0 to 0.9"),
-    ],
-)
-def test_what_no_page_can_be(call, letters, options, says):
-    said = call("read", letters, *options)
-    assert (said.code, said.err) == (2, f"vbraille: {says}\n")
-
-
-def test_settings_say_how_a_finger_strays(call, tmp_path):
-    path = tmp_path / "settings.toml"
-    path.write_text('[read]\nstraying = "free"\nband = 0.5\n')
-    said = call("settings", "--settings", path, "--band", "0.1")
-    assert "straying: free (settings.toml line 2)" in said.out
-    assert "band: 0.1 (option)" in said.out
-    path.write_text("[read]\nband = 2.0\n")
-    said = call("settings", "--settings", path)
-    assert said.code == 2
-    assert "band" in said.err

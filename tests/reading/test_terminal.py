@@ -1,5 +1,6 @@
 """Reading at a terminal, as a reader has it: keys are typed, sentences are read."""
 
+import os
 import shutil
 import signal
 import sqlite3
@@ -11,6 +12,7 @@ import pytest
 from tests.reading.terminal import PROGRAM, Terminal
 from tests.tiers import heavy
 from vbraille.reading.commands import Where, bindings
+from vbraille.testing import simulated_controller
 
 BOOK = "tests/translate/documents/files/pandoc-3.epub"
 TEXT = "texts/english.txt"
@@ -117,6 +119,20 @@ def test_a_book_goes_on_where_it_was_closed_and_a_changed_one_near_it(tmp_path):
     assert "no books yet" in run("books").stdout
 
 
+def test_options_of_a_book_are_kept_and_a_language_that_was_chosen(call, tmp_path):
+    book = tmp_path / "book.txt"
+    book.write_text("un deux")
+    read = ("read", str(book), "--hand", "sweep:900", "--echo", "none")
+    assert "French" in call(*read, "--language", "fr").err
+    assert "French" in call(*read).err
+    assert "English" in call(*read, "--language", "en").err
+    with Terminal("read", str(book), *STILL) as terminal:
+        terminal.press("y", "d", "e", "enter")
+        terminal.press("q")
+        terminal.end()
+    assert "German" in call("books", "1").err
+
+
 def test_a_file_that_changes_while_it_is_read_is_read_anew(tmp_path):
     book = tmp_path / "book.txt"
     shutil.copy(TEXT, book)
@@ -142,6 +158,31 @@ def test_standard_input_is_read_with_keys_from_the_terminal():
     script = f"cat {TEXT} | {PROGRAM} read - --hand slow --cues none"
     with Terminal(program=["sh", "-c", script]) as terminal:
         assert terminal.press("n") == "line 2"
+        terminal.press("q")
+        assert terminal.end() == 0
+
+
+def test_a_text_is_read_on_a_controller_at_a_port():
+    with simulated_controller(hand="sweep:200") as spec:
+        done = run("read", TEXT, "--device", spec, "--lines", "1-2", "--echo", "text")
+        assert done.returncode == 0, done.stderr
+        assert [line for line in done.stdout.splitlines() if line.startswith("line: ")] == [
+            "line: 1", "line: 2",
+        ]  # fmt: skip
+        assert "late ticks" in done.stdout.splitlines()[-1]
+
+
+def test_a_host_that_dies_is_said_and_is_begun_again_by_a_key():
+    with Terminal("read", TEXT, *STILL, "--no-places") as terminal:
+        found = subprocess.run(
+            ["pgrep", "-P", str(terminal.pid)], capture_output=True, text=True, check=True
+        )
+        for pid in found.stdout.split():
+            os.kill(int(pid), signal.SIGKILL)
+        terminal.wait("space begins again")
+        assert "space begins again" in terminal.press("n")
+        assert "reading" in terminal.press("space", wait_s=1.0)
+        assert "line 2" in terminal.press("n")
         terminal.press("q")
         assert terminal.end() == 0
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import uuid
-from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape
@@ -104,44 +103,14 @@ def _brf_line(row: bytes) -> bytes:
     return masks.translate(_BRF) + b"\n"
 
 
-@dataclass(frozen=True, slots=True)
-class Imprint:
-    """Title and other facts that a written book says of itself.
-
-    Parameters
-    ----------
-    title
-        Title of the book, or its name.
-    language
-        Tag of its language, such as "fr"; empty if unknown.
-    identifier
-        Name that no other book has.
-    """
-
-    title: str
-    language: str
-    identifier: str
-
-    @classmethod
-    def of_file(cls, title: str, language: str, sha256: str, *made_with: object) -> Imprint:
-        """Make the imprint of a book that is written from a file.
-
-        Parameters
-        ----------
-        title, language
-            As in the class.
-        sha256
-            SHA-256 of the file.
-        made_with
-            What else decides on the cells, such as the table and the page's size; the same file
-            written in the same way has the same identifier.
-        """
-        whole = hashlib.sha256(repr((sha256, *made_with)).encode()).digest()
-        return cls(title, language, f"urn:uuid:{uuid.UUID(bytes=whole[:16], version=4)}")
+def identifier(sha256: str, *made_with: object) -> str:
+    """Name that a written book has, and no other: of its file, and what decides on its cells."""
+    whole = hashlib.sha256(repr((sha256, *made_with)).encode()).digest()
+    return f"urn:uuid:{uuid.UUID(bytes=whole[:16], version=4)}"
 
 
 def pef(
-    pages: Iterable[Rows], imprint: Imprint, columns: int, rows: int, *, rowgap: int = 0
+    pages: Iterable[Rows], head: dict[str, str], columns: int, rows: int, *, rowgap: int = 0
 ) -> Iterator[bytes]:
     """Write pages as PEF 2008-1, in one volume of one section, on one side of the paper.
 
@@ -149,21 +118,16 @@ def pef(
     ----------
     pages
         Pages, at least one.
-    imprint
-        What the file says of itself.
+    head
+        What the file says of itself: its ``identifier``, ``title`` and ``language``.
     columns, rows
         Numbers of cells in a row and of rows on a page that the largest has at most.
     rowgap
         Distance between rows, in distances of dots; eight-dot braille needs 1.
     """
-    head = {
-        "format": "application/x-pef+xml",
-        "identifier": imprint.identifier,
-        "title": imprint.title,
-        "language": imprint.language,
-    }
+    said = {"format": "application/x-pef+xml", **head}
     meta = "".join(
-        f"      <dc:{name}>{escaped(value)}</dc:{name}>\n" for name, value in head.items() if value
+        f"      <dc:{name}>{escaped(value)}</dc:{name}>\n" for name, value in said.items() if value
     )
     yield (
         f'<?xml version="1.0" encoding="UTF-8"?>\n<pef version="2008-1" xmlns="{PEF_NAMESPACE}">\n'

@@ -86,7 +86,7 @@ def beside_shown(
         rows_shown(style, display),
         start_mm - pitch_mm,
         _BESIDE_MM,
-        [base64.b64encode(row).decode() for row in rows],
+        [base64.b64encode(row.tobytes()).decode() for row in rows],
     )
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _STILL_S = 10.0
 _STILL_MM = 0.5  # a hand that moves less is still
 _REFUSED_S, _HOPELESS_S = 1.0, 10.0  # without a frame taken
-_TURNS, _SAME_MM = 3, 1.0  # so many turns at the same place are an obstacle
+_TURNS, _SAME_MM, _NEAR_MM = 3, 1.0, 5.0  # so many turns at the same place are an obstacle
 _LEAST_WAY_MM = 20.0  # a hand that has gone less waits at the left
 _FILTER_HZ = 200.0  # above this the devices' filters take texture away (Lévesque 2009, 6.2)
 # Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
@@ -57,11 +57,9 @@ class HandWatch:
         self._line, self._by_hand, self._otherwise = line, by_hand, otherwise
         self._said: set[str] = set()
         self._since_s = self._refused_s = -1.0  # below 0: not now
-        self._at_mm = np.nan
-        self._farthest_mm = self._edge_mm = -np.inf
-        self._rightwards = True
-        self._turns_mm: list[float] = []
-        self._backs_mm: list[float] = []
+        self._at_mm = self._edge_mm = np.nan
+        self._way = 0  # 1 to the right, -1 to the left
+        self._turns_mm: list[float] = []  # away from the end that the hand is to come to
 
     def rest(self) -> None:
         """Note that the array is to rest: what went before does not count."""
@@ -77,30 +75,37 @@ class HandWatch:
         patient
             Whether the hand may do as it likes, so that only the device is watched.
         """
-        now_s = int(ticks["time_ns"][-1]) / 1e9
-        yield from self._watch_device(bool(int(ticks["flags"][-1]) & HELD), now_s)
-        if patient or not self._by_hand or self._refused_s >= 0:
-            self._since_s = -1.0
-            return
-        x_mm = ticks["x_mm"]
-        if self._since_s < 0 or not (np.abs(x_mm - self._at_mm) <= _STILL_MM).all():
-            self._at_mm = float(x_mm[-1])
-            if self._since_s < 0 or not np.isnan(x_mm).all():
-                self._since_s = now_s
-        if now_s - self._since_s > _STILL_S and not int(ticks["flags"][-1]) & _PLACING:
-            yield from self._once("still", self._still(reached=reached))
-        if reached:
-            yield from self._watch_return(x_mm)
-        else:
-            yield from self._watch_turns(x_mm)
-
-    def _watch_device(self, held: bool, now_s: float) -> Iterator[str]:
-        if not held:
+        now_s, flags = int(ticks["time_ns"][-1]) / 1e9, int(ticks["flags"][-1])
+        if flags & HELD:
+            yield from self._refused(now_s)
+        elif self._refused_s >= 0:
             self._refused_s = -1.0
             if "refused" in self._said:
                 self._said.remove("refused")
                 yield f"device: takes frames again; {self._line} is felt from here on"
+        if patient or not self._by_hand or flags & (HELD | _PLACING):
+            self._since_s = -1.0
             return
+        x_mm = ticks["x_mm"]
+        if self._since_s < 0 or (np.abs(x_mm - self._at_mm) > _STILL_MM).any():
+            self._since_s, self._at_mm = now_s, float(x_mm[-1])
+        if now_s - self._since_s > _STILL_S:
+            yield from self._once("still", f"waiting: {self._still(reached=reached)}")
+        self._turn(float(x_mm[-1]), reached=reached)
+        last = self._turns_mm[-_TURNS:]
+        spread_mm = max(last) - min(last) if len(last) == _TURNS else np.inf
+        if spread_mm <= _NEAR_MM:  # a person who reads a word again turns here and there
+            at_mm, stop_mm = self._turns_mm[-1], self._home_mm - HOME_MM
+            way = f"the finger turns at {at_mm:.0f} mm each time"
+            goal = f"the left stop is at {stop_mm:.1f} mm" if reached else self._to_end
+            yield from self._once("turned", f"waiting: {way}, and {goal}; or {self._otherwise}")
+            if spread_mm <= _SAME_MM:
+                self.hopeless = (
+                    f"{self._line} is not read to its end: {way}, and {goal}; see what is in the "
+                    f"carriage's way, or give a shorter {setting('travel')}"
+                )
+
+    def _refused(self, now_s: float) -> Iterator[str]:
         if self._refused_s < 0:
             self._refused_s = now_s
         if now_s - self._refused_s >= _REFUSED_S:
@@ -110,64 +115,22 @@ class HandWatch:
                 f"on, and {self._line} goes on",
             )
         if now_s - self._refused_s >= _HOPELESS_S:
-            self.hopeless = (
-                f"the device has taken no frames for {_HOPELESS_S:g} s, and {self._line} was not "
-                f"felt to its end; switch it off and on, and read on from there"
-            )
+            self.hopeless = f"the device took no frames for {_HOPELESS_S:g} s; switch it off and on"
 
-    def _watch_turns(self, x_mm: NDArray[np.float64]) -> Iterator[str]:
-        """Note where the hand has turned back, each time that it is at the left again."""
-        self._farthest_mm = float(np.fmax(self._farthest_mm, np.fmax.reduce(x_mm)))
-        if not (x_mm <= self._home_mm).any():
-            return
-        if self._home_mm + _LEAST_WAY_MM < self._farthest_mm < self._end_mm:
-            self._turns_mm.append(self._farthest_mm)
-        self._farthest_mm = -np.inf
-        if len(self._turns_mm) < _TURNS:
-            return
-        at_mm = self._turns_mm[-1]
-        yield from self._once(
-            "turned",
-            f"waiting: the finger turns back at {at_mm:.0f} mm, and {self._line} ends at "
-            f"{self._end_mm:.0f} mm; read to its end and move back to the left, or "
-            f"{self._otherwise}",
-        )
-        if _same(self._turns_mm):
-            self.hopeless = (
-                f"{self._line} cannot be read to its end: the finger turns back at {at_mm:.0f} mm "
-                f"each time, and the line ends at {self._end_mm:.0f} mm; see what is in the "
-                f"carriage's way, or give a shorter {setting('travel')}"
-            )
+    def _turn(self, x_mm: float, *, reached: bool) -> None:
+        """Note where a hand turns before it is where it has to come to."""
+        if not self._way * (x_mm - self._edge_mm) < 0:  # on, or the first place
+            self._edge_mm = x_mm
+            self._way = self._way or 1
+        elif abs(x_mm - self._edge_mm) > _LEAST_WAY_MM:
+            short = self._edge_mm < self._end_mm / 2 if reached else self._edge_mm < self._end_mm
+            if short and self._way == (-1 if reached else 1):
+                self._turns_mm.append(self._edge_mm)
+            self._way, self._edge_mm = -self._way, x_mm
 
-    def _watch_return(self, x_mm: NDArray[np.float64]) -> Iterator[str]:
-        """Note where a hand that has read the line turns right before it is at the left stop."""
-        last_mm = float(x_mm[-1])
-        if self._rightwards:
-            self._edge_mm = float(np.fmax(self._edge_mm, np.fmax.reduce(x_mm)))
-            if last_mm < self._edge_mm - _LEAST_WAY_MM:
-                self._rightwards, self._edge_mm = False, last_mm
-            return
-        self._edge_mm = float(np.fmin(self._edge_mm, np.fmin.reduce(x_mm)))
-        if not last_mm > self._edge_mm + _LEAST_WAY_MM:
-            return
-        at_mm, self._edge_mm, self._rightwards = self._edge_mm, last_mm, True
-        if at_mm < self._end_mm / 2:
-            self._backs_mm.append(at_mm)
-        if not self._backs_mm:
-            return
-        stop_mm = self._home_mm - HOME_MM
-        yield from self._once(
-            "back",
-            f"waiting: {self._line} is read, and the finger turns right again at {at_mm:.1f} mm; "
-            f"the next line comes at the left stop, which is at {stop_mm:.1f} mm, or "
-            f"{self._otherwise}",
-        )
-        if _same(self._backs_mm):
-            self.hopeless = (
-                f"{self._line} is read and never done: the finger turns at {at_mm:.1f} mm each "
-                f"time, and the left stop is at {stop_mm:.1f} mm; see what is in the carriage's "
-                f"way, or that its driver says -span_mm / 2 at its left stop"
-            )
+    @property
+    def _to_end(self) -> str:
+        return f"{self._line} ends at {self._end_mm:.0f} mm; read to its end and move back"
 
     def _once(self, what: str, sentence: str) -> Iterator[str]:
         if what not in self._said:
@@ -176,26 +139,12 @@ class HandWatch:
 
     def _still(self, *, reached: bool) -> str:
         if np.isnan(self._at_mm):
-            return (
-                f"waiting: the device has not said for {_STILL_S:g} s where its carriage is; see "
-                f"that it is on and plugged in, or {self._otherwise}"
-            )
-        if reached:
-            return (
-                f"waiting: {self._line} is read; move back to the left and the next line comes, "
-                f"or {self._otherwise}"
-            )
-        return (
-            f"waiting: the finger is still at {max(self._at_mm, 0):.0f} mm, and {self._line} ends "
-            f"at {self._end_mm:.0f} mm; read to its end and move back to the left, or "
-            f"{self._otherwise}"
-        )
-
-
-def _same(turns_mm: list[float]) -> bool:
-    """Tell whether the last turns were at one place."""
-    last = turns_mm[-_TURNS:]
-    return len(last) == _TURNS and max(last) - min(last) <= _SAME_MM
+            said = f"the device has not told its place for {_STILL_S:g} s; see that it is on"
+        elif reached:
+            said = f"{self._line} is read; move back to the left"
+        else:
+            said = f"the finger is still at {max(self._at_mm, 0):.0f} mm, and {self._to_end}"
+        return f"{said}, or {self._otherwise}"
 
 
 def too_fast_note(speed_mm_s: float, style: BrailleStyle) -> str | None:

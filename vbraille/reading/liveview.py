@@ -68,7 +68,7 @@ class LiveOutput:
         self._drawer = ThreadPoolExecutor(1)
         self._drawn: dict[tuple[int, int], tuple[LoadedScene, Future[SceneShown]]] = {}
         self._scene: SceneShown | None = None
-        self._watched = 0
+        self._watched, self._failed = 0, False
 
     def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:  # noqa: ARG002 - cues are heard
         """Show a sentence."""
@@ -93,8 +93,12 @@ class LiveOutput:
             self._watched = self._device.starts
             self._view.watch(self._device.ring())
         self._polls += 1
-        if self._polls % _EVERY == 0:
-            self._view.tell(self._state(what))
+        if self._polls % _EVERY == 0 and not self._failed:
+            try:
+                self._view.tell(self._state(what))
+            except Exception as error:  # a fault of what is shown beside never ends a reading
+                self._failed = True
+                self._say(f"live view: stands still after a fault: {type(error).__name__}: {error}")
         found = (self._key(what, asked) for asked in self._view.take())
         return [key for key in found if key]
 

@@ -49,7 +49,7 @@ MELODIES = {
 }
 
 
-class Shown(Protocol):
+class Echoed(Protocol):
     """What outputs show; see `vbraille.reading.explored.Explored`."""
 
     @property
@@ -68,7 +68,7 @@ class Output(Protocol):
     def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:
         """Say a sentence, with a cue or without; an empty one is a cue alone."""
 
-    def show(self, what: Shown) -> None:
+    def show(self, what: Echoed) -> None:
         """Show what has come under the hand."""
 
     def close(self) -> None:
@@ -93,7 +93,7 @@ class Console:
         if sentence:
             print(f"{self._clear}{printable(sentence)}", flush=True)
 
-    def show(self, what: Shown) -> None:
+    def show(self, what: Echoed) -> None:
         """Print a line, as the echo says."""
         for sentence in what.echoed(self._echo):
             self.say(sentence)
@@ -142,7 +142,7 @@ class Signals:
         elif cue in MELODIES and sys.stderr.isatty():
             print("\a" * len(MELODIES[cue]), end="", file=sys.stderr, flush=True)
 
-    def show(self, what: Shown) -> None:
+    def show(self, what: Echoed) -> None:
         """Do nothing."""
 
     def sound(self, path: Path) -> None:
@@ -189,7 +189,7 @@ class Speech:
         """Stop what is being spoken, for something newer."""
         self._client.cancel()
 
-    def show(self, what: Shown) -> None:
+    def show(self, what: Echoed) -> None:
         """Speak the text of a line."""
         self.say(what.text)
 
@@ -243,7 +243,7 @@ class Behind:
         """Have a sentence said."""
         self._waiting.put(lambda output: output.say(sentence, cue))
 
-    def show(self, what: Shown) -> None:
+    def show(self, what: Echoed) -> None:
         """Have the text under the hand said, as it is now."""
         text = what.text
         self._waiting.put(lambda output: output.say(text))

@@ -223,10 +223,17 @@ class _Link:
                 self._wakes.wait(_RETRY_S)
                 self._wakes.clear()
 
-    def _words(self, error: Exception) -> str:
+    def _words(self, error: Any) -> str:
         where = f"at {self._host}" if self._host else "on this machine"
-        words = " ".join(str(error).split())
-        return f"BRLTTY {where} does not give its display ({words}); start it, or plug one in"
+        number = getattr(error, "brlerrno", None)
+        if number == self._brlapi.ERROR_AUTHENTICATION:
+            return (
+                f"BRLTTY {where} does not let you in; join the group that may read /etc/brlapi.key"
+            )
+        if isinstance(error, self._brlapi.ConnectionError):
+            return f"no BRLTTY answers {where}; start it, or give its address"
+        said = " ".join(str(error).split())
+        return f"BRLTTY {where} does not give the display: {said}"
 
     def _drive(self, connection: Any) -> None:
         """Show what is wanted, and take keys, as long as there is a display."""
@@ -247,7 +254,8 @@ class _Link:
                     if shown is None:
                         self._enter(connection)
                         self.width = columns
-                        self._tell(f"display: {name}, {columns} cells")
+                        title = f"{name} {_text(connection.modelIdentifier)}".rstrip()
+                        self._tell(f"display: {title}, {columns} cells")
                     shown = self._wanted
                     connection.writeDots(shown[:columns].ljust(columns * rows, b"\0"))
                 if shown is not None:

@@ -168,45 +168,34 @@ class Places:
 
     def __init__(self, path: Path | None, say: Callable[[str], None]) -> None:
         self._say, self._fault = say, ""
+        self._db = _connect(None)
+        if path is None:
+            return
         try:
             self._db = _connect(path)
-        except sqlite3.DatabaseError as error:
-            self._db = self._without(path, error)
+        except sqlite3.OperationalError as error:  # it cannot be written, or is another version's
+            say(f"places are not kept: {path}: {error}")
+        except sqlite3.DatabaseError:
+            aside = path.with_name(f"{path.name}.damaged-{time.strftime('%Y%m%d-%H%M%S')}")
+            path.rename(aside)
+            say(f"{path.name} is damaged; it is kept as {aside.name}, and a new one begins")
+            self._db = _connect(path)
         except OSError as error:
             say(f"places are not kept: {path}: {error.strerror}")
-            self._db = _connect(None)
-
-    def _without(self, path: Path | None, error: sqlite3.DatabaseError) -> sqlite3.Connection:
-        """Set a damaged file aside and begin anew; keep nothing beside another version's file."""
-        if path is None or isinstance(error, sqlite3.OperationalError):
-            self._say(f"places are not kept: {path}: {error}")
-            return _connect(None)
-        aside = path.with_name(f"{path.name}.damaged-{time.strftime('%Y%m%d-%H%M%S')}")
-        try:
-            path.rename(aside)
-            for name in ("-wal", "-shm"):
-                path.with_name(path.name + name).unlink(missing_ok=True)
-            self._say(f"{path.name} is damaged; it is kept as {aside.name}, and a new one begins")
-            return _connect(path)
-        except (OSError, sqlite3.Error):
-            self._say(f"places are not kept: {path}: {error}")
-            return _connect(None)
 
     def book(self, digest: str, path: Path, title: str) -> KeptBook:
         """What is kept of a book, found by its content, or by its path if that has changed."""
-        changed = False
-        if self.row("digest", digest) is None:
-            before = self.row("path", os.fsencode(path))
-            changed = before is not None
-            if before is not None:
-                self.write(before["digest"], digest=digest)
-            with suppress(sqlite3.Error):
-                self._db.execute("INSERT OR IGNORE INTO books (digest) VALUES (?)", (digest,))
+        known = self.row("digest", digest)
+        before = None if known else self.row("path", os.fsencode(path))
+        if before is not None:
+            self.write(before["digest"], digest=digest)
+        with suppress(sqlite3.Error):
+            self._db.execute("INSERT OR IGNORE INTO books (digest) VALUES (?)", (digest,))
         self.write(digest, path=os.fsencode(path), title=title, read_s=time.time())
         if self.row("digest", digest) is None:  # it cannot be written, which was said
             self._db = _connect(None)
             return self.book(digest, path, title)
-        return KeptBook(self, digest, changed=changed)
+        return KeptBook(self, digest, changed=before is not None)
 
     def listed(self) -> list[ListedBook]:
         """All books, the one that was read last first."""

@@ -280,49 +280,29 @@ def contents(reader: Reader) -> None:
     if not headings:
         reader.refuse("no headings")
         return
-    listed = list(enumerate(headings, 1))
-    if len(headings) > _MOST_LISTED:
-        top = min(each.level for each in headings)
-        listed = [(number, each) for number, each in listed if each.level == top]
-    here = [each.place for each in headings]
-    titles = [f"{number}: {each.title}, level {each.level}" for number, each in listed]
-    for title in titles[:_MOST_LISTED]:
-        reader.say(title)
+    titles = [f"{n}: {each.title}, level {each.level}" for n, each in enumerate(headings, 1)]
+    top = min(each.level for each in headings)
+    few = len(headings) <= _MOST_LISTED
+    for title, each in zip(titles, headings, strict=True):
+        if few or each.level == top:
+            reader.say(title)
 
     def answer(typed: str) -> None:
-        number, colon, _ = typed.partition(":")
-        if not typed.strip():
-            reader.say("cancelled")
-        elif number.strip().isdecimal() and (colon or not _like(typed)):
-            at = int(number)
-            if 1 <= at <= len(headings):
-                _go_to_heading(headings[at - 1])
-            else:
-                reader.refuse(f"{at} is not 1 to {len(headings)}")
+        number, words = typed.partition(":")[0].strip(), typed.strip().casefold()
+        if number.isdecimal():
+            found = headings[int(number) - 1 : int(number)]
         else:
-            found = _like(typed)
-            if len(found) == 1:
-                _go_to_heading(found[0])
-            elif found:
-                reader.say(f"{len(found)} headings: {'; '.join(each.title for each in found)}")
-                contents_again()
-            else:
-                reader.say(f"no heading {typed.strip()!r}", Cue.NOT_FOUND)
+            found = [each for each in headings if words and words in each.title.casefold()]
+        if len(found) == 1:
+            reader.jump(found[0].place, f"heading level {found[0].level}: {found[0].title}")
+        elif found:
+            reader.say(f"{len(found)} headings: {'; '.join(each.title for each in found)}")
+        else:
+            reader.say(f"no heading {typed.strip()!r}", Cue.NOT_FOUND)
 
-    def _like(typed: str) -> list:
-        words = " ".join(typed.casefold().split())
-        exact = [each for each in headings if each.title.casefold() == words]
-        return exact or [each for each in headings if words in each.title.casefold()]
-
-    def _go_to_heading(found) -> None:
-        reader.jump(found.place, f"heading level {found.level}: {found.title}")
-
-    def contents_again() -> None:
-        # Up and down go through the headings from the place of the reader on.
-        before = sum(place <= reader.place for place in here)
-        reader.ask("number or words of a heading", answer, [*titles[before:], *titles[:before]])
-
-    contents_again()
+    # Up and down go through the headings from the place of the reader on.
+    before = sum(each.place <= reader.place for each in headings)
+    reader.ask("number or words of a heading", answer, [*titles[before:], *titles[:before]])
 
 
 @command("say the headers of the table", "H", "e")

@@ -141,26 +141,21 @@ def _interval(
     knob: Knob, start: BrailleStyle, now: BrailleStyle, display: Display
 ) -> tuple[float, float]:
     """Least and largest value that is tried, as far as there is room for a cell."""
-    low, high = knob.low, knob.high
-    if knob.name == "contrast":
-        low = _LEAST_CONTRAST
+    low, high = _SHARES.get(knob.name, (_LEAST_CONTRAST if knob.name == "contrast" else 0.0, 1.0))
     if knob.name in _SHARES:
-        shares = _SHARES[knob.name]
-        low, high = (knob.nearest(round(knob.value(start) * share, 2)) for share in shares)
+        low, high = (knob.nearest(knob.value(start) * share) for share in (low, high))
     here = knob.value(now)
-    return _possible(knob, now, display, low, here), _possible(knob, now, display, high, here)
+    ways = ([round(end + (here - end) * n / 20, 2) for n in range(20)] for end in (low, high))
+    ends = [next((v for v in way if _fits(knob, now, display, v)), here) for way in ways]
+    return ends[0], ends[1]
 
 
-def _possible(knob: Knob, style: BrailleStyle, display: Display, end: float, here: float) -> float:
-    """Value nearest to an end that a style can have, on the way from there to its own."""
-    for n in range(21):
-        value = round(end + (here - end) * n / 20, 2)
-        try:
-            cells_per_line(_with(style, knob, value).geometry, display)
-        except InputError:
-            continue
-        return value
-    return here
+def _fits(knob: Knob, style: BrailleStyle, display: Display, value: float) -> bool:
+    try:
+        cells_per_line(_with(style, knob, value).geometry, display)
+    except InputError:
+        return False
+    return True
 
 
 class Tuning(Explored):

@@ -147,15 +147,14 @@ class Book:
             return own
         try:
             usual = find_table(language)
-            if any(usual == _usual(tag) for tag in known) or usual == own.name:
+            if usual in (own.name, *map(_named, known)):
                 return own
-            if self.grade is not None:
-                usual = _graded(language, self.grade, usual)
+            usual = _named(language, self.grade, usual)
             found = BrailleTable(usual, own.undefined)
             if found.eight_dots and not own.eight_dots:
                 six = six_dot_table(language)
                 return own if six is None else BrailleTable(six, own.undefined)
-            return next((t for t in self._tables.values() if t.name == usual), found)
+            return found
         except InputError:
             return own
 
@@ -305,20 +304,12 @@ def _within(marks: tuple[Mark, ...], start: int, stop: int) -> list[Mark]:
     ]
 
 
-def _usual(language: str) -> str:
-    """Name of the usual table of a language; empty if there is none."""
-    try:
-        return find_table(language)
-    except InputError:
-        return ""
-
-
-def _graded(language: str, grade: int, usual: str) -> str:
-    """Name of the table for a grade of a language, or the usual one."""
+def _named(language: str, grade: int | None = None, otherwise: str = "") -> str:
+    """Name of the table of a language and grade, or another if there is none."""
     try:
         return find_table(language, grade)
     except InputError:
-        return usual
+        return otherwise
 
 
 def _dots(cells: str) -> bytes:

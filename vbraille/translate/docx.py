@@ -22,6 +22,7 @@ from vbraille.translate.office import (
     put_picture,
     symbol,
     tag_of,
+    within,
 )
 from vbraille.translate.trees import Element
 
@@ -131,7 +132,7 @@ class _Reader:
         """Read the blocks of a body, of a cell or of a note."""
         flow = Flow(into)
         begun = Element("p")  # bookmarks and text of a paragraph whose own mark is deleted
-        for element in _within(holder, ("p", "tbl", "bookmarkStart")):
+        for element in within(holder, ("p", "tbl", "bookmarkStart"), _SKIPPED):
             if element.name == "bookmarkStart":
                 _put_bookmark(element, begun)
             elif element.name == "tbl":
@@ -164,7 +165,7 @@ class _Reader:
     def _table(self, element: Element) -> Element:
         """Read a table; a cell that goes on from the one above widens that."""
         table = Element("table")
-        rows = list(_within(element, ("tr",)))
+        rows = list(within(element, ("tr",), _SKIPPED))
         look = _find(element, "tblPr/tblLook") or Element("tblLook")
         bits = look.get("val", "0")
         old = int(bits, 16) >> 5 & 1 if bits.isalnum() and len(bits) == 4 and _is_hex(bits) else 0
@@ -177,7 +178,7 @@ class _Reader:
             column = whole(_value(row, "trPr/gridBefore"), 0)
             if column > 0:
                 line.add("td", colspan=str(column))
-            for cell in _within(row, ("tc",)):
+            for cell in within(row, ("tc",), _SKIPPED):
                 columns = max(whole(_value(cell, "tcPr/gridSpan"), 1), 1)
                 goes_on = _value(cell, "tcPr/vMerge", "restart") != "restart"
                 if goes_on and column in above:
@@ -391,15 +392,6 @@ def _look_of(holder: Element) -> Look:
                 named = element.get("ascii").lower().split(" ")[0]
                 font = named if named in FONTS else ""
     return Look(language, frozenset(on), frozenset(off - on), font)
-
-
-def _within(holder: Element, names: tuple[str, ...]) -> Iterator[Element]:
-    """Elements of some names in another, whatever holds them there."""
-    for element in holder.elements:
-        if element.name in names:
-            yield element
-        elif element.name not in _SKIPPED:
-            yield from _within(element, names)
 
 
 def _find(holder: Element, path: str) -> Element | None:

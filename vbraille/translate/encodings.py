@@ -113,16 +113,11 @@ def _by_bytes(content: bytes, name: str) -> str:
 
 
 def _wide(sample: bytes) -> str:
-    """UTF-16 or UTF-32 if zeros stand where a mostly Western text has them; otherwise nothing."""
-    if len(sample) < 2 or sample.count(0) * 3 <= len(sample):
+    """UTF-16 if zeros stand where a mostly Western text has them; otherwise nothing."""
+    odd, even = sample[1::2].count(0), sample[::2].count(0)
+    if (odd + even) * 3 <= len(sample) or min(odd, even) * 10 > len(sample):
         return ""
-    zeros = [sample[number::4].count(0) for number in range(4)]
-    quarter = len(sample) // 4
-    if min(zeros[2:]) > 0.9 * quarter and zeros[0] == 0:
-        return "utf-32-le"
-    if min(zeros[:2]) > 0.9 * quarter and zeros[3] == 0:
-        return "utf-32-be"
-    return "utf-16-le" if zeros[1] + zeros[3] > zeros[0] + zeros[2] else "utf-16-be"
+    return "utf-16-le" if odd > even else "utf-16-be"
 
 
 def binary_kind(sample: bytes) -> str | None:

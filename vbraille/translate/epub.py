@@ -16,6 +16,7 @@ from vbraille.errors import InputError
 from vbraille.translate.archive import MOST_MARKUP, Archive
 from vbraille.translate.blocks import Block, BlockKind, Mark, MarkKind
 from vbraille.translate.markup import Walker
+from vbraille.translate.tables import BrailleTable
 from vbraille.translate.trees import Element, read_tree
 from vbraille.wording import count as counted
 
@@ -297,20 +298,6 @@ def _with_entries(blocks: list[Block], contents: dict[str, tuple[int, str]]) -> 
 
 
 _FULL = chr(UNICODE_BLANK + 0x3F)  # for what is no braille
-_LETTERS = "abcdefghijklmnopqrstuvwxyz"
-# Unified English Braille without contractions, for the few words that are added to the markup.
-_SPELT = {
-    **dict(zip(_LETTERS, Cells.from_brf(_LETTERS).to_unicode(), strict=True)),
-    **dict(zip("1234567890", Cells.from_brf("ABCDEFGHIJ").to_unicode(), strict=True)),
-    **dict(zip(".,:;?!-'", "⠲⠂⠒⠆⠦⠖⠤⠄", strict=True)),
-    "(": "⠐⠣",
-    ")": "⠐⠜",
-    "[": "⠨⠣",
-    "]": "⠨⠜",
-    "•": "⠸⠲",
-    "*": "⠐⠔",
-    "/": "⠸⠌",
-}
 _SPACES = re.compile("[\t\u00a0\u2000-\u200a\u202f\u3000]")
 
 
@@ -321,16 +308,8 @@ class _Spelling:
         self._source, self._wrong = source, 0
 
     def of_print(self, text: str) -> str:
-        """Spell what is in print, in Unified English Braille; braille stays as it is."""
-        cells, before = [], ""
-        for character in text:
-            if character.isdigit() and not before.isdigit():
-                cells.append("⠼")
-            elif character.isascii() and character.isupper():
-                cells.append("⠠")
-            cells.append(_SPELT.get(character.lower(), character))
-            before = character
-        return "".join(cells)
+        """Cells of words that are added to the markup, in Unified English Braille."""
+        return BrailleTable("en-ueb-g1.ctb").translate(text).to_unicode()
 
     def with_cells(self, block: Block) -> Block:
         """Give a block its cells."""

@@ -17,10 +17,9 @@ from typing import Any
 import louis
 
 COMPILING_S = 20.0  # the largest tables take a second or two
-KEYS = ("language", "grade", "contraction", "type", "dots", "display-name", "index-name")
+KEYS = ("language", "grade", "type", "dots", "display-name", "index-name")
 
 LIBRARY = louis.liblouis
-LIBRARY.lou_findTable.restype = ctypes.c_void_p
 LIBRARY.lou_getTableInfo.restype = ctypes.c_void_p
 LIBRARY.lou_listTables.restype = ctypes.POINTER(ctypes.c_char_p)
 LIBRARY.lou_version.restype = ctypes.c_char_p
@@ -58,11 +57,6 @@ def list_tables() -> list[dict[str, str]]:
         said = {key: text_at(LIBRARY.lou_getTableInfo(path, key.encode())) for key in KEYS}
         found.append({"name": Path(path.decode()).name, **said})
     return found
-
-
-def find_table(query: str) -> str:
-    """File name of the table that liblouis finds for a query, or nothing."""
-    return Path(text_at(LIBRARY.lou_findTable(query.encode()))).name
 
 
 def emphasis_bit(table: str, name: str) -> int:

@@ -628,11 +628,7 @@ class Walker:
         lays_out = bool(words & {"presentation", "none"})
         for block in table_blocks(element, self._cell, lays_out=lays_out):
             if block.kind is BlockKind.ROW:
-                block = block.replace(
-                    group=group,
-                    language=self._role.language,
-                    text=self._spell(block.text),
-                )
+                block = block.replace(group=group, language=self._role.language)
             self._put(block)
 
     def _cell(self, element: Element) -> list[Block]:

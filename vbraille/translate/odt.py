@@ -23,6 +23,7 @@ from vbraille.translate.office import (
     heading_level,
     put_picture,
     tag_of,
+    within,
 )
 from vbraille.translate.trees import Element
 
@@ -146,7 +147,7 @@ class _Reader:
         self, holder: Element, flow: Flow, around: Look, item: tuple[str, int, str] | None = None
     ) -> None:
         """Read the blocks of a body, of a cell, of a note, or of an item of a list."""
-        for element in _within(holder, _BLOCKS):
+        for element in within(holder, _BLOCKS, _SKIPPED):
             match element.name:
                 case "list":
                     style, at = (item[0], item[1] + 1) if item else ("", 0)
@@ -286,7 +287,7 @@ class _Reader:
     def _table(self, element: Element, around: Look) -> Element:
         table = Element("table")
         heads = {id(row) for rows in element.iter("table-header-rows") for row in rows.elements}
-        for row in _within(element, ("table-row",)):
+        for row in within(element, ("table-row",), _SKIPPED):
             is_head = id(row) in heads or self._is_heading_row(row)
             shown = any(cell.text.strip() for cell in row.elements)
             repeated = min(whole(row.get("number-rows-repeated")), _MOST_REPEATED)
@@ -318,15 +319,6 @@ class _Reader:
 
 def _put_page(into: Element, number: int) -> None:
     into.add("span", role="doc-pagebreak", aria_label=str(number))
-
-
-def _within(holder: Element, names: frozenset[str] | tuple[str, ...]) -> Iterator[Element]:
-    """Elements of some names in another, whatever holds them there."""
-    for element in holder.elements:
-        if element.name in names:
-            yield element
-        elif element.name not in _SKIPPED:
-            yield from _within(element, names)
 
 
 def _level_of(element: Element) -> Level:

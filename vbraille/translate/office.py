@@ -12,7 +12,7 @@ from vbraille.translate.numbering import BULLET, numeral
 from vbraille.translate.trees import Element
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
 
     from vbraille.translate.blocks import Block
     from vbraille.translate.source import Source
@@ -305,6 +305,15 @@ def _make_plain(element: Element) -> None:
         if text and "".join("".join(each.text.split()) for each in found) == text:
             for inner in found:
                 inner.name = "span"
+
+
+def within(holder: Element, names: Collection[str], skipped: Collection[str]) -> Iterator[Element]:
+    """Elements of some names in another, whatever holds them there that is not skipped."""
+    for element in holder.elements:
+        if element.name in names:
+            yield element
+        elif element.name not in skipped:
+            yield from within(element, names, skipped)
 
 
 def put_picture(into: Element, described: str, what: str = "picture") -> None:

@@ -29,8 +29,10 @@ def command() -> None:
 @command.command("list", epilog="Example: vbraille device list")
 @options.json
 def list_ports(json: bool) -> None:
-    """List the serial ports."""
+    """List the serial ports, and the kinds of devices that drivers are installed for."""
     from serial.tools import list_ports as ports
+
+    from vbraille.devices.registry import drivers
 
     rows = [
         {
@@ -41,8 +43,9 @@ def list_ports(json: bool) -> None:
         }
         for port in sorted(ports.comports())
     ]
+    kinds = [{"kind": kind, "module": module} for kind, module in drivers()]
     if json:
-        print_json(rows)
+        print_json({"ports": rows, "drivers": kinds})
         return
     for row in rows:
         named = [row["name"] or "no name", row["id"] and f"id {row['id']}"]
@@ -50,6 +53,8 @@ def list_ports(json: bool) -> None:
         say(f"port: {', '.join(filter(None, [row['device'], *named, number]))}")
     if not rows:
         say("port: none; plug the device in")
+    for kind in kinds:
+        say(f"driver: {kind['kind']}, of {kind['module']}")
 
 
 @command.command(epilog="Example: vbraille device info serial:/dev/ttyACM0")

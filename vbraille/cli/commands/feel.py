@@ -32,13 +32,14 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     from vbraille.feeling.loading import check_fits, load_scene
     from vbraille.reading.picture import Picture
     from vbraille.render import MODELS
+    from vbraille.simulation.specs import is_simulated
     from vbraille.translate import choose_table
 
     asked = MODELS[chosen["model"] or "stress2-8x8"]
     loaded = load_scene(chosen["file"], asked.style)
     with equipped(ctx, asked.display, hand=chosen["hand"]) as equipment:
         device, attended = equipment.device, equipment.keyboard.attached
-        still = chosen["hand"] == "still" and device.steered
+        still = chosen["hand"] == "still" and is_simulated(chosen["device"])
         if still and not (attended or chosen["monitor"]):
             raise InputError(
                 "nothing would move the hand: start vbraille feel at a terminal, with --monitor, "

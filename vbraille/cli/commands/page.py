@@ -94,7 +94,7 @@ def _laid(page: Page, form: str) -> Iterable[bytes]:
         return (f"{_printed(line, form)}\n".encode() for line in page.lines())
     pages = cut_pages((line.masks.tobytes() for line in page.lines()), _LINES)
     width, book = page.layout.width, page.layout.book
-    return pef(pages, _imprint(book, width, _LINES), width, _LINES, rowgap=_rowgap(book))
+    return pef(pages, _head(book, width, _LINES), width, _LINES, rowgap=_rowgap(book))
 
 
 def _printed(line: Line, form: str) -> str:
@@ -118,7 +118,7 @@ def _write_kept(chosen: dict[str, Any], book: Book) -> None:
         found = list(pages)
         cells = max([1, *(len(row) for page in found for row in page)])
         lines = max([1, *(len(page) for page in found)])
-        content = pef(found, _imprint(book, cells, lines), cells, lines, rowgap=_rowgap(book))
+        content = pef(found, _head(book, cells, lines), cells, lines, rowgap=_rowgap(book))
         said = f"pages: {count(len(found), 'page')} of {lines} lines, {cells} cells each"
     elif first is not None and first.kind is BlockKind.PAGE:
         content = brf_pages(pages)
@@ -157,17 +157,18 @@ def _checked(contents: Iterable[bytes]) -> Iterator[bytes]:
         raise InputError(f"{error}; give --format unicode, which writes all eight") from None
 
 
-def _imprint(book: Book, cells: int, lines: int) -> Any:
-    """What a file that is written from a book says of it, and of how it was made."""
-    from vbraille.layout.writing import Imprint
+def _head(book: Book, cells: int, lines: int) -> dict[str, str]:
+    """What a file that is written from a book says of itself."""
+    from vbraille.layout.writing import identifier
 
     source, table = book.source, book.table
-    language = source.language
-    if not language and table is not None and table.info is not None:
-        language = table.info.language
-    title = source.title or Path(source.name).stem
+    info = None if table is None else table.info
     made_with = (None if table is None else table.name, "pef", cells, lines)
-    return Imprint.of_file(title, language, source.sha256(), *made_with)
+    return {
+        "identifier": identifier(source.sha256(), *made_with),
+        "title": source.title or Path(source.name).stem,
+        "language": source.language or (info.language if info else ""),
+    }
 
 
 def _rowgap(book: Book) -> int:

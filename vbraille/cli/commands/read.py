@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from vbraille.cli import options
 
@@ -16,9 +17,9 @@ if TYPE_CHECKING:
 
     from vbraille.reading.places import KeptBook, Places
 
+_OF_TABLE = ("language", "grade", "table")
 _OF_TEXT = (
-    "language", "grade", "table", "encoding", "form", "brf_table", "foreign", "undefined",
-    "keep_lines",
+    *_OF_TABLE, "encoding", "form", "brf_table", "foreign", "undefined", "keep_lines",
 )  # fmt: skip
 
 
@@ -52,21 +53,21 @@ def read(ctx: click.Context, number: int = 1) -> None:
     from vbraille.cli.build import build_book, build_model, display_name
     from vbraille.cli.exploring import equipped, find_model, say_summary
     from vbraille.cli.printing import say
-    from vbraille.cli.settings import given, save_profile, settings_of
+    from vbraille.cli.settings import save_profile, settings_of
     from vbraille.knobs import profile_values
     from vbraille.layout import Layout, cells_per_line
     from vbraille.reading.places import Places, places_path
     from vbraille.reading.reader import Reader
     from vbraille.render import MODELS
+    from vbraille.wording import count
 
-    chosen, asked = ctx.params, given(ctx)
+    chosen = ctx.params
     places = Places(
         None if chosen["no_places"] else places_path(), lambda said: say(said, aside=True)
     )
     if chosen["file"] is None:
         book_read = places.numbered(number)
         chosen["file"] = str(book_read.path)
-        chosen.update({n: v for n, v in book_read.options.items() if n not in asked})
     file = chosen["file"]
     asked_model = MODELS[chosen["model"] or "stress2"]
     wanted = build_model(ctx, asked_model, asked_model.style.geometry.travel_mm)
@@ -78,10 +79,8 @@ def read(ctx: click.Context, number: int = 1) -> None:
         device = equipment.device
         device.launch()
         kept = _kept(places, file)
-        if not asked & {"language", "grade", "table"}:
-            chosen.update({n: v for n, v in kept.options.items() if n not in asked})
+        _take_options(ctx, kept)
         book = build_book(ctx, file)
-        kept.set_options(**{name: chosen[name] for name in _OF_TEXT})
         model = find_model(ctx, device, wanted)
         if model.display is not wanted_display:
             model = build_model(ctx, model, model.display.travel_mm)
@@ -116,6 +115,8 @@ def read(ctx: click.Context, number: int = 1) -> None:
             save=save,
             changed=_changes(file, lambda: build_book(ctx, file)),
         )
+        written = "braille as it is" if book.table is None else book.table.said
+        say(f"line width: {count(width, 'cell')}, {written}", aside=True)
         try:
             equipment.explore(ctx, reader, own=True)
         finally:
@@ -134,6 +135,21 @@ def _kept(places: Places, file: str) -> KeptBook:
     except OSError:  # which opening the book says in a sentence
         return places.book("", Path(), "")
     return places.book(digest, path.absolute(), path.stem)
+
+
+def _take_options(ctx: click.Context, kept: KeptBook) -> None:
+    """Keep options of the text that were given, and take those that are kept for the others."""
+    from vbraille.cli.settings import given
+
+    asked = given(ctx) & set(_OF_TEXT)
+    if asked & set(_OF_TABLE):
+        asked |= set(_OF_TABLE)
+    if asked:
+        kept.set_options(**{name: ctx.params[name] for name in asked})
+    for name, value in kept.options.items():
+        if name not in asked and value is not None:
+            ctx.params[name] = value
+            ctx.set_parameter_source(name, ParameterSource.COMMANDLINE)
 
 
 def _changes(file: str, open_book: Callable[[], Any]) -> Callable[[], Any]:

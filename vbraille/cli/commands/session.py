@@ -11,7 +11,7 @@ import click
 
 from vbraille.cli import options
 from vbraille.cli.printing import print_json, say
-from vbraille.errors import InputError, VbrailleError
+from vbraille.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -143,7 +143,7 @@ def run(protocol: str, fields: tuple[tuple[str, str], ...], out: str | None, ano
     answered = dict(fields)
     check_fields(loaded, answered)
     with _typing(given.get("answers"), given.pop("speech")) as (typed, tell):
-        near = None if another else nearly_same(Path(out or ".").absolute().parent, participant)
+        near = None if another else nearly_same(Path(out or "new").absolute().parent, participant)
         if near is not None:
             _ask_who(participant, near, typed, tell)
         if typed is not None:
@@ -154,7 +154,7 @@ def run(protocol: str, fields: tuple[tuple[str, str], ...], out: str | None, ano
         tell(f"session: {session.path}")
         try:
             _conduct(session, typed, tell, rate_hz=rate, **given)
-        except VbrailleError:
+        except BaseException:
             if not any(event.kind == "run" for event in session.content.events):
                 session.path.unlink()  # the device did not open: nothing has begun
             raise
@@ -273,18 +273,26 @@ def withdraw(participant: str, paths: tuple[str, ...], yes: bool) -> int:
     """Remove all data of a participant from folders."""
     from vbraille.sessions.record.withdraw import withdrawal
 
-    found = withdrawal([Path(path) for path in paths or (".",)], participant)
-    for line in found.lines:
-        say(line)
-    for path in found.left:
-        say(f"{path}: names {participant}, and stays", aside=True)
+    folders = [Path(path) for path in paths or (".",)]
+    for folder in folders:
+        if not folder.is_dir():
+            raise InputError(f"there is no folder {folder}")
+    found = withdrawal(folders, participant)
+    left = [f"left: {path} names {participant}; look at it yourself" for path in found.left]
     if not found.lines:
+        for line in left:
+            say(line)
         raise InputError(f"there is nothing of {participant} to remove")
-    if not yes and not click.confirm(f"remove all of {participant} for good?"):
-        raise InputError("nothing was removed; answer yes, or give --yes")
+    if not yes:
+        for line in found.lines:
+            say(f"found: {line}")
+        if not click.confirm(f"remove all of {participant} for good?"):
+            raise InputError("nothing was removed; answer yes, or give --yes")
+    lines = found.lines
     found.remove()
-    say(f"removed: all of {participant}")
-    return 1 if found.left else 0
+    for line in (*(f"removed: {line}" for line in lines), *left):
+        say(line)
+    return 1 if left else 0
 
 
 class _typing(ExitStack):  # noqa: N801  (used as a function)

@@ -33,7 +33,7 @@ MEASURES = {
 }
 
 
-class Analysis(Table, kw_only=True):
+class Analysis(Table, frozen=True, kw_only=True):
     """What the sessions are for, fixed before the first of them.
 
     Parameters
@@ -51,7 +51,7 @@ class Analysis(Table, kw_only=True):
         How many people are planned, and in words when no more are asked.
     """
 
-    measure: Literal[tuple(MEASURES)] | None = None
+    measure: Literal[tuple(MEASURES)] | None = None  # pyright: ignore
     factors: tuple[str, ...] | None = None
     too_fast_s: Seconds | None = None
     too_slow_s: Seconds | None = None

@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from random import Random
-from typing import Annotated, ClassVar, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 from msgspec import Meta
 
@@ -42,7 +42,7 @@ class Setting(NamedTuple):
     random: Random
 
 
-class Catch(Table, kw_only=True):
+class Catch(Table, frozen=True, kw_only=True):
     """Trials that only keep watch: one of so many, or a share of all; and what they show."""
 
     every: Annotated[int, Meta(ge=2, le=10_000)] | None = None
@@ -59,7 +59,7 @@ class Catch(Table, kw_only=True):
         return (self.every or round(1 / (self.share or 1))) - 1
 
 
-class Repeated(Table, kw_only=True, tag_field="kind"):
+class Repeated(Table, frozen=True, kw_only=True, tag_field="kind"):
     """What all designs have.
 
     Parameters
@@ -82,15 +82,15 @@ class Repeated(Table, kw_only=True, tag_field="kind"):
     catch: Catch | None = None
     counterbalanced: bool = False
 
-    passage: ClassVar[bool] = False
-    parameter: ClassVar[str] = ""
-    form: ClassVar[str] = ""  # how stimuli are compared, if they are
+    # What only some designs have as keys.
+    passage = False
+    parameter = form = ""
 
     def spellings(self) -> dict[str, tuple[str, ...]]:
         """Return the spellings of cells in the table, by the path of their key."""
         raise NotImplementedError
 
-    def items(self, keys: dict[str, int]) -> list[str]:
+    def items(self, keys: dict[str, int] | None) -> list[str]:
         """Return the items, each once."""
         raise NotImplementedError
 
@@ -99,7 +99,7 @@ class Repeated(Table, kw_only=True, tag_field="kind"):
         raise NotImplementedError
 
 
-class StringList(Repeated, kw_only=True, tag="list"):
+class StringList(Repeated, frozen=True, kw_only=True, tag="list"):
     """The strings of a list, which are cells, texts or names of pictures.
 
     Parameters
@@ -139,7 +139,7 @@ class StringList(Repeated, kw_only=True, tag="list"):
         return tuple(Stimulus(line, look, text=item) for line in broken(cells, setting.room(look)))
 
 
-class ItemList(Repeated, kw_only=True, tag="items"):
+class ItemList(Repeated, frozen=True, kw_only=True, tag="items"):
     """The strings of the table [items], which `listed` puts in."""
 
     reorder: bool = False
@@ -151,7 +151,7 @@ class ItemList(Repeated, kw_only=True, tag="items"):
         return StringList(strings=tuple(strings), **fields)
 
 
-class Combinations(Repeated, kw_only=True, tag="combinations"):
+class Combinations(Repeated, frozen=True, kw_only=True, tag="combinations"):
     """Every combination of some characters.
 
     Parameters
@@ -175,9 +175,9 @@ class Combinations(Repeated, kw_only=True, tag="combinations"):
             "design.after": (self.after,),
         }
 
-    def items(self, keys: dict[str, int]) -> list[str]:
+    def items(self, keys: dict[str, int] | None) -> list[str]:
         """Return the combinations as cells."""
-        cells = [to_braille(spell(text, keys)) for text in self.characters]
+        cells = [to_braille(spell(text, keys or {})) for text in self.characters]
         return ["".join(chosen) for chosen in itertools.product(cells, repeat=self.length)]
 
     def stimuli(self, item: str, look: Look, setting: Setting) -> tuple[Stimulus, ...]:
@@ -187,7 +187,7 @@ class Combinations(Repeated, kw_only=True, tag="combinations"):
         return (Stimulus(item, look, before, after),)
 
 
-class Compared(Repeated, kw_only=True, tag="choice"):
+class Compared(Repeated, frozen=True, kw_only=True, tag="choice"):
     """One string at several values of a parameter.
 
     Parameters
@@ -237,7 +237,7 @@ class Compared(Repeated, kw_only=True, tag="choice"):
         """Return the string."""
         return {"design.string": (self.string,)}
 
-    def items(self, keys: dict[str, int]) -> list[str]:
+    def items(self, keys: dict[str, int] | None) -> list[str]:
         """Return the values of the stimuli of each trial, with blanks between them."""
         alike = [(value, value) for value in self.values] * self.same
         return [" ".join(f"{v:.9g}" for v in each) for each in [*self.of(self.values), *alike]]

@@ -13,13 +13,13 @@ from vbraille.toml import Table
 Cross = Literal["all"] | tuple[tuple[str, ...], ...]
 
 
-class Level(Look, kw_only=True):
+class Level(Look, frozen=True, kw_only=True):
     """A level of a factor: its name, and what it changes of the display."""
 
     name: Label
 
 
-class Factor(Table, kw_only=True):
+class Factor(Table, frozen=True, kw_only=True):
     """A factor.
 
     Parameters
@@ -37,7 +37,7 @@ class Factor(Table, kw_only=True):
     between: bool = False
 
 
-class Cell(Table, kw_only=True):
+class Cell(Table, frozen=True, kw_only=True):
     """A combination of levels: its name, its look, and its level of each factor."""
 
     name: str

@@ -17,7 +17,7 @@ TRIES = 2000  # for each string that is drawn
 STRING, PARTICIPANT, GROUP = "string", "participant", "group"
 
 
-class Items(Table, kw_only=True):
+class Items(Table, frozen=True, kw_only=True):
     """Where the strings of a design of items come from.
 
     Parameters

@@ -134,7 +134,9 @@ def _resolved(tables: ProtocolFile, files: dict[str, bytes]) -> Protocol:
 
 def _listed(protocol: Protocol) -> tuple[list[str], dict[str, dict[str, str]]]:
     """Return the strings of [items], and the other columns of each by the item."""
-    items, name = protocol.items, protocol.items.file
+    items = protocol.items
+    assert items is not None, "it is checked"
+    name = items.file or ""
     if items.rule == "strings" and protocol.has_texts:
         raise WrongValue("items.rule", "draws cells, and strings are texts or pictures")
     if items.rule is None:

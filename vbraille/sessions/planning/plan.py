@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from functools import partial
 from itertools import cycle
 from random import Random
+from typing import Any
 
 from msgspec import Struct, structs
 
@@ -159,7 +160,7 @@ def _deal(protocol: Protocol, participant: str, order: int, random: Random) -> l
     if design.blocks == "conditions":
         if protocol.block_order == "table":
             if participant not in protocol.orders:
-                raise InputError(f"{protocol.order.file} has no row for {participant}; add one")
+                raise InputError(f"the file of orders has no row for {participant}; add one")
             names = list(protocol.orders[participant].conditions)
         elif order:
             names = [names[n] for n in balanced_orders(len(names))[order - 1]]
@@ -175,7 +176,7 @@ def _deal(protocol: Protocol, participant: str, order: int, random: Random) -> l
     return blocks
 
 
-def _rules(protocol: Protocol) -> tuple[list[Limit], object]:
+def _rules(protocol: Protocol) -> tuple[list[Limit], Any]:
     """Return the limits of the rules, and the level that quarters share evenly, if any."""
     rules, limits = protocol.rules, []
     if rules.never_twice_running:

@@ -41,7 +41,7 @@ class Outcome(NamedTuple):
     t_s: float
 
 
-class Procedure(Table, kw_only=True, tag_field="kind"):
+class Procedure(Table, frozen=True, kw_only=True, tag_field="kind"):
     """What all procedures have.
 
     Parameters
@@ -87,7 +87,7 @@ class Procedure(Table, kw_only=True, tag_field="kind"):
         raise NotImplementedError
 
 
-class Staircase(Procedure, kw_only=True, tag="staircase"):
+class Staircase(Procedure, frozen=True, kw_only=True, tag="staircase"):
     """Staircases: harder after right answers, easier after wrong ones.
 
     Parameters
@@ -141,7 +141,7 @@ def _asked(history: list[Outcome]) -> list[Asked]:
     return [Asked(outcome.level[0], outcome.positive) for outcome in history]
 
 
-class QuestPlus(Procedure, kw_only=True, tag="quest"):
+class QuestPlus(Procedure, frozen=True, kw_only=True, tag="quest"):
     """QUEST+: what is expected to tell most about the threshold, or the preferred value.
 
     Parameters

@@ -42,7 +42,7 @@ FIRST_CODE, LEAST_CODE, MOST_CODE = 101, 40, 254  # bytes of markers; lower ones
 KEYS = {"enter": "\n", "space": " ", "tab": "\t"}
 
 
-class DisplayLook(Look, kw_only=True):
+class DisplayLook(Look, frozen=True, kw_only=True):
     """How strings are shown where no condition says it: the table [display].
 
     Parameters
@@ -57,13 +57,13 @@ class DisplayLook(Look, kw_only=True):
     travel_mm: Annotated[float, Meta(gt=0, le=5000)] | None = None
 
 
-class Condition(Look, kw_only=True):
+class Condition(Look, frozen=True, kw_only=True):
     """A condition: its name, and what it changes of the display."""
 
     name: Label
 
 
-class Order(Table, kw_only=True):
+class Order(Table, frozen=True, kw_only=True):
     """Order of the blocks of conditions: the table [order].
 
     Parameters
@@ -81,7 +81,7 @@ class Order(Table, kw_only=True):
             raise WrongValue("file", "and kind = 'table' go together; give both or neither")
 
 
-class Rules(Table, kw_only=True):
+class Rules(Table, frozen=True, kw_only=True):
     """What the order of the trials keeps to.
 
     Parameters
@@ -104,7 +104,7 @@ class Rules(Table, kw_only=True):
     each_letter_at_least: Count | None = None
 
 
-class Until(Table, kw_only=True):
+class Until(Table, frozen=True, kw_only=True):
     """A criterion that ends practice: so many right of the last trials, or the most trials."""
 
     right: Count
@@ -116,7 +116,7 @@ class Until(Table, kw_only=True):
             raise WrongValue("right", "must not be more than of, nor of more than most")
 
 
-class Practice(Table, kw_only=True):
+class Practice(Table, frozen=True, kw_only=True):
     """Trials before the first block.
 
     Parameters
@@ -148,7 +148,7 @@ class Practice(Table, kw_only=True):
         return self.until.most if self.until else self.trials
 
 
-class Pace(Table, kw_only=True):
+class Pace(Table, frozen=True, kw_only=True):
     """The pace of each trial: the table [trial].
 
     Parameters
@@ -196,7 +196,7 @@ class Pace(Table, kw_only=True):
         return int(found[1]) if found else None
 
 
-class SessionPace(Table, kw_only=True):
+class SessionPace(Table, frozen=True, kw_only=True):
     """The pace of the session.
 
     Parameters
@@ -215,7 +215,7 @@ class SessionPace(Table, kw_only=True):
     blind: bool = True
 
 
-class Faults(Table, kw_only=True):
+class Faults(Table, frozen=True, kw_only=True):
     """What is done about a trial in which the device failed."""
 
     repeat: bool = True
@@ -225,27 +225,27 @@ Hertz = Annotated[float, Meta(ge=20, le=20_000)]
 Tone = Annotated[tuple[Hertz, ...], Meta(min_length=2, max_length=2)]
 
 
-class Sound(Table, kw_only=True):
+class Sound(Table, frozen=True, kw_only=True):
     """Tones that the participant hears, by their frequency in Hz and their duration in ms."""
 
     cue: Tone = (880, 150)
     warning: Tone = (440, 400)
 
 
-class Markers(Table, kw_only=True):
+class Markers(Table, frozen=True, kw_only=True):
     """Bytes that tell other recorders which condition is shown, by the condition's name."""
 
     codes: dict[str, Annotated[int, Meta(ge=LEAST_CODE, le=MOST_CODE)]] = {}
 
 
-class Pins(Table, kw_only=True):
+class Pins(Table, frozen=True, kw_only=True):
     """What stands on a conventional display: where it begins, and what is compared with."""
 
     cell: Annotated[int, Meta(ge=1, le=MOST_PIN_CELLS)] = 1
     reference: str = ""
 
 
-class Field(Table, kw_only=True):
+class Field(Table, frozen=True, kw_only=True):
     """Something that is asked about the participant; its name is that of a column."""
 
     name: Label
@@ -253,7 +253,7 @@ class Field(Table, kw_only=True):
     choices: tuple[Sentence, ...] = ()
 
 
-class ProtocolFile(Table, kw_only=True):
+class ProtocolFile(Table, frozen=True, kw_only=True):
     """A protocol as its file has it.
 
     Parameters
@@ -274,7 +274,7 @@ class ProtocolFile(Table, kw_only=True):
     name: Name
     title: Sentence
     source: Sentence = "ours"
-    model: Literal[tuple(MODELS)]
+    model: Literal[tuple(MODELS)]  # pyright: ignore
     medium: Literal["device", "paper"] = "device"
     display: DisplayLook = DisplayLook()
     keys: dict[str, str] = {}
@@ -299,7 +299,7 @@ class ProtocolFile(Table, kw_only=True):
     analysis: Analysis = Analysis()
 
 
-class Protocol(ProtocolFile, kw_only=True):
+class Protocol(ProtocolFile, frozen=True, kw_only=True):
     """A protocol with what the files beside it say.
 
     Parameters

@@ -15,7 +15,7 @@ from vbraille.toml import Table, WrongValue
 COLUMN = re.compile(r"\{(\w[\w-]*)\}")
 
 
-class Item(Table, kw_only=True):
+class Item(Table, frozen=True, kw_only=True):
     """A question of the questionnaire.
 
     Parameters
@@ -153,5 +153,5 @@ def due(
         whens["end"] = 0
     for item in items:
         if item.when in whens:
-            of_trial = item.when == "trial" and last is not None
-            yield (item.of(last.columns) if of_trial else item), whens[item.when]
+            columns = last.columns if last is not None and item.when == "trial" else {}
+            yield (item.of(columns) if columns else item), whens[item.when]

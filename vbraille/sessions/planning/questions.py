@@ -12,7 +12,7 @@ about people.
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, Literal, NamedTuple
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from msgspec import Meta
@@ -47,7 +47,7 @@ class Spelling(NamedTuple):
     shown_dots: int
 
 
-class Scale(Table, kw_only=True):
+class Scale(Table, frozen=True, kw_only=True):
     """A scale of whole numbers, with words for all its steps, for its two ends, or for none."""
 
     least: int
@@ -86,7 +86,7 @@ class Scale(Table, kw_only=True):
         return int(word)
 
 
-class Question(Table, kw_only=True, tag_field="kind"):
+class Question(Table, frozen=True, kw_only=True, tag_field="kind"):
     """What all kinds have.
 
     Parameters
@@ -172,7 +172,7 @@ class Question(Table, kw_only=True, tag_field="kind"):
         raise NotImplementedError
 
 
-class Identify(Question, kw_only=True, tag="identify"):
+class Identify(Question, frozen=True, kw_only=True, tag="identify"):
     """Asks which cells were shown."""
 
     typed = "what was read: letters, keys or dot numbers, or a text in print; ? if not read"
@@ -214,7 +214,7 @@ class Identify(Question, kw_only=True, tag="identify"):
         return UNREAD * len(trial.cells)
 
 
-class Chosen(Question, kw_only=True):
+class Chosen(Question, frozen=True, kw_only=True):
     """Asks for the number of a stimulus."""
 
     typed = "the number of one: 1, 2 and so on, or first, second"
@@ -234,7 +234,7 @@ class Chosen(Question, kw_only=True):
         return str(random.integers(self.among or len(trial.stimuli)) + 1)
 
 
-class Which(Chosen, kw_only=True, tag="which"):
+class Which(Chosen, frozen=True, kw_only=True, tag="which"):
     """Asks which of two to five stimuli it was.
 
     Parameters
@@ -290,7 +290,7 @@ class Which(Chosen, kw_only=True, tag="which"):
         return str(int(np.nan_to_num(drawn, nan=-math.inf).argmax()) + 1)
 
 
-class Odd(Chosen, kw_only=True, tag="odd"):
+class Odd(Chosen, frozen=True, kw_only=True, tag="odd"):
     """Asks which of three or more stimuli differed from the others."""
 
     asks_of = ("one", "triangle")
@@ -305,7 +305,7 @@ class Odd(Chosen, kw_only=True, tag="odd"):
         return str(int(np.abs(drawn - np.median(drawn)).argmax()) + 1)
 
 
-class Match(Chosen, kw_only=True, tag="match"):
+class Match(Chosen, frozen=True, kw_only=True, tag="match"):
     """Asks which of the first two stimuli the third one was (ABX)."""
 
     asks_of = ("abx",)
@@ -327,7 +327,7 @@ def _drawn(felt: FeltTrial, noise: float, random: np.random.Generator) -> np.nda
     return np.nan_to_num(values + noise * unit * random.standard_normal(len(values)))
 
 
-class OneOfTwo(Question, kw_only=True):
+class OneOfTwo(Question, frozen=True, kw_only=True):
     """Asks for one of two words, which may be typed by their first letters."""
 
     words: ClassVar[tuple[str, str]]
@@ -344,7 +344,7 @@ class OneOfTwo(Question, kw_only=True):
         return self.words[random.integers(2)]
 
 
-class Signal(OneOfTwo, kw_only=True):
+class Signal(OneOfTwo, frozen=True, kw_only=True):
     """Asks for one of two words, of which the first is right where there is a signal."""
 
     def has_signal(self, trial: Trial) -> bool:
@@ -362,7 +362,7 @@ class Signal(OneOfTwo, kw_only=True):
         return FALSE_ALARM if answer == self.words[0] else REJECTION
 
 
-class Same(Signal, kw_only=True, tag="same-different"):
+class Same(Signal, frozen=True, kw_only=True, tag="same-different"):
     """Asks whether two stimuli were the same or different."""
 
     asks_of = ("pairs",)
@@ -383,7 +383,7 @@ class Same(Signal, kw_only=True, tag="same-different"):
         return "different" if abs(apart) > max(noise * math.sqrt(2), TIE) else "same"
 
 
-class Detect(Signal, kw_only=True, tag="detect"):
+class Detect(Signal, frozen=True, kw_only=True, tag="detect"):
     """Asks whether there was anything."""
 
     asks_of = ("strings",)
@@ -411,7 +411,7 @@ class Detect(Signal, kw_only=True, tag="detect"):
         return "yes" if strength > max(noise, LEAST_FELT) else "no"
 
 
-class Rate(Question, kw_only=True, tag="rating"):
+class Rate(Question, frozen=True, kw_only=True, tag="rating"):
     """Asks where on a scale something is.
 
     Parameters
@@ -461,7 +461,7 @@ class Rate(Question, kw_only=True, tag="rating"):
         return str(random.integers(self.least, self.most + 1))
 
 
-class Magnitude(Question, kw_only=True, tag="magnitude"):
+class Magnitude(Question, frozen=True, kw_only=True, tag="magnitude"):
     """Asks how strong something was, as any number above 0.
 
     Parameters
@@ -500,7 +500,7 @@ class Magnitude(Question, kw_only=True, tag="magnitude"):
         return f"{(self.modulus or 1.0) * math.exp(random.standard_normal()):.3g}"
 
 
-class Names(Table, kw_only=True):
+class Names(Table, frozen=True, kw_only=True):
     """Names of which a picture has one.
 
     Parameters
@@ -522,7 +522,7 @@ class Names(Table, kw_only=True):
         return ", ".join(f"{key} {name}" for key, name in self.names.items())
 
 
-class Pick(Question, kw_only=True, tag="name"):
+class Pick(Question, frozen=True, kw_only=True, tag="name"):
     """Asks which names a picture has, such as its shape and its size.
 
     Parameters
@@ -595,7 +595,7 @@ class Pick(Question, kw_only=True, tag="name"):
         named = (trial.columns.get(each.of) if each.of else trial.item for each in self.choices)
         return " ".join(filter(None, named))
 
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+    def simulate(self, felt: Any, noise: float, random: np.random.Generator) -> str:
         """Give the names of the picture that is felt most like it."""
         return felt.named(noise, random)
 
@@ -605,7 +605,7 @@ class Pick(Question, kw_only=True, tag="name"):
         return " ".join(names[random.integers(len(names))] for names in named)
 
 
-class Read(OneOfTwo, kw_only=True, tag="read"):
+class Read(OneOfTwo, frozen=True, kw_only=True, tag="read"):
     """Says whether a passage was read to its end."""
 
     typed = "read, or broken off"
@@ -617,7 +617,7 @@ class Read(OneOfTwo, kw_only=True, tag="read"):
         return "read"
 
 
-class Adjust(Question, kw_only=True, tag="adjust"):
+class Adjust(Question, frozen=True, kw_only=True, tag="adjust"):
     """Asks to turn the last stimulus until it is equal to the standard, or as it should be.
 
     Parameters
@@ -690,7 +690,7 @@ class Adjust(Question, kw_only=True, tag="adjust"):
         return trial.presented.split()[-1]
 
 
-class Free(Question, kw_only=True, tag="free"):
+class Free(Question, frozen=True, kw_only=True, tag="free"):
     """Asks for any words."""
 
     typed = "any words"

@@ -36,7 +36,7 @@ Parameter = Literal[
 ]
 
 
-class Look(Table, kw_only=True):
+class Look(Table, frozen=True, kw_only=True):
     """How stimuli are shown. A value that is None is left to what the look is put over.
 
     Parameters
@@ -60,7 +60,7 @@ class Look(Table, kw_only=True):
     contrast: Share | None = None
     texture_cycles: Literal[1, 3, 5, 7, 9, 11] | None = None
     dot_row: Annotated[int, Meta(ge=1, le=3)] | None = None
-    mapping: Literal[tuple(MAPPINGS)] | None = None
+    mapping: Literal[tuple(MAPPINGS)] | None = None  # pyright: ignore
     table: Annotated[str, Meta(pattern=r"^[^/\s]+$")] | None = None
     on: Literal["device", "pins"] | None = None
     scene: FileName | None = None

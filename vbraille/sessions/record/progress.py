@@ -145,7 +145,7 @@ class Progress:
             if trial.values and cues:
                 return trial.with_values(design.parameter, tuple(self._values(trial, cues)))
             if procedure is not None and cues and cues[-1].data.get("value") is not None:
-                return trial.at(procedure.parameter, cues[-1].data["value"])
+                return trial.at(procedure.parameter or "", cues[-1].data["value"])
             return trial
         if procedure is None or trial.practice or trial.catch:
             return trial
@@ -192,8 +192,10 @@ class Progress:
     def found(self) -> list[str]:
         """What a procedure has found in each condition."""
         procedure = self.protocol.procedure
-        sentences = []
-        for condition in self._in_conditions if procedure is not None else ():
+        sentences: list[str] = []
+        if procedure is None:
+            return sentences
+        for condition in self._in_conditions:
             history, seed = self._history(condition), self._seed(condition)
             if said := procedure.found(self.protocol.design, history, seed):
                 sentences.append(f"{condition}: {said}")

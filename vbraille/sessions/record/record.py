@@ -323,7 +323,8 @@ def _read(path: Path, db: sqlite3.Connection) -> Content:
         fields |= {name: json.loads(fields[name]) for name in ("columns", "stimuli")}
         trials.append(msgspec.convert(fields, Trial, strict=False))
     query = "SELECT n, kind, t_s, wall, practice, trial, attempt, data FROM event ORDER BY n"
-    events = tuple(Event(*row, json.loads(data)) for *row, data in db.execute(query))
+    rows = db.execute(query)
+    events = tuple(Event(*row[:-1], json.loads(row[-1])) for row in rows)  # pyright: ignore
     files = dict(db.execute("SELECT name, content FROM file"))
     plan = Plan(participant, seed, head["order"], head["group"], tuple(trials), head["session"])
     return Content(path, head, files, plan, events)

@@ -23,7 +23,7 @@ def pack(ticks: NDArray[np.void]) -> bytes:
     kept = np.empty(ticks.size, TICK)
     for name in TICK.names or ():
         kept[name] = ticks[name]
-    words = kept.view("<i8").reshape(-1, len(TICK)).T
+    words = kept.view("<i8").reshape(-1, len(FIELDS)).T
     return zlib.compress(np.diff(words, axis=1, prepend=0).tobytes(), 1)
 
 
@@ -57,7 +57,7 @@ def read_ticks(
         ORDER BY after, first
     """
     found = db.execute(query, {"first": first_line, "last": last_line})
-    blobs = [unpack(*row, names) for row in found]
+    blobs = [unpack(fields, count, names) for fields, count in found]
     ticks = np.concatenate([np.empty(0, _of_fields(names)), *blobs])
     return ticks[(ticks["line"] >= first_line) & (ticks["line"] <= last_line)]
 

@@ -126,7 +126,9 @@ class _Table:
 
     def row(self, db: sqlite3.Connection, trial: Trial) -> dict[str, Any]:
         """Return the row of a trial as it was shown."""
-        row = dict.fromkeys((*COLUMNS, *(OF_PASSAGES if self._protocol.design.passage else ())), "")
+        row: dict[str, Any] = dict.fromkeys(
+            (*COLUMNS, *(OF_PASSAGES if self._protocol.design.passage else ())), ""
+        )
         own = [e for e in self._progress.events[trial.key] if e.attempt == self._attempt(trial)]
         row |= self._planned(trial) | self._happened(trial, own)
         if trial.key in self._progress.answers:
@@ -220,8 +222,9 @@ class _Table:
         }
         cue, ended = _first(own, "cue"), _last(own, "ended")
         if cue is not None:
-            by_key = ended is not None and ended.data.get("by") != "exposure"
-            until_s = ended.t_s if by_key else answer.t_s
+            until_s = answer.t_s
+            if ended is not None and ended.data.get("by") != "exposure":
+                until_s = ended.t_s
             row["response_s"] = round(until_s - cue.t_s - _paused_s(own), 6)
         return row
 
@@ -249,8 +252,8 @@ class _Table:
         if len(trial.stimuli) > 1 or not cues or first.picture:
             return {}
         if "line" not in cues[-1].data:
-            read = _last(own, "read")
-            return {} if read is None else {"duration_s": round(read.t_s - cues[-1].t_s, 6)}
+            end = _last(own, "read")
+            return {} if end is None else {"duration_s": round(end.t_s - cues[-1].t_s, 6)}
         edges = self._edges_mm(first)
         if not edges:
             return {}
@@ -265,9 +268,9 @@ class _Table:
         row["duration_s"] = round(found.seconds, 6)
         if paused_s:
             return row
-        own = ticks[found.ticks]
+        read = ticks[found.ticks]
         last_mm = edges[-1] + self._protocol.style(first.look).geometry.dot_width_mm
-        return row | describe(own["x_mm"], own["time_ns"], edges[0], last_mm)
+        return row | describe(read["x_mm"], read["time_ns"], edges[0], last_mm)
 
     def _edges_mm(self, stimulus: Stimulus) -> tuple[float, ...]:
         masks = stimulus.masks(self._protocol.display.lead_cells)

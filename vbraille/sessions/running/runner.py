@@ -370,7 +370,7 @@ class Runner:
 
     def _is_pins_ready(self) -> bool:
         """Tell whether the conventional display can show what stimuli are compared with."""
-        return self.pins is None or self.pins.ready
+        return self.pins is None or not self.protocol.pins.reference or self.pins.ready
 
     def _present(self, trial: Trial) -> None:
         """Show the stimuli of a trial, up to the last one."""
@@ -401,7 +401,8 @@ class Runner:
         if turned:
             shown["turned"] = True
         compiled = make_shown(self.protocol, stimulus) if "line" in shown else stimulus
-        if self.pins is not None and presenter is not self.pins and not self.stimulus:
+        is_first = not self.stimulus and presenter is not self.pins
+        if self.pins is not None and self.protocol.pins.reference and is_first:
             self.pins.show_reference()
         now_s = self.now_s
         if not turned:
@@ -426,7 +427,7 @@ class Runner:
         """Wait for the answer of a trial, and write it."""
         question, names = self.protocol.asks, ()
         if not self.is_shown:
-            self.say(f"undo: {self.name}; type {question.typed}")
+            self.say(f"undo: {self.name}; type its answer: {question.typed}")
         while True:
             line = self._wait_for_line(self._asked("answer"))
             if self.is_shown and (steps := question.steps(line.text)) is not None:
@@ -724,7 +725,7 @@ class Runner:
         if kind == "contact" and self.protocol.trial.exposure_from == "contact":
             self._exposed.start(at_s)
         if kind == "read" and self.answers.typed and not self.more_to_come:
-            self.say(f"read: type {self.protocol.asks.typed}")
+            self.say(f"read: type the answer: {self.protocol.asks.typed}")
         if kind == "fault":
             repeats = self.protocol.faults.repeat
             then = "is repeated" if repeats else "goes on"
@@ -800,7 +801,7 @@ class Runner:
         if self.protocol.trial.exposure_s is not None:
             self._answering.start(at_s)
         read_s = at_s - (self._cue.began_s or at_s)
-        typed = f"; type {self.protocol.asks.typed}" if self.answers.typed else ""
+        typed = f"; type the answer: {self.protocol.asks.typed}" if self.answers.typed else ""
         self.say(f"ended: {read_s:.2f} s, by {by.replace(':', ' ')}{typed}")
 
     def _watch_key(self) -> None:
