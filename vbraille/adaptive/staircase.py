@@ -26,7 +26,7 @@ class Asked(NamedTuple):
 
 @dataclass(frozen=True)
 class Rule:
-    """How one staircase moves.
+    """Movement of one staircase.
 
     Parameters
     ----------

@@ -355,7 +355,7 @@ def _goes_on(paragraph: Element) -> bool:
 
 
 def _style_of(holder: Element, based: str) -> Style:
-    """What a style says, or a paragraph; and what that is based on, which stands at a path."""
+    """Style of an element, or of a paragraph; the key of what it is based on stands at a path."""
     outline, at = _value(holder, "pPr/outlineLvl"), _value(holder, "pPr/numPr/ilvl")
     level = whole(outline, 9) + 1
     return Style(

@@ -47,7 +47,7 @@ class _Item:
 
 
 class _Package:
-    """What an EPUB says of itself."""
+    """Chapters, title, language and contents of an EPUB."""
 
     def __init__(self, archive: Archive) -> None:
         self.archive = archive

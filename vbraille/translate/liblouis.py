@@ -41,7 +41,7 @@ class _EndedError(Exception):
 
 
 class Answer(NamedTuple):
-    """What liblouis writes for a text.
+    """Cells that liblouis writes for a text.
 
     Attributes
     ----------

@@ -174,7 +174,7 @@ _LONGEST_NUMBER = 6  # of a note, with its brackets
 
 
 class _Role(NamedTuple):
-    """What the next text is, by the elements around it."""
+    """Role of the next text, by the elements around it."""
 
     kind: BlockKind = BlockKind.PARAGRAPH
     level: int = 0

@@ -1,4 +1,4 @@
-"""What stands before the items of lists: bullets, and numbers in all their forms."""
+"""Markers of the items of lists: bullets, and numbers in all their forms."""
 
 from __future__ import annotations
 

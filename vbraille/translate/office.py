@@ -144,7 +144,7 @@ class Level:
     text
         Text around its number, such as "%1.%2)".
     start
-        Its first number.
+        Number of its first item.
     legal
         Whether the numbers of all levels are plain in it.
     """

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Undefined(StrEnum):
-    """What is written for a character that neither the table nor a plain spelling can write."""
+    """Text for a character that neither the table nor a plain spelling can write."""
 
     MARK = "mark"
     """A sign for an unknown character; emoji by their names."""
@@ -29,7 +29,7 @@ class Undefined(StrEnum):
 
 
 class Kind(StrEnum):
-    """How a part of a text is written that the table leaves undefined."""
+    """Way in which a part of a text is written that the table leaves undefined."""
 
     EQUIVALENT = "the same, composed or ordered otherwise"
     PLAIN = "a plain spelling"

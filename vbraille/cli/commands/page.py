@@ -158,7 +158,7 @@ def _checked(contents: Iterable[bytes]) -> Iterator[bytes]:
 
 
 def _head(book: Book, cells: int, lines: int) -> dict[str, str]:
-    """What a file that is written from a book says of itself."""
+    """Facts that a file says of itself which is written from a book."""
     from vbraille.layout.writing import identifier
 
     source, table = book.source, book.table

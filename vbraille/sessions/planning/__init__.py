@@ -1,1 +1,1 @@
-"""What is planned before a session: protocols, designs, questions, and the plan of its trials."""
+"""Protocols, designs, questions, and the plan of a session's trials."""

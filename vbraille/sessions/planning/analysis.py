@@ -34,7 +34,7 @@ MEASURES = {
 
 
 class Analysis(Table, frozen=True, kw_only=True):
-    """What the sessions are for, fixed before the first of them.
+    """Purpose of the sessions, fixed before the first of them.
 
     Parameters
     ----------

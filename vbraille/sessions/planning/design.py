@@ -25,7 +25,7 @@ BLANK = chr(UNICODE_BLANK)
 
 
 class Setting(NamedTuple):
-    """What an item is shown by.
+    """Context in which an item is shown.
 
     Parameters
     ----------
@@ -55,12 +55,12 @@ class Catch(Table, frozen=True, kw_only=True):
 
     @property
     def stretch(self) -> int:
-        """How many trials stand between one catch trial and the next."""
+        """Number of trials between one catch trial and the next."""
         return (self.every or round(1 / (self.share or 1))) - 1
 
 
 class Repeated(Table, frozen=True, kw_only=True, tag_field="kind"):
-    """What all designs have.
+    """Keys of all designs.
 
     Parameters
     ----------

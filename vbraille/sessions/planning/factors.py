@@ -25,9 +25,9 @@ class Factor(Table, frozen=True, kw_only=True):
     Parameters
     ----------
     name
-        Its name, which is that of a column, after "factor_".
+        Name, which is that of a column, after "factor_".
     levels
-        Its levels.
+        Two or more levels.
     between
         Whether each participant has one of the levels, and not all.
     """

@@ -18,7 +18,7 @@ STRING, PARTICIPANT, GROUP = "string", "participant", "group"
 
 
 class Items(Table, frozen=True, kw_only=True):
-    """Where the strings of a design of items come from.
+    """Source of the strings of a design of items.
 
     Parameters
     ----------

@@ -133,7 +133,7 @@ def _number(participant: str) -> int:
     """Return the last number in a pseudonym, which chooses the group and the order."""
     numbers = re.findall(r"\d+", participant)
     if not numbers:
-        raise InputError(f"{participant} has no number to choose the order by; give --order")
+        raise InputError(f"{participant} has no number to choose the order by; give an order")
     return int(numbers[-1])
 
 

@@ -42,7 +42,7 @@ class Outcome(NamedTuple):
 
 
 class Procedure(Table, frozen=True, kw_only=True, tag_field="kind"):
-    """What all procedures have.
+    """Keys of all procedures.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ KEYS = {"enter": "\n", "space": " ", "tab": "\t"}
 
 
 class DisplayLook(Look, frozen=True, kw_only=True):
-    """How strings are shown where no condition says it: the table [display].
+    """Look of strings where no condition says it: the table [display].
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class Order(Table, frozen=True, kw_only=True):
 
 
 class Rules(Table, frozen=True, kw_only=True):
-    """What the order of the trials keeps to.
+    """Rules of the order of the trials.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class Practice(Table, frozen=True, kw_only=True):
 
     @property
     def most(self) -> int:
-        """How many trials there may be."""
+        """Number of trials that there may be."""
         return self.until.most if self.until else self.trials
 
 
@@ -216,7 +216,7 @@ class SessionPace(Table, frozen=True, kw_only=True):
 
 
 class Faults(Table, frozen=True, kw_only=True):
-    """What is done about a trial in which the device failed."""
+    """Rule for a trial in which the device failed."""
 
     repeat: bool = True
 
@@ -239,7 +239,7 @@ class Markers(Table, frozen=True, kw_only=True):
 
 
 class Pins(Table, frozen=True, kw_only=True):
-    """What stands on a conventional display: where it begins, and what is compared with."""
+    """Place of strings on a conventional display, and what is compared with."""
 
     cell: Annotated[int, Meta(ge=1, le=MOST_PIN_CELLS)] = 1
     reference: str = ""
@@ -364,7 +364,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
 
     @property
     def block_order(self) -> str:
-        """How conditions in blocks are ordered: listed, shuffled, balanced or table."""
+        """Order of conditions in blocks: listed, shuffled, balanced or table."""
         kind = self.order.kind if self.order else self.design.order or "listed"
         return {"williams": "balanced", "random": "shuffled"}.get(kind, kind)
 

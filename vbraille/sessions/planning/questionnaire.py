@@ -86,7 +86,7 @@ class Item(Table, frozen=True, kw_only=True):
 
     @property
     def typed(self) -> str:
-        """What may be typed."""
+        """Words for what may be typed."""
         match self.kind:
             case "choice":
                 return " or ".join(self.choices)

@@ -41,7 +41,7 @@ MOST_STEPS = 100
 
 
 class Spelling(NamedTuple):
-    """How cells are spelled in answers: dot masks of the keys, and the dots that are shown."""
+    """Spelling of cells in answers: dot masks of the keys, and the dots that are shown."""
 
     keys: dict[str, int]
     shown_dots: int
@@ -69,7 +69,7 @@ class Scale(Table, frozen=True, kw_only=True):
 
     @property
     def typed(self) -> str:
-        """What may be typed."""
+        """Words for what may be typed."""
         ends = (self.least, self.most)
         return " to ".join(f"{n} ({self.names[n]})" if n in self.names else str(n) for n in ends)
 
@@ -87,7 +87,7 @@ class Scale(Table, frozen=True, kw_only=True):
 
 
 class Question(Table, frozen=True, kw_only=True, tag_field="kind"):
-    """What all kinds have.
+    """Keys of all kinds.
 
     Parameters
     ----------
@@ -439,7 +439,7 @@ class Rate(Question, frozen=True, kw_only=True, tag="rating"):
 
     @property
     def typed(self) -> str:
-        """What may be typed."""
+        """Words for what may be typed."""
         return f"{self._steps.typed}, for {self.scale}"
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
@@ -476,7 +476,7 @@ class Magnitude(Question, frozen=True, kw_only=True, tag="magnitude"):
 
     @property
     def typed(self) -> str:
-        """What may be typed."""
+        """Words for what may be typed."""
         told = "" if self.modulus is None else f"; the standard is {self.modulus:g}"
         return f"a number above 0{told}"
 
@@ -549,7 +549,7 @@ class Pick(Question, frozen=True, kw_only=True, tag="name"):
 
     @property
     def confirms(self) -> bool:
-        """Whether a typed answer is said back before it counts."""
+        """Tell whether a typed answer is said back before it counts."""
         return self.confirm
 
     @property

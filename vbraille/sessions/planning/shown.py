@@ -1,4 +1,4 @@
-"""What is put under the hand, or on the pins, for a stimulus."""
+"""Lines and pictures that are put under the hand, or on the pins, for a stimulus."""
 
 from __future__ import annotations
 

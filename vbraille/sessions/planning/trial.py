@@ -39,7 +39,7 @@ class Stimulus(Struct, frozen=True, omit_defaults=True):
 
     @property
     def on(self) -> Literal["device", "pins"]:
-        """Where it stands: under the array, or on the pins of a conventional display."""
+        """Place of it: under the array, or on the pins of a conventional display."""
         return self.look.on or "device"
 
     @property
@@ -54,7 +54,7 @@ class Stimulus(Struct, frozen=True, omit_defaults=True):
 
 
 class Trial(Struct, frozen=True):
-    """What is shown in a trial.
+    """A trial of the plan.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ class Trial(Struct, frozen=True):
 
     @property
     def presented(self) -> str:
-        """What was shown, as tables have it: cells, a picture's name, or the values compared."""
+        """Cells, picture's name or compared values that were shown, as tables have them."""
         if self.values:
             return " ".join(f"{value:g}" for value in self.values)
         return self.stimuli[0].picture or self.cells

@@ -37,7 +37,7 @@ Parameter = Literal[
 
 
 class Look(Table, frozen=True, kw_only=True):
-    """How stimuli are shown. A value that is None is left to what the look is put over.
+    """Look of stimuli. A value that is None is left to what the look is put over.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What is whole of a record, and what can be saved of one that is not."""
+"""Checks of a record, and salvage of one that is not whole."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the hand moved over a line, which the ticks tell."""
+"""Movement of the hand over a line, by its ticks."""
 
 from __future__ import annotations
 

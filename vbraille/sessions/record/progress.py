@@ -1,4 +1,4 @@
-"""How far a session has come: which answers stand, and which trial comes next.
+"""Progress of a session: which answers stand, and which trial comes next.
 
 The runner hands over each event once it is written. A session that is resumed hands over all events
 of its record, and so is where it was.
@@ -130,7 +130,7 @@ class Progress:
 
     @property
     def next_item(self) -> tuple[Item, int] | None:
-        """What the questionnaire asks now, and of which trial or block; None for nothing."""
+        """Question that is asked now, and of which trial or block; None for nothing."""
         if not self.protocol.questionnaire:
             return None
         last = next((trial for trial in reversed(self._trials) if self._is_over(trial)), None)
@@ -190,7 +190,7 @@ class Progress:
 
     @property
     def found(self) -> list[str]:
-        """What a procedure has found in each condition."""
+        """Sentences on what a procedure has found in each condition."""
         procedure = self.protocol.procedure
         sentences: list[str] = []
         if procedure is None:

@@ -275,7 +275,7 @@ class Record:
 
 
 class Content(Struct, frozen=True):
-    """What a record holds beside its ticks."""
+    """Content of a record beside its ticks."""
 
     path: Path
     head: dict[str, Any]

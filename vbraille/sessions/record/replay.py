@@ -41,7 +41,7 @@ class Showing(NamedTuple):
 
 
 class Replay:
-    """What a session has shown.
+    """Showings of a session, and their frames.
 
     Attributes
     ----------

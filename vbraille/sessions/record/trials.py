@@ -25,7 +25,7 @@ from vbraille.sessions.record.ticks import read_ticks
 
 
 class Column(NamedTuple):
-    """What a column holds: in words, its unit, and its values if they are few."""
+    """Meaning of a column, its unit, and its values if they are few."""
 
     meaning: str
     unit: str = ""

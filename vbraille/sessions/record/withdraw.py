@@ -50,7 +50,7 @@ class Withdrawal:
 
     @property
     def lines(self) -> list[str]:
-        """What is removed, a path in each line."""
+        """Lines on what is removed, a path in each."""
         tables = [f"{path}: {count} rows of the table" for path, count in self.rows.items()]
         return [f"{path}: {what}" for path, what in self.whole.items()] + tables
 
