@@ -150,7 +150,8 @@ def _records(table: DataFrame) -> list[dict[str, Any]]:
 def _shown(caption: str, table: DataFrame) -> dict[str, Any]:
     """Return a table as the page shows it: as text, and its first rows."""
     more = f" (first {MOST_ROWS} of {len(table)} rows)" if len(table) > MOST_ROWS else ""
-    full = table.replace("", np.nan).dropna(axis=1, how="all").fillna("")
+    full = table.astype(object).where(table.notna(), "")
+    full = full.loc[:, (full != "").any()]
     return {
         "caption": caption + more,
         "columns": [str(name).replace("_", " ") for name in full],
