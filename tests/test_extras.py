@@ -75,7 +75,7 @@ ON_LINUX = """\
 read {texts}/english.txt --device sim --no-places
 feel {texts}/scenes/house.scene --device sim
 session run letters --participant P1 --answers simulated --fast --out {out}/P1
-device info sim
+device info sim --model stress2
 """
 TRIALS = "participant,condition,presented,answered\nP1,T0,ab,ab\nP2,T0,ab,a?\n"
 

@@ -17,8 +17,7 @@ from vbraille.errors import InputError, VbrailleError, only_linux
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
-    from typing import BinaryIO
+    from collections.abc import Iterable, Iterator, Mapping
 
     Content = bytes | Iterable[bytes]
 
@@ -197,15 +196,8 @@ def read_text(path: str | Path, what: str, most_bytes: int = _MOST_TEXT_BYTES) -
         raise InputError(f"{path} is not UTF-8 in line {line}; save it as UTF-8") from None
 
 
-def write_folder(
-    folder: Path,
-    files: Mapping[str, bytes],
-    *,
-    durable: bool = False,
-    private: bool = False,
-    clear: Callable[[Path], None] = shutil.rmtree,
-) -> None:
-    """Make a directory with files, and the directories that it is in: all of it, or nothing.
+def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Make a directory with files: all of it, or nothing.
 
     Parameters
     ----------
@@ -213,13 +205,6 @@ def write_folder(
         Directory that does not exist yet, or is empty.
     files
         Content of each file, by its path in the directory.
-    durable
-        Whether all must be on the disk when this returns, and not in the system's memory alone.
-    private
-        Whether other users of the machine may read neither the directory nor those that are made
-        for it, whatever the umask says.
-    clear
-        Function that removes what a killed process left under the other name.
 
     Raises
     ------
@@ -228,39 +213,23 @@ def write_folder(
     VbrailleError
         If the disk cannot take the directory.
     """
-    folder = folder.absolute()
     check_free(folder)
-    partial = _partial(folder)
-    mode = 0o700 if private else 0o777
-    made: list[Path] = []  # each is in the one before
+    partial = folder.absolute().with_name(f".{folder.absolute().name}.partial")
     try:
-        for parent in missing(folder.parent):
-            parent.mkdir(mode)
-            made.append(parent)
-        if partial.exists():
-            clear(partial)
-        partial.mkdir(mode)
-        made.append(partial)
+        shutil.rmtree(partial, ignore_errors=True)
+        partial.mkdir(parents=True)
+    except OSError as error:
+        raise InputError(f"{folder} cannot be made: {error.strerror}") from None
+    try:
         for name, content in files.items():
             path = partial / name
             path.parent.mkdir(parents=True, exist_ok=True)
-            with _begin(path, private=private) as file:
-                _fill(file, content, durable=durable)
-        if durable:
-            sync_names(partial)
+            path.write_bytes(content)
         partial.rename(folder)
-        if durable:
-            sync_names(folder.parent)
-    except BaseException as fault:
-        if partial in made:
-            shutil.rmtree(partial, ignore_errors=True)
-        for parent in reversed(made):
-            with suppress(OSError):  # what is in use stays
-                parent.rmdir()
-        if isinstance(fault, OSError):
-            kind = VbrailleError if partial in made else InputError
-            raise kind(f"{folder} cannot be written: {fault.strerror}") from None
-        raise
+    except OSError as error:
+        raise VbrailleError(f"{folder} cannot be written: {error.strerror}") from None
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
 
 
 def open_memory(name: str, size: int) -> int:
@@ -278,56 +247,20 @@ def open_memory(name: str, size: int) -> int:
     return descriptor
 
 
-def check_free(folder: Path, name: str = "out") -> None:
+def check_free(folder: Path) -> None:
     """Check that a new directory can have this name.
-
-    Parameters
-    ----------
-    folder
-        The directory.
-    name
-        What the caller calls it.
 
     Raises
     ------
     InputError
-        If something exists at the path, or may exist unseen, or what it would stand in is no
-        directory.
+        If there is something else than an empty directory.
     """
     try:
-        above = next(parent for parent in folder.absolute().parents if parent.exists())
-        if not above.is_dir():
-            raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
         taken = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
     except OSError as error:
         raise InputError(f"{folder} cannot be written: {error.strerror}") from None
     if taken:
-        raise InputError(f"{folder} is there already; give a new directory with {setting(name)}")
-
-
-def missing(folder: Path) -> list[Path]:
-    """Directories that do not exist yet, each in the one before."""
-    return [path for path in (*reversed(folder.parents), folder) if not path.exists()]
-
-
-def _partial(path: Path) -> Path:
-    """Path that a file or directory has until it is written whole."""
-    return path.with_name(f".{path.name}.partial")
-
-
-def _begin(path: Path, *, private: bool) -> BinaryIO:
-    """Open a file for its content; what was there, which a killed process left, goes."""
-    if private:
-        path.unlink(missing_ok=True)
-        path.touch(0o600, exist_ok=False)
-    return path.open("wb")
-
-
-def _fill(file: BinaryIO, content: Content, *, durable: bool) -> None:
-    file.writelines([content] if isinstance(content, bytes) else content)
-    if durable:
-        file.flush()
-        os.fsync(file.fileno())
+        raise InputError(f"{folder} already exists; give a new directory with {setting('out')}")
 
 
 def no_formula(text: str) -> str:

@@ -63,7 +63,7 @@ def keep(where: str) -> logging.Handler:
 
 
 def kept() -> str | None:
-    """Where this process keeps its log, so that processes it starts may; None if nowhere."""
+    """Place of this process's log, so that processes it starts may share it; None if none."""
     names = (handler.name for handler in logging.getLogger("vbraille").handlers)
     return next(filter(None, names), None)
 

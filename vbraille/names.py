@@ -22,6 +22,8 @@ _VARIATIONS = dict.fromkeys(range(0xFE00, 0xFE10))
 def visible(name: str) -> str:
     """Return a name composed (NFC), without invisible marks and double blanks."""
     shown = " ".join(name.split())
+    if shown.isascii() and shown.isprintable():
+        return shown
     shown = "".join(each for each in shown if unicodedata.category(each) not in _INVISIBLE)
     return unicodedata.normalize("NFC", shown.translate(_VARIATIONS)).strip()
 

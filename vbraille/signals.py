@@ -110,7 +110,8 @@ class Suspension:
 
     def __enter__(self) -> Self:
         # Without job control the process that started us may have us ignore it.
-        if signal.getsignal(signal.SIGTSTP) is not signal.SIG_IGN:
+        has = hasattr(signal, "SIGTSTP")
+        if has and signal.getsignal(signal.SIGTSTP) is not signal.SIG_IGN:
             self._before = {
                 signal.SIGTSTP: signal.signal(signal.SIGTSTP, self._ask),
                 signal.SIGCONT: signal.signal(signal.SIGCONT, self._go_on),

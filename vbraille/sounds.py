@@ -40,25 +40,6 @@ class Pitched(Protocol):
         ...
 
 
-class Sound(Protocol):
-    """Device that plays a tone without waiting for its end."""
-
-    name: str
-
-    def play(self, tone: Pitched, /) -> None:
-        """Begin to play a tone."""
-        ...
-
-
-class Silence:
-    """Sound device that plays nothing."""
-
-    name = "none"
-
-    def play(self, _tone: Pitched, /) -> None:
-        """Ignore a tone."""
-
-
 class Bell:
     """Sound device that rings the terminal's bell; without a terminal nothing is heard."""
 

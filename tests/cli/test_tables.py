@@ -42,4 +42,3 @@ def test_tables_and_ports_are_printed_as_json(call):
     assert told["usual"] == "fr-bfu-comp6.utb"
     assert len(told["tables"]) == len(call("tables", "--language", "fr").out.splitlines()) - 1
     assert {"name", "title", "language", "grade", "dots", "kind"} == set(told["tables"][0])
-    assert isinstance(json.loads(call("device", "list", "--json").out), list)

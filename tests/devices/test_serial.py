@@ -40,8 +40,8 @@ def test_a_controller_is_found_and_read_and_takes_frames():
     with simulated_controller(VBD) as spec, open_device(spec, None) as device:
         assert device.display.shape == VBD.shape
         assert device.display.rest_side == VBD.rest_side
-        poses = drive(device, 1)
-        assert device.taking
+        poses = drive(device, 0.2)
+        poses += drive(device, 8, lambda: device.taking and device.acknowledged_ns is not None)
         assert device.acknowledged_ns is not None
         assert poses[0].x_mm == pytest.approx(-VBD.span_mm / 2)
         assert all(after.time_ns > before.time_ns for before, after in pairwise(poses))

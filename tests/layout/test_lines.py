@@ -209,3 +209,12 @@ def test_a_text_of_a_program_s_own_is_wrapped():
     parts = wrap_text("one two three", table, 6)
     assert b"\0".join(parts) == whole[0]
     assert np.frombuffer(parts[0], np.uint8).size <= 6
+
+
+def test_capitals_and_addresses_that_are_cut_go_on_as_such():
+    capitals = cells(layout("INTERNATIONALIZATION", 8).lines())
+    assert all(line.endswith("⠤") for line in capitals[:-1])
+    assert all(line.strip("⠀").startswith("⠠⠠") for line in capitals)
+    address = cells(layout("https://example.org/abc", 12).lines())
+    assert address[0].endswith("⠸⠌")  # a line may end at a slash
+    assert address[1].endswith("⠐")

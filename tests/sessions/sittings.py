@@ -75,7 +75,7 @@ class Sat:
 
 
 def made(folder, protocol=MINI, participant="P01", **how):
-    """A session of a protocol, which nobody has run yet."""
+    """A session of a protocol, which has not begun."""
     path = folder / f"{participant}.toml"
     path.write_text(protocol, "utf-8")
     session = Session.create(path, participant, path=folder / f"{participant}.session",

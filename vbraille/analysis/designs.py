@@ -86,8 +86,8 @@ def levels_of(cells: DataFrame) -> list[list[str]]:
     """Return the levels of each factor within people, in their order; none of groups alone."""
     if cells.shape[1] == 1:
         return []
-    table = cells.columns.to_frame(index=False)
-    return [list(dict.fromkeys(table[name])) for name in table]
+    columns = cells.columns
+    return [list(columns.get_level_values(n).unique()) for n in range(columns.nlevels)]
 
 
 def compare(cells: DataFrame, groups: Series | None = None) -> tuple[DataFrame, DataFrame]:

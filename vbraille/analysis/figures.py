@@ -135,10 +135,7 @@ def dots(table: DataFrame) -> Figure:
 def errors(table: DataFrame) -> Figure:
     """Draw the most frequent errors by dots, figure 4.8."""
     shown = table.head(MOST_KINDS)
-    kinds = [
-        ", ".join(f"{row[name]} {name}" for name in ("added", "removed", "moved") if row[name])
-        for row in shown.to_dict("records")
-    ]
+    kinds = [f"+{row.added} −{row.removed} moved {row.moved}" for row in shown.itertuples()]
     return _bars(Series(kinds), {"": 100 * shown["share"]}, "dots", "of all errors (%)")
 
 
@@ -204,7 +201,8 @@ def draw(result: Result | None, tables: dict[str, DataFrame]) -> dict[str, bytes
 def _content(figure: Figure, form: str) -> bytes:
     content = io.BytesIO()
     when = {"Date": None} if form == "svg" else None
-    figure.savefig(content, format=form, metadata=when, bbox_inches="tight", dpi=300)
+    dpi = 300 if form == "png" else 150
+    figure.savefig(content, format=form, metadata=when, bbox_inches="tight", dpi=dpi)
     return content.getvalue()
 
 

@@ -74,9 +74,7 @@ def _answered(trials: DataFrame) -> Series:
 
 
 def _speed(trials: DataFrame) -> Series:
-    if "words_per_minute" not in trials:
-        return Series(np.nan, trials.index)
-    return trials["words_per_minute"]
+    return trials.get("words_per_minute", Series(np.nan, trials.index))
 
 
 def _characters(trials: DataFrame, keys: list[str]) -> DataFrame:

@@ -183,14 +183,11 @@ def leave_out(trials: Trials, plan: Plan) -> None:
             frame = frame[frame["participant"] != person]
     frame = frame[~caught(frame)]
     taken = taken_s(frame)
-    fast = taken < plan.too_fast_s
-    slow = taken > plan.too_slow_s
-    for wrong, word, limit in ((fast, "less", plan.too_fast_s), (slow, "more", plan.too_slow_s)):
-        if wrong.any():
-            trials.notes.append(
-                f"{wrong.sum()} trials that took {word} than {limit:g} s are left out, as planned"
-            )
-    frame = frame[~(fast | slow)]
+    wrong = (taken < plan.too_fast_s) | (taken > plan.too_slow_s)
+    if wrong.any():
+        limits = f"{plan.too_fast_s:g} to {plan.too_slow_s:g} s"
+        trials.notes.append(f"{wrong.sum()} trials outside {limits} are left out, as planned")
+    frame = frame[~wrong]
     if frame.empty:
         raise InputError("the plan leaves out every trial; see [analysis] of the protocol")
     trials.frame = frame.reset_index(drop=True)

@@ -127,9 +127,8 @@ def read_trials(
 
 def in_order(values: Series) -> Series:
     """Return names as categories in natural order: T0, T25, T100."""
-    names = values.astype(str)
-    kinds = pd.CategoricalDtype(sorted(names.unique(), key=natural), ordered=True)
-    return names.astype(kinds)
+    names = values.astype("category").cat.remove_unused_categories().cat.rename_categories(str)
+    return names.cat.reorder_categories(sorted(names.cat.categories, key=natural), ordered=True)
 
 
 def _load(path: Path, name: str, trials: Trials) -> DataFrame:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import msgspec
 import numpy as np
 
 from vbraille.analysis import tables
@@ -18,7 +18,7 @@ from vbraille.analysis.measures import (
     preferences,
     thresholds,
 )
-from vbraille.analysis.primary import Result, people, plain
+from vbraille.analysis.primary import Result, cell_words, people, plain
 from vbraille.analysis.read import SIGNALS, STRINGS, Trials
 from vbraille.analysis.templates import render
 from vbraille.files import write_folder
@@ -118,8 +118,7 @@ class Analysis:
         files["codebook.csv"] = _csv(codebook(tables))
         figures = draw(self.result, self.tables)
         files |= {f"figures/{name}": content for name, content in figures.items()}
-        results = json.dumps(self.to_json(), ensure_ascii=False, indent=1)
-        files["results.json"] = f"{results}\n".encode()
+        files["results.json"] = msgspec.json.encode(self.to_json())
         files["report.html"] = self._page(list(figures)).encode()
         write_folder(Path(folder), files)
 
@@ -145,14 +144,14 @@ def _with_index(name: str, table: DataFrame) -> DataFrame:
 
 
 def _records(table: DataFrame) -> list[dict[str, Any]]:
-    return json.loads(table.to_json(orient="records", double_precision=15))
+    return msgspec.json.decode(table.to_json(orient="records", double_precision=15))
 
 
 def _shown(caption: str, table: DataFrame) -> dict[str, Any]:
     """Return a table as the page shows it: as text, and its first rows."""
     more = f" (first {MOST_ROWS} of {len(table)} rows)" if len(table) > MOST_ROWS else ""
-    full = table.loc[:, [bool(table[name].astype(str).str.strip().any()) for name in table]]
-    full = full.dropna(axis=1, how="all")
+    full = table.astype(object).where(table.notna(), "")
+    full = full.loc[:, (full != "").any()]
     return {
         "caption": caption + more,
         "columns": [str(name).replace("_", " ") for name in full],
@@ -226,8 +225,7 @@ def string_tables(trials: DataFrame) -> dict[str, DataFrame]:
 def tables_of(result: Result) -> dict[str, DataFrame]:
     """Return the tables of a comparison, by the names of their files."""
     cells = result.cells.copy()
-    if cells.shape[1] > 1:
-        cells.columns = [", ".join(name) if isinstance(name, tuple) else name for name in cells]
+    cells.columns = [cell_words(name) for name in cells]
     if result.groups is not None:
         cells.insert(0, str(result.groups.name), result.groups)
     made = {
@@ -243,6 +241,6 @@ def tables_of(result: Result) -> dict[str, DataFrame]:
 def title_of(result: Result | None, question: str, count: int) -> str:
     """Return the title: what was measured, and of how many people."""
     what = result.measure.name if result else f"answers to {question}"
-    tested = people(len(result.cells)) if result else people(count)
+    tested = people(len(result.cells) if result else count)
     first = what[0].upper() if what[1].isalpha() else what[0]
     return f"{first}{what[1:]}, {tested}"

@@ -84,20 +84,11 @@ class FTest(NamedTuple):
     note: str = ""
 
 
-def _p_of_t(t: ArrayLike, df: ArrayLike) -> Floats:
-    return 2 * special.stdtr(df, -np.abs(t))
-
-
-def _reach(df: ArrayLike, k: ArrayLike = 1) -> Floats:
-    """Return Student's t of an interval of level 1 - 0.05/k."""
-    return -special.stdtrit(df, ALPHA / 2 / np.asarray(k, np.float64))
-
-
 def t_interval(
     value: ArrayLike, error: ArrayLike, df: ArrayLike, k: ArrayLike = 1
 ) -> tuple[Floats, Floats]:
     """Return Student's interval of level 1 - 0.05/k."""
-    reach = _reach(df, k) * error
+    reach = -special.stdtrit(df, ALPHA / 2 / np.asarray(k, np.float64)) * error
     return value - reach, value + reach
 
 
@@ -157,7 +148,9 @@ def _t_test(value: Floats, error: Floats, df: ArrayLike, size: Floats, made, not
     none = np.where(made, 0.0, np.nan)
     t = value / error + none
     note = "" if np.any(made) else note
-    return TTest(value, error + none, t, df + none, _p_of_t(t, df), size + none, note)
+    return TTest(
+        value, error + none, t, df + none, 2 * special.stdtr(df, -np.abs(t)), size + none, note
+    )
 
 
 @QUIET

@@ -39,20 +39,16 @@ def places(trials: DataFrame, keys: list[str] = CELL) -> DataFrame:
     whole = trials[lengths == trials["answered"].str.len()]
     times = lengths[whole.index].to_numpy()
     each = DataFrame({key: whole[key].repeat(times) for key in keys}).reset_index(drop=True)
-    for column in ("presented", "answered"):
-        each[column] = pd.Categorical(list("".join(whole[column])))
-    return each.assign(right=each["presented"].astype(str) == each["answered"].astype(str))
+    shown, said = (np.array(list("".join(whole[name]))) for name in ("presented", "answered"))
+    each["presented"], each["answered"] = pd.Categorical(shown), pd.Categorical(said)
+    return each.assign(right=shown == said)
 
 
 def durations(trials: DataFrame) -> Series:
     """Return durations of whole trials: neither paused nor answered early."""
-    if "duration_s" not in trials:
-        return Series(np.nan, trials.index)
-    whole = Series(True, trials.index)
-    for column in ("paused_s", "early"):
-        if column in trials:
-            whole &= trials[column].fillna(0) == 0
-    return trials["duration_s"].where(whole).astype(float)
+    none = Series(np.nan, trials.index)
+    paused, early = (trials.get(name, none).fillna(0) for name in ("paused_s", "early"))
+    return trials.get("duration_s", none).where((paused == 0) & (early == 0)).astype(float)
 
 
 def taken_s(trials: DataFrame) -> Series:
@@ -313,6 +309,6 @@ def patterns(trials: DataFrame) -> DataFrame:
     known = trials.dropna(subset=["pattern"])
     counts = pd.crosstab([known[name] for name in CELL], known["pattern"])
     counts.columns = counts.columns.astype(str)
-    speeds = [name for name in ("speed_right_mm_s", "speed_left_mm_s") if name in known]
-    means = known.groupby(CELL, observed=True)[speeds].mean()
+    speeds = known.columns.intersection(["speed_right_mm_s", "speed_left_mm_s"])
+    means = known.groupby(CELL, observed=True)[list(speeds)].mean()
     return counts.join(means).reset_index()

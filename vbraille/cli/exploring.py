@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Equipment:
-    """What a person explores with.
+    """Device, outputs and keyboard of a person who explores.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What commands print: lines, tables, JSON, and how far long work has come."""
+"""Output of commands: lines, tables, JSON, and the progress of long work."""
 
 from __future__ import annotations
 

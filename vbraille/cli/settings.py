@@ -161,7 +161,7 @@ def settings_of(ctx: click.Context) -> Settings:
 
 
 def origin(ctx: click.Context, param: click.Parameter) -> str:
-    """Where the value of an option comes from; empty for the command line and for defaults."""
+    """Origin of the value of an option, in words; empty for the command line and for defaults."""
     source = ctx.get_parameter_source(param.name or "")
     if source is ParameterSource.ENVIRONMENT:
         return f"environment variable {param.envvar or _variable(ctx, param)}"

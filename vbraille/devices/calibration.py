@@ -38,7 +38,7 @@ _MOST_NAME: Final = 150
 
 
 class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What was found of a device's actuators.
+    """Findings on a device's actuators.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ _ARRAY_TIME_S = 0.005
 
 @dataclass(frozen=True, slots=True)
 class MapRequest:
-    """What is drawn of a picture.
+    """Request for a drawing of a picture.
 
     Parameters
     ----------

@@ -19,6 +19,7 @@ from vbraille.knobs import KNOBS
 from vbraille.layout import cells_per_line
 from vbraille.reading.commands import Where, command
 from vbraille.reading.explored import Explored
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -197,7 +198,7 @@ class Tuning(Explored):
                 raise ValueError
         except (OSError, ValueError, KeyError, TypeError):
             raise InputError(
-                f"{self._path}: the choices that were kept are damaged; begin anew with --again"
+                f"{self._path}: the kept choices are damaged; start anew with {setting('again')}"
             ) from None
         return choices
 

@@ -25,6 +25,7 @@ from vbraille.sessions.record import record
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Content, Record
 from vbraille.simulation.specs import is_simulated
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.sessions.running.answers import Answers
@@ -42,7 +43,7 @@ def _nothing(*_: object) -> None:
 
 
 class Conditions(Struct, frozen=True, kw_only=True):
-    """What a session is run with; the record keeps it, and the next run has the same.
+    """Conditions of a run; the record keeps them, and the next run has the same.
 
     Parameters
     ----------
@@ -182,7 +183,7 @@ class Session:
 
     @property
     def last_conditions(self) -> Conditions:
-        """What the session was run with last."""
+        """Conditions of the last run."""
         return _conditions_now(self.content, {})
 
     @property
@@ -339,7 +340,7 @@ def check_fields(protocol: Protocol, given: Mapping[str, str]) -> dict[str, str]
 
 
 class _Apparatus(NamedTuple):
-    """What a run needs beside the record: all is open, and closed by the stack that opened it."""
+    """Parts of a run beside its record: all is open, and closed by the stack that opened it."""
 
     device: SessionDevice | Paper
     pins: Pins | None
@@ -374,9 +375,11 @@ def _open_answers(given: Any, conditions: Conditions, progress: Progress) -> Ans
     else:
         source = answers_of(spec, progress.script_line)
     if conditions.fast and isinstance(source, Typed):
-        raise InputError("--fast is for answers that are not typed; give --answers simulated")
+        said = f"{setting('fast')} is for answers that are not typed"
+        raise InputError(f"{said}; give {setting('answers')} simulated")
     if conditions.fast and not is_simulated(conditions.device):
-        raise InputError("--fast is for the simulated device; leave --device out")
+        said = f"{setting('fast')} is for the simulated device"
+        raise InputError(f"{said}; leave {setting('device')} out")
     return source
 
 
@@ -507,7 +510,7 @@ def _open_sound(wanted: str, source: Answers, say: Say) -> Callable[[Any], None]
             return Tones().play
         except OSError as error:
             if wanted == "tones":
-                raise InputError(f"{error}; give --cues bell or none") from None
+                raise InputError(f"{error}; give {setting('cues')} bell or none") from None
         say("sound: the terminal's bell, since there is no audio output")
     return Bell().play
 

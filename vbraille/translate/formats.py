@@ -172,12 +172,15 @@ def _stream(file: str | BinaryIO, name: str) -> BinaryIO:
             raise InputError(f"{name} is a directory; give a file in it")
         if path.is_char_device():
             raise InputError(f"{name} is a device, not a file; give a file")
-        stream = path.open("rb")
-        beginning = stream.read(4)
-        if path.is_file() and beginning.startswith(b"PK"):
-            return stream
-        with stream:
+        stream, beginning = path.open("rb"), b""
+        try:
+            beginning = stream.read(4)
+            if path.is_file() and beginning.startswith(b"PK"):
+                return stream
             return _kept(beginning + stream.read(MOST_BYTES), name)
+        finally:
+            if not beginning.startswith(b"PK"):
+                stream.close()
     except FileNotFoundError:
         raise InputError(f"there is no file {name}; check the name") from None
     except (OSError, ValueError) as error:

@@ -34,6 +34,8 @@ _CLASSES = {
 }
 _HYPHEN = b"\x24"  # dots 3 and 6
 _UEB_CONTINUATION = b"\x10"  # dot 5, after which a number goes on without its sign
+_PARTING = "-‐‑–—/"
+_PUNCTUATION = ".,;:!?()[]«»“”‘’\"'…"
 _MARKED = (Kind.MARKED, Kind.UNENDING)
 
 
@@ -99,14 +101,23 @@ class BrailleTable:
             Cells of the word from there on.
         """
         before, after = text[place - 1], text[place]
-        if self.is_ueb and before.isdecimal() and after.isdecimal():
-            return _UEB_CONTINUATION, b""
+        following = "".join(text[place:].split(None, 1)[:1])
+        word = "".join(text[:place].split()[-1:]) + following
+        numbers = before.isdecimal() and after.isdecimal()
         hyphen = self.cells_of("-")
         ending = hyphen if len(hyphen) == 1 and any(hyphen) else _HYPHEN
-        alike = (before.isdecimal() and after.isdecimal()) or (before.isupper() and after.isupper())
-        whole = self.cells_of(text[place:].split(None, 1)[0]) if alike else b""
+        if before in _PARTING or after in _PARTING:
+            ending = b""  # a line may end at these
+        elif self.is_ueb and (numbers or not word.strip(_PUNCTUATION).isalpha()):
+            ending = _UEB_CONTINUATION
+        if numbers and ending == _UEB_CONTINUATION:
+            return ending, b""
+        whole = b""
+        if numbers or (before.isupper() and after.isupper()):
+            whole = self.cells_of(following)
+            rest = rest if numbers else self.cells_of(following.lower())
         sign = whole.removesuffix(rest)
-        return ending, sign if len(sign) < len(whole) else b""
+        return ending, sign if rest and len(sign) < len(whole) else b""
 
     @cached_property
     def info(self) -> TableInfo | None:

@@ -125,7 +125,7 @@ def read(ctx: click.Context, number: int = 1) -> None:
 
 
 def _kept(places: Places, file: str) -> KeptBook:
-    """What is kept of a book, which is known by its content."""
+    """Places and choices kept of a book, which is known by its content."""
     path = Path(file)
     if file == "-" or not path.is_file():
         return places.book("", Path(), "")
@@ -169,7 +169,7 @@ def _changes(file: str, open_book: Callable[[], Any]) -> Callable[[], Any]:
 
 
 def _stamp(path: Path) -> tuple[int, int] | None:
-    """What tells states of a file apart; None without one, or while it is empty."""
+    """Mark that tells states of a file apart; None without one, or while it is empty."""
     found = path.stat() if path.is_file() else None
     return None if found is None or not found.st_size else (found.st_mtime_ns, found.st_size)
 

@@ -56,6 +56,10 @@ def command() -> None:
                    help="Pause each second, such as 200ms.", **_FAULTS),
     options.option("--unplug-every", type=options.Duration(), default=0.0, metavar="TIME",
                    help="Time between unpluggings, such as 5s; needs --link.", **_FAULTS),
+    options.option("--hold", type=options.Duration(), default=0.0, metavar="TIME",
+                   help="Time for which a USB adapter holds bytes, such as 16ms.", **_FAULTS),
+    options.option("--boot", type=options.Duration(), default=0.0, metavar="TIME",
+                   help="Time for which the board starts, such as 1.5s.", **_FAULTS),
     options.option("--defect", type=options.Known("defect", _defects), metavar="NAME",
                    help="Way in which it is built wrong.", **_FAULTS),
 )  # fmt: skip
@@ -86,6 +90,8 @@ def serial(**chosen: Any) -> None:
         faults = Faults(
             drop=chosen["drop"],
             corrupt=chosen["corrupt"],
+            hold_ms=1000 * chosen["hold"],
+            boot_s=chosen["boot"],
             stall_s=chosen["stall"],
             unplug_every_s=chosen["unplug_every"],
             defect=Defect(chosen["defect"]) if chosen["defect"] else None,

@@ -1,1 +1,1 @@
-"""What runs a session: console, presenters, and where answers come from."""
+"""Running a session: the runner, its commands, presenters and sources of answers."""

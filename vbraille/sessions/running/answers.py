@@ -1,4 +1,4 @@
-"""Where answers come from: an experimenter who types, a file, or a program."""
+"""Sources of answers: an experimenter who types, a file, or a program."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from vbraille.errors import InputError
 from vbraille.sessions.planning.questionnaire import Item
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.simulated.skin import FeltFrames
+from vbraille.wording import setting
 
 
 class Asked(NamedTuple):
-    """What is asked now.
+    """A question that waits for a line.
 
     Parameters
     ----------
@@ -243,7 +244,7 @@ def answers_of(spec: Any, after: int) -> Answers:
     if spec == "typed":
         return Typed()
     if spec == "program":
-        raise InputError("the answers came from a program; give --answers typed")
+        raise InputError(f"the answers came from a program; give {setting('answers')} typed")
     if not Path(spec).exists():
         near = get_close_matches(spec.partition(":")[0], ("typed", "simulated"), 1)
         hint = f"did you mean {near[0]}?" if near else "give typed, simulated:NOISE or a file"

@@ -29,6 +29,7 @@ from vbraille.sessions.planning.shown import Shown, make_shown
 from vbraille.sessions.simulated.skin import FeltFrames
 from vbraille.simulation import steering
 from vbraille.simulation.specs import device_spec
+from vbraille.wording import setting
 
 # Makes the engine that drives a device, from the device's spec and the display that is wanted.
 MakeEngine = Callable[[str, Display], Engine]
@@ -348,7 +349,7 @@ def check_room(protocol: Protocol, plan: Plan, display: Display) -> None:
         if shown.canvas_mm is not None and not display.height_mm:
             raise InputError(
                 f"{protocol.name} shows pictures, and the carriage of {display.name} goes along x "
-                f"only; choose another --device"
+                f"only; choose another {setting('device')}"
             )
         if shown.canvas_mm is not None:
             needed_mm = shown.canvas_mm[0]
@@ -357,7 +358,7 @@ def check_room(protocol: Protocol, plan: Plan, display: Display) -> None:
         if needed_mm > display.travel_mm + TRAVEL_TOLERANCE_MM:
             raise InputError(
                 f"the carriage of {display.name} travels {display.travel_mm:g} mm, and "
-                f"{protocol.name} needs {needed_mm:.1f} mm; choose another --device"
+                f"{protocol.name} needs {needed_mm:.1f} mm; choose another {setting('device')}"
             )
 
 

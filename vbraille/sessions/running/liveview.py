@@ -25,6 +25,7 @@ from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_
 from vbraille.live.view import LiveView
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.running.device import SessionDevice
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.sessions.running.runner import Runner
@@ -74,8 +75,8 @@ class SessionView:
     ) -> None:
         if protocol.medium != "device" or fast:
             raise InputError(
-                f"--monitor shows a device in real time; {protocol.name} is on paper, or --fast is "
-                f"given; leave one of them out"
+                f"{setting('monitor')} shows a device in real time; {protocol.name} is on paper, "
+                f"or {setting('fast')} is given; leave one of them out"
             )
         self.blind = protocol.session.blind
         self._view: LiveView | None = LiveView(host=host, port=port, blind=self.blind)
@@ -98,7 +99,7 @@ class SessionView:
 
     @property
     def described(self) -> dict[str, Any]:
-        """What the record says of it."""
+        """Description of it for the record."""
         return {"blind": self.blind, "host": self._host}
 
     def say(self, sentence: str) -> None:

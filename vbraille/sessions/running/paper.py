@@ -22,6 +22,7 @@ from vbraille.sessions.planning.shown import pins_masks
 from vbraille.sessions.planning.trial import Stimulus
 from vbraille.sessions.running.device import Happening
 from vbraille.sessions.simulated.skin import FeltFrames
+from vbraille.wording import setting
 
 _COMES_S = 10.0  # by then a display that is there has said so
 _GONE_S = 2.0  # how long one may come that says it is not there
@@ -162,9 +163,10 @@ class Pins(Paper):
             waited_s += _POLL_S
             gone_s += _POLL_S if self._display.away else 0.0
         if self._display.standing is None:
-            raise DeviceError(f"the protocol needs a conventional display: {self.why} (--also)")
+            said = f"the protocol needs a conventional display: {self.why}"
+            raise DeviceError(f"{said} ({setting('also')})")
         if self.why:
-            raise InputError(f"{self.why}; give another display with --also")
+            raise InputError(f"{self.why}; give another display with {setting('also')}")
 
     def show(self, stimulus: Stimulus, *, first: bool = True, turned: bool = False) -> None:
         """Put a stimulus on the display."""

@@ -192,7 +192,7 @@ class Runner:
 
     @property
     def presenter(self) -> SessionDevice | Paper:
-        """What shows the stimulus of the trial that is open or comes next."""
+        """Presenter of the trial that is open or comes next."""
         trial = self.trial
         on_pins = trial is not None and trial.stimuli[0].on == "pins"
         return self.pins if self.pins is not None and on_pins else self.device
