@@ -170,7 +170,8 @@ def _viewed(folder: Path) -> Iterator[Result]:
     with record.connect(session.path, "rw") as db:
         columns = ", ".join(name for _, name, *_ in db.execute("PRAGMA table_info(trial)"))
         copied = columns.replace("number", "?", 1)
-        copy = f"INSERT INTO trial ({columns}) SELECT {copied} FROM trial WHERE practice = 0 AND number = 1"
+        first = "FROM trial WHERE practice = 0 AND number = 1"
+        copy = f"INSERT INTO trial ({columns}) SELECT {copied} {first}"
         db.execute("BEGIN")
         db.executemany(copy, ((number,) for number in rows))
         db.executemany(
