@@ -45,8 +45,14 @@ def test_a_smooth_stroke_and_plain_markers_are_said_in_words():
 @pytest.mark.parametrize(
     ("look", "said"),
     [
-        ('stroke = { edge_mm = "smoth" }', "edge_mm is 'smoth'; the nearest is smooth"),
-        ("stroke = { edge_mm = true }", "edge_mm is True; it must be a number or 'smooth'"),
+        ('stroke = { edge_mm = "smoth" }', "edge_mm: is 'smoth'; did you mean smooth?"),
+        (
+            "stroke = { edge_mm = true }",
+            "edge_mm: must be a number or a text in quotation marks, not true or false",
+        ),
+            "stroke = { edge_mm = true }",
+            "edge_mm: must be a number or a text in quotation marks, not true or false",
+        ),
         (
             "markers = { plain = true, vibration = { amplitude = 0.5 } }",
             "vibration cannot be given beside plain = true; leave one out",

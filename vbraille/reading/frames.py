@@ -313,8 +313,7 @@ def render_page(
     (['one', 'two'], (2, 8, 8))
     """
     model, style, layout = _laid_out(text, display, style, language, grade, table)
-    if first < 1 or (last is not None and last < first):
-        raise InputError(f"lines {first} to {last} are no range; lines count from 1 upwards")
+    check_lines(first, last)
     lines = tuple(islice(layout.lines(first, last), MOST_LINES + 1))
     if not lines or (last is not None and len(lines) <= last - first):
         raise InputError(f"the text ends at line {layout.count()}; give lines up to that")
@@ -325,6 +324,14 @@ def render_page(
     except ValueError as error:
         raise InputError(str(error)) from None
     return RenderedPage(lines, model.display, style, program, first)
+
+
+def check_lines(first: int, last: int | None) -> None:
+    """Raise `InputError` for numbers of lines that are no range."""
+    if first < 1:
+        raise InputError(f"first is {first}; it must be 1 or more")
+    if last is not None and last < first:
+        raise InputError(f"last is {last} and first is {first}; last must not be before first")
 
 
 def _path(

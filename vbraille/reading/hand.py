@@ -102,7 +102,8 @@ class HandWatch:
             if spread_mm <= _SAME_MM:
                 self.hopeless = (
                     f"{self._line} is not read to its end: {way}, and {goal}; see what is in the "
-                    f"carriage's way, or give a shorter {setting('travel')}"
+                    f"carriage's way, or give a shorter {setting('travel')}; its driver says "
+                    f"-span_mm / 2 at its left stop"
                 )
 
     def _refused(self, now_s: float) -> Iterator[str]:

@@ -12,6 +12,7 @@ from vbraille.display import Display, check_rate
 from vbraille.errors import DeviceError, InputError
 from vbraille.layout import Layout, cells_per_line
 from vbraille.reading.device import HAND, POLL_S, ReadingDevice
+from vbraille.reading.frames import check_lines
 from vbraille.reading.outputs import Cue
 from vbraille.reading.places import Places
 from vbraille.reading.reader import Reader
@@ -126,8 +127,7 @@ class OpenDevice(ReadingDevice):
         """
         if self._closed:
             raise DeviceError("the device is closed; open it again")
-        if first < 1 or (last is not None and last < first):
-            raise InputError(f"lines {first} to {last} are no range; lines count from 1 upwards")
+        check_lines(first, last)
         if not text.strip():
             raise InputError("the text has nothing to read in it; give some")
         width = cells_per_line(self.style.geometry, self.display)

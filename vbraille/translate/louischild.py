@@ -14,6 +14,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+# liblouis's own binding comes with the system; PyPI has another package of that name.
+sys.path.insert(0, "/usr/lib/python3/dist-packages")
 import louis
 
 COMPILING_S = 20.0  # the largest tables take a second or two

@@ -130,6 +130,7 @@ class Pins(Paper):
         self._cells = max(len(pins_masks(protocol, each)) for each in (None, *stimuli))
         self._masks = b""
         self._number = 0
+        self._put_cells = b""
         self._taken = True
         self._is_reference = False
 
