@@ -293,7 +293,7 @@ def _types_at(kind: type, path: Path) -> list[inspect.Type]:
                 below += [field.type for field in each.fields if field.encode_name == step]
             elif isinstance(each, inspect.DictType):
                 below.append(each.value_type)
-            elif hasattr(each, "item_type"):
+            elif isinstance(each, inspect.CollectionType):
                 below.append(each.item_type)
         types = below
     return types

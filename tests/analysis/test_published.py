@@ -127,7 +127,7 @@ def test_tables_3_3_and_3_5(tmp_path):
 
 
 def test_table_3_3_averages_within_people_first(tmp_path):
-    """AB's 3 of 4 nominal and 4 of 5 textured trials weigh as one person's, whoever reads more."""
+    """AB's 3 of 4 nominal and 4 of 5 textured trials weigh as one person's, whatever each reads."""
     rows = []
     for person, condition, right, n in (("AB", "nominal", 3, 4), ("AB", "textured", 4, 5),
                                         ("CN", "textured", 10, 10)):  # fmt: skip

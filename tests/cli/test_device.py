@@ -125,7 +125,7 @@ def test_a_round_keeps_gains_in_bounds_and_shows_dead_actuators():
     assert turn.found.gain[0][0] == 1.0
     turn.press("n")
     assert turn.found.gain[0][1] == 0.0  # passed over, and left as it was
-    assert turn.shown.gain[0][1] == 1.0  # or nobody could see it swing
+    assert turn.shown.gain[0][1] == 1.0  # or it could not be seen to swing
     turn.press("p")
     turn.press("p")
     assert turn.place == (1, 1)

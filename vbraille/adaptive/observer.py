@@ -38,7 +38,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
 # Probability of a positive answer, of a stimulus and the parameters; arrays are broadcast.
@@ -123,12 +123,12 @@ class Grid:
         Number of values of each parameter. Posteriors are arrays of this shape.
     """
 
-    def __init__(self, observer: Observer, axes: Mapping[str, Sequence[float]]) -> None:
+    def __init__(self, observer: Observer, axes: Mapping[str, ArrayLike]) -> None:
         self._observer = observer
         self.axes = {name: np.asarray(values, float) for name, values in axes.items()}
         self.shape = tuple(values.size for values in self.axes.values())
 
-    def chances(self, stimuli: Sequence[Stimulus]) -> Floats:
+    def chances(self, stimuli: Sequence[Stimulus] | Floats) -> Floats:
         """Return the probability of a positive answer, of shape [stimuli, *shape].
 
         Raises
@@ -147,7 +147,7 @@ class Grid:
         return np.clip(chances, UNLIKELY, 1 - UNLIKELY)
 
     def log_likelihood(
-        self, stimuli: Sequence[Stimulus], positive: Sequence[int], total: Sequence[int]
+        self, stimuli: Sequence[Stimulus] | Floats, positive: ArrayLike, total: ArrayLike
     ) -> Floats:
         """Return the log likelihood of numbers of positive answers, of shape `shape`.
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
 import pandas as pd
 from pandas import DataFrame, Series
 
@@ -17,6 +16,7 @@ from vbraille.analysis import stats
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from vbraille.analysis.stats import Floats, FTest, TTest
@@ -75,7 +75,7 @@ def pairs_of(cube: Floats, design: Design) -> Iterator[tuple[str, str, str, TTes
         means = parts.mean(axis=others) if others else parts
         for first, second in combinations(range(len(levels)), 2):
             if grouped:
-                groups = (means[..., np.equal(design.member, each)] for each in (first, second))
+                groups = (means[..., design.member == each] for each in (first, second))
                 test = stats.welch(*groups)
             else:
                 test = stats.paired(means[..., first] - means[..., second])
@@ -87,7 +87,7 @@ def levels_of(cells: DataFrame) -> list[list[str]]:
     if cells.shape[1] == 1:
         return []
     columns = cells.columns
-    return [list(columns.get_level_values(n).unique()) for n in range(columns.nlevels)]
+    return [list(columns.unique(n)) for n in range(columns.nlevels)]
 
 
 def compare(cells: DataFrame, groups: Series | None = None) -> tuple[DataFrame, DataFrame]:
@@ -144,7 +144,7 @@ def _corrected(rows: list[dict]) -> DataFrame:
     if "p" not in table:
         return table
     corrected, k = stats.holm(table["p"])
-    table.insert(table.columns.get_loc("p") + 1, "p_holm", corrected)
+    table.insert(list(table).index("p") + 1, "p_holm", corrected)
     if "error" in table:
         table["k"] = k
         ends = stats.t_interval(table["value"], table["error"], table["df"], k)

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import io
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import matplotlib
 import numpy as np
@@ -17,14 +17,12 @@ from vbraille.analysis.measures import LOGS, SHARES
 from vbraille.analysis.primary import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from matplotlib.axes import Axes
 
     from vbraille.analysis.primary import Result
 
 # The same figure gives the same bytes.
-STYLE = {"svg.hashsalt": "vbraille", "axes.spines.top": False, "axes.spines.right": False}
+STYLE: Any = {"svg.hashsalt": "vbraille", "axes.spines.top": False, "axes.spines.right": False}
 MOST_RUNS = 24
 ACROSS = 3
 MOST_POINTS = 500
@@ -171,7 +169,7 @@ def answers(table: DataFrame) -> Figure:
     return figure
 
 
-DRAWN: dict[str, Callable[[DataFrame], Figure]] = {
+DRAWN = {
     "legibility": legibility,
     "dots": dots,
     "errors": errors,
@@ -209,5 +207,7 @@ def _content(figure: Figure, form: str) -> bytes:
 def alt_of_means(result: Result) -> str:
     """Return the figure of the means in words."""
     times, unit = (100, " in percent") if result.measure.scale == SHARES else (1, "")
-    parts = [f"{row.cell} {plain(times * row.mean)}" for row in result.means.itertuples()]
+    parts = [
+        f"{row['cell']} {plain(times * row['mean'])}" for row in result.means.to_dict("records")
+    ]
     return f"Mean {result.measure.name}{unit}: {', '.join(parts)}."

@@ -58,7 +58,7 @@ def _means(numbers: Callable[[DataFrame], Series], why: str, *, log: bool = Fals
     def values(trials: DataFrame, keys: list[str]) -> DataFrame:
         made = numbers(trials)
         if log:
-            made = np.log(made.where(made > 0))
+            made = made.where(made > 0).transform(np.log)
         value = made.groupby([trials[key] for key in keys], observed=True).mean()
         return DataFrame({"value": value, "why": np.where(value.isna(), why, "")})
 
@@ -79,8 +79,7 @@ def _speed(trials: DataFrame) -> Series:
 
 def _characters(trials: DataFrame, keys: list[str]) -> DataFrame:
     value = places(trials, keys).groupby(keys, observed=True)["right"].mean()
-    everyone = trials.groupby(keys, observed=True).size().index
-    value = value.reindex(everyone)
+    value = value.reindex(trials.groupby(keys, observed=True).size().index)
     why = "no answer as long as what was presented"
     return DataFrame({"value": value, "why": np.where(value.isna(), why, "")})
 
@@ -154,7 +153,7 @@ def differences(trials: DataFrame) -> Series:
 
 def alternatives(trials: DataFrame) -> Series:
     """Return among how many stimuli one was right: of a match, two."""
-    offered = trials["presented"].str.split().str.len()
+    offered = trials["presented"].str.count(r"\S+")
     return offered.mask(trials["question"] == "match", 2)
 
 

@@ -86,8 +86,12 @@ def _of_sessions(trials: Trials) -> dict[str, Any]:
     if not trials.contents:
         return {}
     kinds = [Counter(event.kind for event in content.events) for content in trials.contents]
-    events = [event for content in trials.contents for event in content.events]
-    runs = [event.data.get("versions", {}) for event in events if event.kind == "run"]
+    runs = [
+        event.data.get("versions", {})
+        for content in trials.contents
+        for event in content.events
+        if event.kind == "run"
+    ]
     practice = [
         len({event.trial for event in content.events if event.kind == "answer" and event.practice})
         for content in trials.contents

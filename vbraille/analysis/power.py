@@ -163,7 +163,7 @@ def _middle(scale: str, value: float, spread: float) -> float:
     def off(middle: float) -> float:
         return float(special.expit(middle + spread * NODES) @ weights) - value
 
-    return float(optimize.brentq(off, -MOST_LOG_ODDS, MOST_LOG_ODDS))
+    return float(optimize.brentq(off, -MOST_LOG_ODDS, MOST_LOG_ODDS))  # pyright: ignore[reportArgumentType]
 
 
 def _trials(protocol: Protocol, groups: list[str], names: list[str], seed: int) -> Floats:
@@ -203,8 +203,8 @@ def power(
         raise InputError(f"--participants must be {stats.FEWEST * groups} to {LARGEST}")
     for size in sizes:
         random = np.random.default_rng([seed, size])
-        found: Counter[str] = Counter()
-        widths: list[float] = []
+        found = Counter()
+        widths = []
         for first in range(0, studies, PORTION):
             values = simulate(study, size, min(PORTION, studies - first), random)
             if not study.factors:
@@ -235,7 +235,7 @@ def _tested(study: Study, values: Floats) -> Iterator[tuple[str, Floats]]:
 
 def enough(rows: Sequence[PowerRow]) -> dict[str, int | None]:
     """Return the smallest size from which on all have a power of 0.8, for each comparison."""
-    least: dict[str, int | None] = {}
+    least = {}
     for row in sorted(rows, key=lambda row: row.participants):
         if row.power is not None and row.power < ENOUGH:
             least[row.compared] = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -17,7 +17,6 @@ from vbraille.errors import InputError
 if TYPE_CHECKING:
     from pathlib import Path
 
-if TYPE_CHECKING:
     from vbraille.analysis.plan import Plan
 
 SCORE = Measure("score", PLAIN, (), lambda trials, _: trials)
@@ -101,7 +100,7 @@ def _in_cells(values: DataFrame, missing: str) -> tuple[DataFrame, Series | None
     """Return people by cells, their groups, and who is left out with the reason."""
     table = values.reset_index()
     per_person = table.groupby("participant", observed=True)
-    factors = list(values.index.names[1:])
+    factors = list(map(str, values.index.names[1:]))
     between = [name for name in factors if per_person[name].nunique().max() == 1]
     within = [name for name in factors if name not in between]
     if len(between) > 1 or len(within) > 3:
@@ -125,7 +124,7 @@ def _in_cells(values: DataFrame, missing: str) -> tuple[DataFrame, Series | None
         why.columns = wide.columns
     left_out = []
     for person in wide.index[wide.isna().any(axis=1)]:
-        reasons: dict[str, list[str]] = {}
+        reasons = {}
         for name in wide.columns[wide.loc[person].isna()]:
             reasons.setdefault(why.loc[person, name], []).append(cell_words(name))
         told = [
@@ -137,8 +136,8 @@ def _in_cells(values: DataFrame, missing: str) -> tuple[DataFrame, Series | None
     return kept, None if groups is None else groups[kept.index].astype(str), left_out
 
 
-def cell_words(name: str | tuple[str, ...]) -> str:
-    """Return the name of a cell in words."""
+def cell_words(name: Any) -> str:
+    """Return the name of a cell, a text or several, in words."""
     return name if isinstance(name, str) else ", ".join(name)
 
 
@@ -234,14 +233,14 @@ def _difference(measure: Measure, value: float, unit: str | None = None) -> str:
 def _say_means(result: Result) -> list[str]:
     made = []
     kind = "Geometric mean" if result.measure.scale == LOGS else "Mean"
-    for row in result.means.itertuples():
-        where = "" if len(result.means) == 1 else f", {row.cell}"
-        mean, low, high = (_number(result.measure, each) for each in (row.mean, row.low, row.high))
+    for row in result.means.to_dict("records"):
+        where = "" if len(result.means) == 1 else f", {row['cell']}"
+        mean, low, high = (_number(result.measure, row[each]) for each in ("mean", "low", "high"))
         how = f"95 % interval {low} to {high}"
-        if np.isnan(row.low):
-            how = "all alike" if row.participants >= stats.FEWEST else "too few for an interval"
-        said = f"{mean} ({people(row.participants)}, {how})"
-        if not row.participants:
+        if np.isnan(row["low"]):
+            how = "all alike" if row["participants"] >= stats.FEWEST else "too few for an interval"
+        said = f"{mean} ({people(row['participants'])}, {how})"
+        if not row["participants"]:
             said = "no person has a value in every cell"
         made.append(f"{kind} {result.measure.name}{where}: {said}.")
     return made
@@ -255,8 +254,7 @@ def _say_effects(result: Result) -> list[str]:
         if row["note"]:
             made.append(f"{text}: {row['note']}.")
             continue
-        text += f": F({row['df1']:.2f}, {row['df2']:.2f}) = {plain(row['F'])}"
-        text += f", {p_words(row['p'])}"
+        text += f": F({row['df1']:.2f}, {row['df2']:.2f}) = {plain(row['F'])}, {p_words(row['p'])}"
         if several:
             text += f", {p_words(row['p_holm'], 'Holm’s p')}"
         if np.isnan(row["epsilon"]):

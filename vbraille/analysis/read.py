@@ -147,7 +147,7 @@ def _load(path: Path, name: str, trials: Trials) -> DataFrame:
     table = DataFrame(sheet.rows, sheet.lines, columns, dtype=object)
     for column in NEEDED:
         if column not in table:
-            raise InputError(f"{name} has no column {column}; it has {', '.join(table)}")
+            raise InputError(f"{name} has no column {column}; it has {', '.join(columns)}")
     again = table.index[table.duplicated()] if "trial" in table else []
     if len(again):
         raise InputError(
@@ -190,8 +190,8 @@ def _numbers(cells: Series, column: str) -> Series:
     known = cells.dropna()
     good = known.drop_duplicates().astype(str).str.fullmatch(_NUMBER).astype(bool)
     if good.all():
-        numbers = to_number(cells)
-        wrong = numbers.index[np.isinf(numbers) | ((numbers < 0) & (column in DURATIONS))]
+        cells = to_number(cells)
+        wrong = cells.index[np.isinf(cells) | ((cells < 0) & (column in DURATIONS))]
     elif column in (*NUMBERS, "score"):
         wrong = good.index[~good]
     else:
@@ -199,7 +199,7 @@ def _numbers(cells: Series, column: str) -> Series:
     if len(wrong):
         (name, line), value = wrong[0], known[wrong[0]]
         raise InputError(f"{name}: line {line} has {column} {value!r}; give a number, or nothing")
-    return numbers
+    return cells
 
 
 def to_number(values: Series) -> Series:
@@ -210,8 +210,8 @@ def to_number(values: Series) -> Series:
 
 def _check_copies(frame: DataFrame) -> None:
     """Refuse a session, or the trials of a person, that two files hold."""
-    sessions: dict[str, str] = {}
-    people: dict[str, dict[str, DataFrame]] = {}
+    sessions = {}
+    people = {}
     for name, table in frame.groupby(level=0, sort=False):
         for session in table["session"].dropna().unique():
             other = sessions.setdefault(session, name)
@@ -419,7 +419,7 @@ def read_scores(path: str | Path) -> DataFrame:
     score = "score" if "score" in table else str(table.columns[-1])
     table = table.mask(table.isin(MISSING))
     table[score] = _numbers(table[score], "score")
-    factors = [name for name in table if name not in ("participant", score)]
+    factors = [str(name) for name in table if name not in ("participant", score)]
     for name in ("participant", *factors):
         if table[name].isna().any():
             _, line = table.index[table[name].isna()][0]

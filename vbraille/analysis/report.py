@@ -80,7 +80,7 @@ class Analysis:
 
     @property
     def sentences(self) -> list[str]:
-        """What was found."""
+        """Sentences on what was found."""
         return self.result.sentences if self.result else ["Nothing is compared in such answers."]
 
     def lines(self) -> Iterator[str]:
@@ -168,7 +168,7 @@ def _text(value: object) -> str:
 def all_tables(trials: Trials, plan: Plan, asked: DataFrame) -> dict[str, DataFrame]:
     """Return the tables of the planned question, by the names of their files."""
     keys = ["participant", *plan.factors]
-    made: dict[str, DataFrame] = {}
+    made = {}
     if plan.question == STRINGS:
         made = string_tables(asked)
     elif plan.question == "name":

@@ -8,7 +8,7 @@ that any other package can redo each number. A test that cannot be made has p Na
 from __future__ import annotations
 
 from itertools import combinations
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -139,11 +139,11 @@ def d_prime_differencing(hit_rate: float, false_rate: float) -> float:
         beyond = np.array([d - criterion, -d - criterion])
         return float(special.ndtr(beyond / np.sqrt(2)).sum() - hit_rate)
 
-    return float(optimize.brentq(excess, 0, LARGEST_D))
+    return float(optimize.brentq(excess, 0, LARGEST_D))  # pyright: ignore[reportArgumentType]
 
 
 @QUIET
-def _t_test(value: Floats, error: Floats, df: ArrayLike, size: Floats, made, note: str) -> TTest:
+def _t_test(value: Floats, error: Floats, df, size: Floats, made, note: str) -> TTest:
     """Return a test, with NaN where it is not made."""
     none = np.where(made, 0.0, np.nan)
     t = value / error + none
@@ -233,7 +233,7 @@ def contrasts(levels: Iterable[int], tested: tuple[int, ...]) -> Floats:
     tested
         Places of the factors whose interaction is the effect; none for the mean of all cells.
     """
-    made = np.ones((1, 1))
+    made: Any = np.ones((1, 1))
     for place, count in enumerate(levels):
         basis = np.linalg.qr(np.column_stack([np.ones(count), np.eye(count)[:, 1:]]))[0]
         made = np.kron(made, basis[:, 1:] if place in tested else basis[:, :1])

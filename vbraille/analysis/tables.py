@@ -37,7 +37,7 @@ def places(trials: DataFrame, keys: list[str] = CELL) -> DataFrame:
     """Return a row for each place of each string whose answer is as long as it."""
     lengths = trials["presented"].str.len()
     whole = trials[lengths == trials["answered"].str.len()]
-    times = lengths[whole.index].to_numpy()
+    times = lengths[whole.index].tolist()
     each = DataFrame({key: whole[key].repeat(times) for key in keys}).reset_index(drop=True)
     shown, said = (np.array(list("".join(whole[name]))) for name in ("presented", "answered"))
     each["presented"], each["answered"] = pd.Categorical(shown), pd.Categorical(said)
@@ -169,7 +169,8 @@ def of_cells(counts: DataFrame) -> DataFrame:
 
 def information(counts: DataFrame) -> dict[str, float]:
     """Table 3.4: accuracy, Cohen's kappa, and bits transmitted as the thesis counts them."""
-    shares = counts.to_numpy() / counts.to_numpy().sum()
+    total = counts.to_numpy().sum()
+    shares = counts.to_numpy() / total
     shown = shares.sum(axis=1)
     said = shares.sum(axis=0)
     both = [
@@ -182,7 +183,7 @@ def information(counts: DataFrame) -> dict[str, float]:
     known = shares > 0
     surprise = np.log2(shares[known] / np.outer(shown, said)[known])
     return {
-        "presented": counts.to_numpy().sum(),
+        "presented": total,
         "accuracy": accuracy,
         "kappa": (accuracy - chance) / (1 - chance) if chance < 1 else np.nan,
         "transmitted_bits": (shares[known] * surprise).sum(),
@@ -230,7 +231,8 @@ def duration_legibility(trials: DataFrame) -> DataFrame:
     ]
     made = _tested(np.arctanh(own))
     ends = ["value", "low", "high"]
-    return made.assign(**np.tanh(made[ends]))[made["participants"] > 0]
+    made[ends] = np.tanh(made[ends])
+    return made[made["participants"] > 0]
 
 
 def _tested(values) -> DataFrame:

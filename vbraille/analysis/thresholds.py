@@ -135,10 +135,10 @@ def _axes(at: Floats, guess: float | None, *, by_ratio: bool, most: float) -> di
     reach = high - low
     if by_ratio:
         ends = low**1.5 / high**0.5, high**1.5 / low**0.5
-        spreads = np.log([0.05, 2.0])
+        spreads = np.log(0.05), np.log(2.0)
     else:
         ends = max(low - reach / 2, 0.0), min(high + reach / 2, most)
-        spreads = np.log([np.diff(at).min() / 10, 2 * reach])
+        spreads = np.log(np.diff(at).min() / 10), np.log(2 * reach)
     guesses = [guess] if guess is not None else np.linspace(0, MOST_GUESSES, POINTS["guess"])
     return {
         "threshold": np.linspace(*ends, POINTS["threshold"]),

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from vbraille.display import Display
 
     class _Device(Protocol):
-        """What is asked of a device here."""
+        """The part of a device that is asked here."""
 
         display: Display
         serial_number: str
@@ -63,7 +63,7 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return np.array(self.gain, np.float64)
 
     def to_json(self) -> dict[str, Any]:
-        """What a session keeps of it."""
+        """Return it as a session keeps it."""
         return msgspec.to_builtins(self)
 
     def to_toml(self) -> str:

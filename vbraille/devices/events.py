@@ -71,7 +71,7 @@ class Back(Event, frozen=True):
 
 
 class Stranger(Event, frozen=True):
-    """What came back cannot take the place of the device that reading began on."""
+    """A device that came back and cannot take the place of the device that reading began on."""
 
     was: str
     why: str
@@ -208,7 +208,7 @@ class AtStart(Event, frozen=True):
 
 
 class Unfelt(Event, frozen=True):
-    """What is shown cannot be felt from a tick on."""
+    """Tell that what is shown cannot be felt from a tick on."""
 
     every = True
     why: str
@@ -217,7 +217,7 @@ class Unfelt(Event, frozen=True):
 
 
 class FeltAgain(Event, frozen=True):
-    """What is shown can be felt again from a tick on."""
+    """Tell that what is shown can be felt again from a tick on."""
 
     every = True
     tick: int

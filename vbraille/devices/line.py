@@ -36,7 +36,7 @@ _DRAIN_S: Final = 0.05  # that the last bytes may take to go out
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """Where a device is, and how its port is opened.
+    """Place of a device, and how its port is opened.
 
     Parameters
     ----------
@@ -232,7 +232,7 @@ def _group_of(path: str) -> str:
 
 
 def usb_identity(path: str) -> tuple[object, ...] | None:
-    """What tells the USB device at a port from others, wherever it is plugged in; None if nothing.
+    """Return what tells the USB device at a port from others, wherever it is plugged in, if any.
 
     Of a device with several ports it tells them apart.
     """

@@ -71,7 +71,7 @@ _Counts = Annotated[float, msgspec.Meta(ge=-1e6, le=1e6)]
 
 
 class Info(msgspec.Struct, frozen=True):
-    """What a device says of itself; the keys of INFO, as the protocol's page describes them."""
+    """Description of a device by itself: the keys of INFO, which the protocol's page describes."""
 
     name: Annotated[str, msgspec.Meta(min_length=1, max_length=200)]
     rows: Annotated[int, msgspec.Meta(ge=1, le=MOST_ACTUATORS)]
@@ -257,7 +257,7 @@ def state_body(state: State) -> bytes:
 
 
 def ahead(number: int, base: int) -> int:
-    """How far a number of 16 bits is ahead of another."""
+    """Return how far a number of 16 bits is ahead of another."""
     return (number - base) & 0xFFFF
 
 
@@ -270,7 +270,7 @@ class Stage(Enum):
 
 
 class Conversation:
-    """What is said to a device and heard from it.
+    """All that is said to a device and heard from it.
 
     Parameters
     ----------

@@ -118,7 +118,7 @@ class SerialDevice(Device):
 
     @property
     def rested(self) -> int:  # type: ignore[override]
-        """How often the actuators went to rest by themselves."""
+        """Number of times that the actuators went to rest by themselves."""
         return self._talk.rests
 
     @property
@@ -128,17 +128,17 @@ class SerialDevice(Device):
 
     @property
     def acknowledged_ns(self) -> int | None:  # type: ignore[override]
-        """How long after the last frame was sent the device said that it has it."""
+        """Time from when the last frame was sent to when the device said that it has it."""
         return self._talk.acknowledged_ns
 
     @property
     def watchdog_trips(self) -> int | None:  # type: ignore[override]
-        """How often the device's watchdog brought the actuators to rest."""
+        """Number of times that the device's watchdog brought the actuators to rest."""
         return self._talk.trips
 
     @property
     def tripped_ms(self) -> float | None:  # type: ignore[override]
-        """How long after the last frame the watchdog last tripped, by the device's clock."""
+        """Time from the last frame to when the watchdog last tripped, by the device's clock."""
         return self._talk.tripped_ms
 
     @property

@@ -106,7 +106,7 @@ def gains_said(calibration: Calibration) -> list[str]:
         places = [f"row {row + 1}, column {column + 1}" for row, column in np.argwhere(found)]
         lines.append(f"{label}: {'; '.join(places) or 'none'}")
     for row, column in np.argwhere((np.abs(gains) < 1) & (gains != 0)):
-        lines.append(f"row {row + 1}, column {column + 1}: {_said(gains[row, column])}")
+        lines.append(f"row {row + 1}, column {column + 1}: {_said(float(gains[row, column]))}")
     return lines
 
 

@@ -41,10 +41,21 @@ _WHY = {
 class Engine(Protocol):
     """A loop with its device, as seen by a caller that gives it lines to show and watches it."""
 
-    paused: bool
-    """Whether the array is to rest; setting it takes effect with the next tick."""
-    switches: int
-    """States of a scene's switches, as `vbraille.scene.signals.packed` has them."""
+    @property
+    def paused(self) -> bool:
+        """Tell whether the array is to rest; setting it takes effect with the next tick."""
+        ...
+
+    @paused.setter
+    def paused(self, paused: bool) -> None: ...
+
+    @property
+    def switches(self) -> int:
+        """States of a scene's switches, as `vbraille.scene.signals.packed` has them."""
+        ...
+
+    @switches.setter
+    def switches(self, switches: int) -> None: ...
 
     @property
     def display(self) -> Display:

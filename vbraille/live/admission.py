@@ -41,7 +41,7 @@ class Admission:
 
     @property
     def on_loopback(self) -> bool:
-        """Whether only this machine reaches the server, so that its user may watch."""
+        """Tell whether only this machine reaches the server, so that its user may watch."""
         return _is_loopback(self.host)
 
     @property

@@ -114,11 +114,11 @@ class Viewer(Protocol):
 
 
 class Source(Protocol):
-    """What a server shows."""
+    """Source of what a server shows."""
 
     @property
     def playback(self) -> bool:
-        """Whether it is a recording, so that pages name times."""
+        """Tell whether it is a recording, so that pages name times."""
         ...
 
     @property
@@ -128,7 +128,7 @@ class Source(Protocol):
 
     @property
     def moments(self) -> Sequence[PlayedEvent]:
-        """What happened in the recording, by time."""
+        """Events of the recording, by time."""
         ...
 
     def viewer(self) -> Viewer:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
 from vbraille.pictures import scenes
@@ -130,7 +130,7 @@ def draw_map(
     scene = _as_felt(loaded.scene, request)
     drawing = _Drawing(loaded, scene, request)
     if request.outline:
-        files = [(path, drawing.outline())]
+        files: list[tuple[Path, Content]] = [(path, drawing.outline())]
     elif not request.frames:
         files = [(path, drawing.map())]
     elif request.kind == "gif":
@@ -305,7 +305,7 @@ class _Drawing:
 
         return self._file(map_figure(self._scene.canvas, deflections, over, axes=rulers))
 
-    def _file(self, figure: object) -> bytes:
+    def _file(self, figure: Any) -> bytes:
         from vbraille.pictures.drawings import drawing_bytes
 
         kind = self._request.kind

@@ -29,7 +29,7 @@ _SHOWN: Final = 40  # characters of nonsense
 
 
 class Talk:
-    """What BRLTTY shows, by the lines that it sends.
+    """Conversation with BRLTTY, which sends what it shows in lines.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ class Port:
 
     @property
     def connected(self) -> bool:
-        """Whether BRLTTY is there."""
+        """Tell whether BRLTTY is there."""
         return "brltty" in self._ends
 
     @property

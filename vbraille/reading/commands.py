@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Where(Flag):
-    """What a command can be called on."""
+    """Things that a command can be called on."""
 
     BOOK = auto()
     PICTURE = auto()
@@ -41,11 +41,11 @@ class Command:
     run
         The function.
     help
-        What it does, such as "next heading".
+        Phrase for what it does, such as "next heading".
     keys, nvda
-        Its keys in the usual set, and in that of NVDA's browse mode.
+        Keys of the usual set, and of NVDA's browse mode.
     where
-        What it can be called on.
+        Things that it can be called on.
     also
         Buttons of the device ("button:1") and keys of a conventional display ("pins:LNDN").
     first

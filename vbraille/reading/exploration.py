@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from vbraille.reading.outputs import Console
 
     class Source(Protocol):
-        """Where keys come from, beside the terminal."""
+        """Source of keys, beside the terminal."""
 
         def pressed(self, what: Explored) -> list[str]:
             """Keys since the last call, as names of `vbraille.reading.commands.bindings`."""
@@ -85,7 +85,7 @@ class Exploration:
 
     @property
     def what(self) -> Explored:
-        """What keys are for: what is explored, or what is felt in its place."""
+        """Object of keys: what is explored, or what is felt in its place."""
         return self._outer.inside or self._outer
 
     def step(self) -> None:

@@ -1,4 +1,4 @@
-"""What is explored under a hand: what books, pictures, games and tuning have in common."""
+"""Base of books, pictures, games and tuning, all of which are explored under a hand."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Explored:
-    """What commands work on.
+    """Object that commands work on.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ class Explored:
         return None
 
     def echoed(self, echo: str) -> Iterable[str]:  # noqa: ARG002 - of a line, if it has one
-        """What is printed of what has come under the hand; see `Console`."""
+        """Lines that are printed of what has come under the hand; see `Console`."""
         return ()
 
     # What the loop calls

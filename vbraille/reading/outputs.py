@@ -50,7 +50,7 @@ MELODIES = {
 
 
 class Echoed(Protocol):
-    """What outputs show; see `vbraille.reading.explored.Explored`."""
+    """Part of an exploration that outputs show; see `vbraille.reading.explored.Explored`."""
 
     @property
     def text(self) -> str:
@@ -58,12 +58,12 @@ class Echoed(Protocol):
         ...
 
     def echoed(self, echo: str) -> Iterable[str]:
-        """What is printed of what has come under the hand."""
+        """Lines that are printed of what has come under the hand."""
         ...
 
 
 class Output(Protocol):
-    """Where a reading is heard, seen or felt."""
+    """Place where a reading is heard, seen or felt."""
 
     def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:
         """Say a sentence, with a cue or without; an empty one is a cue alone."""
@@ -274,7 +274,7 @@ class Behind:
             self._say(f"no {self._name}: {type(error).__name__}: {error}")
 
     def _next(self) -> Callable[[Any], None] | None:
-        """What comes within a moment; None if nothing does, or the end, which is put back."""
+        """Take the next task of a moment; None without one, or at the end, which is put back."""
         try:
             task = self._waiting.get(timeout=self._APART_S)
         except queue.Empty:

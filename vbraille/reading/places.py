@@ -83,7 +83,7 @@ class ListedBook(NamedTuple):
 
 
 class KeptBook:
-    """What is kept of a book. Reading goes on without it: what cannot be kept is said.
+    """Place and bookmarks in a book. Reading goes on without it: what cannot be kept is said.
 
     Parameters
     ----------
@@ -103,6 +103,7 @@ class KeptBook:
     def __init__(self, places: Places, digest: str, *, changed: bool = False) -> None:
         self._places, self._digest, self._changed = places, digest, changed
         row = places.row("digest", digest)
+        assert row is not None, "a row that `Places.book` has written"
         self.options: dict[str, Any] = json.loads(row["options"])
         self._marks: dict[str, list[Any]] = json.loads(row["bookmarks"])
         self._place, self._share, self._around = row["place"], row["share"], row["around"]
@@ -184,7 +185,7 @@ class Places:
             say(f"places are not kept: {path}: {error.strerror}")
 
     def book(self, digest: str, path: Path, title: str) -> KeptBook:
-        """What is kept of a book, found by its content, or by its path if that has changed."""
+        """Find what is kept of a book by its content, or by its path if that has changed."""
         known = self.row("digest", digest)
         before = None if known else self.row("path", os.fsencode(path))
         if before is not None:

@@ -37,7 +37,7 @@ _BLOCK_FRAMES = 16_384
 
 
 class Rendered(NamedTuple):
-    """What a recording holds: its lines, its frames and its length in seconds."""
+    """Numbers of lines and frames of a recording, and its length in seconds."""
 
     lines: int
     frames: int
@@ -144,7 +144,7 @@ def render_picture(
     *,
     replace_file: bool = False,
     done: Callable[[float], None] = lambda _share: None,
-) -> tuple[Rendered, list[str]]:
+) -> tuple[Rendered, tuple[str, ...]]:
     """Write the frames of a way over a tactile picture to an HDF5 file.
 
     Parameters
@@ -166,7 +166,7 @@ def render_picture(
 
     Returns
     -------
-    Rendered, list[str]
+    Rendered, tuple[str, ...]
         What the recording holds, and notes on the picture's file.
 
     Raises

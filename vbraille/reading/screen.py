@@ -41,7 +41,7 @@ _EIGHTH: Final = 3  # dot row of dots 7 and 8
 
 
 class Screen(Explored):
-    """What BRLTTY shows, under a hand.
+    """Screen as BRLTTY shows it, under a hand.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ class Screen(Explored):
         return cell if 0 <= cell < self.line_masks.size else None
 
     def echoed(self, echo: str) -> Iterable[str]:
-        """What is printed of the line: its print, its cells, or both."""
+        """Lines that are printed of the line: its print, its cells, or both."""
         if echo in ("cells", "both"):
             yield f"cells: {to_braille(self.line_masks.tolist())}"
         if echo in ("text", "both"):

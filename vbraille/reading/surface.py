@@ -1,4 +1,4 @@
-"""What lies under the hand: a part of one line, or a page of lines where the carriage has two axes.
+"""Surface under the hand: part of one line, or a page of lines where the carriage has two axes.
 
 A surface knows from the ticks of the engine which line the finger is on, and whether it is done.
 """
@@ -90,7 +90,7 @@ class Part:
 
 
 class Followed(NamedTuple):
-    """What the hand did: it is on another line, came to a line's end, or is done with all."""
+    """Progress of the hand: it is on another line, came to a line's end, or is done with all."""
 
     line: Line | None = None
     reached: bool = False
@@ -110,7 +110,7 @@ class Figures(Protocol):
 
 
 class Surface:
-    """What lies under the hand.
+    """Lines that lie under the hand.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ class Surface:
 
     @property
     def part(self) -> Part:
-        """What is read."""
+        """Part of a line that is read."""
         part = self.parts[self.row]
         assert part is not None, "a row with a line"
         return part
@@ -359,7 +359,7 @@ class Surface:
         return Followed(None, *self._follow_line(on["x_mm"]))
 
     def _follow_line(self, x_mm: NDArray[np.float64]) -> tuple[bool, bool]:
-        """Whether the hand has come to the end of the line now, and whether it is done with it."""
+        """Tell whether the hand has come to the line's end now, and whether it is done with it."""
         if not self._left:  # a hand that was at the end when the line came has not read it
             before = np.flatnonzero(x_mm < self.end_mm)
             self._left = bool(before.size)

@@ -186,9 +186,9 @@ def _add_ways() -> None:
 
 def _add_switches() -> None:
     for key in range(1, MOST_KEYS + 1):
-        how = {"name": f"switch-{key}", "also": {1: "button:4", 2: "button:5"}.get(key, "")}
+        button = {1: "button:4", 2: "button:5"}.get(key, "")
 
-        @_command(f"switch {key} of the picture", str(key), **how)
+        @_command(f"switch {key} of the picture", str(key), name=f"switch-{key}", also=button)
         def switch(picture: Picture, key: int = key) -> None:
             picture.switch(key)
 

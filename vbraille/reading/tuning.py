@@ -42,7 +42,7 @@ _STEPS, _UNSURE, _SLIPS = 24, tuple(0.03 * (0.4 / 0.03) ** (n / 5) for n in rang
 _FARTHEST = 0.5  # between two values, as a part of the interval: no two are a world apart
 _LIKED = "liked"
 _command = partial(command, where=Where.TUNING)
-Asked = tuple[tuple[tuple[float, float], int], ...]
+Asked = tuple[tuple[tuple[float, float], bool], ...]
 
 
 @lru_cache(maxsize=1)
@@ -95,7 +95,7 @@ class Course:
             made = choices[number * CHOICES_PER_KNOB :][:CHOICES_PER_KNOB]
             asked: Asked = ()
             for at, which in enumerate(made):
-                asked = (*asked, (_next(asked), int((which == 1) == _lower_first(at))))
+                asked = (*asked, (_next(asked), (which == 1) == _lower_first(at)))
             if len(made) < CHOICES_PER_KNOB:
                 self.knob = knob
                 pair = [knob.nearest(round(low + s * (high - low), 2)) for s in _next(asked)]

@@ -10,7 +10,7 @@ from tests.sessions.sittings import HEAD, MINI, WIDTHS
 from vbraille.errors import InputError
 from vbraille.sessions.planning.loading import load_protocol
 from vbraille.sessions.planning.order import balanced_orders
-from vbraille.sessions.planning.plan import make_plan
+from vbraille.sessions.planning.plan import make_plan, to_brf
 from vbraille.sessions.planning.values import Look
 
 TWO = (
@@ -208,3 +208,19 @@ strings = ["the child"]
     plan = make_plan(load(tmp_path, text), "P01", 1)
     lengths = {trial.condition: len(trial.cells) for trial in plan.trials}
     assert lengths["g2"] < lengths["g1"] == 9
+
+
+def test_the_strings_of_a_plan_can_be_embossed(tmp_path):
+    protocol = load(tmp_path, MINI)
+    plan = make_plan(protocol, "P01", 1)
+    lines = to_brf(protocol, plan).splitlines()
+    ascii_of = {"⠁": "A", "⠉": "C"}
+    assert lines == ["".join(map(ascii_of.get, trial.item)) for trial in in_blocks(plan)]
+    assert sorted(lines) == ["AA", "AC", "CA"]
+
+
+@pytest.mark.parametrize("name", ["shapes", "tuning-width"])
+def test_what_is_no_string_cannot_be_embossed(name):
+    protocol = load_protocol(name)
+    with pytest.raises(InputError, match=r"pictures|compares"):
+        to_brf(protocol, make_plan(protocol, "P01", 1))

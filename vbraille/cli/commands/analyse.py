@@ -13,7 +13,7 @@ from vbraille.cli.printing import print_json, say
 
 def _pairs(given: tuple[str, ...]) -> dict[str, str]:
     """Return people and reasons."""
-    pairs = dict(text.partition("=")[::2] for text in given)
+    pairs = {who: why for who, _, why in (text.partition("=") for text in given)}
     for person, reason in pairs.items():
         if not person.strip() or not reason.strip():
             raise click.UsageError(f"--exclude {person} needs a reason: --exclude P07=REASON")

@@ -105,4 +105,7 @@ def _line(row: PowerRow) -> str:
     text = f"{row.participants} participants: {row.compared}: "
     if row.half_width is not None:
         return f"{text}95 % interval ± {row.half_width:.3g} on average"
+    assert row.power is not None
+    assert row.low is not None
+    assert row.high is not None
     return f"{text}power {100 * row.power:.1f} % ({100 * row.low:.1f} to {100 * row.high:.1f} %)"

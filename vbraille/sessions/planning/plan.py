@@ -9,9 +9,10 @@ from itertools import cycle
 from random import Random
 from typing import Any
 
+import numpy as np
 from msgspec import Struct, structs
 
-from vbraille.braille.cells import dots_of
+from vbraille.braille.cells import Cells, dots_of
 from vbraille.errors import InputError
 from vbraille.sessions.planning.design import BLANK, Catch, Setting
 from vbraille.sessions.planning.order import Limit, balanced_orders, ordered
@@ -292,6 +293,27 @@ def plan_lines(protocol: Protocol, plan: Plan) -> Iterator[str]:
             block = trial.block
             yield f"block: {block}"
         yield f"{trial.name}: {', '.join(_described(trial))}"
+
+
+def to_brf(protocol: Protocol, plan: Plan) -> str:
+    """Write the strings of a plan in ASCII braille, each in a line, practice left out.
+
+    Raises
+    ------
+    InputError
+        If what is shown is no string, or has dots 7 or 8.
+    """
+    tested = [trial for trial in plan.trials if not trial.practice]
+    if any(trial.values for trial in tested):
+        raise InputError(f"{protocol.name} compares values, which cannot be embossed")
+    strings = [stimulus for trial in tested for stimulus in trial.stimuli]
+    if any(stimulus.picture for stimulus in strings):
+        raise InputError(f"{protocol.name} shows pictures, which are no braille")
+    try:
+        lines = [Cells.bare(np.array(each.masks(0), np.uint8)).to_brf() for each in strings]
+    except ValueError as error:
+        raise InputError(f"{protocol.name}: {error}") from None
+    return "".join(f"{line}\n" for line in lines)
 
 
 def _described(trial: Trial) -> Iterator[str]:

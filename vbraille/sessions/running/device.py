@@ -297,7 +297,10 @@ class SessionDevice:
             return []
         on = np.flatnonzero(ticks["x_mm"] + self.span_mm / 2 >= shown.edges_mm[0])
         self._touched = bool(on.size)
-        return [_at("contact", ticks[on[0]]["tick"], ticks[on[0]]["time_ns"])] if on.size else []
+        if not on.size:
+            return []
+        first = int(on[0])
+        return [_at("contact", ticks["tick"][first], ticks["time_ns"][first])]
 
     def _heard(self, event: events.Event) -> list[Happening]:
         """Return what an event of the device or the engine is to the session."""

@@ -104,7 +104,7 @@ class Paper:
     def close(self) -> None:
         """Do nothing."""
 
-    def poll(self) -> tuple[NDArray[np.void], list[Happening]]:
+    def poll(self) -> tuple[NDArray[Any], list[Happening]]:
         """Return no ticks, and the end of reading if Enter was pressed."""
         happened, self._happened = self._happened, []
         return np.empty(0), happened
@@ -128,7 +128,7 @@ class Pins(Paper):
         self._display = ConventionalDisplay(spec)
         stimuli = [s for trial in plan.trials for s in trial.stimuli if s.on == "pins"]
         self._cells = max(len(pins_masks(protocol, each)) for each in (None, *stimuli))
-        self._masks = b""
+        self._masks = self._put_cells = b""
         self._number = 0
         self._put_cells = b""
         self._taken = True
@@ -214,7 +214,7 @@ class Pins(Paper):
         """Give the display back."""
         self._display.close()
 
-    def poll(self) -> tuple[NDArray[np.void], list[Happening]]:
+    def poll(self) -> tuple[NDArray[Any], list[Happening]]:
         """Return what the display has told."""
         self._happened += self._heard()
         return super().poll()
@@ -239,6 +239,8 @@ class Pins(Paper):
                     found.append(Happening("device", self.now_s, {"what": said}, said))
                 case CellsTaken() if message.number == self._number and not self._taken:
                     self._taken = True
+                    if not self._number:  # the blank cells of a display that came late
+                        continue
                     data: dict[str, Any] = {"cells": to_braille(tuple(self._put_cells))}
                     if self._is_reference:
                         data["reference"] = True

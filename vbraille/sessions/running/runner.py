@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from typing import Any, NamedTuple
+from functools import partial
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,7 +59,7 @@ class Over(Exception):
         What else the event says.
     """
 
-    def __init__(self, kind: str, why: str, **data: str) -> None:
+    def __init__(self, kind: str, why: str, **data: Any) -> None:
         super().__init__(why)
         self.kind, self.why, self.data = kind, why, data
 
@@ -394,13 +395,15 @@ class Runner:
         shown: dict[str, Any] = {"stimulus": self.stimulus}
         if stimulus.value is not None:
             shown["value"] = stimulus.value
-        elif (procedure := self.protocol.procedure) is not None:
+        elif (procedure := self.protocol.procedure) is not None and procedure.parameter:
             shown["value"] = getattr(stimulus.look, procedure.parameter)
         if isinstance(presenter, SessionDevice):
             shown["line"] = presenter.line + 1
+            show = partial(presenter.show, make_shown(self.protocol, stimulus))
+        else:
+            show = partial(presenter.show, stimulus)
         if turned:
             shown["turned"] = True
-        compiled = make_shown(self.protocol, stimulus) if "line" in shown else stimulus
         is_first = not self.stimulus and presenter is not self.pins
         if self.pins is not None and self.protocol.pins.reference and is_first:
             self.pins.show_reference()
@@ -410,7 +413,7 @@ class Runner:
             self._start_timers(now_s)
         self.is_shown = True
         self.log("cue", now_s, **shown)
-        presenter.show(compiled, first=not self.stimulus and not turned, turned=turned)
+        show(first=not self.stimulus and not turned, turned=turned)
         if not turned:
             which = f", {ordinal(self.stimulus)}" if self.stimulus else ""
             self.say(f"cue: {self.name}{which}")
@@ -625,8 +628,9 @@ class Runner:
             self._suspend()
         if isinstance(self.answers, Typed):
             self.answers.awaits_key = self.reading
-        if self.presenter.by_key and self.is_shown and not self.answers.typed:
-            self.presenter.press()  # answers that are not typed take no time to read paper
+        presenter = self.presenter
+        if isinstance(presenter, Paper) and self.is_shown and not self.answers.typed:
+            presenter.press()  # answers that are not typed take no time to read paper
         # A file or a program is asked when the stimulus is read; a person may type at any time.
         is_due = not self.paused and (not self.is_shown or self.presenter.read)
         found = self.answers.line(asked if is_due else None, self._wait_s())
@@ -804,13 +808,18 @@ class Runner:
         typed = f"; type the answer: {self.protocol.asks.typed}" if self.answers.typed else ""
         self.say(f"ended: {read_s:.2f} s, by {by.replace(':', ' ')}{typed}")
 
+    @property
+    def _typist(self) -> Typed:
+        """Answers of a person, where they are typed."""
+        return cast("Typed", self.answers)
+
     def _watch_key(self) -> None:
         """Look out for the participant's key, or say that Enter is pressed instead."""
         self._key, key = self.protocol.trial.end or "", self.protocol.trial.key
         if not key or self._key == "key:enter" or not self.answers.typed:
             return
         name = self._key.removeprefix("key:")
-        if self.answers.watch(key):
+        if self._typist.watch(key):
             self.say(f"key: {name} ends reading, with no Enter after it")
         else:
             self._key = "key:enter"
@@ -821,10 +830,10 @@ class Runner:
         was_paused = self.paused
         self.pause()
         if self.answers.typed:
-            self.answers.release()
+            self._typist.release()
         self._suspension.stop()
         if self.answers.typed:
-            self.answers.take()
+            self._typist.take()
         elif not was_paused:
             self.go()
 
