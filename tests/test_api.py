@@ -195,7 +195,7 @@ def test_lines_that_a_text_does_not_have_are_not_shown_and_nothing_is_after_clos
     with vbraille.open(Still(), clock=ManualClock()) as opened:
         for lines, says in (
             ({"first": 0}, "^first is 0; it must be 1 or more$"),
-            ({"first": 99}, "^the text ends at line 1; line 99 is past that$"),
+            ({"first": 99}, "^the text has 1 lines; line 99 is past the end$"),
             ({"first": 3, "last": 2}, "^last is 2 and first is 3; last must not be before"),
         ):
             with pytest.raises(vbraille.InputError, match=says):

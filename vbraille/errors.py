@@ -91,8 +91,8 @@ def needing_extras() -> Iterator[None]:
 def only_linux(name: str) -> str:
     """Say that the system has no such thing, and what works without."""
     return (
-        f"this needs Linux: the system has no {name}, by which devices are driven and sessions "
-        f"kept; page, structure, render, map, scene, analyse and import vbraille work without"
+        f"this needs Linux: the system has no {name}, by which devices are driven; "
+        f"page, structure, render, map, scene, analyse and import vbraille work without"
     )
 
 

@@ -50,9 +50,6 @@ def test_a_smooth_stroke_and_plain_markers_are_said_in_words():
             "stroke = { edge_mm = true }",
             "edge_mm: must be a number or a text in quotation marks, not true or false",
         ),
-            "stroke = { edge_mm = true }",
-            "edge_mm: must be a number or a text in quotation marks, not true or false",
-        ),
         (
             "markers = { plain = true, vibration = { amplitude = 0.5 } }",
             "vibration cannot be given beside plain = true; leave one out",
