@@ -58,7 +58,7 @@ import os, signal, sys
 sys.modules.update(dict.fromkeys(("fcntl", "pty", "resource", "termios", "tty")))
 for module, names in (
     (os, ("memfd_create", "sched_setscheduler", "sched_param", "SCHED_FIFO")),
-    (signal, ("SIGHUP", "SIGTSTP", "SIGCONT", "SIGALRM", "SIGKILL", "SIGQUIT", "SIGUSR1")),
+    (signal, ("SIGHUP", "SIGTSTP", "SIGCONT", "SIGALRM", "SIGQUIT", "SIGUSR1")),
 ):
     for name in names:
         delattr(module, name)

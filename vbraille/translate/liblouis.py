@@ -126,7 +126,7 @@ class Louis:
         """End the child."""
         child, self._child = self._child, None
         if child is not None:
-            child.terminate()
+            child.kill()
             child.wait()
             for stream in (child.stdin, child.stdout):
                 with suppress(OSError):  # what was not sent yet
