@@ -44,7 +44,7 @@ import vbraille
 print(vbraille.__file__)
 cells = vbraille.translate_text("the world", language="en", grade=2)
 print(cells.to_unicode(), cells.source(0), cells.of_source(4))
-print(*vbraille.analyse("P1").table("legibility")[["participant", "trials"]].loc[0])
+print(*vbraille.analyse("P1").tables["legibility"][["participant", "correct"]].loc[0])
 """
 LINES = """\
 page story.txt --format unicode
