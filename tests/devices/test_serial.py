@@ -51,6 +51,7 @@ def test_a_board_that_starts_when_its_port_is_opened_is_waited_for():
     with simulated_controller(VBD, faults=Faults(boot_s=1.5)) as spec:
         with open_device(spec, None) as device:
             assert device.display.name == VBD.name
+        time.sleep(0.3)  # the board is to find that its port was closed
         begun_s = time.monotonic()
         with pytest.raises(DeviceError, match="boot=SECONDS"):
             open_device(f"{spec}?boot=0.6", None)

@@ -138,10 +138,12 @@ def _half(keys: list[str], half: int) -> str:
 
 
 def table(where: Where) -> list[Command]:
-    """Commands for something; the modules of their functions are loaded now."""
-    for name in ("control", *_MODULES[where]):
-        import_module(f"vbraille.reading.{name}")
-    return [each for each in COMMANDS.values() if each.where & where]
+    """Commands for something, what all have first; the modules of their functions load now."""
+    control, *_ = (
+        import_module(f"vbraille.reading.{name}") for name in ("control", *_MODULES[where])
+    )
+    found = (each for each in COMMANDS.values() if each.where & where)
+    return sorted(found, key=lambda each: each.run.__module__ != control.__name__)
 
 
 def keys_of(each: Command, key_set: str) -> tuple[str, ...]:
