@@ -45,12 +45,12 @@ test-all: .venv/tests
 
 all-tests: .venv/tests .venv/compiled .venv/debian
 	TESTS=all $(PYTEST) --cov --cov-branch --cov-report=term
-	TESTS=all NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/test_framekernels.py tests/devices/wire/test_wirekernels.py tests/devices/serial/test_steady.py
+	TESTS=all NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render
 
 # Hours: hundreds of killed sessions, laws and fuzzing fifty times as long, runs of ten minutes.
 soak: .venv/tests .venv/compiled
 	TESTS=soak $(PYTEST) --durations=20
-	$(BIN)/python -m tests.benchmarks tick faults jumps sessions
+	$(BIN)/python -m tests.benchmarks tick sessions screen
 
 # Types of the files that have changed since types were last right; of all where files have come or
 # gone, and in `make test-all`.
