@@ -14,7 +14,9 @@ SMALL = Display("small", 1, 2, 1.0, 1.0, levels=256, travel_mm=100.0, rate_hz=20
 
 @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
 def test_a_simulated_device_passes(check):
-    check(lambda: simulated_device(MODELS["vbd"], hand="sweep:190"))
+    # Where a busy machine holds the simulation up, a slow hand has not gone far meanwhile.
+    hand = "sweep:190" if check.__name__ == "check_left_stop" else "sweep:20"
+    check(lambda: simulated_device(MODELS["vbd"], hand=hand))
 
 
 class Good(Device):
