@@ -1,4 +1,4 @@
-"""What the thesis has published: Lévesque 2009, chapters 3, 4 and 6."""
+"""Tables that Lévesque 2009 has published, of chapters 3, 4 and 6."""
 
 import json
 from pathlib import Path

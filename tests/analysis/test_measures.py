@@ -1,4 +1,4 @@
-"""What is compared for each kind of question, who falls out of it, and what is said."""
+"""Measure of each kind of question, people left out of a comparison, and the reasons said."""
 
 import numpy as np
 import pytest

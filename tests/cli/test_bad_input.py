@@ -1,4 +1,4 @@
-"""What cannot be used: one sentence that names it, exit code 2, and nothing printed or written."""
+"""Bad input: one sentence that names it, exit code 2, and nothing printed or written."""
 
 import io
 import sys

@@ -74,7 +74,7 @@ def test_cells_come_to_the_display_and_keys_from_it(brltty, display):
 
 
 @needs_brltty
-@heavy  # BRLTTY goes and comes in a session of tests/sessions/running/test_conventional.py
+@heavy  # BRLTTY goes and comes in a session of tests/sessions/running/test_pins.py
 def test_it_is_there_again_after_brltty_the_display_and_its_own_process_were_gone(brltty, display):
     heard(display, DisplayStands)
     display.show(SHOWN)

@@ -65,7 +65,7 @@ def reading():
 
 
 def axe(page):
-    """What axe finds, a line each."""
+    """Violations of accessibility rules that axe finds on the page, a line each."""
     found = Axe().run(page).response["violations"]
     return [f"{rule['id']}: {node['html'][:120]}" for rule in found for node in rule["nodes"]]
 

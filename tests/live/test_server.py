@@ -1,4 +1,4 @@
-"""Who may watch and steer, by which names, and how many; frames and states as a page has them."""
+"""Server of the live view: rights of pages, host names, how many pages; frames and states sent."""
 
 import os
 import socket

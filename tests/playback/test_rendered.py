@@ -1,4 +1,4 @@
-"""What `vbraille render` wrote, played back: any frame at any time, with the line under it."""
+"""Recordings of `vbraille render`, played back: a frame at any time, with the line under it."""
 
 import json
 import signal

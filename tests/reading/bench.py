@@ -53,7 +53,7 @@ class NoKeyboard:
 
 
 def book_of(text, width):
-    """A text laid out in lines of so many cells."""
+    """Lay a text out in lines of a number of cells."""
     return Layout(Book(text_source(text), BrailleTable("en-ueb-g1.ctb")), width)
 
 

@@ -1,4 +1,4 @@
-"""What pages are told of a reading, and what they ask for."""
+"""Live view of a reading: the states sent to pages, and the commands that pages send."""
 
 import pytest
 

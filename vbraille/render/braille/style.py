@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 Manner = Literal["line", "free"]
 MANNERS: Final[tuple[Manner, ...]] = ("line", "free")
 
-# Measured with hands that drift: `python -m tests.measures.straying`, and docs/measured.md.
+# Measured with hands that drift: `python -m tests.benchmarks straying`, and docs/measured.md.
 BAND: Final = 0.25
 BAND_BOUNDS: Final = (0.0, 0.9)
 # Farther turned than this, an array shows no braille. Measured likewise, in the same table: the
