@@ -172,6 +172,20 @@ def test_a_text_is_read_on_a_controller_at_a_port():
         assert "late ticks" in done.stdout.splitlines()[-1]
 
 
+@pytest.mark.parametrize(
+    ("told", "says"),
+    [
+        (("--travel", "500"), "and --travel asks for 500 mm; leave --travel out, or give"),
+        (("--height", "60"), "goes along x only and --height asks for 60 mm; leave --height out"),
+    ],
+)
+def test_a_page_that_the_carriage_of_a_device_does_not_cross_is_refused(told, says):
+    with simulated_controller(hand="sweep:200") as spec:
+        done = run("read", TEXT, "--device", spec, *told, "--lines", "1")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert says in done.stderr
+
+
 def test_a_host_that_dies_is_said_and_is_begun_again_by_a_key():
     with Terminal("read", TEXT, *STILL, "--no-places") as terminal:
         found = subprocess.run(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.cli.printing import say
 from vbraille.cli.settings import given, settings_of
-from vbraille.devices.registry import check_actuators
+from vbraille.devices.registry import check_actuators, check_height, check_travel
 from vbraille.errors import InputError
 from vbraille.reading.commands import own_keys
 from vbraille.reading.device import ReadingDevice
@@ -172,11 +172,15 @@ def find_model(ctx: click.Context, device: ReadingDevice, asked: Model) -> Model
     Raises
     ------
     VbrailleError
-        If the device cannot be opened, or has other actuators than the model that was asked for.
+        If the device cannot be opened, has other actuators than the model that was asked for, or
+        a carriage that does not go as far as options ask.
     """
     display = device.find()
     if is_simulated(ctx.params["device"]):
         return replace(asked, display=display)
+    if (travel_mm := ctx.params.get("travel")) is not None:
+        check_travel(display, travel_mm)
+    check_height(display, ctx.params.get("height"))
     if ctx.params.get("model"):
         check_actuators(display, asked.display)
         return replace(MODELS[ctx.params["model"]], display=display)
