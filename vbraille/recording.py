@@ -182,12 +182,6 @@ class Recorder:
         self.describe(model=model, rate_hz=rate_hz, first_line=1, source=source, sha256=sha256)
         self._file.attrs["mapping"] = ""  # which belongs to lines
 
-    @property
-    def stored_bytes(self) -> int:
-        """Tell how many bytes the frames and their places take on the disk so far, compressed."""
-        kept = (self._time, *self._pose, self._line, self._part, self._frames)
-        return sum(dataset.id.get_storage_size() for dataset in kept)
-
     def add_line(self, masks: NDArray[np.uint8], printed: Print | None = None) -> int:
         """Append a line of the page with its print, and return its row in ``page/cells``."""
         row = self._length.shape[0]

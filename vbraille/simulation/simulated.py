@@ -130,11 +130,6 @@ class SimulatedDevice(Device):
             ]
         return told
 
-    @property
-    def moving_hand(self) -> bool:
-        """Tell whether the hand is still on its way."""
-        return not self._course.is_over(self._now_ns())
-
     def obey(self, order: HandOrder) -> None:
         """Have the hand follow an order from now on; a person who holds it goes first."""
         now_ns = self._now_ns()

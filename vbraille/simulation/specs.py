@@ -69,11 +69,6 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
     )
 
 
-def has_hand(device: str) -> bool:
-    """Tell whether the spec of a device is that of a simulated one, whose hand can be steered."""
-    return is_simulated(device) or device.startswith("sim:?")
-
-
 def is_simulated(device: str) -> bool:
     """Tell whether a spec is that of the simulated device, which follows the settings."""
     return device.rstrip(":") == "sim"

@@ -114,12 +114,3 @@ class Look(Table, frozen=True, kw_only=True):
         """Return the look with another value of a parameter."""
         whole = parameter == "texture_cycles" and value == int(value)
         return structs.replace(self, **{parameter: int(value) if whole else value})
-
-
-def value_of(style: BrailleStyle, parameter: str) -> float:
-    """Return the value that a parameter has in a style."""
-    if parameter == "dot_gap_mm":
-        return style.geometry.dot_spacing_mm - style.geometry.dot_width_mm
-    if parameter.endswith("_mm"):
-        return getattr(style.geometry, parameter)
-    return float(getattr(style.tuning, parameter.removeprefix("texture_") or parameter))
