@@ -86,6 +86,7 @@ def test_signals_while_reading(text):
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)[: by_tier(2, 3, 3)]:
         with program.start("read", text, "--hand", "sweep:20") as process:
             assert process.stdout.readline() == b"line: 1\n"
+            assert process.stderr.readline() == program.line_width(26).encode()
             process.send_signal(number)
             assert process.stderr.read() == b"vbraille: stopped\n"
             assert process.wait(program.PATIENCE_S) == 1
