@@ -44,7 +44,7 @@ _MOST = {
 }
 _TOO_DEEP = f"nests more than {MOST_DEPTH} deep by what it uses; make it flatter"
 # Keys that a use can have without a group around what it names.
-_CALLED = ("id", "title", "description")
+_CALLED: tuple[str, ...] = ("id", "title", "description")
 _NAMELESS = dict.fromkeys(_CALLED, "")
 
 

@@ -48,7 +48,7 @@ def with_children(
 
     def changed(value: Any, steps: Steps) -> Any:
         if isinstance(value, Pattern):
-            return change(steps, value)
+            return change(steps, value)  # pyright: ignore[reportArgumentType]
         if isinstance(value, Fill):
             texture = change((*steps, "texture"), value.texture)
             return value if texture is value.texture else replace(value, texture=texture)
@@ -87,6 +87,11 @@ def placed_children(pattern: AnyPattern) -> list[tuple[Steps, AnyPattern]]:
 def children(pattern: AnyPattern) -> list[AnyPattern]:
     """Patterns that stand directly in a pattern, in the order in which they are written."""
     return [part for _, part in placed_children(pattern)]
+
+
+def mapped(pattern: AnyPattern, change: Callable[[AnyPattern], AnyPattern]) -> AnyPattern:
+    """Pattern in which it and all that stands in it is what a function makes of it."""
+    return with_children(change(pattern), lambda _, part: mapped(part, change))
 
 
 def each(*patterns: AnyPattern) -> Iterator[AnyPattern]:
