@@ -95,20 +95,19 @@ class BookFigures:
         needed = math.ceil(figure.scene.canvas.height_mm / pitch_mm - _ROUNDING)
         return needed if needed < rows else 0
 
-    def said(self, line: Line, *, below: bool) -> Iterator[str]:
-        """Sentence on the figure that a line stands for, if it stands for one."""
+    def tell(self, line: Line, say: Callable[[str], None], *, below: bool) -> None:
+        """Say which figure a line stands for, if it stands for one."""
         figure = self.of(line)
         if figure is not None:
             canvas = figure.scene.canvas
             size = f"{canvas.width_mm:g} mm × {canvas.height_mm:g} mm"
             where = "below this line" if below else "shift-g feels it"
-            yield f"figure: {figure.title}, {size}; {where}"
+            say(f"figure: {figure.title}, {size}; {where}")
 
     def on(self, surface: Surface) -> Iterator[tuple[LoadedScene, float]]:
         """Figures of a page, each with the place in mm at which it begins."""
-        for row in surface.free:
-            part = surface.parts[row]
-            figure = None if part is None else self.of(part.line)
+        for row, part in enumerate(surface.parts):
+            figure = self.of(part.line) if part is not None and surface.has_free(row) else None
             if figure is not None:
                 yield figure, (row + 1) * surface.style.geometry.line_pitch_mm
 
