@@ -83,7 +83,7 @@ class Explored:
 
     @property
     def style(self) -> BrailleStyle | None:
-        """How its braille is shown; None if it has none."""
+        """Style of its braille; None if it has none."""
         return None
 
     @property
