@@ -117,9 +117,8 @@ def test_a_figure_stands_below_its_line_and_joins_the_page():
             said += reading.run(0.1)
         surface = reading.reader.surface
         reading.until(lambda: surface.figured)
-        row, rows = next(iter(surface.free.items()))
-        pitch_mm = reading.reader.style.geometry.line_pitch_mm
-        reading.finger(20.0, (row + 1 + rows / 2) * pitch_mm)
+        row = next(row for row in range(surface.rows) if surface.has_free(row))
+        reading.finger(20.0, (row + 2) * reading.reader.style.geometry.line_pitch_mm)
         assert reading.press("u")[0].startswith("figure: A map with braille")
 
 

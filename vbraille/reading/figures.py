@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from vbraille.feeling.loading import LoadedScene
     from vbraille.layout import Line
     from vbraille.reading.picture import Picture
-    from vbraille.reading.reader import Reader
-    from vbraille.reading.surface import Surface
     from vbraille.render.program import Program
     from vbraille.translate import Source
 
@@ -95,24 +93,23 @@ class BookFigures:
         needed = math.ceil(figure.scene.canvas.height_mm / pitch_mm - _ROUNDING)
         return needed if needed < rows else 0
 
-    def said(self, line: Line, *, below: bool) -> Iterator[str]:
-        """Sentence on the figure that a line stands for, if it stands for one."""
+    def tell(self, line: Line, say: Callable[[str], None], *, below: bool) -> None:
+        """Say which figure a line stands for, if it stands for one."""
         figure = self.of(line)
         if figure is not None:
             canvas = figure.scene.canvas
             size = f"{canvas.width_mm:g} mm × {canvas.height_mm:g} mm"
             where = "below this line" if below else "shift-g feels it"
-            yield f"figure: {figure.title}, {size}; {where}"
+            say(f"figure: {figure.title}, {size}; {where}")
 
-    def on(self, surface: Surface) -> Iterator[tuple[LoadedScene, float]]:
+    def on(self, surface: Any) -> Iterator[tuple[LoadedScene, float]]:
         """Figures of a page, each with the place in mm at which it begins."""
-        for row in surface.free:
-            part = surface.parts[row]
-            figure = None if part is None else self.of(part.line)
+        for row, part in enumerate(surface.parts):
+            figure = self.of(part.line) if part is not None and surface.has_free(row) else None
             if figure is not None:
                 yield figure, (row + 1) * surface.style.geometry.line_pitch_mm
 
-    def place(self, surface: Surface) -> None:
+    def place(self, surface: Any) -> None:
         """Begin to compile a page with its figures, which `take` shows when it is ready."""
         placed, masks, style = list(self.on(surface)), surface.masks, surface.style
         if placed:
@@ -129,7 +126,7 @@ class BookFigures:
 
             self._making = surface.number, self._maker.submit(make)
 
-    def take(self, surface: Surface) -> None:
+    def take(self, surface: Any) -> None:
         """Have the figures of a page join it, once they are compiled."""
         if self._making is None or not self._making[1].done():
             return
@@ -140,7 +137,7 @@ class BookFigures:
             except (InputError, ValueError) as error:
                 self._note(f"figure not felt: {error}")
 
-    def here(self, surface: Surface, pose: Pose | None) -> tuple[str, str] | None:
+    def here(self, surface: Any, pose: Pose | None) -> tuple[str, str] | None:
         """Titles of the figure at a pose, and of its element there; None if none is there."""
         if pose is None:
             return None
@@ -159,7 +156,7 @@ class BookFigures:
             self._indices[figure.title] = SceneIndex(figure.scene, figure.assets, figure.boxes())
         return self._indices[figure.title]
 
-    def feel(self, reader: Reader) -> Picture | None:
+    def feel(self, reader: Any) -> Picture | None:
         """Figure of the line, to be felt alone; None if it has none.
 
         Raises
