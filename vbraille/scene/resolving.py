@@ -200,7 +200,7 @@ class _Resolving:
         own = {key: getattr(use, key) for key in Pattern.__struct_fields__}
         for key in ("title", "description", "words", "sound"):
             own[key] = own[key] or getattr(pattern, key)
-        called = {key: own[key] for key in _CALLED}
+        called: dict[str, str] = {key: own[key] for key in _CALLED}
         if replace(use, **called) == Use(name=use.name, move_mm=use.move_mm, **called):
             return _called(pattern, called)
         return Group(operation="maximum", parts=(_called(pattern, _NAMELESS),), **own)
