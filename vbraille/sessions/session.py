@@ -23,7 +23,7 @@ from vbraille.sessions.planning.values import Look
 from vbraille.sessions.record import record
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Content, Record
-from vbraille.simulation.specs import SLOW, is_simulated
+from vbraille.simulation.specs import is_simulated
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -418,7 +418,7 @@ def _run(
         check_room(protocol, plan, device.display)
     if pins is not None:
         pins.start()
-    if source.felt and protocol.shows_pictures and conditions.hand in SLOW:
+    if source.felt and protocol.shows_pictures and conditions.hand == "slow":
         hint = f"{setting('hand')} sweep:150 does"
         say(f"hand: a slow one comes to few pictures in their time; {hint}")
     runner = Runner(
