@@ -525,9 +525,11 @@ class Group(Pattern, frozen=True, kw_only=True, tag="group"):
             raise ValueError("parts are missing; give at least one")
         if (self.weights is not None) != (self.operation == "weighted"):
             raise ValueError('weights belong to operation = "weighted", and to no other')
-        if self.weights is not None:
-            if len(self.weights) != len(self.parts) or abs(sum(self.weights) - 1.0) > 1e-6:
-                raise ValueError("weights must be one for each part, and add up to 1")
+        weights = self.weights
+        if weights is not None and (
+            len(weights) != len(self.parts) or abs(sum(weights) - 1.0) > 1e-6
+        ):
+            raise ValueError("weights must be one for each part, and add up to 1")
         if (self.by is not None) != (self.operation == "blend"):
             raise ValueError('by belongs to operation = "blend", and to no other')
         if self.operation == "blend" and len(self.parts) != 2:
