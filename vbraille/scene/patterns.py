@@ -179,13 +179,9 @@ class Shape(Pattern, frozen=True, kw_only=True):
 
     @property
     def flows(self) -> tuple[RidgeWave, ...]:
-        """All that flows along its path by itself, as waves; dots are no farther apart."""
-        dots, cue = self.dots, self.cue
-        found = [self.wave, None if cue is None else cue.wave]
-        if dots is not None:
-            spacing_mm = 2 * dots.dot.radius_mm + dots.separation_mm
-            found.append(RidgeWave(spacing_mm, dots.velocity_mm_s))
-        return tuple(wave for wave in found if wave is not None and wave.speed)
+        """All that flows along its path by itself, as waves."""
+        found = [self.wave, self.cue and self.cue.wave, self.dots and self.dots.wave]
+        return tuple(wave for wave in found if wave and wave.speed)
 
     @property
     def width_mm(self) -> float:
