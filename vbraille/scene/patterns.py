@@ -173,6 +173,11 @@ class Shape(Pattern, frozen=True, kw_only=True):
             raise ValueError("cue needs a stroke or dots that it goes along; add one")
 
     @property
+    def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
+        """Places of each contour of its path, and whether they close; a circle has none."""
+        return (), True
+
+    @property
     def wave(self) -> RidgeWave | None:
         """Length and speed of ridges and gaps along its stroke; None if it has none."""
         return self.stroke.along.wave if self.stroke and self.stroke.along else None
@@ -236,6 +241,11 @@ class StraightLine(Shape, frozen=True, kw_only=True, tag="line"):
         if math.dist(self.start_mm, self.end_mm) < LEAST_APART_MM:
             raise ValueError("end is where the line starts; a line needs two places")
         check_drawn(self, None)
+
+    @property
+    def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
+        """Its two ends."""
+        return ((self.start_mm, self.end_mm),), False
 
 
 def check_points(what: str, points_mm: tuple[Point, ...], least: int, *, closed: bool) -> None:
@@ -450,6 +460,11 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
             )
         check_drawn(self, self.fill)
 
+    @property
+    def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
+        """Its vertices."""
+        return (self.vertices_mm,), True
+
 
 class PathShape(Shape, frozen=True, kw_only=True, tag="path"):
     """Lines through many places, open or closed, one or several, as drawings have them.
@@ -483,6 +498,11 @@ class PathShape(Shape, frozen=True, kw_only=True, tag="path"):
         if self.fill is not None and not self.closed:
             raise ValueError("fill needs a closed path; write closed = true")
         check_drawn(self, self.fill)
+
+    @property
+    def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
+        """Its contours."""
+        return self.contours_mm, self.closed
 
 
 Operation = Literal["overwrite", "multiply", "add", "weighted", "maximum", "blend"]
