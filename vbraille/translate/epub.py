@@ -61,7 +61,7 @@ def read_epub(source: Source) -> Iterator[Block]:
 
 
 class _Package:
-    """What an EPUB says of itself, and its chapters, as items of its manifest."""
+    """Metadata of an EPUB, and its chapters as items of its manifest."""
 
     def __init__(self, archive: Archive) -> None:
         self.archive = archive

@@ -269,7 +269,7 @@ def put_picture(into: Element, described: list[str], what: str = "picture") -> N
 
 
 def tag_of(language: str, country: str = "") -> Look:
-    """What a look says of a language as a word processor has it; nothing if that is none."""
+    """Look of text in a language as a word processor has it; nothing if that is none."""
     language, country = language.strip(), country.strip()
     if language.lower() in _NO_LANGUAGE:
         return {}
