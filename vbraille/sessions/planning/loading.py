@@ -113,12 +113,12 @@ def _resolved(tables: ProtocolFile, files: dict[str, bytes]) -> Protocol:
     """Return the protocol with the items and orders of its files."""
     protocol = Protocol(**structs.asdict(tables), files=files)
     design, practice, order = protocol.design, protocol.practice, protocol.order
-    of_items = isinstance(design, ItemList) and not isinstance(design, StringList)
-    if of_items != (protocol.items is not None):
+    drawn = design if isinstance(design, ItemList) and not isinstance(design, StringList) else None
+    if (drawn is None) != (protocol.items is None):
         raise WrongValue("items", "and [design] kind = 'items' go together; give both or neither")
-    if of_items:
+    if drawn is not None:
         strings, columns = _listed(protocol)
-        protocol = structs.replace(protocol, design=design.listed(strings), columns=columns)
+        protocol = structs.replace(protocol, design=drawn.listed(strings), columns=columns)
     shown: Iterable[str] = practice.strings
     if practice.file is not None:
         shown = read_items(files[practice.file], practice.file)
