@@ -15,7 +15,7 @@ from vbraille.scene.patterns import Image, Label
 from vbraille.scene.reading import open_scene
 from vbraille.scene.traversal import each
 from vbraille.scene.zooming import levels, zoomed
-from vbraille.sounds import check_sound
+from vbraille.sounds import read_sound
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -137,7 +137,7 @@ def _check_sounds(opened: OpenedScene) -> None:
         for pattern in each(element):
             if pattern.sound:
                 try:
-                    check_sound(opened.folder / pattern.sound)
+                    read_sound(opened.folder / pattern.sound)
                 except InputError as error:
                     raise InputError(f"{opened.place(number)}: {error}") from None
 

@@ -6,11 +6,11 @@ import heapq
 
 import numpy as np
 
+from tests.devices.latero.network import LateroFaults, Network
 from vbraille.carriers import latero
 from vbraille.devices.latero.conversation import LateroConversation
 from vbraille.devices.latero.wire import Answer, Foreign, parse_answer
 from vbraille.simulation.lateroboard import LateroBoard
-from vbraille.simulation.laterosim import LateroFaults, Network
 
 MS = 1_000_000
 OFFSETS = (4452, 4_294_960_000, 120_034)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.devices.latero.network import LateroFaults
 from tests.devices.latero.talking import FELT, MS, OFFSETS, Talk
 from tests.tiers import by_tier
 from vbraille.devices.events import (
@@ -23,7 +24,6 @@ from vbraille.devices.latero.conversation import (
     POWER,
     LateroStage,
 )
-from vbraille.simulation.laterosim import LateroFaults
 
 SHOWN = np.rint(150 * (1 - FELT)).astype(np.uint8).ravel()
 

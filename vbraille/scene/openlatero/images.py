@@ -21,7 +21,7 @@ from vbraille.scene.openlatero.elements import OFF, ON, NumberField, PlaceField,
 from vbraille.scene.patterns import Group, Image
 from vbraille.scene.svg.values import Units, length_of
 from vbraille.scene.textures import Uniform
-from vbraille.sounds import check_sound
+from vbraille.sounds import read_sound
 
 if TYPE_CHECKING:
     from vbraille.scene.measures import Point
@@ -171,7 +171,7 @@ def _audio(element: GenElement, context: GenContext) -> AnyPattern | None:
         try:
             if not name:
                 raise InputError("its sound is not named")
-            check_sound(context.folder / name)
+            read_sound(context.folder / name)
         except InputError as error:
             mask.forget()
             sound.say(f"{_in(context.folder, error)}; left out")
