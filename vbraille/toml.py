@@ -6,6 +6,7 @@ import difflib
 import math
 import re
 import tomllib
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import msgspec
@@ -121,6 +122,7 @@ class TomlFile:
             return None
         return value
 
+    @cached_property
     def lines(self) -> dict[Path, int]:
         """Lines of tables and keys, from 1, by the paths that lead to them."""
         return lines_of(self.text)

@@ -45,12 +45,12 @@ class Scene(Table, frozen=True, kw_only=True):
     operation
         How its elements are put together: "overwrite", by which each hides what it stands on, as
         in drawings, or one of the others that a group has.
-    elements
-        The elements in order, the last on top.
-    textures
-        Patterns by name, for `Use`.
     signals
         Numbers by name, by which patterns answer to the hand, to keys and to time.
+    textures
+        Patterns by name, for `Use`.
+    elements
+        The elements in order, the last on top.
 
     Raises
     ------
@@ -63,9 +63,9 @@ class Scene(Table, frozen=True, kw_only=True):
     description: str = ""
     language: str = "en"
     operation: Operation = "overwrite"
-    elements: tuple[AnyPattern, ...] = ()
-    textures: dict[str, AnyPattern] = {}  # noqa: RUF012 - msgspec copies an empty default
     signals: dict[str, AnySignal] = {}  # noqa: RUF012 - msgspec copies an empty default
+    textures: dict[str, AnyPattern] = {}  # noqa: RUF012 - msgspec copies an empty default
+    elements: tuple[AnyPattern, ...] = ()
 
     def __post_init__(self) -> None:
         # Files are read by these types; a program may give anything.

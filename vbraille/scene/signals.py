@@ -224,24 +224,8 @@ def renamed(signal: AnySignal, names: Mapping[str, str]) -> AnySignal:
     return replace(signal, of=names[signal.of]) if isinstance(signal, Inverse) else signal
 
 
-def circle(signals: Mapping[str, AnySignal]) -> tuple[str, ...]:
-    """Find names of signals of which each is made of the next, and the last is the first again."""
-    right: set[str] = set()
-    for name in signals:
-        way: list[tuple[str, ...]] = [(name,)]
-        while way:
-            names = way.pop()
-            for one in made_of(signals[names[-1]]):
-                if one in names:
-                    return (*names[names.index(one) :], one)
-                if one not in right:
-                    way.append((*names, one))
-        right.add(name)
-    return ()
-
-
 def ordered(signals: Mapping[str, AnySignal], driving: Iterable[str] = ()) -> list[OrderedSignal]:
-    """Put signals, of which none leads back to itself, into an order in which to compute them.
+    """Put signals into an order in which to compute them.
 
     Parameters
     ----------
@@ -249,19 +233,26 @@ def ordered(signals: Mapping[str, AnySignal], driving: Iterable[str] = ()) -> li
         The signals by their names.
     driving
         Names of those that are the speed of a motion; the integral of each comes last.
+
+    Raises
+    ------
+    ValueError
+        If a signal is made of itself; its arguments are names of which each is made of the next.
     """
     found: dict[str, int] = {}
     order: list[OrderedSignal] = []
 
-    def put(name: str) -> int:
+    def put(name: str, way: tuple[str, ...]) -> int:
+        if name in way:
+            raise ValueError(*way[way.index(name) :], name)
         if name not in found:
-            of = tuple(put(one) for one in made_of(signals[name]))
+            of = tuple(put(one, (*way, name)) for one in made_of(signals[name]))
             found[name] = len(order)
             order.append(OrderedSignal(name, signals[name], of))
         return found[name]
 
     for name in signals:
-        put(name)
+        put(name, ())
     return order + [OrderedSignal(name, None, (found[name],)) for name in dict.fromkeys(driving)]
 
 
