@@ -69,8 +69,8 @@ class Command:
 _COMMANDS: list[Command] = []
 _MODULES = {
     Where.BOOK: ("moving", "structure", "searching", "feeling"),
-    Where.PICTURE: ("touring",),
-    Where.FIGURE: ("touring",),
+    Where.PICTURE: ("picture",),
+    Where.FIGURE: ("picture",),
     Where.GAME: ("game",),
     Where.TUNING: ("tuning",),
     Where.SCREEN: ("screen",),

@@ -46,7 +46,7 @@ def command(ctx: click.Context, **chosen: Any) -> None:
         equipment.start(ctx, model)
         game = Game(
             deck, device, equipment.outputs, players=chosen["players"], seed=seed,
-            rate_hz=chosen["rate"], attended=equipment.keyboard.attached,
+            attended=equipment.keyboard.attached,
         )  # fmt: skip
         game.say(f"seed: {seed}")
         game.begin()

@@ -184,5 +184,4 @@ def _figures(ctx: click.Context, book: Any, device: Any) -> Any:
         None if in_container else Path(ctx.params["file"]).parent,
         lambda: device.model.style,
         lambda sentence: say(sentence, aside=True),
-        ctx.params["rate"],
     )
