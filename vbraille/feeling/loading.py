@@ -114,7 +114,7 @@ def load_scene(path: Path | str, style: BrailleStyle) -> LoadedScene:
 def with_assets(opened: OpenedScene, style: BrailleStyle) -> LoadedScene:
     """Load the images of a scene that was opened, and translate its labels; see `load_scene`."""
     scene = opened.resolved
-    _check_sounds(opened)
+    _read_sounds(opened)
     kinds = {type(pattern) for pattern in each(*scene.elements)}
     if kinds.isdisjoint((Image, Label)):  # Places take as long as all the rest of it.
         return shown_at(opened, Assets(), opened.warnings)
@@ -131,7 +131,7 @@ def with_assets(opened: OpenedScene, style: BrailleStyle) -> LoadedScene:
     return shown_at(opened, Assets(bitmaps, written), tuple(notes))
 
 
-def _check_sounds(opened: OpenedScene) -> None:
+def _read_sounds(opened: OpenedScene) -> None:
     """Refuse files of sound that cannot be played."""
     for number, element in enumerate(opened.resolved.elements):
         for pattern in each(element):
