@@ -18,10 +18,7 @@ FORM = (
     "a misspelt kind",
     "no kind",
     "a misspelt key",
-    "a misspelt key within",
-    "a key of another kind",
     "a place of three numbers",
-    "a number in quotation marks",
     "a table in place of a list",
     "a texture that is none",
 )
