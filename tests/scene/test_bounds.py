@@ -1,6 +1,5 @@
 """Rectangles outside which patterns and their masks are 0."""
 
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -42,10 +42,6 @@ def report(*elements, canvas=LATERO, operation="overwrite", **textures):
     )
 
 
-def vibrations(*elements, **more):
-    return report(*elements, **more).vibrations
-
-
 def advice(*elements, **more):
     return report(*elements, **more).advice
 
@@ -79,7 +75,6 @@ def test_it_counts_what_is_written_and_says_where_what_is_shown_stands():
     assert second.said() == "element 2, use The moon"
     assert second.box == (138, 38, 162, 62)
     assert third.box == (38, 138, 62, 162)
-    assert not found.vibrations
     assert not found.advice
 
 
@@ -137,7 +132,7 @@ MEETING = {
 @pytest.mark.parametrize("name", MEETING)
 def test_vibrations_that_meet_are_told(name):
     element, sentence = MEETING[name]
-    said = [one for one in vibrations(element) if "cannot be told apart" not in one]
+    said = [one for one in advice(element) if "cannot be told apart" not in one]
     (one,) = said
     assert one.startswith("elements, number 1: element 1, ")
     assert sentence in one
@@ -155,21 +150,21 @@ QUIET = {
 
 @pytest.mark.parametrize("name", QUIET)
 def test_vibrations_that_do_no_harm_are_not_told(name):
-    said = vibrations(QUIET[name])
+    said = advice(QUIET[name])
     assert [one for one in said if "cannot be told apart" not in one] == []
 
 
 def test_the_elements_of_the_scene_are_put_together_too():
-    said = vibrations(circle(vibration=MID), circle(vibration=MID), operation="add")
+    said = advice(circle(vibration=MID), circle(vibration=MID), operation="add")
     assert said[0].startswith("the scene adds a vibration of 25 Hz to one of 25 Hz")
-    assert not vibrations(circle(vibration=MID), circle(vibration=MID))
+    assert not advice(circle(vibration=MID), circle(vibration=MID))
 
 
 def test_frequencies_that_cannot_be_told_apart_are_told():
-    assert vibrations(hum(50), hum(35)) == (
+    assert advice(group("overwrite", hum(50), hum(35))) == (
         "vibrations of 35 and 50 Hz cannot be told apart; set them 20 Hz apart or more",
     )
-    assert not vibrations(hum(50), hum(30))
+    assert not advice(group("overwrite", hum(50), hum(30)))
 
 
 ADVICE = {
