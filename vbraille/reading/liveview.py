@@ -28,8 +28,9 @@ from vbraille.live.messages import (
 )
 from vbraille.live.states import array_shown, beside_shown, geometry_shown, line_shown, rows_shown
 from vbraille.reading.commands import Where, table
-from vbraille.reading.outputs import Cue
+from vbraille.reading.outputs import Cue, Output
 from vbraille.reading.surface import Part
+from vbraille.simulation import steering
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,7 +50,7 @@ _PLACES = {
 }
 
 
-class LiveOutput:
+class LiveOutput(Output):
     """Shows on pages of a browser what is explored, and gives what they ask as keys.
 
     Parameters
@@ -76,12 +77,6 @@ class LiveOutput:
             self._said += 1
             self._last.append(sentence)
 
-    def show(self, what: Explored) -> None:
-        """Do nothing: pages are told by `pressed`, whatever has changed."""
-
-    def close(self) -> None:
-        """Do nothing: the view has its own end."""
-
     def rest(self) -> None:
         """Do nothing: pages show what stands."""
 
@@ -91,7 +86,7 @@ class LiveOutput:
             self._say(note)
         if self._watched != self._device.starts:
             self._watched = self._device.starts
-            self._view.watch(self._device.ring())
+            self._view.watch(self._device.engine.reader())
         self._polls += 1
         if self._polls % _EVERY == 0 and not self._failed:
             try:
@@ -105,9 +100,9 @@ class LiveOutput:
     def _key(self, what: Explored, asked: Any) -> str:
         """Key for what a page asks; what is no key is done here."""
         if isinstance(asked, Point):
-            self._device.hold(asked.x_mm, asked.y_mm, asked.theta_rad)
+            self._device.engine.give(steering.Hold(asked.x_mm, asked.y_mm, asked.theta_rad))
         elif isinstance(asked, LetGo):
-            self._device.let_go()
+            self._device.engine.give(steering.LetGo())
         elif isinstance(asked, Turn):
             if asked.knob in KNOBS and what.prompt is None:
                 try:

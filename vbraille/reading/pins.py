@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
 from vbraille.layout import lay_out_text
-from vbraille.reading.outputs import Cue, system_module
+from vbraille.reading.outputs import Cue, Output, system_module
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ _NAMED = {
 _UNICODE = 0x0100_0000  # keysyms of all other characters begin here
 
 
-class Pins:
+class Pins(Output):
     """An output on a conventional display, whose keys are obeyed.
 
     A line falls into parts of the display's width, and the part with the finger in it is shown. A
