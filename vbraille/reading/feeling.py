@@ -72,7 +72,7 @@ def beside(reader: Reader) -> None:
 
 
 def _after(now: Any, found: list[Any]) -> Any:
-    """What follows in a list, its first after its last."""
+    """Next of a list, its first after its last."""
     return found[(found.index(now) + 1) % len(found)] if now in found else found[0]
 
 
