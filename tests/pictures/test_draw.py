@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from tests.pictures.tables import TABLES, make_line, make_page
 from vbraille.errors import InputError
-from vbraille.pictures import draw, mapping, profile, strain
+from vbraille.pictures import draw
+from vbraille.pictures.series import mapping, profile, strain
 from vbraille.render import MAPPINGS, STRESS2, VBD, Tuning
 
 drawn = cache(draw.draw)  # for who only looks at it

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.pictures.tables import TABLES, make_line, make_page, with_style
-from vbraille.pictures import FigureTable, mapping, profile, strain, wave, write_csv
+from vbraille.pictures.series import FigureTable, mapping, profile, strain, wave, write_csv
 from vbraille.render import LATERO, MAPPINGS, MODELS, STRESS2, VBD, Tuning, single_row
 
 
@@ -229,7 +229,7 @@ def test_a_table_refuses_columns_of_different_lengths():
 
 def test_the_numbers_need_no_matplotlib():
     code = (
-        "import sys, vbraille.pictures as p; from vbraille.render import VBD;"
+        "import sys, vbraille.pictures.series as p; from vbraille.render import VBD;"
         "p.wave(VBD);"
         "sys.exit(str({'matplotlib', 'louis'} & set(sys.modules)))"
     )

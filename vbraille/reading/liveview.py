@@ -32,8 +32,8 @@ from vbraille.reading.outputs import Cue
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from vbraille.feeling.loading import LoadedScene
     from vbraille.live.view import LiveView
+    from vbraille.pictures.loading import LoadedScene
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.explored import Explored
     from vbraille.reading.surface import Part
@@ -298,7 +298,7 @@ def _blank(loaded: LoadedScene, image: str) -> SceneShown:
 
 def _drawn(loaded: LoadedScene, switches: int) -> SceneShown:
     """Draw a scene as its switches have it, and the layers that they hide."""
-    from vbraille.feeling.index import label_of
+    from vbraille.pictures.index import label_of
     from vbraille.pictures.scenes import hidden_layers, small_png
     from vbraille.render.compiling import settled
 
