@@ -49,21 +49,26 @@ def command(ctx: click.Context, kind: str, **chosen: Any) -> None:
     page        lines of a text, with the array on one
     """  # noqa: D301, D400 - click's mark for lines that are not wrapped
     from vbraille.errors import InputError
-    from vbraille.files import check_unused
+    from vbraille.files import check_unused, write_files
     from vbraille.pictures.series import write_csv
 
     if (kind == "page") != (chosen["file"] is not None):
         raise InputError(f"plot {kind} takes {'a text' if kind == 'page' else 'no text'}")
     path = Path(chosen["out"] or f"vbraille-{kind}.png")
+    suffix = path.suffix.lower()[1:]
+    if suffix not in ("png", "svg"):
+        raise InputError(f"cannot draw to {path}: end its name in .png or .svg")
     if not chosen["csv"]:
         check_unused(path, replace=chosen["force"])
     table = _table(ctx, kind, chosen)
     if chosen["csv"]:
         write_csv(table, sys.stdout)
         return
-    from vbraille.pictures import draw
+    from vbraille.pictures.draw import draw
+    from vbraille.pictures.figurefiles import to_bytes
 
-    draw.save(draw.draw(table), path)
+    content = to_bytes(draw(table), suffix, {"Title": table.title})
+    write_files([(path, content)], replace=chosen["force"])
     say(f"drawn: {table.title}, {path}")
 
 
