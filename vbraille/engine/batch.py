@@ -62,7 +62,7 @@ class BatchEngine(LocalEngine):
 
     def poll(self) -> NDArray[np.void]:
         """Do some ticks; return their records, `vbraille.engine.record.tick_dtype`[n]."""
-        device, state, ring = self.device, self.state, self.ring
+        device, ring = self.device, self.ring
         due_ns = (self.tally.ticks + np.arange(self.poll_ticks)) * self._period_ns
         self.clock.sleep_until_ns(int(due_ns[0]))
         due_ns = due_ns[: device.until_done(due_ns)]
@@ -73,7 +73,7 @@ class BatchEngine(LocalEngine):
         self.clock.sleep_until_ns(int(due_ns[-1]))
         times_ns = np.repeat(due_ns[:, None], 2, axis=1)
         slot = ring.begin()
-        state.advance(times_ns, poses, device.rested, device.taking, ring.columns, slot)
-        device.write(state.output)
+        self.advance(times_ns, poses, device.rested, device.taking, ring.columns, slot)
+        device.write(self.output)
         ring.end(due_ns.size)
         return self._take()

@@ -33,14 +33,10 @@ def flagged(flag, first, stop):
     """What makes an engine some ticks of which could not be felt."""
 
     class Faulty(BatchEngine):
-        def __init__(self, *how):
-            super().__init__(*how)
-            self._watch, self.watcher.watch = self.watcher.watch, self._flag
-
-        def _flag(self, ticks):
+        def watch(self, ticks, display):
             at = (ticks["tick"] >= first) & (ticks["tick"] < stop)
             ticks["flags"][at] |= int(flag | Flag.UNFELT)
-            self._watch(ticks)
+            super().watch(ticks, display)
 
     return Faulty
 

@@ -18,7 +18,7 @@ from vbraille.devices.events import Button, Knob, Placing
 from vbraille.devices.registry import TRAVEL_TOLERANCE_MM, find_driver, open_device
 from vbraille.display import Display
 from vbraille.engine.batch import BatchEngine
-from vbraille.engine.engine import Engine, placing_of
+from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host
 from vbraille.engine.record import Flag, RingReader
 from vbraille.errors import InputError
@@ -95,7 +95,7 @@ class SessionDevice(Presenter):
         self._watched = watched
         self._is_simulated = is_simulated(spec)
         spec = device_spec(spec, hand, seed)
-        self.engine: Engine
+        self.engine: BatchEngine | Host
         if fast:
             self.engine = BatchEngine(open_device(spec, wanted), rate_hz)
         else:
