@@ -25,7 +25,7 @@ _PART = r"""(?:[\w-]+|"[^"]*"|'[^']*')"""
 _NAME = rf"{_PART}(?:\s*\.\s*{_PART})*"
 _HEADER = re.compile(rf"\s*(\[\[?)\s*({_NAME})\s*\]")
 _KEY = re.compile(rf"\s*({_NAME})\s*=")
-_UNIT = re.compile(r"_(?:(?:mm|deg)(?:_s)?|hz)$")
+_UNIT = re.compile(r"_(?:(?:mm|deg)(?:_s)?|hz|s)$")
 _DEEP = re.compile(r"(?:[\w-]++[ \t]*+\.[ \t]*+){100}")
 _STEP = re.compile(r"\.([\w-]+)|\[(\d+)\]")
 _WORDS = {
@@ -166,6 +166,15 @@ def located(text: str, where: str, error: WrongValue) -> InputError:
     return TomlFile(text, where).refused(error.path, error.problem)
 
 
+def words_of(key: str) -> str:
+    """Words of a key, without its unit.
+
+    >>> words_of("wave_angle_deg")
+    'wave angle'
+    """
+    return _UNIT.sub("", key).replace("_", " ")
+
+
 def which(name: str, names: Iterable[str]) -> str:
     """Return the end of a sentence on an unknown name: the nearest one, or all that there are."""
     known = sorted(names)
@@ -222,8 +231,7 @@ def _leaves(value: object, path: Path) -> Iterator[tuple[Path, object]]:
 def _key_said(problem: str, table: Iterable[str]) -> Path:
     """Key of a table whose words, without its unit, begin a problem; empty if none does."""
     for key in sorted(table, key=len, reverse=True):
-        words = _UNIT.sub("", key).replace("_", " ")
-        if re.match(rf"{re.escape(words)}(?!\w)", problem.replace("_", " ")):
+        if re.match(rf"{re.escape(words_of(key))}(?!\w)", problem.replace("_", " ")):
             return (key,)
     return ()
 

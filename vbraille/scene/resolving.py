@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 from msgspec.structs import replace
 
@@ -200,7 +200,7 @@ class _Resolving:
         own = {key: getattr(use, key) for key in Pattern.__struct_fields__}
         for key in ("title", "description", "words", "sound"):
             own[key] = own[key] or getattr(pattern, key)
-        called = {key: own[key] for key in _CALLED}
+        called: dict[Any, Any] = {key: own[key] for key in _CALLED}
         if replace(use, **called) == Use(name=use.name, move_mm=use.move_mm, **called):
             return _called(pattern, called)
         return Group(operation="maximum", parts=(_called(pattern, _NAMELESS),), **own)
@@ -256,7 +256,7 @@ def _nameless(pattern: AnyPattern) -> AnyPattern:
     return _called(with_children(pattern, lambda _, part: _nameless(part)), {"id": ""})
 
 
-def _called(pattern: AnyPattern, called: dict[str, str]) -> AnyPattern:
+def _called(pattern: AnyPattern, called: Mapping[str, str]) -> AnyPattern:
     """Pattern with another id, title or description; made anew, and checked, only if need be."""
     if all(getattr(pattern, key) == text for key, text in called.items()):
         return pattern
