@@ -25,7 +25,7 @@ from vbraille.engine.engine import EndOfLine, Watcher
 from vbraille.engine.record import RingReader, Tally
 from vbraille.errors import DeviceError, InputError, VbrailleError
 from vbraille.files import open_memory, settings_path
-from vbraille.logs import kept, tracebacks_wanted
+from vbraille.logs import kept
 from vbraille.simulation.specs import device_spec
 from vbraille.simulation.steering import to_json
 
@@ -137,9 +137,8 @@ class Host(Watcher):
         theirs.close()
         self._socket.setblocking(False)
         _log.info("started process %d to drive %s", self._process.pid, self._spec)
-        kept_as = {"log": kept(), "verbose": tracebacks_wanted()}
         settings = str(settings_path().absolute())
-        self._tell(device=self._spec, settings=settings, **self._wanted, **kept_as)
+        self._tell(device=self._spec, settings=settings, log=kept(), **self._wanted)
 
     def start(self) -> Display:
         """Start the process if need be, and wait until ticks run; again after its death.

@@ -138,7 +138,7 @@ class Signals:
     def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:  # noqa: ARG002 - others say it
         """Give a cue."""
         if cue in MELODIES and self._tones:
-            self._player.play_melody(MELODIES[cue])
+            self._player.play(*MELODIES[cue])
         elif cue in MELODIES and sys.stderr.isatty():
             print("\a" * len(MELODIES[cue]), end="", file=sys.stderr, flush=True)
 
