@@ -19,7 +19,7 @@ from vbraille.scene.measures import MOST_MM
 from vbraille.scene.openlatero.context import SURFACE_MM, Kinds
 from vbraille.scene.openlatero.elements import OFF, ON, NumberField, PlaceField, cleaned
 from vbraille.scene.patterns import Group, Image
-from vbraille.scene.svg.values import Units, length_of
+from vbraille.scene.svg.values import Units
 from vbraille.scene.textures import Uniform
 from vbraille.sounds import check_sound
 
@@ -113,7 +113,7 @@ def _drawn(path: Path) -> MaskPicture:
     box = [float(part) for part in re.findall(r"[-+0-9.eE]+", root.get("viewBox", ""))[:4]]
     seen = box[2:] if len(box) == 4 else [100.0, 100.0]
     sizes = [
-        length_of(root.get(name), 0.0, Units((0.0, 0.0), (0.0, 0.0))) or fallback
+        Units().length(root.get(name), 0.0) or fallback
         for name, fallback in zip(("width", "height"), seen, strict=True)
     ]
     if min(sizes) <= 0 or max(sizes) > 1e6:
