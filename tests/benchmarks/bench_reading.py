@@ -117,7 +117,7 @@ def _frame() -> Result:
 
 
 def _search() -> Iterator[Result]:
-    from vbraille.reading.search import find_after, find_before, pattern_for
+    from vbraille.reading.searching import find_after, find_before, pattern_for
 
     paragraph = Path(TEXT).read_text(encoding="utf-8")
     text = (paragraph * (5_000_000 // len(paragraph) + 1))[:5_000_000] + LAST

@@ -6,7 +6,7 @@ import pytest
 from vbraille.errors import InputError
 from vbraille.feeling.paths import PathOptions, path_of
 from vbraille.scene.scene import Canvas
-from vbraille.simulation.exploring import Disturbance, spiral, spot, wide
+from vbraille.simulation.exploring import spiral, spot, wide
 
 CANVAS = Canvas(width_mm=100, height_mm=60)
 
@@ -19,8 +19,7 @@ def lengths(course):
 def test_the_wide_path_goes_round_and_then_inward_and_leaves_no_place_out(size):
     width, height = size
     x, y = spiral(*size, 10)
-    corners = [(0, 0), (width, 0), size, (0, height), (0, 0)]
-    assert list(zip(x[:5], y[:5], strict=True)) == corners
+    assert list(zip(x[:4], y[:4], strict=True)) == [(0, 0), (width, 0), size, (0, height)]
     assert (x.min(), x.max(), y.min(), y.max()) == (0, width, 0, height)
     course = wide(*size, spacing_mm=10)
     t_s = np.arange(0, course.duration_s, 0.005)
@@ -32,15 +31,15 @@ def test_the_wide_path_goes_round_and_then_inward_and_leaves_no_place_out(size):
 
 def test_disturbances_sway_change_the_speed_and_go_back():
     even = wide(100, 60)
-    swayed = wide(100, 60, disturbance=Disturbance(sway_mm=2))
+    swayed = wide(100, 60, sway_mm=2)
     assert swayed.duration_s == pytest.approx(even.duration_s, rel=0.01)
     at = swayed.t_s < 100 / 60 - 0.1  # along the upper edge, beyond which nothing is
     assert swayed.y_mm[at].max() == pytest.approx(2, abs=0.01)
     assert swayed.y_mm.min() >= 0
-    unsteady = wide(100, 60, disturbance=Disturbance(speed_change=0.5))
+    unsteady = wide(100, 60, speed_change=0.5)
     speed = lengths(unsteady) / np.diff(unsteady.t_s)
     assert (speed.min(), speed.max()) == pytest.approx((30, 90), rel=0.01)
-    back = wide(100, 60, disturbance=Disturbance(back_mm=10))
+    back = wide(100, 60, back_mm=10)
     assert back.duration_s == pytest.approx(even.duration_s * 60 / 40, rel=0.05)
     first = np.flatnonzero(np.diff(back.x_mm[:400]) < 0)
     assert back.x_mm[first[0]] == pytest.approx(50)

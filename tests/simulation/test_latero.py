@@ -87,7 +87,7 @@ def test_what_the_authors_client_starts_with_is_answered(latero, client):
 
 
 def test_the_authors_reset_finds_the_same_offsets():
-    carriage = LateroCarriage(parse_hand("sweep:60"), 8.4)
+    carriage = LateroCarriage(parse_hand("sweep:60"))
     for found, offset in zip(arms.offsets_at(carriage.encoders(0)), OFFSETS, strict=True):
         assert (found - offset + 1) % 2**32 <= 2
 
@@ -178,7 +178,7 @@ def test_an_interface_that_is_away_says_0():
 
 
 def test_the_hand_reads_along_each_line_and_then_down():
-    carriage = LateroCarriage(parse_hand("sweep:200"), 8.4, lines=3)
+    carriage = LateroCarriage(parse_hand("sweep:200"), lines=3)
     assert carriage.at(0) == pytest.approx((0, 217.5, 0))
     assert carriage.at(5_000_000) == pytest.approx((0, 217.5, 0))  # it has not set out
     carriage.set_out()
@@ -212,7 +212,7 @@ def test_a_network_does_what_it_says_and_counts_it():
 def test_a_port_that_is_taken_is_said_in_a_sentence(latero):
     port = latero._socket.getsockname()[1]
     with pytest.raises(InputError, match="choose another port"):
-        LateroSimulator(LateroCarriage(parse_hand("slow"), 8.4), say=print, port=port)
+        LateroSimulator(LateroCarriage(parse_hand("slow")), say=print, port=port)
 
 
 @pytest.mark.parametrize("name", ["drop", "late", "double", "foreign"])

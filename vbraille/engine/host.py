@@ -20,7 +20,7 @@ from urllib.parse import parse_qs
 from vbraille.devices.events import Back, Stalled, from_json
 from vbraille.devices.registry import find_driver
 from vbraille.display import Display
-from vbraille.engine.engine import Watcher
+from vbraille.engine.engine import EndOfLine, Watcher
 from vbraille.engine.record import RingReader, Tally
 from vbraille.errors import DeviceError, InputError, VbrailleError
 from vbraille.files import open_memory, settings_path
@@ -50,8 +50,8 @@ class HostDiedError(VbrailleError):
     """The host process ended without a word; `Host.start` begins another."""
 
 
-class Host:
-    """An `Engine` whose loop has a process of its own; a context manager.
+class Host(Watcher):
+    """An engine whose loop has a process of its own; a context manager.
 
     No other work of the program can hold up such a loop.
 
@@ -94,6 +94,7 @@ class Host:
         fits: bool = True,
         often: bool = True,
     ) -> None:
+        super().__init__()
         self.counts: dict[str, int] = {}
         self.lost = 0
         self.calibration: dict[str, Any] | None = None
@@ -107,7 +108,6 @@ class Host:
         self._memory = -1  # descriptor of the ring's memory
         self._ring: RingReader | None = None
         self._ring_of: tuple[memoryview, tuple[int, int], int] | None = None
-        self._watcher: Watcher | None = None
         self._unsent: deque[tuple[bytes, int | None]] = deque()
         self._shown: tuple[Program, int, float | None] | None = None
         self._order: HandOrder | None = None
@@ -131,7 +131,8 @@ class Host:
         if self._process is not None:
             self.close()
         self._before, self._lost_before = self.tally, self.lost
-        self._ring = self._ring_of = self._watcher = self._fault = None
+        Watcher.__init__(self)
+        self._ring = self._ring_of = self._fault = None
         self._started = self._at_driver = self._ended = self._stalled = False
         self._paused = False
         self._unsent.clear()
@@ -176,14 +177,14 @@ class Host:
         while not self._started:
             select.select((self._channel,), (), (), _LOOK_S)
             if not self._hear() and not self._started:
-                raise self._end()
+                raise self._ended_by()
             if self._at_driver and until_s is None:
                 until_s = time.monotonic() + OPEN_S + self._boot_s()
             if until_s is not None and time.monotonic() > until_s:
                 assert self._process is not None
                 self._process.kill()
                 self._fault = too_slow(self._spec)
-                raise self._end()
+                raise self._ended_by()
         if first not in (None, self._display):
             self.close()
             raise InputError(f"{self.display.name} is another device than before; start anew")
@@ -224,25 +225,10 @@ class Host:
         return self._display
 
     @property
-    def newest(self) -> np.void | None:
-        """Record of the last tick polled; None before the first."""
-        return None if self._watcher is None else self._watcher.newest
-
-    @property
     def tally(self) -> Tally:
         """Counts of what the loops have done, up to the last poll, over all starts of the host."""
         newest = self.newest
         return self._before if newest is None else self._before + Tally.of(newest)
-
-    @property
-    def x_mm(self) -> float | None:
-        """Place of the array's centre at the last poll; None before it is known."""
-        return None if self._watcher is None else self._watcher.x_mm
-
-    @property
-    def ready(self) -> bool:
-        """Tell whether the device works and its array was at the left at the last poll."""
-        return self._watcher is not None and self._watcher.ready
 
     @property
     def paused(self) -> bool:
@@ -265,7 +251,17 @@ class Host:
         self._tell(switches=switches)
 
     def show(self, picture: Program, line: int, end_mm: float | None = None) -> None:
-        """Put a picture of a line under the hand; see `vbraille.engine.engine.Engine`.
+        """Put a picture of a line under the hand.
+
+        Parameters
+        ----------
+        picture
+            Picture that is shown; it fades in.
+        line
+            Number of the line in the records, from 1.
+        end_mm
+            Right edge of the line's last dot; a `LineRead` event tells that the hand was there and
+            is back. None for what ends nowhere.
 
         Raises
         ------
@@ -273,9 +269,8 @@ class Host:
             If the picture was compiled for another array.
         """
         picture.check_shape(self.display.shape)
-        self._shown = picture, line, end_mm
-        if self._watcher is not None:
-            self._watcher.show(line, end_mm)
+        self._shown, self._line = (picture, line, end_mm), line
+        self._end = None if end_mm is None else EndOfLine(self.display.span_mm, end_mm)
         memory = open_memory("vbraille-picture", max(picture.nbytes, 1))
         for part, at in ((picture.numbers, 0), (picture.table, picture.numbers.nbytes)):
             _write(memory, part.tobytes(), at)
@@ -308,13 +303,13 @@ class Host:
         """
         self._flush()
         alive = self._hear()
-        if self._ring is None or self._watcher is None:
-            raise self._end()
+        if self._ring is None:
+            raise self._ended_by()
         ticks = self._ring.drain()
         self.lost = self._lost_before + self._ring.lost
-        self._watcher.watch(ticks)
+        self.watch(ticks, self.display)
         if not ticks.size and not alive:
-            raise self._end()
+            raise self._ended_by()
         self._look(ticks.size > 0)
         return ticks
 
@@ -333,7 +328,7 @@ class Host:
     def take_events(self) -> Sequence[Event]:
         """Take the events of the device, its loop and its ticks since the last call."""
         events, self._events = self._events, []
-        return events + (self._watcher.take_events() if self._watcher is not None else [])
+        return events + self._take_found()
 
     def close(self) -> None:
         """Have the host bring the array to rest and end; further calls do nothing.
@@ -354,7 +349,7 @@ class Host:
             pass
         # A host that still compiles may be ended like this; one whose end was told is told of once.
         well = self._ended or not self._at_driver or (code == 0 and self._fault is None)
-        fault = None if well else self._end()
+        fault = None if well else self._ended_by()
         self._process = None
         self._socket.close()
         for _, descriptor in self._unsent:
@@ -425,7 +420,6 @@ class Host:
             memory = mmap.mmap(self._memory, 0)
             self._ring_of = memoryview(memory), display.shape, told["ticks"]
             self._ring = RingReader(*self._ring_of)
-            self._watcher = Watcher(display)
             self._started = True
         if told.get("event"):
             self._events.append(from_json(json.dumps(told["event"])))
@@ -449,7 +443,7 @@ class Host:
                 )
             return self._process.wait()
 
-    def _end(self) -> VbrailleError:
+    def _ended_by(self) -> VbrailleError:
         """Reason why there is no host any more."""
         code = self._reap()
         self._ended = True

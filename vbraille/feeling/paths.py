@@ -9,15 +9,8 @@ import numpy as np
 
 from vbraille.engine.constants import DIFFERENCE, MEAN
 from vbraille.errors import InputError
-from vbraille.simulation.exploring import (
-    Disturbance,
-    ExploringPath,
-    parse_explorer,
-    parse_place,
-    spot,
-    wide,
-)
-from vbraille.simulation.motion import SLACK
+from vbraille.simulation.exploring import parse_explorer, parse_place, spot, wide
+from vbraille.simulation.motion import SLACK, Motion
 from vbraille.simulation.recorded import load_recorded
 from vbraille.wording import setting
 
@@ -43,7 +36,7 @@ class PathOptions:
     speed
         Speed in mm/s.
     sway, unsteady, back
-        Disturbances of a wide path; see `vbraille.simulation.exploring.Disturbance`.
+        Disturbances of a wide path; see `vbraille.simulation.exploring.wide`.
     """
 
     hand: str = "wide"
@@ -81,9 +74,13 @@ class PosedPath:
 
 # Options of each path, by the names that `vbraille.simulation.exploring` has for them.
 _SPOT: Final = {"radius": "radius_mm", "seconds": "duration_s", "speed": "speed_mm_s"}
-_WIDE: Final = {"speed": "speed_mm_s"}
-_DISTURBED: Final = {"sway": "sway_mm", "unsteady": "speed_change", "back": "back_mm"}
-_OPTIONS: Final = {"spot": _SPOT, "wide": _WIDE | _DISTURBED, "recorded": ()}
+_WIDE: Final = {
+    "speed": "speed_mm_s",
+    "sway": "sway_mm",
+    "unsteady": "speed_change",
+    "back": "back_mm",
+}
+_OPTIONS: Final = {"spot": _SPOT, "wide": _WIDE, "recorded": ()}
 
 
 def path_of(options: PathOptions, canvas: Canvas, span_mm: float, rate_hz: float) -> PosedPath:
@@ -127,7 +124,7 @@ def path_of(options: PathOptions, canvas: Canvas, span_mm: float, rate_hz: float
     return PosedPath(t_s, x_mm + left_mm, y_mm, theta_rad, velocity_mm_s)
 
 
-def _course(options: PathOptions, kind: str, canvas: Canvas) -> ExploringPath:
+def _course(options: PathOptions, kind: str, canvas: Canvas) -> Motion:
     size = canvas.width_mm, canvas.height_mm
     try:
         if options.hand == "spot":
@@ -137,9 +134,7 @@ def _course(options: PathOptions, kind: str, canvas: Canvas) -> ExploringPath:
             return spot(*at_mm, **_given(options, _SPOT))
         if kind == "wide":
             given = _given(options, _WIDE)
-            if options.hand != kind and (explorer := parse_explorer(options.hand)) is not None:
-                given["spacing_mm"] = explorer.spacing_mm
-            return wide(*size, disturbance=Disturbance(**_given(options, _DISTURBED)), **given)
+            return wide(*size, spacing_mm=parse_explorer(options.hand).spacing_mm, **given)
     except ValueError as error:
         raise InputError(str(error)) from None
     raise InputError(

@@ -12,7 +12,6 @@ from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
-from vbraille.carriers import tactograph
 from vbraille.pictures.figurefiles import FAINT, MIDDLE, save, styled
 
 if TYPE_CHECKING:
@@ -26,11 +25,6 @@ __all__ = ["draw", "save"]
 DEFLECTION = "deflection (of full swing)"
 SWING = -0.05, 1.1  # limits of an axis of deflections, whatever the contrast
 BANDS = "deflection from rest (grey) to full swing (dotted)"
-# The Tactograph's canvas in the frame of its arms, and the ratio of these.
-_LEFT_FAR = tactograph.arms_at(0.0, 0.0)
-_RIGHT_NEAR = tactograph.arms_at(tactograph.WIDTH_MM, tactograph.HEIGHT_MM)
-_CANVAS = _LEFT_FAR[0], _RIGHT_NEAR[0], _LEFT_FAR[1], _RIGHT_NEAR[1]
-_RATIO = tactograph.ARMS.ratio
 BAND = 1.25  # from one curve's rest to the next one's, in full swings
 
 

@@ -255,7 +255,7 @@ class LiveOutput:
             "lines": [
                 LineShown(
                     row + 1, texts[row * cells : (row + 1) * cells], 0.0, row * pitch_mm,
-                    masks.tolist(), places, row == screen.row,
+                    masks.tolist(), places, row == screen.surface.row,
                 )
                 for row, masks in enumerate(screen.talk.masks)
             ],

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.reading.commands import both_ways, command
+from vbraille.reading.moving import LINES_PER_PAGE
 from vbraille.reading.outputs import Cue
 from vbraille.translate import BlockKind, MarkKind
 
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
     from vbraille.translate import Block, Mark
 
-LINES_PER_PAGE = 25  # of a braille page, where the book has no pages of print
 _LINKS = (MarkKind.LINK, MarkKind.NOTE)
 _MOST_LISTED = 100  # headings; of more, those of the upper levels are listed
 
@@ -129,10 +129,8 @@ def figure(reader: Reader, step: int) -> None:
 
 
 def _go_to_mark(reader: Reader, step: int, kinds: tuple[MarkKind, ...], thing: str) -> None:
-    line, found = reader.line, reader.found
-    if found is not None and line.place <= found < line.end:
-        place = found
-    else:
+    line, place = reader.line, reader.found_here
+    if place is None:
         place = line.place - 1 if step > 0 else line.place
     for block in reader.book.source.blocks(line.block.number, step):
         for mark in block.marks[::step]:
@@ -155,8 +153,8 @@ def _mark_said(reader: Reader, block: Block, mark: Mark) -> str:
 @command("follow the link or note under the finger; from a note, go back", "enter")
 def follow(reader: Reader) -> None:
     line, source = reader.line, reader.book.source
-    block, place = line.block, reader.found
-    if place is None or not line.place <= place < line.end:
+    block, place = line.block, reader.found_here
+    if place is None:
         place = reader.place
     ahead = [
         mark

@@ -138,7 +138,6 @@ def serial(**chosen: Any) -> None:
 )  # fmt: skip
 def latero(**chosen: Any) -> None:
     """Simulate a Latero on the network."""
-    from vbraille.devices.latero.device import DISPLAY
     from vbraille.devices.latero.wire import BUTTONS, PORT
     from vbraille.errors import InputError
     from vbraille.render.braille.models import LATERO
@@ -157,7 +156,7 @@ def latero(**chosen: Any) -> None:
     port = PORT if chosen["udp_port"] is None else chosen["udp_port"]
     with _running() as (stopped, keys):
         simulator = LateroSimulator(
-            LateroCarriage(hand, DISPLAY.span_mm, chosen["page_lines"], pitch_mm),
+            LateroCarriage(hand, chosen["page_lines"], pitch_mm),
             say=say, port=port, faults=faults, script=events, keys=keys, wait_s=chosen["wait"],
         )  # fmt: skip
         try:
