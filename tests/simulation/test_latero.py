@@ -14,13 +14,7 @@ from vbraille.devices.latero.wire import parse_answer
 from vbraille.errors import InputError
 from vbraille.simulation.controls import parse_presses, parse_script
 from vbraille.simulation.lateroboard import LateroBoard
-from vbraille.simulation.laterosim import (
-    OFFSETS,
-    LateroCarriage,
-    LateroFaults,
-    LateroSimulator,
-    Network,
-)
+from vbraille.simulation.laterosim import OFFSETS, LateroCarriage, LateroSimulator
 from vbraille.simulation.specs import parse_hand
 
 PATIENCE_S = 20.0
@@ -193,29 +187,7 @@ def test_the_hand_reads_along_each_line_and_then_down():
     assert carriage.at(19_000_000) == pytest.approx((0, 217.5, 0))
 
 
-def test_a_network_does_what_it_says_and_counts_it():
-    network = Network(LateroFaults(drop=0.1, late=0.1, double=0.1, foreign=0.1))
-    answer = LateroBoard().receive(
-        (struct.pack(">BBBH5H", 0xCA, 0x11, 1, 7, 0, 0, 0, 0, 0) + bytes(64)).ljust(100, b"\xff")
-    )
-    arrived = [network.carry_answer(answer) for _ in range(1000)]
-    tally = network.tally
-    own = [one for arriving in arrived for one in arriving if one[1] == answer]
-    assert len(own) == 1000 - tally.answers_lost + tally.answers_doubled
-    assert sum(late_s > 0 for late_s, _ in own) >= tally.answers_late > 50
-    assert sum(map(len, arrived)) - len(own) == tally.foreign > 50
-    requests = [network.carry_request() for _ in range(1000)]
-    assert requests.count(0) == tally.requests_lost > 50
-    assert requests.count(2) == tally.requests_doubled > 50
-
-
 def test_a_port_that_is_taken_is_said_in_a_sentence(latero):
     port = latero._socket.getsockname()[1]
     with pytest.raises(InputError, match="choose another port"):
         LateroSimulator(LateroCarriage(parse_hand("slow")), say=print, port=port)
-
-
-@pytest.mark.parametrize("name", ["drop", "late", "double", "foreign"])
-def test_a_chance_is_0_to_1(name):
-    with pytest.raises(ValueError, match=name):
-        LateroFaults(**{name: 1.5})

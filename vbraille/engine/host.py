@@ -24,7 +24,7 @@ from vbraille.engine.engine import EndOfLine, Watcher
 from vbraille.engine.record import RingReader, Tally
 from vbraille.errors import DeviceError, InputError, VbrailleError
 from vbraille.files import open_memory, settings_path
-from vbraille.logs import kept, tracebacks_wanted
+from vbraille.logs import kept
 from vbraille.simulation.specs import device_spec
 from vbraille.simulation.steering import to_json
 
@@ -155,7 +155,6 @@ class Host(Watcher):
             fits=self._fits,
             often=self._often,
             log=kept(),
-            verbose=tracebacks_wanted(),
             settings=str(settings_path().absolute()),
         )
 

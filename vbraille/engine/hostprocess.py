@@ -33,7 +33,7 @@ from vbraille.engine.loop import Loop
 from vbraille.engine.realtime import go_real_time
 from vbraille.engine.record import RING_S, Ring
 from vbraille.errors import DeviceError, VbrailleError
-from vbraille.logs import keep, print_traceback, want_tracebacks
+from vbraille.logs import keep, print_traceback
 from vbraille.render.program import Program, nothing
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.steering import from_json
@@ -198,8 +198,6 @@ def run(parent: Parent, memory: int) -> None:
         return
     if told["log"] is not None:
         keep(told["log"])
-    if told["verbose"]:
-        want_tracebacks()
     wanted = Display(**told["wanted"])
     parent.say(opening=True)
     with opened_device(told["device"], wanted, fits=told["fits"], often=told["often"]) as device:

@@ -35,17 +35,12 @@ class PathOptions:
         How far a spot path swings in mm, and for how long.
     speed
         Speed in mm/s.
-    sway, unsteady, back
-        Disturbances of a wide path; see `vbraille.simulation.exploring.wide`.
     """
 
     hand: str = "wide"
     radius: float | None = None
     seconds: float | None = None
     speed: float | None = None
-    sway: float | None = None
-    unsteady: float | None = None
-    back: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,12 +69,7 @@ class PosedPath:
 
 # Options of each path, by the names that `vbraille.simulation.exploring` has for them.
 _SPOT: Final = {"radius": "radius_mm", "seconds": "duration_s", "speed": "speed_mm_s"}
-_WIDE: Final = {
-    "speed": "speed_mm_s",
-    "sway": "sway_mm",
-    "unsteady": "speed_change",
-    "back": "back_mm",
-}
+_WIDE: Final = {"speed": "speed_mm_s"}
 _OPTIONS: Final = {"spot": _SPOT, "wide": _WIDE, "recorded": ()}
 
 

@@ -1,9 +1,7 @@
 """Hands that go over a picture, and the paths that they take.
 
 Lévesque 2009, 8.5.2 and fig. 8.30, has two: *wide* goes round the canvas and then inward in a
-spiral of a chosen density; *spot* swings about one place. Its 9.6 adds disturbances: a path that
-sways, a speed that changes, and stretches that are gone back. The numbers are ours. Paths are
-motions of the array's centre.
+spiral of a chosen density; *spot* swings about one place. Paths are motions of the array's centre.
 """
 
 from __future__ import annotations
@@ -25,11 +23,6 @@ if TYPE_CHECKING:
 
 SPACING_MM = 10.0
 SPEED_MM_S = 60.0
-SWAY_LENGTH_MM = 20.0
-SPEED_PERIOD_S = 2.0
-BACK_EVERY_MM = 50.0
-_STEP_MM = 0.5  # from knot to knot of a path that is disturbed
-_MOST_KNOTS = 5_000_000
 _SWING_S = 0.005  # from knot to knot of a path that swings
 # A swing along x and one along y whose frequencies have no common period fill the square about a
 # place evenly.
@@ -66,9 +59,6 @@ def wide(
     *,
     spacing_mm: float = SPACING_MM,
     speed_mm_s: float = SPEED_MM_S,
-    sway_mm: float = 0.0,
-    speed_change: float = 0.0,
-    back_mm: float = 0.0,
 ) -> Motion:
     """Go round a canvas and then inward in a spiral: Lévesque 2009, fig. 8.30.
 
@@ -80,12 +70,6 @@ def wide(
         Distance between neighbouring turns of the spiral, 0.5 to 1000 mm.
     speed_mm_s
         Speed along the path.
-    sway_mm
-        How far the path sways to either side, once every `SWAY_LENGTH_MM`.
-    speed_change
-        Share, 0 to 0.9, by which the speed changes up and down every `SPEED_PERIOD_S`.
-    back_mm
-        Length of the stretches that are gone back, one every `BACK_EVERY_MM`.
 
     Raises
     ------
@@ -94,35 +78,9 @@ def wide(
     """
     check_range("spacing", spacing_mm, 0.5, 1000, " mm")
     check_range("speed", speed_mm_s, *SPEED_BOUNDS_MM_S, " mm/s")
-    check_range("sway", sway_mm, 0, 100, " mm")
-    check_range("change of speed", speed_change, 0, 0.9)
-    check_range("way back", back_mm, 0, 0.9 * BACK_EVERY_MM, " mm")
     corners = spiral(width_mm, height_mm, spacing_mm)
-    sides = np.diff(corners)
-    lengths = np.hypot(*sides)
-    along_mm = np.append(0.0, np.cumsum(lengths))
-    if not (sway_mm or speed_change or back_mm):
-        return Motion(along_mm / speed_mm_s, *corners)
-    steps = np.full(math.ceil(along_mm[-1] / _STEP_MM), _STEP_MM)
-    if back_mm:
-        forth, back = round(BACK_EVERY_MM / _STEP_MM), round(back_mm / _STEP_MM)
-        cycle = np.repeat((_STEP_MM, -_STEP_MM), (forth, back))
-        cycles = math.ceil(steps.size / (forth - back))
-        if cycles * cycle.size > _MOST_KNOTS:
-            raise ValueError("the path is too long; take a larger spacing")
-        steps = np.tile(cycle, cycles)
-        steps = steps[: np.argmax(np.cumsum(steps) >= along_mm[-1]) + 1]
-    place = np.minimum(np.append(0.0, np.cumsum(steps)), along_mm[-1])
-    side = np.clip(np.searchsorted(along_mm, place, "right") - 1, 0, lengths.size - 1)
-    right, down = sides[:, side] / lengths[side]
-    swayed = sway_mm * np.sin(2 * np.pi * place / SWAY_LENGTH_MM)
-    x = np.interp(place, along_mm, corners[0]) - swayed * down
-    y = np.interp(place, along_mm, corners[1]) + swayed * right
-    # The time that each step takes at the speed of its moment: ds / v, with v as at an even pace.
-    even_s = np.arange(1, steps.size + 1) * _STEP_MM / speed_mm_s
-    speed = 1 + speed_change * np.sin(2 * np.pi * even_s / SPEED_PERIOD_S)
-    t_s = np.append(0.0, np.cumsum(_STEP_MM / (speed_mm_s * speed)))
-    return Motion(t_s, np.clip(x, 0, width_mm), np.clip(y, 0, height_mm))
+    lengths_mm = np.hypot(*np.diff(corners))
+    return Motion(np.append(0.0, np.cumsum(lengths_mm)) / speed_mm_s, *corners)
 
 
 def spot(

@@ -13,7 +13,7 @@ from vbraille.cli.printing import Progress, say
 
 _SCENES = (".scene", ".svg", ".svgz", ".gen", ".tx")
 _WAY: Any = {"group": "Way over a picture"}
-_PATH = ("radius", "seconds", "speed", "sway", "unsteady", "back")
+_PATH = ("radius", "seconds", "speed")
 
 
 @click.command(
@@ -38,12 +38,6 @@ _PATH = ("radius", "seconds", "speed", "sway", "unsteady", "back")
                    help="Of spot: how long it swings.", **_WAY),
     options.option("--speed", type=options.Number(0.1, 1000), metavar="MM_S",
                    help="Speed of wide or spot.", **_WAY),
-    options.option("--sway", type=options.Number(0, 1000), metavar="MM",
-                   help="Of wide: sway to either side.", **_WAY),
-    options.option("--unsteady", type=options.Number(0, 0.9), help="Of wide: change of speed.",
-                   **_WAY),
-    options.option("--back", type=options.Number(0, 49), metavar="MM",
-                   help="Of wide: way back every 50 mm.", **_WAY),
     options.profile(group="Places and settings"), options.settings,
 )  # fmt: skip
 @click.pass_context

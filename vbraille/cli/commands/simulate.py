@@ -128,20 +128,14 @@ def serial(**chosen: Any) -> None:
                    help="Lines of the page that the hand reads."),
     options.option("--wait", type=options.Duration(), default=1.0, metavar="TIME",
                    help="Time for which the hand waits at the lower left."),
-    _script, _press, _drop,
-    options.option("--late", type=_share, default=0.0, help="Share of answers that are 20 ms late.",
-                   **_FAULTS),
-    options.option("--double", type=_share, default=0.0, help="Share of datagrams that come twice.",
-                   **_FAULTS),
-    options.option("--stray", type=_share, default=0.0, help="Share of answers with a stranger's "
-                   "datagram.", **_FAULTS),
+    _script, _press,
 )  # fmt: skip
 def latero(**chosen: Any) -> None:
     """Simulate a Latero on the network."""
     from vbraille.devices.latero.wire import BUTTONS, PORT
     from vbraille.errors import InputError
     from vbraille.render.braille.models import LATERO
-    from vbraille.simulation.laterosim import LateroCarriage, LateroFaults, LateroSimulator
+    from vbraille.simulation.laterosim import LateroCarriage, LateroSimulator
     from vbraille.simulation.specs import parse_hand
 
     events = _events(chosen)
@@ -149,15 +143,11 @@ def latero(**chosen: Any) -> None:
         raise InputError("a Latero has two buttons, 1 and 2, and no knobs")
     hand = parse_hand(chosen["hand"], chosen["seed"])
     pitch_mm = LATERO.style.geometry.line_pitch_mm
-    faults = LateroFaults(
-        drop=chosen["drop"], late=chosen["late"], double=chosen["double"], foreign=chosen["stray"],
-        seed=chosen["seed"],
-    )  # fmt: skip
     port = PORT if chosen["udp_port"] is None else chosen["udp_port"]
     with _running() as (stopped, keys):
         simulator = LateroSimulator(
             LateroCarriage(hand, chosen["page_lines"], pitch_mm),
-            say=say, port=port, faults=faults, script=events, keys=keys, wait_s=chosen["wait"],
+            say=say, port=port, script=events, keys=keys, wait_s=chosen["wait"],
         )  # fmt: skip
         try:
             say(f"device: {simulator.spec}")
@@ -165,10 +155,8 @@ def latero(**chosen: Any) -> None:
             simulator.run(stopped)
         finally:
             simulator.close()
-    board, tally = simulator.board, simulator.network.tally
+    board = simulator.board
     say(f"summary: seconds {simulator.now_us / 1e6:.1f}, frames {board.fulls}, "
-        f"requests lost {tally.requests_lost}, answers lost {tally.answers_lost}, "
-        f"late {tally.answers_late}, foreign {tally.foreign}, "
         f"blades {'at rest' if board.at_rest else 'not at rest'}")  # fmt: skip
 
 
