@@ -268,7 +268,7 @@ class Picture(Explored):
         """Note that another person holds the hand, and that a hand has gone over all."""
         if self.device.held:  # keys move the hand from where it was left
             self._aim = None
-        if self._goes and not self._attended and self.device.hand_done():
+        if self._goes and not self._attended and self.device.hand_done:
             self.done = True
 
     def _say_way(self, place: Point, now_s: float, name: str, to: Point) -> None:

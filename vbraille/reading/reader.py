@@ -323,7 +323,7 @@ class Reader(Explored):
 
     def _hand_done(self, tick: np.void) -> bool:
         felt = int(tick["line"]) == self.surface.number and not int(tick["flags"]) & HELD
-        return felt and self.device.hand_done()
+        return felt and self.device.hand_done
 
     def _say_of_hand(self, ticks: NDArray[np.void]) -> None:
         """Say what keeps the hand from the end of the line, and whether it is too fast."""
