@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.reading.bench import ONE, TWO, Heard, NoKeyboard, Reading
-from vbraille.feeling.loading import load_scene
+from vbraille.pictures.loading import load_scene
 from vbraille.reading.device import ReadingDevice
 from vbraille.reading.exploration import Exploration
 from vbraille.reading.figures import BookFigures

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from vbraille.display import Pose
-    from vbraille.feeling.index import SceneIndex
-    from vbraille.feeling.loading import LoadedScene
     from vbraille.layout import Line
+    from vbraille.pictures.index import SceneIndex
+    from vbraille.pictures.loading import LoadedScene
     from vbraille.reading.picture import Picture
     from vbraille.render.program import Program
     from vbraille.translate import Source
@@ -136,7 +136,7 @@ class BookFigures:
             canvas, x_mm, y_mm = figure.scene.canvas, pose.x_mm, pose.y_mm - top_mm
             if 0 <= x_mm <= canvas.width_mm and 0 <= y_mm <= canvas.height_mm:
                 if figure.title not in self._indices:
-                    from vbraille.feeling.index import SceneIndex  # loads numba
+                    from vbraille.pictures.index import SceneIndex  # loads numba
 
                     made = SceneIndex(figure.scene, figure.assets, figure.boxes())
                     self._indices[figure.title] = made
@@ -152,7 +152,7 @@ class BookFigures:
         InputError
             If it cannot be felt.
         """
-        from vbraille.feeling.loading import check_fits
+        from vbraille.pictures.loading import check_fits
         from vbraille.reading.picture import Picture
 
         figure = self._look(reader.line)
@@ -165,7 +165,7 @@ class BookFigures:
         return Picture(figure, *how, where=Where.FIGURE)
 
     def _load(self, address: str) -> LoadedScene:
-        from vbraille.feeling.loading import load_scene  # most books have no figures
+        from vbraille.pictures.loading import load_scene  # most books have no figures
 
         if self._folder is not None:
             return load_scene(self._folder / unquote(address).lstrip("/"), self._style())

@@ -35,8 +35,8 @@ from vbraille.simulation import steering
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.feeling.loading import LoadedScene
     from vbraille.live.view import LiveView
+    from vbraille.pictures.loading import LoadedScene
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.explored import Explored
 
@@ -265,7 +265,7 @@ def _blank(loaded: LoadedScene, image: str) -> SceneShown:
 
 def _drawn(loaded: LoadedScene, switches: int) -> SceneShown:
     """Draw a scene as its switches have it, and the layers that they hide."""
-    from vbraille.feeling.index import label_of
+    from vbraille.pictures.index import label_of
     from vbraille.pictures.scenes import hidden_layers, small_png
     from vbraille.render.compiling import settled
 

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.feeling.aperture import ZOOMS, Aperture
-from vbraille.feeling.composing import compose, viewed
-from vbraille.feeling.index import SceneIndex
-from vbraille.feeling.loading import FileWatch, check_fits, load_scene
+from vbraille.pictures.aperture import ZOOMS, Aperture
+from vbraille.pictures.composing import compose, viewed
+from vbraille.pictures.index import SceneIndex
+from vbraille.pictures.loading import FileWatch, check_fits, load_scene
 from vbraille.reading.commands import Where, both_ways, command
 from vbraille.reading.explored import Explored
 from vbraille.reading.outputs import Cue
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.feeling.index import NamedElement, Spot
-    from vbraille.feeling.loading import LoadedScene
+    from vbraille.pictures.index import NamedElement, Spot
+    from vbraille.pictures.loading import LoadedScene
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.outputs import Output
     from vbraille.render.program import Program

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.feeling.paths import PosedPath
     from vbraille.layout import Layout, Line
+    from vbraille.pictures.paths import PosedPath
     from vbraille.render import Model
     from vbraille.scene.scene import Canvas
     from vbraille.simulation.hand import Hand
@@ -174,8 +174,8 @@ def render_picture(
     InputError, VbrailleError
         If the picture cannot be used, the file cannot be made, or the disk cannot take it.
     """
-    from vbraille.feeling.composing import compose
-    from vbraille.feeling.loading import load_scene
+    from vbraille.pictures.composing import compose
+    from vbraille.pictures.loading import load_scene
     from vbraille.pictures.scenes import small_png
 
     display = replace(model.display, rate_hz=rate_hz)
