@@ -80,7 +80,7 @@ def _render_reading(ctx: click.Context, chosen: dict[str, Any]) -> None:
 
 
 def _render_picture(chosen: dict[str, Any]) -> None:
-    from vbraille.feeling.paths import PathOptions, path_of
+    from vbraille.pictures.paths import PathOptions, path_of
     from vbraille.reading.rendering import render_picture
     from vbraille.render import MODELS
     from vbraille.wording import count

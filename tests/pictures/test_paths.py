@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vbraille.errors import InputError
-from vbraille.feeling.paths import PathOptions, path_of
+from vbraille.pictures.paths import PathOptions, path_of
 from vbraille.scene.scene import Canvas
 from vbraille.simulation.exploring import spiral, spot, wide
 
