@@ -6,6 +6,7 @@ import unicodedata
 from enum import StrEnum
 from functools import cache
 from itertools import permutations
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.braille.cells import UNICODE_BLANK
@@ -43,80 +44,15 @@ class Kind(StrEnum):
 FULL_CELLS = "⠿⠿⠿"
 MARKERS = ("[?]", "(?)", "?", FULL_CELLS)
 
-# Spellings of signs, for all languages alike. Patterns of dots are the last resort for signs that
-# nearly all literary codes write so.
-_SIGNS = {
-    "•‣⁃◦▪▫●○■□◆◇►▶‧・": "• · - * ⠤",
-    "-‐‑‒–−־": "- ‐ – — ⠤",
-    "—―": "— – -- - ⠤⠤",
-    "'‘’‚‛‹›ʼʻ`´׳": "' ’ ⠄",
-    '"“”„‟«»〝〞「」『』《》〈〉״': "\" “ ” '' ⠶",
-    "′": "' ’ ⠄",
-    "″": "\" ” '' ’’ ⠄⠄",
-    "‴": "''' ’’’ ⠄⠄⠄",
-    "।": "। . ⠲",
-    "॥": "॥ .. . ⠲⠲",
-    ".۔。։។།።": ". । ⠲",
-    ",،、٬՝፣": ", ، ⠂",
-    "٫": ". , ⠂",
-    ";؛": "; ؛ ⠆",
-    ":׃": ": ⠒",
-    "!՜": "! ⠖",
-    "?؟՞": "? ؟ ⠦",
-    "(": "( ⠶",
-    ")": ") ⠶",
-    "[{【〔": "[ ( ⠶",
-    "]}】〕": "] ) ⠶",
-    "/⁄∕": "/ ⠌",
-    "*∗†‡": "* ⠔",
-    "#": "# ⠸⠹",
-    "$": "$ ⠈⠎",
-    "%": "% ⠨⠴",
-    "&": "& ⠈⠯",
-    "+": "+ ⠐⠖",
-    "<": "< ⠈⠣",
-    "=": "= ⠐⠶",
-    ">": "> ⠈⠜",
-    "@": "@ ⠈⠁",
-    "\\": "\\ ⠸⠡",
-    "^": "^ ⠈⠢",
-    "_": "_ ⠨⠤",
-    "|": "| ⠸⠳",
-    "~": "~ ⠈⠔",
-    "…": "... ⠄⠄⠄",
-    "·": "· .",
-    "¡": "!",
-    "¿": "?",
-    "×": "x",
-    "÷": ": /",
-    "©": "(c)",
-    "®": "(r)",
-    "€": "EUR eur",
-    "→": "-> ⠒⠕",
-    "←": "<- ⠪⠒",
-    "↔": "<->",
-    "≤": "<=",
-    "≥": ">=",
-    "≠": "!=",
-    "≈∼": "~",
-    "ß": "ss",
-    "ẞ": "SS",
-    "æ": "ae",
-    "Æ": "AE",
-    "œ": "oe",
-    "Œ": "OE",
-    "ø": "ö o",
-    "Ø": "Ö O",
-    "ł": "l",
-    "Ł": "L",
-    "đð": "d",
-    "ĐÐ": "D",
-    "þ": "th",
-    "Þ": "Th",
-    "ı": "i",
-    "ħ": "h",
+# Spellings of signs, for all languages alike: the signs, and what may stand for each, best first.
+# Patterns of dots are the last resort for signs that nearly all literary codes write so.
+SIGNS = {
+    sign: texts
+    for signs, *texts in map(
+        str.split, Path(__file__).with_name("signs.txt").read_text("utf-8").splitlines()
+    )
+    for sign in signs
 }
-SIGNS = {sign: texts.split() for signs, texts in _SIGNS.items() for sign in signs}
 
 SHADDA = "\u0651"
 # NUL, at which liblouis stops; soft hyphens, which part contractions; marks of the byte order.
