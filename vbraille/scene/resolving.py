@@ -45,7 +45,7 @@ _MOST = {
 _TOO_DEEP = f"nests more than {MOST_DEPTH} deep by what it uses; make it flatter"
 # Keys that a use can have without a group around what it names.
 _CALLED: tuple[str, ...] = ("id", "title", "description")
-_NAMELESS = dict.fromkeys(_CALLED, "")
+_NAMELESS: dict[str, str] = dict.fromkeys(_CALLED, "")
 
 
 def resolve(scene: Scene, folder: Path | None = None, locations: Locations | None = None) -> Scene:

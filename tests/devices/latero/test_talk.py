@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.devices.latero.bench import FELT, MS, OFFSETS, Bench
+from tests.devices.latero.network import LateroFaults
 from tests.tiers import by_tier
 from vbraille.devices.events import (
     Back,
@@ -18,7 +19,6 @@ from vbraille.devices.events import (
     WatchdogTripped,
 )
 from vbraille.devices.latero.device import ENCODERS, NO_SWITCH, OTHER_VERSION, POWER_OFF, Requests
-from vbraille.simulation.laterosim import LateroFaults
 
 SHOWN = np.rint(150 * (1 - FELT)).astype(np.uint8).ravel()
 
