@@ -310,24 +310,21 @@ class Throttle:
     def add(self, event: Event) -> None:
         """Add an event that is to be told."""
         if event.every:
-            if len(self._due) < _MOST:
-                self._due.append(event)
+            self._due = [*self._due, event][:_MOST]
             return
-        key = event.key if event.key in self._held or len(self._held) < _MOST else type(event)
+        key = event.key if len(self._held) < _MOST else type(event)
         self._held.pop(key, None)  # the last one is told last: of "silent" and "back" it is true
         self._held[key] = event
 
     def take(self, now_ns: int) -> list[Event]:
         """Events that are to be told by now, in order; each is given once."""
         due, self._due = self._due, []
+        told_ns = self._told_ns
         for key, event in list(self._held.items()):
             every_ns = _KNOB_NS if isinstance(event, Knob) else _NS_PER_S
-            if now_ns - self._told_ns.get(key, -_NS_PER_S) >= every_ns:
-                del self._held[key]
-                self._told_ns[key] = now_ns
-                due.append(event)
-        if len(self._told_ns) > _MOST:
-            self._told_ns = {
-                key: at for key, at in self._told_ns.items() if now_ns - at < _NS_PER_S
-            }
+            if now_ns - told_ns.get(key, -_NS_PER_S) >= every_ns:
+                due.append(self._held.pop(key))
+                told_ns[key] = now_ns
+        while len(told_ns) > _MOST:
+            del told_ns[next(iter(told_ns))]
         return due
