@@ -49,9 +49,7 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     device: str
-    gain: Annotated[
-        list[Annotated[list[Gain], msgspec.Meta(min_length=1)]], msgspec.Meta(min_length=1)
-    ]
+    gain: Annotated[list[_Row], msgspec.Meta(min_length=1)]
 
     def __post_init__(self) -> None:
         if len({len(row) for row in self.gain}) > 1:
