@@ -490,8 +490,8 @@ class Conversation:
             self._took_us = self._time_us
         if last is None or state.others != last.others:
             self._note_changes(state, last or state, now_ns)
-        if self._zero_ns:
-            self._mind_zero(state)
+        if state.flags & PLACED and abs(state.x / self.info.counts_per_mm[0]) < _ZERO_MM:
+            self._zero_ns = 0  # ZERO was taken, and is repeated no more
         if state.flags & FAULT:
             raise DeviceError(f"{self.info.name} has a fault; switch it off and on, and try again")
         self._follow(state, now_ns)
@@ -514,12 +514,6 @@ class Conversation:
             self.trips += tripped
             self.tripped_ms = (self._time_us - self._took_us) / 1000
             self.events.append(WatchdogTripped(self.trips))
-
-    def _mind_zero(self, state: State) -> None:
-        """Repeat ZERO no more once the device has taken it."""
-        assert self.info is not None
-        if state.flags & PLACED and abs(state.x / self.info.counts_per_mm[0]) < _ZERO_MM:
-            self._zero_ns = 0
 
     def _press(self, buttons: int, now_ns: int) -> None:
         """Tell of buttons that are pressed now and were not, or the other way round."""
