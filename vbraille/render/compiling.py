@@ -23,7 +23,6 @@ from vbraille.scene.bitmap import WHOLE, bitmap_box, opaque
 from vbraille.scene.bounds import bounds, drawn_radius_mm, is_everywhere, reach_mm
 from vbraille.scene.dotting import PlacedDot
 from vbraille.scene.joints import Cycle, axial_cycle, cue_cycle, stroke_cycles
-from vbraille.scene.measures import travel_deg
 from vbraille.scene.patterns import (
     Circle,
     Dots,
@@ -439,7 +438,7 @@ class _Writer:
             case UniformVibration():
                 self._say(i.VIBRATION, pattern.frequency_hz)
             case LinearGrating():
-                angle = math.radians(travel_deg(pattern.wave_angle_deg, pattern.ridge_angle_deg))
+                angle = math.radians(pattern.travel_deg)
                 right, down = math.cos(angle), math.sin(angle)
                 start = pattern.start_mm[0] * right + pattern.start_mm[1] * down
                 cycle = Cycle(pattern.ridge_mm, pattern.gap_mm)
@@ -654,7 +653,8 @@ class _Writer:
             self._say(i.PROFILE, *_profile(shape.cue_width_mm, shape.cue_edge_mm, None))
             self._say(i.MULTIPLY)
             # Bands that are not wider than a row of dots end as the row does.
-            if paths.is_open(shape) and shape.cue_width_mm > shape.width_mm:
+            _, closed = shape.outline
+            if not closed and shape.cue_width_mm > shape.width_mm:
                 self._say(i.BEYOND, 2.0 / shape.width_mm)
                 self._say(i.MULTIPLY)
         shows, hides = {

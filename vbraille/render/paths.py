@@ -42,20 +42,6 @@ _OPEN = -1e30  # stands for minus infinity
 _NO_CORNER = (_OPEN, *(0.0,) * (CORNER_NUMBERS - 1))
 
 
-def contours_of(shape: AnyShape) -> tuple[tuple[tuple[Point, ...], ...], bool]:
-    """Contours of a shape, and whether they are closed; a circle has none."""
-    if isinstance(shape, StraightLine):
-        return ((shape.start_mm, shape.end_mm),), False
-    if isinstance(shape, Polygon):
-        return (shape.vertices_mm,), True
-    return (shape.contours_mm, shape.closed) if isinstance(shape, PathShape) else ((), True)
-
-
-def is_open(shape: AnyShape) -> bool:
-    """Tell whether a shape has ends."""
-    return isinstance(shape, StraightLine) or (isinstance(shape, PathShape) and not shape.closed)
-
-
 def cycles_differ(shape: AnyShape) -> bool:
     """Tell whether textures along the contours of a shape have cycles of their own."""
     cycles = stroke_cycles(shape)
@@ -72,7 +58,7 @@ def path_chunks(shape: AnyShape, size: int) -> list[float]:
     size
         Numbers of each segment: `ACROSS`, `ALONG` or `ROUNDED` of the instructions.
     """
-    contours, closed = contours_of(shape)
+    contours, closed = shape.outline
     cycles = stroke_cycles(shape) if cycles_differ(shape) else ()
     found: list[tuple[Point, Point, Numbers]] = []
     for number, points in enumerate(contours):
