@@ -24,7 +24,7 @@ from vbraille.engine.constants import (
 from vbraille.errors import check_range
 from vbraille.render import work
 from vbraille.render.frames import blend
-from vbraille.render.program import nothing, scratch_for
+from vbraille.render.program import nothing
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -127,7 +127,6 @@ class LoopState:
         self._held = np.zeros(display.shape)
         self._target = np.zeros(display.shape)
         self._at = np.zeros(work.AT)
-        self._scratch = scratch_for(display.shape)
         self._sent_ns, self._faded_ns = self._numbers["sent_ns"], self._numbers["faded_ns"]
         # The frame before, the time at which it was sent, and how far its fade had come.
         self._before = self.output.copy()
@@ -217,5 +216,5 @@ class LoopState:
             self._at,
             self._program.numbers,
             self._program.table,
-            self._scratch,
+            self._program.scratch,
         )
